@@ -2,22 +2,33 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial import ConvexHull
 
 from benchmarks.pair_cases import M, gear_of, spur_pair
-from dynamics.bearings.matrix import Matrix
 from dynamics.forces import RollingContact
-from dynamics.joints import Housing
+from dynamics.housings import (
+    ModalDamping,
+    ReducedMatrices,
+    Ring,
+    SeatFrame,
+    housing_of_matrices,
+    scene_housing,
+)
+from dynamics.housings.reduced_housing import SurfaceMotion
+from dynamics.housings.supports import MOTIONS
 from dynamics.loads import TimeLaw
 from dynamics.meshes import CoastFlank, MeshTable
+from dynamics.noise import EquivalentSoundPower, QuantityLevel, SoundModel
 from dynamics.scene import Outputs, Scene, pair_scene
 from dynamics.shafts import BeamSection, GearBody, Inertia, hollow_cylinder
-from dynamics.types import FloatArray
 from fe_contact import GearPair, analyze
 from lineofaction.cli.subjects import tabled_scene
 from lineofaction.gearbox.subjects import scene_of
@@ -45,10 +56,12 @@ def table(pair: GearPair, axes: bool, folder: Path) -> MeshTable:
 
 
 def example_scenes() -> dict[str, Scene]:
-    """Return the scenes of the folder of examples, the long ones cut."""
+    """Return the scenes of the folder of examples whose meshes have tables, the long ones cut."""
     found = {}
     for file in sorted(EXAMPLES.glob("*_scene.toml")):
         given, folder = scene_of(file)
+        if not given.meshes or any(mesh.stiffness is not None for mesh in given.meshes):
+            continue
         scene = tabled_scene(given, folder, None, lambda _stage, _fraction: None).scene
         seconds = SHORT.get(file.stem, scene.duration)
         outputs = replace(scene.outputs, energy_audit=False, receipt="minimal")
@@ -100,6 +113,11 @@ def influence_scenes(folder: Path) -> dict[str, Scene]:
         ),
         "spur in a housing, 3000 rpm": _turning(_housed(spur), CONSTANT(3000.0 * RPM)),
         "helical in a housing, run-up": _turning(_housed(helical), up, 0.6),
+        "spur off the middle in a housing, 4000 rpm": _turning(_housed(_off_middle(spur, 0.06)), fast),
+        "helical on shafts in a housing, 2000 rpm": _turning(
+            _housed(_sections(helical, 0.03)), CONSTANT(2000.0 * RPM)
+        ),
+        "spur, friction, in a housing, 1200 rpm": _turning(_housed(rubbing), CONSTANT(1200.0 * RPM)),
         "spur, light load, backlash, 4000 rpm": _turning(
             _with_mesh(spur, coast=CoastFlank(60e-6), damping_ratio=0.03), fast, torque=12.0
         ),
@@ -192,17 +210,36 @@ def _sections(scene: Scene, diameter: float) -> Scene:
 
 
 def _housed(scene: Scene) -> Scene:
-    """Put all bearings into a housing of four seats of 6.75 kg, modes from 1061 to 1369 Hz."""
+    """Put all bearings into a sounding housing of four seats of 6.75 kg, modes from 1061 to 1369 Hz."""
     tie = 4.0 * np.eye(4) - np.ones((4, 4))
     stiffness, mass = np.kron(3e8 * np.eye(4) + 5e7 * tie, np.eye(3)), 6.75 * np.eye(12)
-    names = tuple(part.name for part in scene.bushings)
-    housing = Housing("case", names, _rows(stiffness), mass=_rows(mass), damping_ratio=0.03)
-    return replace(scene, housings=(housing,))
+    places = itertools.product((0.0, 0.09), (0.0, LENGTH))
+    seats = tuple(
+        SeatFrame(part.name, np.array([x, 0.0, z]), np.eye(3), Ring.RIGID, MOTIONS[:3])
+        for part, (x, z) in zip(scene.bushings, places, strict=True)
+    )
+    housing = housing_of_matrices(ReducedMatrices(stiffness, mass), seats, ModalDamping((0.03,)))
+    housing = replace(housing, surface=_box_on(seats))
+    scene = replace(scene, housings=(replace(scene_housing(housing, "case"), seat_positions=None),))
+    model = SoundModel(scene, {"case": housing}, {})
+    return replace(scene, quantity=QuantityLevel(EquivalentSoundPower(), model, "sound power", "dB(A)"))
 
 
-def _rows(matrix: FloatArray) -> Matrix:
-    """Return a matrix as tuples."""
-    return tuple(map(tuple, matrix.tolist()))
+def _box_on(seats: Sequence[SeatFrame]) -> SurfaceMotion:
+    """Return a box whose points move as the seats do, the nearest most."""
+    corners = np.array(list(itertools.product((-0.1, 0.2), (-0.1, 0.1), (-0.02, LENGTH + 0.02))))
+    hull = ConvexHull(corners)
+    outward = np.linalg.det(corners[hull.simplices] - corners.mean(axis=0)) > 0.0
+    faces = np.where(outward[:, None], hull.simplices, hull.simplices[:, ::-1])
+    edges = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
+    pairs, number = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
+    points = np.concatenate([corners, corners[pairs].mean(axis=1)])
+    away = np.array([np.sum((points - seat.position) ** 2, axis=1) for seat in seats]).T
+    weight = 1.0 / away / np.sum(1.0 / away, axis=1)[:, None]
+    motion = np.kron(weight[:, None, :], np.eye(3)).reshape(len(points), 3, -1)
+    return SurfaceMotion(
+        points, np.concatenate([faces, len(corners) + number.reshape(-1, 3)], axis=1), motion
+    )
 
 
 def _on_rollers(scene: Scene, clearance: float) -> Scene:

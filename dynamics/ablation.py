@@ -14,10 +14,12 @@ from dynamics.checks import chosen
 from dynamics.effects import EFFECTS
 from dynamics.errors import InputError, SolveError
 from dynamics.influence import Influence, decide_effects, estimate_influences
+from dynamics.influence.level_change import BearingForces, LevelChange, Lines, level_change, loudest_lines
 from dynamics.influence.linear_figures import COMPARED
-from dynamics.orders import order_track
+from dynamics.orders import bearing_orders, order_track
 from dynamics.results import RunResult
 from dynamics.scene import Scene
+from dynamics.settings.level_quantity import LevelQuantity
 from dynamics.simulation import simulate
 from dynamics.types import FloatArray, Json
 from host import cpu_seconds
@@ -34,6 +36,10 @@ SETTLED = 0.5
 """Part of the run after which start-up transients are taken to have died out."""
 
 
+def _no_lines() -> FloatArray:
+    return np.empty(0)
+
+
 @dataclass(frozen=True)
 class RunFigures(Figures):
     """Figures of the settled part of a run.
@@ -48,13 +54,23 @@ class RunFigures(Figures):
         Largest amplitude along the run of the mesh orders 1 to 5 of the transmission error, m.
     bearing_orders : (b, 5) array
         Of the bearing forces, root of the sum of squares of their components, N; b = 0 if not stored.
+    line_order, line_square : (K,) arrays
+        Orders of the bearing forces and the largest squares along the run of what the scene is computed for;
+        K = 0 of a run too short to tell them.
     """
 
     orders: FloatArray = field(metadata=in_unit("m", "curve", "order"))
     bearing_orders: FloatArray = field(metadata=in_unit("n", "bearing", "order"))
+    line_order: FloatArray = field(default_factory=_no_lines, metadata=in_unit("1", "line"))
+    line_square: FloatArray = field(default_factory=_no_lines, metadata=in_unit("1", "line"))
+
+    @property
+    def lines(self) -> Lines:
+        """The largest squares by order."""
+        return dict(zip(self.line_order.tolist(), self.line_square.tolist(), strict=True))
 
 
-def _run_figures(result: RunResult, seconds: float) -> RunFigures:
+def _run_figures(result: RunResult, seconds: float, quantity: LevelQuantity) -> RunFigures:
     """Return the figures of a run of so many CPU seconds; one shorter than a few base pitches is refused."""
     settled = slice(int(SETTLED * result.time.size), None)
     error = result.dynamic_transmission_error[:, settled]
@@ -64,7 +80,19 @@ def _run_figures(result: RunResult, seconds: float) -> RunFigures:
     bearings = np.empty((0, HIGHEST))
     if result.bearing_force.size:
         bearings = np.sqrt(np.sum(_largest(result, "bearing_force", pitches) ** 2, axis=1))
-    return RunFigures(np.mean(error, axis=1), np.ptp(error, axis=1), seconds, transmission, bearings)
+    own = np.mean(error, axis=1), np.ptp(error, axis=1), seconds
+    return RunFigures(*own, transmission, bearings, *_lines_of(result, quantity))
+
+
+def _lines_of(result: RunResult, quantity: LevelQuantity) -> tuple[FloatArray, FloatArray]:
+    """Return orders (K,) and largest squares (K,) over the settled windows; none of a run without any."""
+    try:
+        forces = bearing_orders(result)
+    except InputError:
+        return _no_lines(), _no_lines()
+    settled = forces.time >= SETTLED * result.time[-1]
+    lines = loudest_lines(forces.order, quantity.squares(forces)[settled], {}) if settled.any() else {}
+    return np.array(list(lines)), np.array(list(lines.values()))
 
 
 def _largest(result: RunResult, series: str, pitches: int) -> FloatArray:
@@ -87,11 +115,17 @@ class EffectAblation(model_studies.EffectAblation[RunFigures, Influence]):
     name, on, reason, with_effect, without_effect, estimate
         Of every ablation; on if any part has it on, the reason is that of the first such part. The estimate
         is of the part of the run that is compared.
-    influence : float
-        Largest static displacement that the ledger states, m.
+    level : LevelChange
+        What the ledger of the run states, of all of it.
     """
 
-    influence: float = field(metadata=in_unit("m"))
+    level: LevelChange = field(default_factory=LevelChange)
+
+    @property
+    def level_change(self) -> LevelChange:
+        """Change of the level that is measured, of the part of the run that is compared."""
+        own = self.level
+        return level_change(self.with_effect.lines, self.without_effect.lines, own.quantity, own.unit)
 
     @property
     def order_change(self) -> FloatArray:
@@ -158,11 +192,17 @@ def ablate(
     scene = assemble(scene).resolved(scene)  # one output grid for all runs
     scene = replace(scene, on_violation="report", tolerance=None)
     result, seconds = _timed(scene)
-    influences = estimate_influences(scene, SETTLED)
-    nominal = _run_figures(result, seconds)
+    quantity = scene.quantity or BearingForces()
+    nominal = _run_figures(result, seconds, quantity)
+    ledger = {name: influence.level for name, influence in estimate_influences(scene).items()}
+    estimates = estimate_influences(scene, SETTLED)
+    sizes = {
+        name: (ledger.get(name, LevelChange(quantity.name, quantity.unit)), estimates.get(name))
+        for name in names
+    }
     parts = {name: [e for e in result.effect_ledger["entries"] if e["effect"] == name] for name in names}
 
-    toggle = partial(_toggled, scene, parts, nominal, influences)
+    toggle = partial(_toggled, scene, parts, nominal, sizes)
     effects, left_out = run_variants(
         "ablation",
         {name: name for name in names},
@@ -179,7 +219,7 @@ def _toggled(
     scene: Scene,
     parts: Mapping[str, Sequence[Json]],
     nominal: RunFigures,
-    estimates: Mapping[str, Influence],
+    sizes: Mapping[str, tuple[LevelChange, Influence | None]],
     name: str,
 ) -> EffectAblation:
     """Run with one effect toggled; what is on anywhere goes off everywhere."""
@@ -188,11 +228,12 @@ def _toggled(
         raise LeftOut(parts[name][0]["reason"] if parts[name] else "no part of the scene has it")
     on = any(part["on"] for part in able)
     choice = "off" if on else "on"
-    other = _run_figures(*_timed(replace(scene, effects={**scene.effects, name: choice})))
+    changed = replace(scene, effects={**scene.effects, name: choice})
+    other = _run_figures(*_timed(changed), scene.quantity or BearingForces())
     first = next((part for part in able if part["on"] == on), able[0])
-    influence = float(np.max([part["influence_m"] for part in able]))
+    size, estimate = sizes[name]
     states = (nominal, other) if on else (other, nominal)
-    return EffectAblation(name, on, first["reason"], *states, estimates.get(name), influence)
+    return EffectAblation(name, on, first["reason"], *states, estimate, size)
 
 
 def _timed(scene: Scene) -> tuple[RunResult, float]:

@@ -185,7 +185,7 @@ def _evaluate(
 PLANAR = ("x", "y", "rotation")
 REBUILT = (
     *("shafts", "gears", "discs", "meshes", "drives", "bushings", "loads"),
-    *("duration", "effects", "outputs", "integration", "on_violation"),
+    *("duration", "effects", "outputs", "integration", "on_violation", "quantity"),
 )
 SOLVERS = ("GeneralizedAlpha", "TrapezoidalIndex2", "RK44", "DOPRI5")
 

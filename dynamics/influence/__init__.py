@@ -1,5 +1,20 @@
 """Influence of dynamic effects by linear theory before integration; the decision of "auto"."""
 
-from dynamics.influence.neglected_check import Decided, Influence, decide_effects, estimate_influences
+from dynamics.influence.neglected_check import (
+    Decided,
+    Influence,
+    decide_effects,
+    estimate_influences,
+    response_influences,
+)
+from dynamics.influence.sized_ledger import left_out_effects, sized_ledger
 
-__all__ = ["Decided", "Influence", "decide_effects", "estimate_influences"]
+__all__ = [
+    "Decided",
+    "Influence",
+    "decide_effects",
+    "estimate_influences",
+    "left_out_effects",
+    "response_influences",
+    "sized_ledger",
+]

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from dynamics.assembly.assemble import System
+from dynamics.influence.level_change import BearingForces, Lines, loudest_lines
 from dynamics.linearize.harmonic_response import HarmonicResponse, extremes, parametric_response
 from dynamics.linearize.linear_system import natural_modes
 from dynamics.linearize.load_harmonics import load_multiples
@@ -25,34 +26,39 @@ MOMENTS = 24
 """At which a run is looked at."""
 LEAST_SPEED = 1e-9
 """Of the largest: what is slower is at rest."""
+ORDERS = 24
+"""Mesh orders that make the peak-to-peak value."""
+SPEEDS, FEWER = 32, 10
+"""Speeds and mesh orders at which a response is looked at, alike with and without an effect."""
 LOADS = 6
 """Loads at which a system is linearized where they vary along the run."""
 
 
 @dataclass(frozen=True)
-class _OperatingCondition:
+class OperatingCondition:
     """Speeds (S,) of the leading law, rad/s, > 0, rising, under the loads at a `time`, s.
 
     `rate` (S,) is how fast they change, rad/s^2, >= 0, `weight` (S,) the part of the run at each; all
-    conditions together have 1.
+    conditions together have 1. Solved for are the mesh `orders` from 1 on.
     """
 
     time: float
     speed: FloatArray
     rate: FloatArray
     weight: FloatArray
+    orders: int = ORDERS
 
-    def passing(self, speed: FloatArray) -> _OperatingCondition:
+    def passing(self, speed: FloatArray) -> OperatingCondition:
         """Return the condition with those of the speeds (k,) added that it passes, of no weight."""
         inside = speed[(speed > self.speed[0]) & (speed < self.speed[-1])]
         whole = np.concatenate([self.speed, inside])
         order = np.argsort(whole)
         rate = np.concatenate([self.rate, np.interp(inside, self.speed, self.rate)])
         weight = np.concatenate([self.weight, np.zeros(inside.size)])
-        return _OperatingCondition(self.time, whole[order], rate[order], weight[order])
+        return OperatingCondition(self.time, whole[order], rate[order], weight[order], self.orders)
 
 
-def operating_conditions(scene: Scene, law: int, settled: float = 0.0) -> tuple[_OperatingCondition, ...]:
+def operating_conditions(scene: Scene, law: int, settled: float = 0.0) -> tuple[OperatingCondition, ...]:
     """Return what the run of `scene` passes from the part `settled` (0..1) of its duration on.
 
     `law` is the leading law. At rest nothing vibrates: such moments are
@@ -73,8 +79,16 @@ def operating_conditions(scene: Scene, law: int, settled: float = 0.0) -> tuple[
     for part in parts:  # moments together, their loads taken at the middle one
         once, first, times = np.unique(speed[part], return_index=True, return_counts=True)
         middle = float(time[part][part.size // 2])
-        conditions.append(_OperatingCondition(middle, once, rate[part][first], times / time.size))
+        conditions.append(OperatingCondition(middle, once, rate[part][first], times / time.size))
     return tuple(conditions)
+
+
+def conditions_at(speed: FloatArray, time: float) -> tuple[OperatingCondition, ...]:
+    """Return what a linear response at speeds (S,) > 0, rad/s, passes: at most `SPEEDS` of them."""
+    rising = np.unique(speed)
+    own = rising[np.unique(np.linspace(0, rising.size - 1, min(SPEEDS, rising.size)).round().astype(int))]
+    still, alike = np.zeros(own.size), np.full(own.size, 1.0 / own.size)
+    return (OperatingCondition(time, own, still, alike, FEWER),)
 
 
 def _loads_vary(scene: Scene, time: FloatArray) -> bool:
@@ -88,8 +102,6 @@ def _loads_vary(scene: Scene, time: FloatArray) -> bool:
     return by_speed or any(np.ptp(np.asarray(law)) > 0.0 for law in laws)
 
 
-ORDERS = 24
-"""Mesh orders that make the peak-to-peak value."""
 COMPARED = 5
 """Mesh orders of bearing forces that are compared."""
 MODES, MET = 4, 3
@@ -118,6 +130,8 @@ class LinearFigures:
         Size of the system: freedoms, and local coordinates of its force elements.
     coasting : bool
         Whether a mesh has its coast flank.
+    lines : mapping of float to float
+        Of the quantity that the scene is computed for, by order.
     """
 
     mean: FloatArray
@@ -129,6 +143,7 @@ class LinearFigures:
     freedoms: int
     rows: int
     coasting: bool
+    lines: Lines = field(default_factory=dict)
 
     @property
     def bearing_force(self) -> FloatArray:
@@ -136,7 +151,7 @@ class LinearFigures:
         return np.asarray(np.sqrt(np.sum(self.bearing_orders**2, axis=1) + self.bearing_loads**2))
 
 
-def linear_figures(system: System, conditions: Sequence[_OperatingCondition]) -> LinearFigures:
+def linear_figures(system: System, conditions: Sequence[OperatingCondition]) -> LinearFigures:
     """Return the figures of `system` over the operating conditions of its run.
 
     Raises
@@ -151,10 +166,11 @@ def linear_figures(system: System, conditions: Sequence[_OperatingCondition]) ->
     mean, low, high = np.zeros(meshes), np.full(meshes, np.inf), np.full(meshes, -np.inf)
     amplitude, parted = np.zeros((bearings, 3, COMPARED)), np.zeros(meshes)
     orders, loads = np.zeros((meshes, COMPARED)), np.zeros(bearings)
+    quantity, lines = system.scene.quantity or BearingForces(), dict[float, float]()
     for some in conditions:
-        at = excited(system, some.time, ORDERS, POSITIONS)
-        condition = some.passing(_resonances(at)) if some.speed.size > 1 else some
-        harmonics, shift = parametric_response(at, condition.speed, condition.rate, ORDERS, rotating)
+        at = excited(system, some.time, some.orders, POSITIONS)
+        condition = some.passing(_resonances(at)) if np.any(some.rate) else some
+        harmonics, shift = parametric_response(at, condition.speed, condition.rate, some.orders, rotating)
         static = [float(np.mean(cycle.static_error)) for cycle in at.cycles]
         rest = np.array(static)[:, None] + shift
         least, most = extremes(harmonics.dynamic_transmission_error, harmonics.order)
@@ -164,11 +180,13 @@ def linear_figures(system: System, conditions: Sequence[_OperatingCondition]) ->
         orders = np.maximum(orders, _low_orders(harmonics.dynamic_transmission_error, harmonics))
         amplitude = np.maximum(amplitude, _low_orders(harmonics.bearing_force[:, :3], harmonics))
         loads = np.maximum(loads, _by_loads(at, condition, harmonics))
+        lines = loudest_lines(harmonics.order, quantity.squares(harmonics), lines)
         pull = np.maximum(-np.min(harmonics.least_mesh_force, axis=1), 0.0)
         parted = np.maximum(parted, pull / np.maximum(harmonics.mean_stiffness, 1e-300))
     size = system.arrays.mass.shape[0], system.arrays.direction.shape[0]
     forces = np.sqrt(np.sum(amplitude**2, axis=1))
-    return LinearFigures(mean, high - low, orders, forces, loads, parted, *size, bool(system.flanks.coast))
+    coasting = bool(system.flanks.coast)
+    return LinearFigures(mean, high - low, orders, forces, loads, parted, *size, coasting, lines)
 
 
 def _resonances(at: Excited) -> FloatArray:
@@ -188,7 +206,7 @@ def _resonances(at: Excited) -> FloatArray:
     return np.unique(reported[:, None] / np.concatenate([order.ravel(), of_loads]))
 
 
-def _by_loads(at: Excited, condition: _OperatingCondition, response: HarmonicResponse) -> FloatArray:
+def _by_loads(at: Excited, condition: OperatingCondition, response: HarmonicResponse) -> FloatArray:
     """Return what loads alone excite of every bearing's force, (b,) N."""
     multiples = load_multiples(at.system, at.period, float(condition.speed[-1]), at.time)
     counted = np.arange(1, COMPARED + 1) * at.period.counted

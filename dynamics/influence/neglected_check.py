@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, fields, replace
 
 import numpy as np
 
@@ -11,7 +11,15 @@ from bounds import engineering
 from dynamics.assembly.assemble import System, assemble
 from dynamics.effects import EFFECTS
 from dynamics.errors import InputError, SolveError
-from dynamics.influence.linear_figures import COMPARED, LinearFigures, linear_figures, operating_conditions
+from dynamics.influence.level_change import ROUNDING, BearingForces, LevelChange, level_change
+from dynamics.influence.linear_figures import (
+    COMPARED,
+    LinearFigures,
+    OperatingCondition,
+    conditions_at,
+    linear_figures,
+    operating_conditions,
+)
 from dynamics.linearize.operating_speeds import leading_law
 from dynamics.motion.sampled_states import States
 from dynamics.results.checks import Check, SeriesBlock
@@ -21,10 +29,6 @@ from model_studies import in_unit
 from model_studies.stage_clock import TimeTaken
 
 # The change by leaving an effect out, by linear theory: an ablation before integration.
-
-
-ROUNDING = 1e-8
-"""Relative change below which an estimate says nothing."""
 
 
 def _no_orders() -> FloatArray:
@@ -55,6 +59,10 @@ class Influence:
         Of the bearing forces, N.
     relative_orders, relative_bearing_orders : (5,) arrays
         The largest of each order over the largest amplitude of that order with the effect.
+    level : LevelChange
+        Of what the scene is computed for, by default of all bearing forces together.
+    decides : bool
+        Whether the level alone decides on the effect.
     """
 
     mean: FloatArray = field(metadata=in_unit("m", "curve"))
@@ -70,33 +78,34 @@ class Influence:
     bearing_orders: FloatArray = field(default_factory=_no_orders, metadata=in_unit("n", "bearing", "order"))
     relative_orders: FloatArray = field(default_factory=_no_orders)
     relative_bearing_orders: FloatArray = field(default_factory=_no_orders)
+    level: LevelChange = field(default_factory=LevelChange)
+    decides: bool = False
 
     @property
     def largest(self) -> float:
-        """The largest relative change of all."""
+        """The largest relative change of what is decided by: amplitudes of a level, or all."""
+        if self.decides:
+            return self.level.relative
         return max(self.relative_mean, self.relative_peak_to_peak, self.relative_bearing_force)
 
     @property
     def words(self) -> str:
-        """The relative changes, in words."""
-        parts = (self.relative_mean, self.relative_peak_to_peak, self.relative_bearing_force)
-        shares = (100 * part if part > ROUNDING else 0.0 for part in parts)
-        mean, ripple, force = (f"{engineering(share, 2)} %" for share in shares)
-        words = (
-            f"{mean} of the mean, {ripple} of the peak-to-peak transmission error, {force} of bearing forces"
+        """The change of the level, and the relative ones of transmission errors, in words."""
+        shares = (
+            100 * part if part > ROUNDING else 0.0
+            for part in (self.relative_mean, self.relative_peak_to_peak)
         )
-        if not self.relative_bearing_orders.size or self.relative_bearing_force <= ROUNDING:
-            return words
-        order = int(np.argmax(self.relative_bearing_orders))
-        most = engineering(100.0 * float(self.relative_bearing_orders[order]), 2)
-        return f"{words} ({most} % of their order {order + 1})"
+        mean, ripple = (f"{engineering(share, 2)} %" for share in shares)
+        return f"{self.level.words}, {mean} of the mean, {ripple} of the peak-to-peak transmission error"
 
     def to_json(self) -> Json:
         """Return plain JSON without numbers that are not known; whoever shows it says `on` beside it."""
         facts: Json = {"words": self.words}
         for each in fields(self):
             value, unit = getattr(self, each.name), each.metadata.get("unit")
-            if each.name != "on" and (not isinstance(value, float) or np.isfinite(value)):
+            if isinstance(value, LevelChange):
+                facts[each.name] = asdict(value)
+            elif each.name != "on" and (not isinstance(value, float) or np.isfinite(value)):
                 facts[f"{each.name}_{unit}" if unit else each.name] = np.asarray(value).tolist()
         return facts
 
@@ -127,6 +136,23 @@ def estimate_influences(
     system = assemble(scene) if system is None else system
     try:
         conditions = operating_conditions(scene, leading_law(system), settled)
+    except (InputError, SolveError):
+        return {}
+    return _influences(scene, system, conditions)
+
+
+def response_influences(scene: Scene, speed: FloatArray, time: float = 0.0) -> dict[str, Influence]:
+    """Return `estimate_influences` of a linear response at speeds (S,), rad/s, > 0.
+
+    At up to 32 of the speeds, alike with and without an effect.
+    """
+    return _influences(scene, assemble(scene), conditions_at(speed, time))
+
+
+def _influences(
+    scene: Scene, system: System, conditions: Sequence[OperatingCondition]
+) -> dict[str, Influence]:
+    try:
         whole = linear_figures(system, conditions)
     except (InputError, SolveError):
         return {}
@@ -165,6 +191,7 @@ def _influence_of(system: System, on: bool, whole: LinearFigures, without: Linea
     if whole.coasting and not without.coasting:
         room = [np.inf if mesh.coast is None else mesh.coast.backlash for mesh in system.scene.meshes]
         ripple = np.maximum(ripple, np.maximum(whole.parted - np.array(room), 0.0))
+    quantity = system.scene.quantity or BearingForces()
     return Influence(
         mean=mean,
         peak_to_peak=ripple,
@@ -179,6 +206,8 @@ def _influence_of(system: System, on: bool, whole: LinearFigures, without: Linea
         bearing_orders=bearing_orders,
         relative_orders=_by_order(orders, whole.orders),
         relative_bearing_orders=_by_order(bearing_orders, whole.bearing_orders),
+        level=level_change(whole.lines, without.lines, quantity.name, quantity.unit),
+        decides=system.scene.quantity is not None,
     )
 
 
@@ -233,17 +262,20 @@ class Decided:
         return {name: self.influences[name] for name in off}
 
 
-def decide_effects(scene: Scene) -> Decided:
+def decide_effects(
+    scene: Scene, estimates: Callable[[Scene], Mapping[str, Influence]] = estimate_influences
+) -> Decided:
     """Decide the effects that are left to "auto" by the scene's tolerance; without one, as the scene calls.
 
-    Influences, relative to mean and peak-to-peak transmission error and to the largest bearing force,
-    may sum up to a tenth of the tolerance in neglected effects, the smallest first. An effect that the scene
-    does not call for is on if its influence exceeds that by itself.
+    Influences may sum up to a tenth of the tolerance in neglected effects, the smallest first. They are
+    relative: of the amplitudes of the quantity that the scene is computed for; where it states none, of mean
+    and peak-to-peak transmission error and of the largest bearing force. An effect that the scene does not
+    call for is on if its influence exceeds that by itself.
     """
     if scene.tolerance is None:
         return Decided(scene)
     began = TimeTaken.now()
-    influences = estimate_influences(scene)
+    influences = estimates(scene)
     allowed = SHARE * scene.tolerance
     free = {
         name: influence for name, influence in influences.items() if scene.effects.get(name, "auto") == "auto"
@@ -305,10 +337,10 @@ class NeglectedChecks:
             np.max(np.abs(influence.peak_to_peak) / np.maximum(ripple, 1e-300)),
         ]
         change = max(*(float(part) for part in parts), influence.relative_bearing_force)
-        reason = (
-            f"estimated at {engineering(100.0 * change, 2)} % "
-            "of the computed mean, peak-to-peak or bearing force"
-        )
+        size = "the computed mean, peak-to-peak or bearing force"
+        if influence.decides:
+            change, size = influence.largest, f"the amplitude of {influence.level.quantity}"
+        reason = f"estimated at {engineering(100.0 * change, 2)} % of {size}"
         if self._parted:
             reason = "flanks lifted off: the linear theory that neglected it is invalid"
         holds = not self._parted and change <= (self._decided.scene.tolerance or 0.0)

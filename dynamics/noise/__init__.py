@@ -21,12 +21,15 @@ from dynamics.noise.sound_band import GUESSES, SoundBand, SoundModel, forced_pow
 from dynamics.noise.sound_over_time import SoundOverTime, sound_over_time
 from dynamics.noise.transferred_quantities import (
     BearingForce,
+    EquivalentSoundPower,
     PointVelocity,
     Quantity,
     QuantityForm,
+    QuantityLevel,
     SoundPower,
     SoundPressure,
     SurfaceVelocity,
+    Together,
 )
 
 __all__ = [
@@ -34,6 +37,7 @@ __all__ = [
     "BearingForce",
     "CorrectedRadiation",
     "DesignFigure",
+    "EquivalentSoundPower",
     "EstimatedRadiation",
     "ExactLine",
     "HousingRadiation",
@@ -42,6 +46,7 @@ __all__ = [
     "PointVelocity",
     "Quantity",
     "QuantityForm",
+    "QuantityLevel",
     "RadiatedSound",
     "Region",
     "Sensitivity",
@@ -51,6 +56,7 @@ __all__ = [
     "SoundPower",
     "SoundPressure",
     "SurfaceVelocity",
+    "Together",
     "check_microphone",
     "corrected_radiation",
     "estimated_radiation",

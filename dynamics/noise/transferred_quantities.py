@@ -1,21 +1,25 @@
-"""What is heard or measured of a scene: Hermitian forms of the inputs of its flanks (`flank_transfer`)."""
+"""What is heard or measured of a scene: Hermitian forms of the inputs of its flanks (`flank_transfer`).
+
+Of the forces of a response or a run alone they are one number: see `QuantityLevel`.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import Protocol
+from dataclasses import dataclass, replace
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from dynamics.acoustics import Air, outer_hull
 from dynamics.acoustics.levels import FLOOR, REFERENCE_POWER, a_weighting
 from dynamics.checks import one_of
 from dynamics.errors import InputError
 from dynamics.housings.reduced_housing import ReducedHousing
-from dynamics.linearize.transfer import FlankTransfer
 from dynamics.noise.housing_recordings import pressure_transfer
 from dynamics.noise.sound_band import SoundModel
+from dynamics.settings.level_quantity import ForceLines
 from dynamics.types import ComplexArray, FloatArray
 from dynamics.vibration import seat_forces, surface_weight
 from dynamics.vibration.housing_motion import modal_amplitudes
@@ -67,9 +71,9 @@ class QuantityForm:
 
 
 class Quantity(Protocol):
-    """A quantity of a scene by name."""
+    """A quantity of a scene by name, of forces (b, 3 or 6, S, H, 1 + R) per input, as `FlankTransfer` has."""
 
-    def form(self, transfer: FlankTransfer, model: SoundModel) -> QuantityForm:
+    def form(self, transfer: ForceLines, model: SoundModel) -> QuantityForm:
         """Return it by the inputs of the transfer functions of the model's scene.
 
         Raises `InputError`: the scene has no such part, or its housing cannot tell it.
@@ -83,7 +87,7 @@ class BearingForce:
     bearing: str
     direction: str | None = None
 
-    def form(self, transfer: FlankTransfer, model: SoundModel) -> QuantityForm:
+    def form(self, transfer: ForceLines, model: SoundModel) -> QuantityForm:
         """Return its mean square, N^2."""
         index = transfer.bearing.index(one_of("bearing", self.bearing, transfer.bearing))
         force = transfer.bearing_force[index][_axes(self.direction)]
@@ -98,7 +102,7 @@ class PointVelocity:
     point: str
     direction: str | None = None
 
-    def form(self, transfer: FlankTransfer, model: SoundModel) -> QuantityForm:
+    def form(self, transfer: ForceLines, model: SoundModel) -> QuantityForm:
         """Return its mean square, m^2/s^2."""
         housing = _housing(model, self.housing)
         (point,) = named_points(housing, (self.point,))
@@ -113,7 +117,7 @@ class SurfaceVelocity:
 
     housing: str
 
-    def form(self, transfer: FlankTransfer, model: SoundModel) -> QuantityForm:
+    def form(self, transfer: ForceLines, model: SoundModel) -> QuantityForm:
         """Return its mean square over surface and time, m^2/s^2."""
         weight = surface_weight(_housing(model, self.housing))
         velocity = _velocities(transfer, model, self.housing)
@@ -125,9 +129,9 @@ class SurfaceVelocity:
 class SoundPower:
     """Sound power of all housings that radiate, dB(A) re 1e-12 W."""
 
-    def form(self, transfer: FlankTransfer, model: SoundModel) -> QuantityForm:
+    def form(self, transfer: ForceLines, model: SoundModel) -> QuantityForm:
         """Return it, W."""
-        inputs = transfer.motion.shape[-1]
+        inputs = transfer.bearing_force.shape[-1]
         matrix = np.zeros((*transfer.frequency.shape, inputs, inputs), dtype=complex)
         for name in _sounding(model):
             velocity = _velocities(transfer, model, name)
@@ -145,7 +149,7 @@ class SoundPressure:
     housing: str
     microphone: tuple[float, float, float]
 
-    def form(self, transfer: FlankTransfer, model: SoundModel) -> QuantityForm:
+    def form(self, transfer: ForceLines, model: SoundModel) -> QuantityForm:
         """Return its mean square, Pa^2."""
         hertz = transfer.frequency
         path = pressure_transfer(
@@ -153,6 +157,60 @@ class SoundPressure:
         ).reshape(*hertz.shape, -1, 1)
         force = _seats(transfer, model, self.housing)
         return _mean_square(transfer, "Pa2", PRESSURE, np.swapaxes(force @ path, 2, 3), sounds=True)
+
+
+@dataclass(frozen=True)
+class EquivalentSoundPower:
+    """Sound power of all housings with a surface, as if parts of planes radiated it, dB(A) re 1e-12 W.
+
+    Too loud at low frequency, and alike so for all that a scene is compared with.
+    """
+
+    def form(self, transfer: ForceLines, model: SoundModel) -> QuantityForm:
+        """Return it, W."""
+        inputs = transfer.bearing_force.shape[-1]
+        matrix = np.zeros((*transfer.frequency.shape, inputs, inputs), dtype=complex)
+        for name, housing in model.housings.items():
+            velocity = _velocities(transfer, model, name)
+            weight = Air().impedance * outer_hull(housing).surface
+            matrix += 0.5 * velocity.conj() @ weight @ np.swapaxes(velocity, 2, 3)
+        return _form(transfer, "W", REFERENCE_POWER, matrix, sounds=True)
+
+
+@dataclass(frozen=True)
+class Together:
+    """Several quantities of one unit, their powers or mean squares added."""
+
+    parts: tuple[Quantity, ...]
+
+    def form(self, transfer: ForceLines, model: SoundModel) -> QuantityForm:
+        """Return the sum."""
+        first, *others = (part.form(transfer, model) for part in self.parts)
+        return replace(first, matrix=sum((own.matrix for own in others), first.matrix))
+
+
+class _OneInput(NamedTuple):
+    """Forces (b, 3 or 6, S, H, 1) as they are."""
+
+    bearing: tuple[str, ...]
+    frequency: FloatArray
+    bearing_force: ComplexArray
+
+
+@dataclass(frozen=True)
+class QuantityLevel:
+    """A quantity by whose level the effects of a scene are sized: `dynamics.settings.LevelQuantity`."""
+
+    quantity: Quantity
+    model: SoundModel
+    name: str
+    unit: str = "dB"
+
+    def squares(self, forces: ForceLines) -> FloatArray:
+        """Return powers or mean squares of a response or a run, weighted, (S, H)."""
+        own = _OneInput(forces.bearing, forces.frequency, forces.bearing_force[..., None])
+        form = self.quantity.form(own, self.model)
+        return form.weighted(np.ones((*forces.frequency.shape, 1), dtype=complex))
 
 
 def _axes(direction: str | None) -> slice:
@@ -174,13 +232,13 @@ def _sounding(model: SoundModel) -> Iterator[str]:
     yield from names
 
 
-def _seats(transfer: FlankTransfer, model: SoundModel, name: str) -> ComplexArray:
+def _seats(transfer: ForceLines, model: SoundModel, name: str) -> ComplexArray:
     """Return the forces on the seats of a housing per input, (S, H, 1 + R, s)."""
     part = next(part for part in model.scene.housings if part.name == name)
     return seat_forces(transfer, _housing(model, name), part.bushings)
 
 
-def _velocities(transfer: FlankTransfer, model: SoundModel, name: str) -> ComplexArray:
+def _velocities(transfer: ForceLines, model: SoundModel, name: str) -> ComplexArray:
     """Return the velocities of the r coordinates of a housing per input, (S, H, 1 + R, r)."""
     housing, force = _housing(model, name), _seats(transfer, model, name)
     hertz = transfer.frequency.ravel()
@@ -190,7 +248,7 @@ def _velocities(transfer: FlankTransfer, model: SoundModel, name: str) -> Comple
 
 
 def _mean_square(
-    transfer: FlankTransfer, unit: str, reference: float, amplitude: ComplexArray, sounds: bool = False
+    transfer: ForceLines, unit: str, reference: float, amplitude: ComplexArray, sounds: bool = False
 ) -> QuantityForm:
     """Return the mean square of d components together, of peak amplitudes (S, H, d, 1 + R)."""
     matrix = 0.5 * np.swapaxes(amplitude, 2, 3).conj() @ amplitude
@@ -198,7 +256,7 @@ def _mean_square(
 
 
 def _form(
-    transfer: FlankTransfer, unit: str, reference: float, matrix: ComplexArray, sounds: bool = False
+    transfer: ForceLines, unit: str, reference: float, matrix: ComplexArray, sounds: bool = False
 ) -> QuantityForm:
     hertz = transfer.frequency
     weighting = 10.0 ** (a_weighting(hertz) / 10.0) if sounds else np.ones(hertz.shape)

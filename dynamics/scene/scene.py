@@ -26,6 +26,7 @@ from dynamics.joints.housing import DEFINITE
 from dynamics.loads import AppliedForce, LoadTorque, TimeLaw, Unbalance
 from dynamics.meshes import GearMesh
 from dynamics.settings import Integration, Outputs
+from dynamics.settings.level_quantity import LevelQuantity
 from dynamics.shafts import DiscBody, GearBody, Shaft
 from dynamics.shafts.shaft import on_length
 from dynamics.temperatures import Temperatures
@@ -321,6 +322,9 @@ class Scene(StatedLaws):
         Hz to which flexible shafts are resolved; None: half the output rate.
     temperatures : Temperatures or None
         Of the housing; shafts, gears and rings of rolling bearings then have their own. None: as drawn.
+    quantity : LevelQuantity or None
+        What the scene is computed for: by the change of its level effects are sized, and with a tolerance
+        decided. None: bearing forces, decided beside transmission errors.
     """
 
     shafts: tuple[Shaft, ...]
@@ -347,6 +351,7 @@ class Scene(StatedLaws):
     tolerance: float | None = None
     highest_frequency: float | None = None
     temperatures: Temperatures | None = None
+    quantity: LevelQuantity | None = None
 
     def __post_init__(self) -> None:
         not_negative("duration", self.duration)

@@ -16,7 +16,13 @@ from dynamics.bearings.row_law import row_law
 from dynamics.errors import SolveError
 from dynamics.forces.elements import Elements
 from dynamics.forces.laws import Law, among
-from dynamics.influence import Decided, Influence, estimate_influences
+from dynamics.influence import (
+    Decided,
+    Influence,
+    estimate_influences,
+    left_out_effects,
+    sized_ledger,
+)
 from dynamics.integrators import static_equilibrium
 from dynamics.integrators.march import Ending
 from dynamics.integrators.method_choice import MethodChoice
@@ -28,7 +34,7 @@ from dynamics.linearize.linear_system import LinearSystem, freedom_parts, linear
 from dynamics.linearize.operating_speeds import leading_law, mesh_frequencies
 from dynamics.mechanism.additions import SPEED_DEPENDENCE
 from dynamics.mechanism.bearing_elements import BearingElement
-from dynamics.motion.observation import local_state, observe, observe_laws, static_deflections
+from dynamics.motion.observation import local_state, observe, observe_laws
 from dynamics.motion.sampled_states import States
 from dynamics.plausibility import scene_findings
 from dynamics.results import EnergyAudit, StepStatistics
@@ -42,7 +48,6 @@ from dynamics.types import FloatArray, Json
 from model_studies.stage_clock import StageClock
 
 NOT_CHECKED = "no; toggling it measures it (ablation)"
-POSITIONS = 32
 
 
 @dataclass(frozen=True)
@@ -94,41 +99,18 @@ class RunFacts:
 
 
 def _effect_ledger(run: RunFacts) -> Json:
-    """Return entries, estimates, what the model leaves out, and the checks of the run."""
-    deflection = _mean_deflection(run.system)
-    whole = run.system.ledger.to_json()
+    """Return the `sized_ledger` with the checks of the run."""
+    whole = sized_ledger(run.system.ledger.to_json(), run.automatic, run.influences)
+    entries = [entry | _checked(entry, run.checks) for entry in whole["entries"]]
+    return {**whole, "entries": entries, "checks": [check.to_json() for check in run.checks]}
+
+
+def _checked(entry: Json, checks: Sequence[Check]) -> Json:
+    own = [check for check in checks if (check.effect, check.part) == (entry["effect"], entry["part"])]
     return {
-        **whole,
-        "entries": [_ledger_entry(entry, deflection, run) for entry in whole["entries"]],
-        "influences": {name: influence.to_json() for name, influence in run.influences.items()},
-        "checks": [check.to_json() for check in run.checks],
-    }
-
-
-def _mean_deflection(system: System) -> float:
-    """Return the largest of the meshes' mean static transmission errors under the nominal force, m."""
-    table = system.arrays.elements.laws.flank.table
-    position, touched = np.arange(POSITIONS) / POSITIONS, np.empty(POSITIONS)
-    deflections = [0.0]
-    for index, force in enumerate(system.flanks.nominal_force):
-        static_deflections(table, index, position, float(force), touched)
-        deflections.append(float(np.mean(np.abs(touched))))
-    return max(deflections)
-
-
-def _ledger_entry(entry: Json, deflection: float, run: RunFacts) -> Json:
-    name = entry["effect"]
-    own = [check for check in run.checks if (check.effect, check.part) == (entry["effect"], entry["part"])]
-    assessed = {
-        "relative_influence": entry["influence_m"] / deflection if deflection > 0.0 else None,
         "checked": "; ".join(check.reason for check in own) or NOT_CHECKED,
         "holds": all(check.holds for check in own) if own else None,
     }
-    if entry["price"] and not entry["on"] and name in run.influences:
-        assessed["price"] = f"left out: {run.influences[name].words}"
-    if name in run.automatic and entry["possible"]:
-        assessed |= {"choice": "auto", "reason": run.automatic[name], "price": ""}
-    return {**entry, **assessed}
 
 
 def _flexible_shaft(name: str, elastic: ElasticShaft) -> Json:
@@ -370,25 +352,14 @@ def described(run: RunFacts, about: dict[str, Any]) -> dict[str, Any]:
     That is the resolved case, modes, what is implausible, bearings at rest, the error of neglected effects.
     """
     receipt = about["receipt"]
-    error = receipt["error"] | {"left_out_effects": _left_out_effects(run.system)}
+    left_out = left_out_effects(run.system.ledger, run.influences)
+    error = receipt["error"] | ({"left_out_effects": left_out} if left_out else {})
     return about | {
         "receipt": receipt | {"error": error} | _bearings_at_rest(run.system),
         "effect_ledger": _effect_ledger(run),
         "case": _resolved_case(run.system),
         "warnings": [finding.to_json() for finding in scene_findings(run.scene)],
         "modes": _modes_of_run(run.system),
-    }
-
-
-def _left_out_effects(system: System) -> Json:
-    """Return what neglected effects would move the flanks by at rest; bearing forces are not known."""
-    off = [entry for entry in system.ledger.entries if not entry.on and entry.influence > 0.0]
-    largest = max((entry.influence for entry in off), default=0.0)
-    return {
-        "rms": largest,
-        "unit": "m",
-        "source": "largest static displacement along the line of action by one effect that is off",
-        "effects": {f"{entry.effect} of {entry.part}": entry.influence for entry in off},
     }
 
 

@@ -135,6 +135,10 @@ def tabled_scene(
     databases = {mesh.name: table_of(i, meshes[i]) for i, mesh in scene.with_database}
     built = dynamic_scene(scene, databases, housings)
     warn(scene_warnings(scene, built, {name: table.metadata.warnings for name, table in databases.items()}))
+    if housings or scene.complaint is not None:
+        from lineofaction.gearbox.level_quantity import with_quantity  # noqa: PLC0415 (start-up time)
+
+        built = with_quantity(built, scene, housings)
     own = with_own_cases(scene.model_copy(update={"meshes": tuple(meshes)}), folder)
     return TabledScene(without_modes_files(own), databases, built, housings, cpu_seconds() - began)
 

@@ -1,28 +1,42 @@
 """The size of an effect is one number: in the plan, on the command line, in the report, on the page, in an
-ablation."""
+ablation, in the receipt of a run."""
 
 from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from command_line import loa
+from geared_scenes import RPM, gear_pair_scene, with_gear
 
+from dynamics.ablation import ablate as ablate_scene
+from dynamics.acoustics import a_weighting
+from dynamics.influence.level_change import LevelChange
+from dynamics.loads import TimeLaw
+from dynamics.scene import Outputs, Scene
+from dynamics.simulation import documents, simulate
 from fe_contact.analysis.studies import ablation
 from fe_contact.analysis.studies.ablation import Figures
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.case import CheckedCase
+from lineofaction.gearbox.convert.effects import model_lines
 from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.studied import OverOrders
 from lineofaction.gearbox.studies.ablate import Inputs
 from lineofaction.gearbox.studies.ablate.run import RUN
 from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.housings import sized_response
+from lineofaction.gearbox.units import boundary_ledger
 from lineofaction.report.document import page_of, read_inputs, stored_figures
 from lineofaction.report.drawing.page import html
+from lineofaction.report.drawing.tables import ledger_section
 from lineofaction.report.effects.ablate import PAGE
+from lineofaction.report.presentation import model_text
 from service.live.work import live_plan
 
 pytestmark = pytest.mark.usefixtures("coarse_sectors")
@@ -94,12 +108,10 @@ def invoked(*words: object) -> str:
     return run.stdout
 
 
-def told_lines(text: str) -> dict[str, str]:
-    return dict(
-        re.findall(
-            r"^effect (\w+): .*\n(?: +(?:neglected|on after).*\n)? +without it (.*?); cost", text, re.M
-        )
-    )
+def terminal_changes(text: str) -> dict[str, list[str]]:
+    """The changes of mean and peak-to-peak of every effect in the table of the terminal."""
+    rows = re.findall(r"^([a-z ]+?) +(?:yes|no) +(\S+ %) +(\S+ %) ", text, re.M)
+    return {name.replace(" ", "_"): changes for name, *changes in rows}
 
 
 def table_words(tables: list[Json]) -> dict[str, str]:
@@ -116,7 +128,7 @@ def test_five_outputs_tell_one_number(name: str, tmp_path: Path, monkeypatch: py
     file.write_text(json.dumps(case), encoding="utf-8")
     plan = json.loads(invoked("plan", file, "--json"))["effect_ledger"]
     page_plan = live_plan({"case": case, "time_budget_s": None, "cache": str(tmp_path)})["effect_ledger"]
-    lines = told_lines(invoked("analyze", file, "-o", table))
+    changes = terminal_changes(invoked("analyze", file, "-o", table))
     assert bool(SteDatabase.from_netcdf(table).metadata.receipt["repeated"]) == ("repeated" in name)
     report = page_of(read_inputs([table]))
     page = next(
@@ -140,14 +152,15 @@ def test_five_outputs_tell_one_number(name: str, tmp_path: Path, monkeypatch: py
         if entry["name"] in estimated:
             check_ablation(estimated[entry["name"]]["estimate"], influence)
         if influence["trifle"]:
-            assert entry["name"] not in {**lines, **shown}
+            assert entry["name"] not in {**changes, **shown}
             continue
         sized += 1
         words = influence["words"]
         assert shown[entry["name"]] == words
-        assert lines.get(entry["name"], words) == words
+        relative = influence["relative_mean"], influence["relative_peak_to_peak"]
+        if None not in relative:
+            assert changes[entry["name"]] == [f"{100.0 * part:+.2g} %" for part in relative]
         assert words in text
-        assert entry["name"] in lines or not (entry["on"] or entry["called_for"])
         for key, unit in (("mean_um", 1.0), ("relative_mean", 100.0), ("peak_to_peak_um", 1.0)):
             assert any(np.isclose(unit * influence[key], value, rtol=0.06) for value in numbers(words))
     assert sized >= 2
@@ -178,3 +191,73 @@ def check_ablation(estimate: Json, influence: Json) -> None:
 
 def numbers(words: str) -> list[float]:
     return [float(text) for text in re.findall(r"[+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?", words)]
+
+
+OFF = {"tilt": "off"}
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("sound", [False, True], ids=["bearing forces", "sound"])
+def test_outputs_of_a_run_tell_one_number(sound: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(documents, "LEAST_WORK", 0)
+    scene = tilting_pair(effects=OFF, outputs=Outputs(energy_audit=False))
+    scene = replace(scene, quantity=FirstBearing() if sound else None)
+    run = simulate(scene)
+    ledger, levels = boundary_ledger(run.effect_ledger), run.receipt["error"]["left_out_effects"]["effects"]
+    lines = dict(
+        re.findall(
+            r"^effect (\w+): .*\n +without it (.*?); ",
+            "\n".join(model_lines({"effect_ledger": ledger})),
+            re.M,
+        )
+    )
+    shown = {row[0]: row[3] for table in ledger_section(ledger).tables for row in table.rows}
+    ablation = ablate_scene(replace(scene, outputs=Outputs(energy_audit=False, receipt="minimal")))
+    rows = {row[0]: row[2] for row in next(PAGE.text(ablation)).rows}
+    document = {entry["name"]: entry for entry in RUN.figures(ablation)["effects"]}
+    sizes = run.effect_ledger["influences"]
+    assert {"lateral", "axial", "tilt"} <= set(sizes)
+    for name, size in sizes.items():
+        level = LevelChange(**size["level"])
+        assert level.unit == ("dB(A)" if sound else "dB")
+        assert size["words"].startswith(f"{level.words}, ")
+        assert shown[name] == lines.get(name, size["words"]) == size["words"]
+        assert rows[name] == level.words
+        assert document[name]["level"] == size["level"]
+        assert levels.get(name, level.decibels) == level.decibels
+    assert "lateral" in lines and levels["tilt"] != 0.0
+
+
+@pytest.mark.law
+def test_a_response_tells_the_number_of_a_run_at_its_speed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(documents, "LEAST_WORK", 0)
+    scene = tilting_pair(outputs=Outputs(energy_audit=False))
+    run = simulate(scene).effect_ledger["influences"]
+    speed = scene.drives[0].speed.extreme / RPM
+    inputs = OverOrders(speed_rpm=[speed], orders=5)
+    response, _ = sized_response(scene, inputs, Means(Path(), lambda *_: None))
+    sizes = response.facts["effect_ledger"]["influences"]
+    assert set(sizes) == set(run)
+    text = "\n".join(words for words in model_text(response.facts) if isinstance(words, str))
+    for name, size in sizes.items():
+        assert size["level"]["decibels"] == pytest.approx(run[name]["level"]["decibels"], abs=0.05)
+        assert f"without it {size['words']}" in text or abs(size["level"]["relative"]) < 1e-3
+
+
+class FirstBearing:
+    """Force along x on the first bearing, A-weighted."""
+
+    name, unit = "force on the first bearing", "dB(A)"
+
+    def squares(self, forces: Any) -> np.ndarray:
+        own = np.abs(forces.bearing_force[0, 0]) ** 2
+        return np.asarray(10.0 ** (a_weighting(forces.frequency) / 10.0) * own)
+
+
+def tilting_pair(**changes: Any) -> Scene:
+    """A helical pair at 2000 rpm that moves axially and tilts."""
+    scene = gear_pair_scene(
+        speed=TimeLaw.constant(2000.0 * RPM), duration=0.06, on_violation="report", **changes
+    )
+    scene = with_gear(with_gear(scene, 0, base_helix_angle=0.2), 1, base_helix_angle=-0.2)
+    return replace(scene, bushings=tuple(replace(part, axial_stiffness=1e8) for part in scene.bushings))

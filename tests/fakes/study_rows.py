@@ -99,7 +99,8 @@ def _ablated_case(figures: Json, result: Any, table: SteDatabase) -> Pairs:
 def _ablated_scene(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
     (lateral,) = figures["effects"]
     yield lateral["name"], "lateral"
-    yield lateral["influence_um"], 1e6 * result.effects[0].influence
+    yield lateral["level"]["decibels"], result.effects[0].level.decibels
+    yield lateral["level_change"]["decibels"], result.effects[0].level_change.decibels
     yield np.shape(lateral["order_change_um"]), (1, 5)
     yield np.shape(lateral["bearing_order_change_n"])[1], 5
 

@@ -111,41 +111,56 @@ def model_lines(attributes: Json) -> Iterator[str]:
     yield from run_lines(attributes)
 
 
-def _effect_lines(ledger: Json) -> Iterator[str]:
-    """Yield the decision about every effect, part by part where they differ, its influence and its price.
+def effect_size(ledger: Json, effect: str) -> str:
+    """Return what a scene loses without an effect in all its parts, in words: the one size that is shown.
 
-    `ledger` is that of a run or a study; an influence is a static displacement along the line of action. That
-    of a run also estimates what leaving the effect out in all its parts changes. Effects that are off
-    and change next to nothing share the last line.
+    As the ledger of a run or a study estimates it; where it does not, how far flanks move at rest. Empty:
+    nothing.
+    """
+    estimate = ledger.get("influences", {}).get(effect)
+    if estimate is not None:
+        return str(estimate["words"])
+    largest = max(entry["influence_um"] for entry in ledger["entries"] if entry["effect"] == effect)
+    return f"{engineering(largest, 3)} um along the line of action at rest" if largest >= LEAST else ""
+
+
+def _effect_lines(ledger: Json) -> Iterator[str]:
+    """Yield the decision about every effect, part by part where they differ, its size and its price.
+
+    `ledger` is that of a run or a study. Effects that are off and change next to nothing share the last line.
     """
     estimates, effects = ledger.get("influences", {}), dict[str, list[Json]]()
     for entry in ledger.get("entries", ()):
         effects.setdefault(entry["effect"], []).append(entry)
     trifles = []
     for name, entries in effects.items():
-        if _is_trifle(entries, estimates.get(name)):
+        size, estimate = effect_size(ledger, name), estimates.get(name)
+        if _is_trifle(entries, size, estimate):
             if any(entry.get("possible", True) for entry in entries):
                 trifles.append(name)
             continue
         yield from _decisions(name, entries)
-        estimate = estimates.get(name)
+        freedoms = ""
         if estimate:
-            size = f"{estimate['freedoms']:+d} freedoms" if estimate["freedoms"] else "no freedoms"
-            yield f"       without it {estimate['words']}; {size} with it"
-        for price in dict.fromkeys(entry.get("price") for entry in entries):
-            if price and not (estimate and price.endswith(estimate["words"])):
+            added = estimate["freedoms"]
+            freedoms = f"; {added:+d} freedoms with it" if added else "; no freedoms with it"
+        if size:
+            yield f"       without it {size}{freedoms}"
+        for price in dict.fromkeys(entry.get("price") for entry in entries if entry["on"]):
+            if price:
                 yield f"       price of the choice: {price}"
     if trifles:
         yield f"{trifles_title(trifles)}: {', '.join(trifles)}"
 
 
-def _is_trifle(entries: list[Json], estimate: Json | None) -> bool:
+def _is_trifle(entries: list[Json], size: str, estimate: Json | None) -> bool:
     """Whether an effect is off everywhere and changes next to nothing."""
     if any(entry["on"] for entry in entries):
         return False
     if estimate is not None:
-        return all(abs(estimate[name]) < TRIFLE for name in _RELATIVE)
-    return all(entry["influence_um"] < LEAST for entry in entries)
+        changes = (*(estimate[name] for name in _RELATIVE), estimate.get("level", {}).get("relative", 0.0))
+        return all(abs(change) < TRIFLE for change in changes)
+    return not size
 
 
 def _decisions(name: str, entries: list[Json]) -> Iterator[str]:
@@ -155,6 +170,4 @@ def _decisions(name: str, entries: list[Json]) -> Iterator[str]:
         shared.setdefault((entry["on"], entry["reason"]), []).append(entry)
     for (on, reason), same in shared.items():
         parts = ", ".join(entry["part"] for entry in same)
-        largest = max(entry["influence_um"] for entry in same)
-        moved = f"; {engineering(largest, 3)} um along the line of action" if largest >= LEAST else ""
-        yield f"effect {name}: {'on' if on else 'off'} ({parts}); {reason}{moved}"
+        yield f"effect {name}: {'on' if on else 'off'} ({parts}); {reason}"

@@ -64,8 +64,8 @@ class SceneInput(BoundaryModel):
             default=None,
             ge=1e-6,
             le=0.5,
-            description="Relative tolerance of mean and peak-to-peak transmission error and of bearing "
-            "forces: "
+            description="Relative tolerance of the sound where a housing has a surface, of the force on the "
+            "bearing of a complaint, else of mean and peak-to-peak transmission error and of bearing forces: "
             "effects of less influence are neglected, others are on; left out: as the scene calls for "
             "them",
             examples=[0.01],

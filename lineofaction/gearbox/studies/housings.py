@@ -4,19 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import asdict, replace
+from functools import partial
 from typing import Any, TypeVar
 
 import numpy as np
 
 from bounds.types import Json
 from dynamics.acoustics import PanelModel
-from dynamics.assembly.assemble import assemble
+from dynamics.assembly.assemble import System, assemble
 from dynamics.housings import ReducedHousing
+from dynamics.influence import decide_effects, response_influences, sized_ledger
 from dynamics.joints import Housing
 from dynamics.linearize import ForcedResponse, forced_response
 from dynamics.noise import HousingRadiation, kept_radiation
 from dynamics.orders import BearingOrders, bearing_orders
 from dynamics.results import RunResult
+from dynamics.scene import Scene
+from dynamics.settings.level_quantity import LevelQuantity
 from dynamics.types import FloatArray
 from dynamics.vibration import ReportedHarmonics
 from host import cpu_seconds
@@ -74,13 +78,16 @@ def radiation_of(
     )
 
 
-def bearing_forces(subject: TabledScene, inputs: OverOrders, means: Means) -> ReportedHarmonics:
+def bearing_forces(
+    subject: TabledScene, inputs: OverOrders, means: Means, quantity: LevelQuantity | None = None
+) -> ReportedHarmonics:
     """Return the orders of the bearing forces in the run, without one in the linear response.
 
-    The facts of both have `forces`: where they come from, and of a run how its windows hold.
+    The facts of both have `forces`: where they come from, and of a run how its windows hold. The quantity is
+    that of `response_of`.
     """
     if means.run is None:
-        response = response_of(subject, inputs, means)
+        response = response_of(subject, inputs, means, quantity)
         return replace(response, facts=response.facts | {"forces": LINEAR})
     began = cpu_seconds()
     with boundary_errors():
@@ -104,19 +111,36 @@ def _run_forces(orders: BearingOrders) -> Json:
     }
 
 
-def response_of(subject: TabledScene, inputs: OverOrders, means: Means) -> ForcedResponse:
-    """Return the forced response of a scene; among its facts are the `excitations`."""
+def response_of(
+    subject: TabledScene, inputs: OverOrders, means: Means, quantity: LevelQuantity | None = None
+) -> ForcedResponse:
+    """Return the `sized_response` of a scene; among its facts are the `excitations`.
+
+    Effects are sized by the quantity, by default by that of the scene.
+    """
+    scene = subject.scene if quantity is None else replace(subject.scene, quantity=quantity)
+    response, system = sized_response(scene, inputs, means)
+    facts = response.facts | {"excitations": excitations_of(response, system, subject)}
+    return replace(response, facts=facts)
+
+
+def sized_response(scene: Scene, inputs: OverOrders, means: Means) -> tuple[ForcedResponse, System]:
+    """Return the forced response of a scene with the effects that its tolerance decides, and their sizes."""
+    speed = np.array([value * RPM for value in inputs.speed_rpm])
+    sized = partial(response_influences, speed=speed)
     with boundary_errors():
-        system = assemble(subject.scene)
+        decided = decide_effects(scene, sized)
+        system = assemble(decided.scene)
         response = forced_response(
-            system,
-            [value * RPM for value in inputs.speed_rpm],
-            inputs.orders,
-            progress=lambda fraction: means.report("response", fraction),
+            system, speed, inputs.orders, progress=lambda fraction: means.report("response", fraction)
         )
-    return replace(
-        response, facts=response.facts | {"excitations": excitations_of(response, system, subject)}
-    )
+        began = cpu_seconds()
+        influences = decided.influences or sized(decided.scene)
+    seconds = cpu_seconds() - began + decided.taken.cpu_seconds
+    facts = response.facts
+    ledger = sized_ledger(facts["effect_ledger"], decided.automatic, influences)
+    known = {"effect_ledger": ledger, "seconds": {**facts["seconds"], "influence_estimates": seconds}}
+    return replace(response, facts=facts | known), system
 
 
 def no_surface(housings: list[str]) -> BadInput:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from lineofaction.gearbox.convert.effects import effect_size
 from lineofaction.report.drawing.figure import Table, number
 from lineofaction.report.drawing.page import Part, Section
 
@@ -100,10 +101,6 @@ def one_effects_section(sections: Sequence[Section]) -> tuple[Section, ...]:
     return (*others, replace(effects[0], text=text, tables=(table,), folded=folded))
 
 
-_ROUNDING = 1e-9
-"""um, of the static displacement of an effect."""
-
-
 def ledger_section(ledger: Mapping[str, Any]) -> Section:
     """Tabulate what was simulated and what the model leaves out, by the effect ledger of a scene."""
     rows = [
@@ -111,18 +108,13 @@ def ledger_section(ledger: Mapping[str, Any]) -> Section:
             entry["effect"],
             entry["part"],
             entry["on"],
-            _displacement(float(entry["influence_um"])),
+            effect_size(ledger, entry["effect"]) or "nothing",
             entry["reason"],
         )
         for entry in ledger.get("entries", ())
     ]
     left_out = ledger.get("left_out", {})
     return effects_section("", rows, (facts("Not in the model", left_out),))
-
-
-def _displacement(influence: float) -> str:
-    """Write a static displacement in um; what is left by rounding is none."""
-    return f"{number(influence, 3)} µm at the line of action" if influence > _ROUNDING else "nothing"
 
 
 Json = dict[str, Any]

@@ -180,14 +180,15 @@ def _scene_table(ablation: SceneAblation) -> Table:
         return "" if entry.estimate is None else _signed(1e6 * _most(getattr(entry.estimate, name)))
 
     head = (
-        "effect", "scene has it", "influence, µm", "mean DTE, µm", "estimated", "peak to peak, µm",
+        "effect", "scene has it", "without it", "computed", "mean DTE, µm", "estimated", "peak to peak, µm",
         "estimated", "order 1, µm", "bearing force, N", "estimated", "of order", "cost, x",
     )  # fmt: skip
     rows = tuple(
         (
             entry.name,
             "on" if entry.on else "off",
-            number(1e6 * entry.influence, 3),
+            entry.level.words,
+            entry.level_change.words,
             _signed(1e6 * _most(entry.mean_change)),
             estimated(entry, "mean"),
             _signed(1e6 * _most(entry.peak_to_peak_change)),

@@ -127,7 +127,6 @@ def _sideband_tables(run: RunResult, signal: Signal) -> tuple[Table, ...]:
 _ERRORS = {
     "time_step": ("step error", "nm rms"),
     "table_interpolation": ("table error", "nm rms"),
-    "left_out_effects": ("neglected effects", "nm at rest"),
 }
 """Sources of error, and the unit of what they do to transmission errors."""
 
@@ -238,6 +237,10 @@ def _accuracy(run: RunResult) -> Table:
     rows = [("status", run.status.name.lower().replace("_", " "))]
     for name, (title, unit) in _ERRORS.items():
         rows += _errors(title, unit, run.receipt.get("error", {}).get(name, {}))
+    left_out = run.receipt.get("error", {}).get("left_out_effects", {})
+    if "decibels" in left_out:
+        size = number(left_out["decibels"], 2)
+        rows.append((f"neglected effects, {left_out['unit']} ({left_out['source']})", size))
     if run.energy is not None:
         rows.append(
             ("energy unaccounted for, % of the turnover of vibration", leftover(100 * run.energy.relative, 2))

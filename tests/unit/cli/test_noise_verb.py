@@ -80,6 +80,24 @@ def test_json_holds_levels_by_order_and_speed_and_the_loudest_points(scene: Path
     assert answer["housings"]["case"]["model_error_db"]["estimate"] == 0.0
 
 
+@pytest.mark.law
+def test_a_sound_without_an_effect_is_off_by_what_the_ledger_says(scene: Path) -> None:
+    """Of the whole analysis with the effect toggled, its radiation by monopoles: within a factor 2."""
+    answer = printed("noise", scene, *SPEEDS)
+    ledger = answer["effect_ledger"]
+    loudest_of = np.max(answer["level_db_a"], axis=1)
+    for name in ("flexible_shafts", "housing_modes"):
+        level = ledger["influences"][name]["level"]
+        assert (level["quantity"], level["unit"]) == ("sound power", "dB(A)")
+        on = any(entry["on"] for entry in ledger["entries"] if entry["effect"] == name)
+        choice = f"effects.{name}={'off' if on else 'on'}"
+        other = printed("noise", scene, *SPEEDS, "--set", choice)
+        order = answer["order"].index(level["order"])
+        change = (np.max(other["level_db_a"], axis=1) - loudest_of)[order] * (1.0 if on else -1.0)
+        assert abs(change) > 1.0
+        assert 0.5 < level["decibels"] / change < 2.0, name
+
+
 def test_the_table_and_the_page_say_the_same(scene: Path, tmp_path: Path) -> None:
     files = {ending: tmp_path / f"noise.{ending}" for ending in ("nc", "html")}
     for file in files.values():

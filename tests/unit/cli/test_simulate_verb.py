@@ -63,8 +63,9 @@ def test_a_run_says_which_effects_are_on_and_what_the_others_change():
     large = small | {"words": "17 % of all", "relative_mean": -0.17}
     ledger = {"entries": entries, "influences": {"tilt": small, "lateral": large}}
     assert list(_effect_lines(boundary_ledger(ledger))) == [
-        "effect flexible_shafts: off (input); switched off; 2 um along the line of action",
-        "effect lateral: on (input, output); pushed aside; 13.3 um along the line of action",
+        "effect flexible_shafts: off (input); switched off",
+        "       without it 2 um along the line of action at rest",
+        "effect lateral: on (input, output); pushed aside",
         "       without it 17 % of all; +4 freedoms with it",
         "1 effect below 0.1 %: tilt",
     ]

@@ -85,6 +85,8 @@ def test_figures_are_root_mean_squares_and_contributions_add_up(scene: Path) -> 
         assert sum(part["points"]["cover"] for part in parts) == pytest.approx(1.0)
         assert sum(part["surface"] for part in parts) == pytest.approx(1.0)
     assert [part["name"] for part in shown["bearings"]] == ["input left", "output left"]
+    levels = [size["level"] for size in answer["effect_ledger"]["influences"].values()]
+    assert {(level["quantity"], level["unit"]) for level in levels} == {("surface velocity of case", "dB")}
     assert answer["highest_valid_frequency_hz"] == pytest.approx(0.7 * answer["natural_frequency_hz"][-1])
 
 

@@ -23,7 +23,7 @@ from dynamics.integrators import integrate, static_equilibrium
 from dynamics.loads import TimeLaw
 from dynamics.results.order_fit import order_amplitudes, unwrapped
 from dynamics.scene import Integration, Outputs
-from dynamics.simulation import simulate
+from dynamics.simulation import documents, simulate
 from dynamics.simulation.error_by_source import _windows
 
 # Energy: conserved without damping and drive, and the audit closes with everything on.
@@ -207,11 +207,16 @@ def test_a_minimal_receipt_states_the_tolerance_and_changes_no_series():
     np.testing.assert_array_equal(full.mesh_force, lean.mesh_force)
     assert lean.receipt["error"]["time_step"]["rms"] == 1e-9
     assert "table_interpolation" not in lean.receipt["error"]
-    assert full.receipt["error"]["left_out_effects"] == lean.receipt["error"]["left_out_effects"]
 
 
-def test_effects_that_are_off_are_named_with_their_influence():
-    off = run_up(64, effects={"lateral": "off"}, outputs=Outputs(receipt="minimal"))
-    found = simulate(replace(off, duration=0.01)).receipt["error"]["left_out_effects"]
-    assert found["effects"]["lateral of input"] == found["effects"]["lateral of output"] > 1e-6
-    assert found["rms"] == max(found["effects"].values())
+def test_effects_that_are_off_are_named_with_what_they_change(monkeypatch):
+    monkeypatch.setattr(documents, "LEAST_WORK", 0)
+    off = simulate(run_up(64, effects={"tilt": "off"}))
+    left_out, sizes = off.receipt["error"]["left_out_effects"], off.effect_ledger["influences"]
+    assert left_out["unit"] == "dB"
+    on = {entry["effect"] for entry in off.effect_ledger["entries"] if entry["on"]}
+    assert "tilt" in left_out["effects"]
+    assert set(left_out["effects"]) == set(sizes) - on
+    for name, decibels in left_out["effects"].items():
+        assert decibels == sizes[name]["level"]["decibels"]
+    assert abs(left_out["decibels"]) == max(map(abs, left_out["effects"].values()))

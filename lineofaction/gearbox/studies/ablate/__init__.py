@@ -35,6 +35,16 @@ class Toggled(Part):
     bearing_orders_n: list[list[float]] | None = None
 
 
+class Level(Part):
+    """Change of the level of what a scene is computed for, at the order that changes most."""
+
+    quantity: str
+    unit: str
+    order: float
+    decibels: float
+    relative: float
+
+
 def _estimate(estimate: Any) -> Json | None:
     """Return what a library estimates of an effect, its lengths in um."""
     return None if estimate is None else dict(in_um(estimate.to_json()))
@@ -52,7 +62,8 @@ class AblateFigures(Figures):
         with_effect: Toggled = Field(alias="with")
         without_effect: Toggled = Field(alias="without")
         estimate: Annotated[Json | None, Source("estimate", document=True, turned=_estimate)]
-        influence_um: float | None = None
+        level: Level | None = None
+        level_change: Level | None = None
         mean_change_um: list[float]
         peak_to_peak_change_um: list[float]
         harmonic_change_um: list[list[float]] | None = None

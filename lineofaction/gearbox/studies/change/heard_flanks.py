@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +22,7 @@ from dynamics.noise import (
     SoundPower,
     SoundPressure,
     SurfaceVelocity,
+    Together,
     estimated_radiation,
 )
 from dynamics.scene import Scene
@@ -277,8 +278,7 @@ def _form(
         SOUND_PRESSURE: lambda: (SoundPressure(heard_housing(subject.inputs, heard), _microphone(heard)),),
         BEARING_FORCE: lambda: tuple(map(BearingForce, of_bearings)),
     }
-    first, *others = (each.form(transfer, model) for each in parts[quantity_of(subject, heard)]())
-    return replace(first, matrix=sum((own.matrix for own in others), first.matrix))
+    return Together(parts[quantity_of(subject, heard)]()).form(transfer, model)
 
 
 def _microphone(heard: HeardInput) -> tuple[float, float, float]:

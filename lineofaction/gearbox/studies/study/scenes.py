@@ -24,6 +24,7 @@ from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.housings import reduced_in
 from lineofaction.gearbox.convert.scene import dynamic_scene
+from lineofaction.gearbox.level_quantity import with_quantity
 from lineofaction.gearbox.problems import BadInput, ServiceError
 from lineofaction.gearbox.schemas.declared import figures
 from lineofaction.gearbox.schemas.faults import faults_of, model_in
@@ -161,7 +162,7 @@ class VariedScene:
             solids = inputs.housings, inputs.shafts, inputs.bushings, inputs.rolling_bearings
             databases = self._databases_of(inputs, self.expensive(values))
             housings = self._kept(("reduced housings",), solids, lambda: reduced_in(inputs, Path(self.home)))
-            return dynamic_scene(inputs, databases, housings)
+            return with_quantity(dynamic_scene(inputs, databases, housings), inputs, housings)
         except (ServiceError, FeContactError) as error:
             raise LeftOut(str(error)) from error
 

@@ -23,6 +23,7 @@ from dynamics.vibration.vibration_analysis import Shares
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.level_quantity import velocity_of
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
@@ -91,7 +92,8 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, HousingVibrationResul
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> HousingVibrationResult:
         name, housing = _chosen(tabled, inputs.housing)
         with boundary_errors():
-            response = bearing_forces(tabled, inputs, means)
+            quantity = velocity_of(tabled.scene, name, housing)
+            response = bearing_forces(tabled, inputs, means, quantity)
             began = cpu_seconds()
             analysis = analyze_vibration(
                 response,

@@ -83,7 +83,9 @@ def test_a_housing_is_estimated_as_ablation_shows_it(rpm: float) -> None:
     assert relative[0] > 2.0  # the order that the housing's inertia holds down
     size = np.max(entry.with_effect.orders)
     np.testing.assert_allclose(entry.estimate.orders, entry.order_change, rtol=0.05, atol=2e-3 * size)
-    assert "% of their order 1)" in entry.estimate.words
+    assert entry.estimate.words.startswith(f"{entry.level.words}, ")
+    assert entry.level_change.order == entry.level.order == 1.0
+    assert entry.level.decibels == pytest.approx(entry.level_change.decibels, abs=0.3)
     json.dumps(entry.estimate.to_json(), allow_nan=False)
     assert np.all(np.isfinite(entry.order_change)) and np.all(np.isfinite(entry.mean_change))
 

@@ -124,8 +124,8 @@ def test_a_bearing_that_lets_go_is_noticed() -> None:
 
 def test_every_entry_of_the_ledger_is_complete() -> None:
     fields = {
-        "effect", "part", "choice", "on", "reason", "influence_m", "relative_influence", "called_for",
-        "possible", "cost", "price", "checked", "holds",
+        "effect", "part", "choice", "on", "reason", "influence_m", "called_for", "possible", "cost", "price",
+        "checked", "holds",
     }  # fmt: skip
     result = simulate(gear_pair_scene(duration=0.002, effects={"lateral": "off"}))
     entries = result.effect_ledger["entries"]
@@ -137,5 +137,3 @@ def test_every_entry_of_the_ledger_is_complete() -> None:
     assert not lateral["on"]
     assert lateral["called_for"]
     assert lateral["price"] == f"{1e6 * lateral['influence_m']:.3g} um of static displacement neglected"
-    # 2660 N on two bearings a shaft, over the 5 to 8 um by which the mesh yields
-    assert lateral["relative_influence"] == pytest.approx(lateral["influence_m"] / 6.4e-6, rel=0.3)

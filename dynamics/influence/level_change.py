@@ -1,0 +1,90 @@
+"""Change of the level of a quantity by leaving an effect out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from bounds import engineering
+from dynamics.settings.level_quantity import ForceLines
+from dynamics.types import FloatArray
+
+Lines = Mapping[float, float]
+"""Largest power or mean square over the speeds, weighted, by order."""
+MOST = 60.0
+"""dB; what changes by more is all of the quantity."""
+ROUNDING = 1e-8
+"""Relative change of amplitude below which an estimate says nothing."""
+
+
+@dataclass(frozen=True)
+class BearingForces:
+    """Forces on all bearings together, root of the sum of squares: what effects are sized by by default."""
+
+    name: str = "bearing forces"
+    unit: str = "dB"
+
+    def squares(self, forces: ForceLines) -> FloatArray:
+        """Return their mean squares, (S, H), N^2."""
+        return np.asarray(0.5 * np.sum(np.abs(forces.bearing_force[:, :3]) ** 2, axis=(0, 1)))
+
+
+@dataclass(frozen=True)
+class LevelChange:
+    """Change of a level without an effect, at the order whose amplitude changes most.
+
+    Attributes
+    ----------
+    quantity, unit : str
+        Whose level: `LevelQuantity`.
+    order : float
+        Multiple of the frequency of the first mesh that turns.
+    decibels : float
+        The level without the effect less that with it, each the largest over the speeds; at most `MOST` in
+        size.
+    relative : float
+        Change of that amplitude over the largest of all orders with the effect.
+    """
+
+    quantity: str = ""
+    unit: str = "dB"
+    order: float = 0.0
+    decibels: float = 0.0
+    relative: float = 0.0
+
+    @property
+    def words(self) -> str:
+        """The change, in words."""
+        if self.relative <= ROUNDING:
+            return f"0 {self.unit} of {self.quantity}"
+        more = "more than " if abs(self.decibels) >= MOST else ""
+        size = engineering(self.decibels, 2, "+")
+        return f"{more}{size} {self.unit} of {self.quantity} at order {self.order:.4g}"
+
+
+def loudest_lines(order: FloatArray, squares: FloatArray, known: Lines) -> dict[float, float]:
+    """Return the largest square of each order (H,) over the speeds of (S, H), or that `known` if larger."""
+    lines = dict(known)
+    for value, most in zip(np.round(order, 9).tolist(), np.max(squares, axis=0).tolist(), strict=True):
+        lines[value] = max(most, lines.get(value, 0.0))
+    return lines
+
+
+def level_change(whole: Lines, without: Lines, quantity: str, unit: str = "dB") -> LevelChange:
+    """Return what leaving an effect out changes: `whole` are the lines with it."""
+    both = {k: (math.sqrt(whole.get(k, 0.0)), math.sqrt(without.get(k, 0.0))) for k in {**whole, **without}}
+    if not any(map(any, both.values())):
+        return LevelChange(quantity, unit)
+    order = max(both, key=lambda k: abs(both[k][1] - both[k][0]))
+    size, left = both[order]
+    largest = max(size for size, _ in both.values()) or left
+    return LevelChange(quantity, unit, order, decibels(size, left), abs(left - size) / largest)
+
+
+def decibels(size: float, left: float) -> float:
+    """Return the level of an amplitude `left` over `size`, dB, at most `MOST` in size; 0 of silence."""
+    least = 10.0 ** (-MOST / 20.0) * max(size, left)
+    return 20.0 * math.log10(max(left, least) / max(size, least)) if least else 0.0
