@@ -190,7 +190,7 @@ class EffectLedger:
 def mechanism_of(scene: Scene, registry: tuple[Effect, ...] = EFFECTS) -> Mechanism:
     """Gather the mechanism of `scene`; every effect that is not switched off checks it.
 
-    Scenes that differ by their outputs alone share it.
+    Scenes that differ alone by their outputs and what they are computed for share it.
 
     Raises
     ------
@@ -198,16 +198,20 @@ def mechanism_of(scene: Scene, registry: tuple[Effect, ...] = EFFECTS) -> Mechan
         If a choice is unknown, parts do not fit each other, or an effect cannot do without a part.
     """
     mechanism = _shared_mechanism(scene, registry)
-    if mechanism.scene.outputs is scene.outputs:
+    own = {name: getattr(scene, name) for name in UNSHARED}
+    if all(getattr(mechanism.scene, name) is part for name, part in own.items()):
         return mechanism
-    return replace(mechanism, scene=replace(mechanism.scene, outputs=scene.outputs))
+    return replace(mechanism, scene=replace(mechanism.scene, **own))
 
 
-def _without_outputs(scene: Scene) -> tuple[object, ...]:
-    return tuple(part for name, part in vars(scene).items() if name != "outputs")
+UNSHARED = ("outputs", "quantity")
 
 
-@cached_by(_without_outputs)
+def _shared_parts(scene: Scene) -> tuple[object, ...]:
+    return tuple(part for name, part in vars(scene).items() if name not in UNSHARED)
+
+
+@cached_by(_shared_parts)
 def _shared_mechanism(scene: Scene, registry: tuple[Effect, ...]) -> Mechanism:
     names = [effect.name for effect in registry]
     for name, choice in scene.effects.items():
