@@ -8,8 +8,7 @@ import pytest
 from geared_scenes import gear_pair_scene
 
 from benchmarks import dynamic_influence_cases
-from benchmarks.assessed_influence import AssessedEffect
-from benchmarks.dynamic_influence_estimates import STUDY, assess, markdown
+from benchmarks.dynamic_influence_estimates import STUDY, AssessedLevel, assess, markdown
 from dynamics.ablation import ablate
 from dynamics.assembly.assemble import assemble
 from dynamics.effects import EFFECTS
@@ -17,9 +16,11 @@ from dynamics.meshes.stiffness_table import straight_table
 
 
 def test_counts_and_tables_are_those_of_the_ablations() -> None:
-    right = AssessedEffect("one", "tilt", (0.1, 0.2, 0.3), (0.11, 0.19, 0.5))
-    wrong = AssessedEffect("two", "tilt", (0.1, 0.2, 0.3), (0.11, -0.19, 0.3))
-    off = AssessedEffect("two", "axial", (0.001, 0.0, 0.0), (0.002, 0.003, 0.03), (0.05,))
+    right = AssessedLevel("one", "tilt", (0.1, 0.2, 0.3), (0.11, 0.19, 0.5), (), "sound power", (3.0, 2.0))
+    wrong = AssessedLevel("two", "tilt", (0.1, 0.2, 0.3), (0.11, -0.19, 0.3), (), "force", (3.0, 1.0))
+    off = AssessedLevel(
+        "two", "axial", (0.001, 0.0, 0.0), (0.002, 0.003, 0.03), (0.05,), "force", (0.0, 0.05)
+    )
     rows = {figure.what: figure for figure in STUDY.counts([right, right, wrong, off])}
     assert rows["any quantity beyond a factor 2"].value == pytest.approx(50.0)
     assert rows["bearing forces: beyond a factor 2, of the 4 changes above 1 %"].value == pytest.approx(25.0)
@@ -29,8 +30,10 @@ def test_counts_and_tables_are_those_of_the_ablations() -> None:
     ]
     assert [figure.value for figure in left] == pytest.approx([0.0, 3.0])
     text = markdown([right, wrong, off])
-    assert "| two | tilt | +10 / +11 | **+20 / -19** | +30 / +30 |" in text
-    assert "| tilt | 2 | 100 % | 50 % | 100 % |" in text
+    assert "| two | tilt | +10 / +11 | **+20 / -19** | +30 / +30 | **+3 / +1** |" in text
+    assert "| tilt | 2 | 100 % | 50 % | 100 % | 50 % |" in text
+    assert "50 % of the 2 that change it by 0.1 dB" in text
+    assert "sound power in 1 scenes, all bearing forces in 1." in text
 
 
 def test_an_ablation_is_assessed_beside_its_estimate() -> None:
@@ -38,7 +41,8 @@ def test_an_ablation_is_assessed_beside_its_estimate() -> None:
     one = assess("pair", made.effects[0])
     whole = made.nominal
     assert one.measured[1] == made.effects[0].peak_to_peak_change[0] / whole.peak_to_peak[0]
-    assert all(one.right)
+    assert all(one.right) and one.level_right
+    assert one.decibels == (made.effects[0].level.decibels, made.effects[0].level_change.decibels)
     assert one.measured[2] == pytest.approx(-1.0)
 
 
