@@ -41,6 +41,11 @@ class AssessedEffect:
         return tuple(within_factor(estimated, measured) for estimated, measured in pairs)
 
     @property
+    def decided_by(self) -> float:
+        """Largest measured change of what "auto" decides by."""
+        return max(map(abs, self.measured))
+
+    @property
     def cells(self) -> str:
         """Columns of a row: estimated / measured change in %, bold where the estimate is not right."""
         cells = []
@@ -97,7 +102,7 @@ class InfluenceStudy:
     def _left_off(self, found: Sequence[AssessedEffect], tolerance: float) -> Figure:
         """Return the largest change of any quantity by an effect that "auto" neglects."""
         off = [one for one in found if tolerance in one.off_at]
-        worst = max((abs(change) for one in off for change in one.measured), default=0.0)
+        worst = max((one.decided_by for one in off), default=0.0)
         what = f"largest change by what auto neglects at {100 * tolerance:g} % ({len(off)} ablations)"
         return Figure(self.subject, what, 100.0 * worst, "%", 100.0 * tolerance)
 

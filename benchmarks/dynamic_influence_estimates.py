@@ -27,6 +27,7 @@ from benchmarks.influence_estimates import PAGE
 from benchmarks.marked_section import replace_section
 from dynamics.ablation import EffectAblation, RunFigures, ablate
 from dynamics.influence import decide_effects
+from dynamics.influence.level_change import BearingForces
 from dynamics.scene import Scene
 from dynamics.types import FloatArray
 
@@ -58,6 +59,13 @@ class AssessedLevel(AssessedEffect):
     def level_right(self) -> bool:
         """Whether both agree within a factor 2 and in sign."""
         return within_factor(*self.decibels, LEVEL_FLOOR)
+
+    @property
+    def decided_by(self) -> float:
+        """Largest measured change of what "auto" decides by: where sound is computed, of its amplitude."""
+        if self.quantity == BearingForces().name:
+            return super().decided_by
+        return float(abs(10.0 ** (self.decibels[1] / 20.0) - 1.0))
 
     @property
     def level_cell(self) -> str:
@@ -148,9 +156,9 @@ def markdown(found: Sequence[AssessedLevel]) -> str:
     """Return the section of docs/lab/influence.md."""
     scenes = list(dict.fromkeys(one.where for one in found))
     head = (
-        f"{len(found)} ablations in time: {len(scenes)} scenes, every effect that can be switched in them. "
-        f"**{per_cent_right(found):.0f} %** have mean, peak-to-peak and bearing forces right\n"
-        f"within a factor {FACTOR:g} and in sign (target {SHARE:g} %); "
+        f"{len(found)} ablations in time: {len(scenes)} scenes, every effect that can be switched in them.\n"
+        f"**{per_cent_right(found):.0f} %** have mean, peak-to-peak and bearing forces right "
+        f"within a factor {FACTOR:g} and in sign (target {SHARE:g} %);\n"
         f"changes below {100 * FLOOR:g} % count as zero.\n\n"
     )
     seen, quantities = _seen(found), {one.where: one.quantity for one in found}

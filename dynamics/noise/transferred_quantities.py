@@ -199,7 +199,7 @@ class _OneInput(NamedTuple):
 
 @dataclass(frozen=True)
 class QuantityLevel:
-    """A quantity by whose level the effects of a scene are sized: `dynamics.settings.LevelQuantity`."""
+    """A quantity by whose level the effects of a scene are sized: a `LevelQuantity`."""
 
     quantity: Quantity
     model: SoundModel

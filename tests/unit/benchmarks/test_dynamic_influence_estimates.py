@@ -17,9 +17,11 @@ from dynamics.meshes.stiffness_table import straight_table
 
 def test_counts_and_tables_are_those_of_the_ablations() -> None:
     right = AssessedLevel("one", "tilt", (0.1, 0.2, 0.3), (0.11, 0.19, 0.5), (), "sound power", (3.0, 2.0))
-    wrong = AssessedLevel("two", "tilt", (0.1, 0.2, 0.3), (0.11, -0.19, 0.3), (), "force", (3.0, 1.0))
+    wrong = AssessedLevel(
+        "two", "tilt", (0.1, 0.2, 0.3), (0.11, -0.19, 0.3), (), "bearing forces", (3.0, 1.0)
+    )
     off = AssessedLevel(
-        "two", "axial", (0.001, 0.0, 0.0), (0.002, 0.003, 0.03), (0.05,), "force", (0.0, 0.05)
+        "two", "axial", (0.001, 0.0, 0.0), (0.002, 0.003, 0.03), (0.05,), "bearing forces", (0.0, 0.05)
     )
     rows = {figure.what: figure for figure in STUDY.counts([right, right, wrong, off])}
     assert rows["any quantity beyond a factor 2"].value == pytest.approx(50.0)
