@@ -14,6 +14,7 @@ from dynamics.forces.laws import COMPILED, Compiled, ElementLaws, Law
 from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import inner
 from dynamics.kernels.local_state import LocalState
+from dynamics.kernels.routine import routine
 from dynamics.meshes.spatial_flank import spatial_energy
 from dynamics.types import FloatArray, IntArray
 
@@ -125,9 +126,12 @@ class Elements(NamedTuple):
         )
         present = (Law(law) for law in np.unique(packed.law))
         apart = [(law, each) for law in present for each in COMPILED[law].routines]
-        local = by_address(make_local(packed, 0)) if apart else None
+        common = [each for each in (evaluate_all, potential) if not each.prepared]
+        local = by_address(make_local(packed, 0)) if apart or common else None
         for law, each in apart:
             each.prepare(by_address(getattr(packed.laws, law.name.lower())), local)
+        for each in common:
+            each.prepare(packed, local)
         return packed
 
 
@@ -179,10 +183,22 @@ evaluate: Callable[[Elements, LocalState, int], None] = _dispatch(
     "evaluate", lambda law, row: _call(law, row.force), "return"
 )
 """Write forces and derivatives of element `e` at the coordinates, rates and position in `local`."""
-potential: Callable[[Elements, LocalState, int], tuple[float, float]] = _dispatch(
-    "potential", _potential, "return 0.0, 0.0"
+_stored: Callable[[Elements, LocalState, int], tuple[float, float]] = _dispatch(
+    "stored", _potential, "return 0.0, 0.0"
 )
-"""Return the energy element `e` stores, J, and its derivative in the position, J per base pitch."""
+
+
+@routine
+def potential(elements: Elements, local: LocalState, e: int) -> tuple[float, float]:
+    """Return the energy element `e` stores, J, and its derivative in the position, J per base pitch."""
+    return _stored(elements, local, e)
+
+
+@routine
+def evaluate_all(elements: Elements, local: LocalState) -> None:
+    """Evaluate all elements."""
+    for e in range(elements.law.size):
+        evaluate(elements, local, e)
 
 
 @inner
@@ -223,7 +239,7 @@ def power_by_frames(elements: Elements, local: LocalState, e: int) -> float:
     """Return what the rotation of frames, and of cages, stores in what it turns, W."""
     if elements.mesh[e] < 0 or elements.law[e] not in TURNED:
         return 0.0
-    return potential(elements, local, e)[1] * float(local.pace[elements.mesh[e]])
+    return float(potential(elements, local, e)[1] * local.pace[elements.mesh[e]])
 
 
 @inner

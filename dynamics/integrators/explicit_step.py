@@ -11,7 +11,7 @@ from dynamics.forces.elements import (
     SPATIAL_FLANK,
     SPEED_TORQUE,
     UNBALANCE,
-    evaluate,
+    evaluate_all,
     has_unbalance,
     power_along_axes,
     power_by_frames,
@@ -251,8 +251,7 @@ def accelerate(system: SystemArrays, work: Workspace, time: float, stage: int) -
     local, sparse = work.local, system.sparse
     set_motion(system, work, time, local.position)
     add_motion(system, q, v, local.position, local.coordinate, local.rate)
-    for e in range(system.elements.law.size):
-        evaluate(system.elements, local, e)
+    evaluate_all(system.elements, local)
     for r in range(work.force.size):
         work.force[r] = local.force[r]
     subtract_columns(sparse.direction, work.force, work.external)

@@ -15,7 +15,7 @@ import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.assemble import NO_SIGNALS, BearingForce, System
-from dynamics.forces.elements import evaluate, has_unbalance, make_local
+from dynamics.forces.elements import evaluate_all, has_unbalance, make_local
 from dynamics.integrators.workspace import Count, Workspace
 from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled, inner
@@ -272,8 +272,7 @@ def _look(
     add_motion(system, q, v, local.position, local.coordinate, local.rate)
     if has_unbalance(system.elements):
         set_acceleration(system, ring.motion, ring.a, local.acceleration)
-    for e in range(system.elements.law.size):
-        evaluate(system.elements, local, e)
+    evaluate_all(system.elements, local)
     rows, n, point = local.force.size, sampler.bodies, ring.point[row]
     modes, meshes = q.size - n, sampler.nominal_force.size
     for r in range(rows):

@@ -43,9 +43,14 @@ class Routine:
         infer_global(self, types.Function(_typing(self)))
         lower_builtin(self, types.VarArg(types.Any))(_lowering(self))
 
+    @property
+    def prepared(self) -> bool:
+        """Whether there is code at its address."""
+        return bool(self._slot[0])
+
     def prepare(self, *tuples: Any) -> None:
         """Compile it or read the cache, once; `tuples` show the layout of those it takes, in their order."""
-        if self._slot[0]:
+        if self.prepared:
             return
         values = iter(tuples)
         hints = self._arguments

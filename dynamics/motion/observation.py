@@ -8,7 +8,7 @@ import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.sparse_rows import row_product, subtract_columns, subtract_resistance
-from dynamics.forces.elements import evaluate, has_unbalance, make_local
+from dynamics.forces.elements import evaluate_all, has_unbalance, make_local
 from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled, inner
 from dynamics.kernels.local_state import LocalState
@@ -98,8 +98,7 @@ def _observe(
         set_phases(system.reference, motion, local.position, local)
         set_drift(system.elements, time[k], motion, local)
         add_motion(system, q[k], v[k], local.position, local.coordinate, local.rate)
-        for e in range(system.elements.law.size):
-            evaluate(system.elements, local, e)
+        evaluate_all(system.elements, local)
         if has_unbalance(system.elements):
             _settle(system, local, motion, time[k], q[k], v[k], scratch)
         for m in range(local.position.size):
