@@ -23,6 +23,7 @@ from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
 from lineofaction.gearbox.convert.housings import HousedScene, reduced_in
 from lineofaction.gearbox.convert.plausibility import scene_warnings
 from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
+from lineofaction.gearbox.level_quantity import with_quantity
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.result_files import stamp_complaint
 from lineofaction.gearbox.schemas import Case, validated
@@ -178,7 +179,7 @@ def ordered_scene(order: WorkOrder, progress: Progress) -> _OrderedScene:
     tables = by_cost(partial(progress, "analysis"), costs)
     for index, mesh in inputs.with_database:
         databases[mesh.name] = _table(order, index, mesh, products, partial(tables, mesh.name))
-    scene = dynamic_scene(inputs, databases, housings)
+    scene = with_quantity(dynamic_scene(inputs, databases, housings), inputs, housings)
     warnings = {name: database.metadata.warnings for name, database in databases.items()}
     tabled = TabledScene(inputs, databases, scene, housings)
     return _OrderedScene(tabled, tuple(products), scene_warnings(inputs, scene, warnings))
