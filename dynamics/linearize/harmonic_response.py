@@ -229,7 +229,7 @@ def bearing_forces(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexAr
     Those of a motion less those of none, real and imaginary parts apart.
     """
     system = at.system
-    q = u.reshape(-1, u.shape[2])
+    q = u.reshape(omega.size, u.shape[2])
     rate = 1j * omega.reshape(-1, 1) * q
     elements, rest = system.arrays.elements, np.zeros(q.shape[1])
     at_rest = local_state(system.arrays, at.time, at.linear.equilibrium.displacement, rest)

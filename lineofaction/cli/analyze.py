@@ -249,7 +249,7 @@ def _show_plan(plan: RunPlan) -> None:
     out, cost = console(), plan.chosen.cost
     model = plan.plan.discretization.to_json()["model"].replace("_", " ")
     positions = plan.plan.positions or f"about {cost.positions}, placed where the curve bends"
-    size = f"{engineering(cost.cpu_seconds, 2)} CPU s, {cost.memory_bytes / 2**30:.2g} GiB"
+    size = f"{engineering(cost.cpu_seconds, 2)} CPU s, {engineering(cost.memory_bytes / 2**30, 2)} GiB"
     out.print(f"{_mesh(plan.chosen, plan.chosen)}: {size}; nothing is computed yet")
     out.print(f"model {model}; positions {positions}; mesh {plan.choice.option.name}: {plan.choice.reason}")
     if plan.conflict or not plan.choice.met:

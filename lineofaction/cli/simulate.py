@@ -25,7 +25,7 @@ from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.result_files import run_json, stamp, stamp_complaint
 from lineofaction.gearbox.stages import staged
-from lineofaction.gearbox.studies.housings import facts_of_scene
+from lineofaction.gearbox.studies.excitations import facts_of_scene
 from lineofaction.gearbox.tabled_scene import open_executor
 from lineofaction.report.drawing.figure import number
 from lineofaction.report.drawing.page import Headline

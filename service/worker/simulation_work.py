@@ -30,7 +30,7 @@ from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.stages import TableFraction, staged
-from lineofaction.gearbox.studies.housings import facts_of_scene
+from lineofaction.gearbox.studies.excitations import facts_of_scene
 from lineofaction.gearbox.tabled_scene import checked_table
 from model_studies.progress import Report, by_cost
 from model_studies.workers import ByDask, InProcess, OrHere, Remembering, RunCost, Workers, dask_workers

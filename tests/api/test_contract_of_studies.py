@@ -44,6 +44,7 @@ from lineofaction.report.drawing import surface_view
 from lineofaction.report.drawing.figure import Table
 from lineofaction.report.drawing.page import Page
 from lineofaction.report.presentation import presentation_of
+from model_studies.progress import stage_name
 from service.worker.process import default_registry
 
 pytestmark = pytest.mark.chain  # each question is asked once each way, by the first that reads an answer
@@ -372,7 +373,7 @@ def test_its_process_is_listed_and_described(runs: StudyRuns) -> None:
 def test_progress_goes_through_the_stages_and_never_falls(runs: StudyRuns) -> None:
     stages = default_registry()[runs.study.name].stages
     declared = [stage.name for stage in stages]
-    reported = list(dict.fromkeys(stage.partition(",")[0] for stage, _ in runs.python.reported))
+    reported = list(dict.fromkeys(stage_name(stage).partition(",")[0] for stage, _ in runs.python.reported))
     own = [stage for stage in reported if stage in declared and stage not in BEFORE - {"compliance"}]
     assert own and own == sorted(own, key=declared.index)
     assert set(reported) <= {*declared, *BEFORE}

@@ -61,7 +61,7 @@ def _row(entry: Entry) -> list[str]:
     return [
         entry["name"].replace("_", " "),
         "yes" if entry["on"] else "no",
-        *("" if change is None else f"{100.0 * change:+.2g} %" for change in changes),
+        *("" if change is None else f"{engineering(100.0 * change, 2, '+')} %" for change in changes),
         engineering(seconds, 2) if seconds and entry["on"] else "",
         "; ".join(why),
     ]

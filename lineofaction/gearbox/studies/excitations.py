@@ -1,18 +1,23 @@
-"""What excites a scene: transmission error, moment of the load and friction, each with its error."""
+"""What a result says of its scene: what excites it, each with its error, its complaint, its reductions."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import asdict, replace
+from typing import Any, TypeVar
 
 import numpy as np
 
 from bounds.types import Json
-from dynamics.assembly.assemble import System
+from dynamics.assembly.assemble import System, assemble
 from dynamics.linearize import HarmonicResponse
 from dynamics.linearize.operating_speeds import mesh_frequencies
 from fe_contact.analysis.estimates.excitation_errors import excitation_errors
 from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.convert.complaint import complaint_of
 from lineofaction.gearbox.convert.scene import TabledScene
+
+Result = TypeVar("Result")
 
 
 def excitations_of(response: HarmonicResponse, system: System, subject: TabledScene) -> list[Json]:
@@ -78,3 +83,23 @@ def _of_mesh(
                 row[name] = float(abs(values[mesh, at[0]]))
                 row[f"error_of_{name}"] = own if np.isfinite(own) else None
             yield row
+
+
+def with_facts_of_scene(result: Result, subject: TabledScene) -> Result:
+    """Return a result with the `facts_of_scene` among its facts."""
+    changed: Any = result
+    known: Result = replace(changed, facts={**changed.facts, **facts_of_scene(subject)})
+    return known
+
+
+def facts_of_scene(subject: TabledScene) -> Json:
+    """Return what a result says of its scene.
+
+    Its `reduction_cost`, the fields of the `WorkCost` of the reductions by housing: a file of modes may be
+    without them. Of a scene with one its `complaint`, as plots mark it.
+    """
+    costs = {name: asdict(body.cost) for name, body in subject.housings.items() if body.cost is not None}
+    if subject.inputs.complaint is None:
+        return {"reduction_cost": costs}
+    levels = excitation_levels(assemble(subject.scene), subject)
+    return {"reduction_cost": costs, "complaint": complaint_of(subject.inputs, subject.scene, levels).marks}

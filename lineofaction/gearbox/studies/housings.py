@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import asdict, replace
+from dataclasses import replace
 from functools import partial
-from typing import Any, TypeVar
 
 import numpy as np
 
@@ -25,7 +24,6 @@ from dynamics.types import FloatArray
 from dynamics.vibration import ReportedHarmonics
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import boundary_errors
-from lineofaction.gearbox.convert.complaint import complaint_of
 from lineofaction.gearbox.convert.housings import FOLDER
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
@@ -33,35 +31,14 @@ from lineofaction.gearbox.schemas.figures import LINEAR
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.studied import OverOrders
 from lineofaction.gearbox.studies.computation import Means
-from lineofaction.gearbox.studies.excitations import excitation_levels, excitations_of
+from lineofaction.gearbox.studies.excitations import excitations_of
 from lineofaction.gearbox.units import RPM
 
-Result = TypeVar("Result")
 ADVICE = (
     "Give a housing by step_file, mesh_file or modes_file: matrices alone do not say what the air touches."
 )
 SAME = 1e-6
 """Largest difference between matrices of the same housing, of their largest entry."""
-
-
-def with_facts_of_scene(result: Result, subject: TabledScene) -> Result:
-    """Return a result with the `facts_of_scene` among its facts."""
-    changed: Any = result
-    known: Result = replace(changed, facts={**changed.facts, **facts_of_scene(subject)})
-    return known
-
-
-def facts_of_scene(subject: TabledScene) -> Json:
-    """Return what a result says of its scene.
-
-    Its `reduction_cost`, the fields of the `WorkCost` of the reductions by housing: a file of modes may be
-    without them. Of a scene with one its `complaint`, as plots mark it.
-    """
-    costs = {name: asdict(body.cost) for name, body in subject.housings.items() if body.cost is not None}
-    if subject.inputs.complaint is None:
-        return {"reduction_cost": costs}
-    levels = excitation_levels(assemble(subject.scene), subject)
-    return {"reduction_cost": costs, "complaint": complaint_of(subject.inputs, subject.scene, levels).marks}
 
 
 def radiation_of(

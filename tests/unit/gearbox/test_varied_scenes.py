@@ -111,7 +111,7 @@ def varied(*paths: str) -> VariedScene:
 
 def alone(values: dict[str, float]) -> Scene:
     """Return the scene of a file with these values; nothing that is kept for others is left."""
-    for name, module in sys.modules.items():
+    for name, module in list(sys.modules.items()):
         if name.startswith(("dynamics.", "lineofaction.")):
             for cell in chain.from_iterable(
                 getattr(x, "__closure__", None) or () for x in vars(module).values()

@@ -21,9 +21,8 @@ from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.complaint import ComplaintFigures, Inputs
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
-from lineofaction.gearbox.studies.excitations import excitation_levels
+from lineofaction.gearbox.studies.excitations import excitation_levels, with_facts_of_scene
 from lineofaction.gearbox.studies.figures import figures_of
-from lineofaction.gearbox.studies.housings import with_facts_of_scene
 from model_studies import in_unit
 
 REACH = 2.0

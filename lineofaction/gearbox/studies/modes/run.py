@@ -12,7 +12,7 @@ from dynamics.linearize import ModalAnalysis, modal_analysis
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
-from lineofaction.gearbox.studies.housings import with_facts_of_scene
+from lineofaction.gearbox.studies.excitations import with_facts_of_scene
 from lineofaction.gearbox.studies.modes import Inputs, ModesFigures
 from lineofaction.gearbox.units import RPM
 

@@ -55,10 +55,10 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
+from lineofaction.gearbox.studies.excitations import facts_of_scene
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.housings import (
     bearing_forces,
-    facts_of_scene,
     no_surface,
     radiation_of,
     require_surface,

@@ -265,7 +265,7 @@ class Inputs(BoundaryModel):
     heard: HeardObjectiveInput | None = Field(
         default=None,
         description="Of a scene: what is heard, and is minimized in place of the peak-to-peak",
-        examples=[{"speed_rpm": [1000.0, 2000.0, 3000.0], "orders": 3}],
+        examples=[None],
         exclude_if=lambda heard: heard is None,
     )
     search: SearchInput = Field(default=SearchInput(), description="Search method and its settings")

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from bounds import engineering
 from bounds.types import Json
 from fe_contact.microgeometry.optimization import Outcome
 from fe_contact.microgeometry.search import SearchRun
@@ -125,7 +126,9 @@ class HeardOptimization:
     def reason(self) -> str:
         """The outcome in a sentence."""
         gain, start, optimum = self.gain, self.start.objective, self.optimum.objective
-        levels = f"{start.value:.1f} to {optimum.value:.1f} {self.unit}, errors {gain.error:.2g} dB"
+        levels = (
+            f"{start.value:.1f} to {optimum.value:.1f} {self.unit}, errors {engineering(gain.error, 2)} dB"
+        )
         words = {
             Outcome.IMPROVED: f"Quieter by {gain.value:.1f} dB: {levels}",
             Outcome.WITHIN_ERROR: f"A tie: the optimum cannot be told from the start, {levels}",
@@ -137,7 +140,7 @@ class HeardOptimization:
 
     @property
     def _exceeded(self) -> str:
-        return f"{100.0 * self.optimum.violation:.2g} % of them, or of the load on tip edges"
+        return f"{engineering(100.0 * self.optimum.violation, 2)} % of them, or of the load on tip edges"
 
     def ended(self) -> str:
         """Return how the search ended, and what cannot be told from its best, in a sentence."""
@@ -165,14 +168,14 @@ class HeardOptimization:
         ripple = after.peak_to_peak - before.peak_to_peak
         rises = ripple > before.peak_to_peak_error + after.peak_to_peak_error
         for load in np.flatnonzero(rises).tolist():
-            ends = 1e6 * before.peak_to_peak[load], 1e6 * after.peak_to_peak[load]
-            yield f"peak-to-peak STE at {self.torque[load]:.4g} N m {ends[0]:.3g} to {ends[1]:.3g} um"
+            ends = (engineering(1e6 * design.peak_to_peak[load], 3) for design in (before, after))
+            yield f"peak-to-peak STE at {self.torque[load]:.4g} N m {' to '.join(ends)} um"
         yield from self._rising("largest pressure", before.pressure / 1e6, after.pressure / 1e6, "MPa")
         yield from self._rising("K_Hbeta", before.face_load_factor, after.face_load_factor, "")
 
     def _rising(self, name: str, before: FloatArray, after: FloatArray, unit: str) -> Iterator[str]:
         for load in np.flatnonzero(after > (1.0 + MORE) * before).tolist():
-            ends = f"{before[load]:.3g} to {after[load]:.3g} {unit}".rstrip()
+            ends = f"{engineering(before[load], 3)} to {engineering(after[load], 3)} {unit}".rstrip()
             yield f"{name} at {self.torque[load]:.4g} N m {ends}"
 
     def costs(self) -> str:

@@ -10,8 +10,9 @@ from bounds.types import Json
 from dynamics.linearize import ForcedResponse, peaks
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
+from lineofaction.gearbox.studies.excitations import with_facts_of_scene
 from lineofaction.gearbox.studies.figures import Row, rows
-from lineofaction.gearbox.studies.housings import response_of, with_facts_of_scene
+from lineofaction.gearbox.studies.housings import response_of
 from lineofaction.gearbox.studies.response import Inputs, ResponseFigures
 
 

@@ -13,8 +13,8 @@ from dynamics.periodic.steady_states import BRANCH, CURVES, UP
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
+from lineofaction.gearbox.studies.excitations import with_facts_of_scene
 from lineofaction.gearbox.studies.figures import Row, rows
-from lineofaction.gearbox.studies.housings import with_facts_of_scene
 from lineofaction.gearbox.studies.steady import Inputs, SteadyFigures
 from lineofaction.gearbox.units import RPM
 

@@ -27,8 +27,9 @@ from lineofaction.gearbox.level_quantity import velocity_of
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
+from lineofaction.gearbox.studies.excitations import with_facts_of_scene
 from lineofaction.gearbox.studies.figures import figures_of
-from lineofaction.gearbox.studies.housings import bearing_forces, with_facts_of_scene
+from lineofaction.gearbox.studies.housings import bearing_forces
 from lineofaction.gearbox.studies.vibration import Inputs, VibrationFigures
 from lineofaction.gearbox.units import RPM
 
