@@ -14,6 +14,7 @@ import pytest
 from command_line import loa
 from geared_scenes import RPM, gear_pair_scene, with_gear
 
+from bounds import engineering
 from dynamics.ablation import ablate as ablate_scene
 from dynamics.acoustics import a_weighting
 from dynamics.influence.level_change import LevelChange
@@ -159,7 +160,7 @@ def test_five_outputs_tell_one_number(name: str, tmp_path: Path, monkeypatch: py
         assert shown[entry["name"]] == words
         relative = influence["relative_mean"], influence["relative_peak_to_peak"]
         if None not in relative:
-            assert changes[entry["name"]] == [f"{100.0 * part:+.2g} %" for part in relative]
+            assert changes[entry["name"]] == [f"{engineering(100.0 * part, 2, '+')} %" for part in relative]
         assert words in text
         for key, unit in (("mean_um", 1.0), ("relative_mean", 100.0), ("peak_to_peak_um", 1.0)):
             assert any(np.isclose(unit * influence[key], value, rtol=0.06) for value in numbers(words))
