@@ -12,7 +12,7 @@ from dynamics.joints import ImposedRotation
 from dynamics.loads import AppliedForce, BySpeed, TimeLaw
 from dynamics.loads.load_course import mean_factor
 from dynamics.mechanism.bodies import resting_housings
-from dynamics.mechanism.kinematics import Kinematics, solve_kinematics
+from dynamics.mechanism.kinematics import Kinematics, at_steady_speeds, solve_kinematics
 from dynamics.scene.scene import Scene
 from dynamics.settings.load_case import DRIVE, CaseForce, LoadCase, Vector
 from dynamics.types import FloatArray
@@ -93,10 +93,8 @@ def loaded_scene(scene: Scene, case: LoadCase) -> Scene:
     leader = leader_of(scene)
     speed = _speed(leader, case)
     scale = _turned(case) * (speed / abs(leader.speed) if leader.speed else speed)
-    drives = (
-        replace(drive, speed=TimeLaw.constant(scale * float(drive.speed.extreme))) for drive in scene.drives
-    )
-    driven = replace(scene, drives=(*drives, *_held_trains(scene, leader, scale)), free_rotations=())
+    drives = (*at_steady_speeds(scene, scale).drives, *_held_trains(scene, leader, scale))
+    driven = replace(scene, drives=drives, free_rotations=())
     return replace(
         with_loads(driven, case),
         housings=resting_housings(scene),
@@ -113,15 +111,13 @@ def with_loads(scene: Scene, case: LoadCase) -> Scene:
     `InputError`: as `loaded_scene`.
     """
     stated = {part.name: part for part in case.forces}
-    pushed = replace(scene, forces=tuple(_stated(force, stated.get(force.name)) for force in scene.forces))
+    steady = at_steady_speeds(scene)
+    pushed = replace(steady, forces=tuple(_stated(force, stated.get(force.name)) for force in scene.forces))
     factor = case.factor
     if case.torque is not None:
         factor = _factor(pushed, _speed(leader_of(scene), case), case.torque)
     return replace(
         pushed,
-        drives=tuple(
-            replace(drive, speed=TimeLaw.constant(float(drive.speed.extreme))) for drive in scene.drives
-        ),
         loads=tuple(
             replace(load, torque=TimeLaw.constant(factor * float(load.torque(0.0)))) for load in scene.loads
         ),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from dynamics.errors import InputError
 from dynamics.identity_cache import cached_by
+from dynamics.loads import TimeLaw
 from dynamics.mechanism.base_pitches import with_common_base_pitches
 from dynamics.mechanism.line_of_action import lines_of_action
 from dynamics.scene.scene import Scene
@@ -150,6 +151,14 @@ def proportional_speeds(scene: Scene) -> FloatArray:
     """Return the speeds (k,) of all laws in proportion; trains that all start from rest, alike."""
     extreme = np.array([part.speed.extreme for part in scene.references])
     return extreme if np.any(extreme) else np.ones(extreme.size)
+
+
+def at_steady_speeds(scene: Scene, scale: float = 1.0) -> Scene:
+    """Return a scene whose drives hold `scale` times their largest speeds: none accelerates."""
+    drives = (
+        replace(drive, speed=TimeLaw.constant(scale * float(drive.speed.extreme))) for drive in scene.drives
+    )
+    return replace(scene, drives=tuple(drives))
 
 
 def _train(scene: Scene) -> tuple[object, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence, Set
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from dynamics.effects.ledger import mechanism_of
@@ -12,7 +12,7 @@ from dynamics.identity_cache import identity_cached
 from dynamics.joints import Housing
 from dynamics.mechanism import with_planets
 from dynamics.mechanism.base_pitches import PRINTED
-from dynamics.mechanism.kinematics import check_motion
+from dynamics.mechanism.kinematics import at_steady_speeds, check_motion
 from dynamics.meshes import GearMesh, MeshTable
 from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table, straight_table
 from dynamics.scene import Scene
@@ -178,6 +178,11 @@ class TabledScene:
     scene: Scene
     housings: Mapping[str, ReducedHousing] = field(default_factory=dict)
     seconds: float = 0.0
+
+    @property
+    def steady(self) -> TabledScene:
+        """The same without the torque of a run-up's acceleration, as studies over speed take it."""
+        return replace(self, scene=at_steady_speeds(self.scene))
 
 
 def dynamic_scene(

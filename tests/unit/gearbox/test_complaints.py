@@ -12,6 +12,7 @@ import pytest
 from pytest import approx
 from typer.testing import CliRunner
 
+import lineofaction as loa
 from dynamics.mechanism.passing import MESH, SIDEBAND
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.convert.complaint import Complaint, complaint_of
@@ -311,3 +312,17 @@ def test_a_run_keeps_what_its_scene_complains_of(tmp_path: Path) -> None:
         "mesh 1": {"order": approx(2.0), "driver_rpm": approx(3000.0 * 25 / 63)},
     }
     assert marks["axes"]["frequency, Hz"] == 833.0
+
+
+@pytest.mark.law
+def test_a_study_over_speed_leaves_out_the_torque_of_a_run_up() -> None:
+    """From rest to 1000 rpm in 20 ms: the flanks carry the brake's 10 N m alone, and so does the answer."""
+    scene = train((25, 61))
+    stiffness = {"value": [3e8], "amplitude": [4e7]}
+    scene["meshes"][0]["stiffness"]["stiffness_n_per_m"] = stiffness
+    running = loa.response(scene, speed_rpm=[900.0], orders=2)
+    scene["drives"][0] |= {"time_s": [0.0, 0.02], "speed_rpm": [0.0, 1000.0]}
+    rising = loa.response(scene, speed_rpm=[900.0], orders=2)
+    assert running.mean_force[0] == approx(10.0 / (0.061 * math.cos(ANGLE)), rel=1e-9)
+    assert rising.mean_force == approx(running.mean_force, rel=1e-12)
+    assert rising.mesh_force == approx(running.mesh_force, rel=1e-9)

@@ -88,7 +88,8 @@ class _ComplaintStudy(SceneStudy[Inputs, ComplaintFigures, AnsweredComplaint]):
         """Return nothing: the scene has all of it."""
         return {}
 
-    def compute(self, subject: TabledScene, _inputs: Inputs, means: Means) -> AnsweredComplaint:
+    def compute(self, tabled: TabledScene, _inputs: Inputs, means: Means) -> AnsweredComplaint:
+        subject = tabled.steady
         with boundary_errors():
             system = assemble(subject.scene)
         complaint = complaint_of(subject.inputs, subject.scene, excitation_levels(system, subject))

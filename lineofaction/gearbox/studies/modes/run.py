@@ -25,7 +25,7 @@ class _ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> ModalAnalysis:
         with boundary_errors():
             modes = modal_analysis(
-                assemble(subject.scene),
+                assemble(subject.steady.scene),
                 [value * RPM for value in inputs.speed_rpm],
                 inputs.orders,
                 progress=lambda fraction: means.report("modes", fraction),

@@ -95,7 +95,8 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
             raise BadInput.of("sensitivities", True, "left out with a run", advice)
         require_surface(subject)
 
-    def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> RadiatedSound:
+    def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> RadiatedSound:
+        subject = tabled.steady
         if means.run is not None:  # the band varies the linear response, and a run is what it is
             inputs = inputs.model_copy(update={"band": False})
         response = bearing_forces(subject, inputs, means)

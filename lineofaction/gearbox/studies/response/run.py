@@ -20,7 +20,8 @@ class _ResponseStudy(SceneStudy[Inputs, ResponseFigures, ForcedResponse]):
     inputs, answer, file = Inputs, ResponseFigures, array_file(ForcedResponse)
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> ForcedResponse:
-        return with_facts_of_scene(response_of(subject, inputs, means), subject)
+        steady = subject.steady
+        return with_facts_of_scene(response_of(steady, inputs, means), steady)
 
     def _derived(self, response: ForcedResponse) -> Json:
         force, power = response.bearing_force, response.power

@@ -27,7 +27,7 @@ class _SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> SteadyStates:
         with boundary_errors():
             states = steady_states(
-                assemble(subject.scene),
+                assemble(subject.steady.scene),
                 [value * RPM for value in inputs.speed_rpm],
                 branch=inputs.branch,
                 repeat=inputs.repeat,

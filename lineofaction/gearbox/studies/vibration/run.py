@@ -90,7 +90,8 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, HousingVibrationResul
             value = f"{len(scene.housings)} by their matrices" if scene.housings else "none"
             raise BadInput.of("housings", value, "one with mass, a surface or points", _ADVICE)
 
-    def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> HousingVibrationResult:
+    def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> HousingVibrationResult:
+        tabled = subject.steady
         name, housing = _chosen(tabled, inputs.housing)
         with boundary_errors():
             quantity = velocity_of(tabled.scene, name, housing)
