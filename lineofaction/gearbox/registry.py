@@ -253,7 +253,7 @@ class Studies:
         version="3",
     )
     complaint = StudyOf(
-        _scene(lambda: COMPLAINT),
+        _either(lambda: COMPLAINT),
         "Complaint",
         "Find what it is",
         "Find which mesh and harmonic a complaint is, what else passes the same frequency, and the modes "
@@ -262,7 +262,7 @@ class Studies:
         group="gearbox",
         kind="complaint",
         stages=(("analysis", 0.9), ("modes", 0.1)),
-        version="1",
+        version="2",
     )
     noise = StudyOf(
         _scene(lambda: NOISE),

@@ -16,6 +16,7 @@ from dynamics.results import RunResult
 from fe_contact.errors import FeContactError
 from fe_contact.ste import SteDatabase, in_own_model
 from host.directories import whole_file
+from lineofaction.gearbox.convert.complaint import marks_of_case
 from lineofaction.gearbox.problems import BadInput, DamagedFile
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.result_files import COMPLAINT, stamped
@@ -190,7 +191,8 @@ def _page_of(read: Inputs) -> Page:
     sections: list[Section] = []
     alarms: list[str] = []
     if database is not None:
-        sections += (*static_results(database, nominal_force(read)), *static_making(database))
+        results = static_results(database, nominal_force(read))
+        sections += (*_marked_table(results, database, read), *static_making(database))
         alarms += static_alarms(database)
     for study in read.pages.values():
         sections += study.sections
@@ -213,6 +215,15 @@ def _marked_results(run: RunResult, read: Inputs) -> tuple[Section, ...]:
     results = tuple(dynamic_results(run, read.view))
     mesh = read.view.mesh or next(iter(run.mesh), "")
     return results if read.marks is None else marked_sections(results, of_run(read.marks, mesh))
+
+
+def _marked_table(results: tuple[Section, ...], database: SteDatabase, read: Inputs) -> tuple[Section, ...]:
+    """Return the results of a table with the complaint of its case, or of a run's scene, in the plots."""
+    marks = marks_of_case(database.metadata.case) or read.marks
+    if marks is None:
+        return results
+    mesh = read.view.mesh or next(iter(marks["meshes"]), "")
+    return marked_sections(results, of_run(marks, mesh))
 
 
 def headlines_of(read: Inputs) -> tuple[Headline, ...]:

@@ -82,8 +82,10 @@ def dynamics_presentation(
 
 
 def model_text(facts: Mapping[str, Any]) -> Iterator[Table | str]:
-    """Yield the cost of the housings of a scene, and what its model neglects."""
+    """Yield the cost of the housings of a scene, and what its model neglects; nothing where there is none."""
     yield from cost_tables(facts)
+    if facts["effect_ledger"] is None:
+        return
     yield from model_lines({**facts, "effect_ledger": boundary_ledger(facts["effect_ledger"])})
 
 
@@ -92,9 +94,12 @@ def dynamics_page(
 ) -> Page:
     """Return the page of a study of a scene: its figures, effects, cost of its housings, what does not hold.
 
-    `facts` hold `effect_ledger`.
+    `facts` hold `effect_ledger`, None of what has no model of its dynamics.
     """
-    sections = [Section(title, figures=figures), ledger_section(boundary_ledger(facts["effect_ledger"]))]
+    sections = [Section(title, figures=figures)]
+    if facts["effect_ledger"] is None:
+        return Page("Dynamics of geared shafts", "", headlines, tuple(sections), ())
+    sections.append(ledger_section(boundary_ledger(facts["effect_ledger"])))
     if tables := cost_tables(facts):
         sections.append(Section("Cost", tables=tables, part=Part.RECEIPT))
     return Page("Dynamics of geared shafts", "", headlines, tuple(sections), tuple(run_lines(facts)))

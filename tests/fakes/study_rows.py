@@ -209,10 +209,19 @@ def _complaint(figures: Json, result: Any, table: SteDatabase) -> Pairs:
     stiffness = float(np.mean(1.0 / table.tangent_compliance[:, -1]))
     yield first["excitation_n"], approx(harmonic * stiffness, rel=0.02)
     yield figures["ranked_by"], "excitation"
+    yield figures["torque_n_m"], {"mesh": approx(1.0)}
     yield (first["kind"], first["name"], first["harmonic"]), ("mesh", "mesh", 1)
     yield (first["frequency_hz"], first["order"]), (1200.0 / 60.0 * 20, 20.0)
     yield first["force_n"], result.forces[0].force
     yield [mode["frequency_hz"] for mode in figures["modes"]], [mode.frequency for mode in result.modes]
+
+
+def _complaint_of_case(figures: Json, result: Any, table: SteDatabase) -> Pairs:
+    (first,) = figures["passing"]
+    yield (first["name"], first["harmonic"], first["frequency_hz"]), ("pair", 1, approx(400.0))
+    yield figures["torque_n_m"], {"pair": float(table.torque[-1])}
+    yield [figures[name] for name in ("equilibrium", "effect_ledger")], [None, None]
+    yield (figures["modes"], result.modes), ([], ())
 
 
 def _noise(figures: Json, result: Any, _table: SteDatabase) -> Pairs:
@@ -371,7 +380,17 @@ ROWS = (
         ends=(rf"largest mesh force of .+: {NUMBER} N \(order {NUMBER} at", "largest force on bearing"),
     ),
     StudyRow(
-        "complaint", "scene", _complaint, ends=(rf'complaint: harmonic 1 of mesh "mesh" \(at {NUMBER} Hz',)
+        "complaint",
+        "case",
+        _complaint_of_case,
+        ends=(rf'complaint: harmonic 1 of mesh "pair" \(at {NUMBER} Hz',),
+    ),
+    StudyRow(
+        "complaint",
+        "scene",
+        _complaint,
+        {"frequency_hz": 400.0, "speed_rpm": 1200.0},
+        ends=(rf'complaint: harmonic 1 of mesh "mesh" \(at {NUMBER} Hz',),
     ),
     StudyRow("noise", "scene", _noise, FEW_ORDERS),
     StudyRow("vibration", "scene", _vibration, FEW_ORDERS, columns=_vibration_columns),

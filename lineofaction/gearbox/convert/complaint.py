@@ -1,4 +1,4 @@
-"""A complaint about a scene: the order it is, per revolution of a shaft, and what passes beside it."""
+"""A complaint about a scene or a pair: the order it is, per revolution of a shaft, and what passes beside."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
+from typing import Any
 
 from bounds import engineering
 from bounds.types import Json
@@ -16,6 +17,7 @@ from dynamics.mechanism.passing import (
     SAME,
     SHAFT,
     SIDEBAND,
+    TURNS,
     Excitation,
     Passing,
     excitations,
@@ -25,7 +27,9 @@ from dynamics.mechanism.passing import (
 from dynamics.scene.scene import Scene
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.complaint import ComplaintInput
+from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.units import MM, RPM
 from model_studies import in_unit
@@ -63,6 +67,8 @@ class Complaint:
         Forces, N, by which the harmonics of meshes excite at the loads of the scene; empty: not known.
     bearing : str or None
         Where it is measured; None: on the bearing that feels it most.
+    torques : mapping of str to float
+        Of every mesh with a table the torque on its driving gear at which it is heard, N m.
     per_pitch : float
         Order by which results count, of the order: base pitches of the first mesh, without one revolutions of
         the leading shaft.
@@ -79,6 +85,7 @@ class Complaint:
     drivers: Mapping[str, tuple[str, float]]
     levels: Mapping[str, tuple[float, ...]]
     bearing: str | None = None
+    torques: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def within(self) -> tuple[Passing, ...]:
@@ -119,14 +126,16 @@ class Complaint:
     def marks(self) -> Json:
         """Return what plots mark: values by the labels of axes, and the order by which results count.
 
-        `meshes` have it by which runs count: by the pitches of a mesh, over the speed of its driving gear.
+        `meshes` have it by which runs and tables count: by the pitches of a mesh, over speed and torque of
+        its driving gear.
         """
         own = self.within[0].order
         marks: Json = {"order": own * self.per_pitch, "axes": {}, "bearing": self.bearing}
         marks |= {"words": sentence(self), "meshes": {}}
         for mesh, (shaft, rate) in self.drivers.items():
             speed = None if self.speed is None else self.turns[shaft] * self.speed / RPM
-            marks["meshes"][mesh] = {"order": own / rate, "driver_rpm": speed}
+            at = {"driver_rpm": speed, "torque_n_m": self.torques.get(mesh)}
+            marks["meshes"][mesh] = {"order": own / rate, **at}
         if self.speed is not None:
             speeds = {f"speed of {name}, rpm": turn * self.speed / RPM for name, turn in self.turns.items()}
             marks["axes"] = speeds | {"frequency, Hz": self.frequency}
@@ -134,11 +143,14 @@ class Complaint:
 
 
 def complaint_of(
-    scene: SceneInput, moving: Scene, levels: Mapping[str, tuple[float, ...]] = MappingProxyType({})
+    scene: SceneInput,
+    moving: Scene,
+    levels: Mapping[str, tuple[float, ...]] = MappingProxyType({}),
+    torques: Mapping[str, float] = MappingProxyType({}),
 ) -> Complaint:
     """Return the complaint of a scene that has one, about the parts it has as written.
 
-    `levels` are those of the complaint.
+    `levels` and `torques` are those of the complaint.
 
     Raises `BadInput`: no such shaft turns, nothing passes within the tolerance, the speed is beyond a table
     of torques, or a microphone hears nothing.
@@ -148,31 +160,80 @@ def complaint_of(
     if stated.microphone_mm is not None and not any(part.has_surface for part in scene.housings):
         value, bound = list(stated.microphone_mm), "left out: no housing of the scene has a surface"
         raise BadInput.of("complaint.microphone_mm", value, bound, _SURFACE)
-    kinematics = solve_kinematics(moving)
-    shaft, speed = _shaft(stated, scene, moving)
+    kinematics, leading = solve_kinematics(moving), leading_shaft(moving)
+    final = "" if stated.road_speed_km_h is None else _final_shaft(stated, scene)
     with boundary_errors("complaint"):
-        parts = excitations(moving, kinematics, shaft, HARMONICS if stated.orders is None else stated.orders)
+        own_turns = shaft_rates(moving, kinematics, stated.shaft or leading)
+    shaft, speed = _shaft(stated, stated.shaft or leading, final, own_turns)
+    with boundary_errors("complaint"):
+        parts = excitations(moving, kinematics, shaft, _harmonics(stated))
     own, turns = _as_written(parts, scene), shaft_rates(moving, kinematics, shaft)
     if speed is not None:
         _refuse_beyond(scene, turns, speed)
+    rate = next((each.rate for each in own if each.kind == MESH), turns[leading])
+    return _complaint(
+        stated,
+        own,
+        shaft,
+        speed,
+        turns={part.name: turns[part.name] for part in scene.shafts},
+        drivers=_drivers(own, scene),
+        per_pitch=1.0 / rate,
+        levels=levels,
+        torques=torques,
+    )
+
+
+def complaint_of_case(case: Case) -> Complaint:
+    """Return the complaint of a case that has one, about its teeth and the turns of its gears.
+
+    Raises `BadInput`: nothing passes within the tolerance.
+    """
+    stated = case.complaint
+    assert stated is not None
+    teeth = {"pinion": case.pair.pinion.teeth, "wheel": case.pair.wheel.teeth}
+    final, own = stated.final_shaft or "wheel", stated.shaft or "pinion"
+    shaft, speed = _shaft(stated, own, final, {name: teeth[own] / z for name, z in teeth.items()})
+    turns = {name: teeth[shaft] / z for name, z in teeth.items()}
+    mesh = Excitation(MESH, "pair", "", float(teeth[shaft]), _harmonics(stated))
+    parts = [mesh, *(Excitation(SHAFT, name, "", turn, TURNS) for name, turn in turns.items())]
+    highest = None if case.load.torque_n_m is None else case.load.torque_n_m[-1]
+    torque = highest if stated.torque_n_m is None else stated.torque_n_m
+    return _complaint(
+        stated,
+        parts,
+        shaft,
+        speed,
+        turns=turns,
+        drivers={"pair": ("pinion", mesh.rate)},
+        per_pitch=1.0 / mesh.rate,
+        levels={},
+        torques={} if torque is None else {"pair": torque},
+    )
+
+
+def marks_of_case(case: Json) -> Json | None:
+    """Return the marks in plots of the table of a case; None where it complains of nothing."""
+    return complaint_of_case(validated(Case, case)).marks if case.get("complaint") else None
+
+
+def _harmonics(stated: ComplaintInput) -> int:
+    return HARMONICS if stated.orders is None else stated.orders
+
+
+def _complaint(
+    stated: ComplaintInput, own: Sequence[Excitation], shaft: str, speed: float | None, **known: Any
+) -> Complaint:
+    """Return the complaint at a speed of a shaft, rad/s, about what passes per revolution of it.
+
+    `known` are attributes of it that follow from what the complaint is about.
+    """
     order, hertz = _heard(stated, speed)
-    rate = next((each.rate for each in own if each.kind == MESH), turns[leading_shaft(moving)])
     tolerance = TOLERANCE if stated.tolerance_percent is None else stated.tolerance_percent / 100.0
     every = passing(own, order)
     reach = max(tolerance, *(abs(each.distance) + SAME for each in every[:NEAREST]))
-    complaint = Complaint(
-        shaft,
-        order,
-        speed,
-        hertz,
-        tolerance,
-        tuple(each for each in every if each.within(reach)),
-        {part.name: turns[part.name] for part in scene.shafts},
-        1.0 / rate,
-        _drivers(own, scene),
-        levels,
-        stated.bearing,
-    )
+    near = tuple(each for each in every if each.within(reach))
+    complaint = Complaint(shaft, order, speed, hertz, tolerance, near, bearing=stated.bearing, **known)
     if not complaint.within:
         raise _nothing_passes(complaint, stated)
     return complaint
@@ -197,25 +258,23 @@ def _heard(stated: ComplaintInput, speed: float | None) -> tuple[float, float | 
     return stated.order, None if speed is None else stated.order * speed / (2.0 * math.pi)
 
 
-def _shaft(stated: ComplaintInput, scene: SceneInput, moving: Scene) -> tuple[str, float | None]:
-    """Return the shaft that orders are of, and its speed, rad/s.
+def _shaft(
+    stated: ComplaintInput, own: str, final: str, turns: Mapping[str, float]
+) -> tuple[str, float | None]:
+    """Return the shaft that orders are of, and its speed, rad/s; `turns` are those per revolution of `own`.
 
-    An order at a road speed is of `shaft`, so that its speed follows from that of the wheels.
+    An order at a road speed is of `own`, so that its speed follows from that of the wheels.
     """
-    own = stated.shaft or leading_shaft(moving)
     if stated.road_speed_km_h is None:
         return own, None if stated.speed_rpm is None else stated.speed_rpm * RPM
     assert stated.tire_radius_mm is not None  # the schema has seen to it
-    final = _final_shaft(stated, scene)
     wheel = stated.road_speed_km_h * KM_H / (stated.tire_radius_mm * MM)
     speed = wheel * (1.0 if stated.final_ratio is None else stated.final_ratio)
     if stated.order is None:
         return final, speed
-    with boundary_errors("complaint"):
-        turn = shaft_rates(moving, solve_kinematics(moving), own)[final]
-    if not turn:
+    if not turns[final]:
         raise BadInput.of("complaint.final_shaft", final, "a shaft that turns", "Name the one of the wheels.")
-    return own, speed / turn
+    return own, speed / turns[final]
 
 
 def _final_shaft(stated: ComplaintInput, scene: SceneInput) -> str:

@@ -12,6 +12,7 @@ from dynamics.plausibility import scene_findings
 from dynamics.scene import Scene
 from fe_contact.plausibility import pair_findings
 from lineofaction.gearbox.convert.case import CheckedCase
+from lineofaction.gearbox.convert.complaint import complaint_of_case
 from lineofaction.gearbox.convert.errors import case_field, named, scene_field
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.plan import left_out_warnings
@@ -22,8 +23,10 @@ from lineofaction.gearbox.units import factor, unit_name
 def case_warnings(checked: CheckedCase) -> list[Json]:
     """Return what is implausible about a case, before anything is computed.
 
-    Raises `BadInput`: no such pair.
+    Raises `BadInput`: no such pair, or nothing passes where it complains.
     """
+    if checked.case.complaint is not None:
+        complaint_of_case(checked.case)
     pair, axes = checked.pair, checked.axes
     alignments = axes.misalignment, axes.center_distance_change
     findings = pair_findings(pair, axes.load(pair), *alignments, loads_as=axes.loads_as)

@@ -11,6 +11,7 @@ from bounds import declarations
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.gear_pair import GearPair
 from fe_contact.geometry.ring_gear import RingGear
+from lineofaction.gearbox.schemas.complaint import ComplaintInput
 from lineofaction.gearbox.schemas.declared import as_fields, figures, with_fields
 from lineofaction.gearbox.schemas.gear import SHARED, GearInput, MaterialInput, ToothingInput
 from lineofaction.gearbox.schemas.model import (
@@ -293,8 +294,26 @@ class Case(BoundaryModel):
     accuracy: AccuracyInput = Field(
         default=AccuracyInput(), description="The accuracy requested", examples=[{}]
     )
+    complaint: ComplaintInput | None = Field(
+        default=None,
+        description="What is complained of: plots of the table mark it, loa complaint says what it is",
+        examples=[{"frequency_hz": 400.0, "speed_rpm": 1200.0}],
+        exclude_if=_left_out,
+    )
     effects: dict[EffectName, Switch] = Field(
         default={},
         description="Switches of optional physics; left out = auto",
         examples=[{"corner_contact": "auto"}],
     )
+
+    @model_validator(mode="after")
+    def _heard_of_pair(self) -> Self:
+        """Refuse a complaint about other shafts, or about what a pair has not."""
+        for name in ("shaft", "final_shaft", "bearing", "microphone_mm"):
+            value = None if self.complaint is None else getattr(self.complaint, name)
+            if value is not None and name.endswith("shaft") and value not in ("pinion", "wheel"):
+                refuse(f"complaint.{name}", value, "one of pinion, wheel")
+            if value is not None and not name.endswith("shaft"):
+                bound = "left out: a pair has neither bearings nor housing"
+                refuse(f"complaint.{name}", value, bound, "The scene of the gearbox has them.")
+        return self

@@ -83,6 +83,12 @@ class ComplaintFields(BoundaryModel):
         max_length=64,
         description="Bearing where it is measured: bushing or rolling bearing; left out: the most loaded",
     )
+    torque_n_m: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=1e9,
+        description="Of a case the torque on the driving gear at which it is heard; left out: its highest",
+    )
     microphone_mm: Point | None = Field(
         default=None,
         description="Where it is heard, x, y, z in mm: needs a housing with a surface",

@@ -163,9 +163,7 @@ class SceneInput(BoundaryModel):
             for number, name in enumerate(housing.bushings):
                 _refuse_unknown(f"housings[{index}].bushings[{number}]", name, bushings)
         if self.complaint is not None:
-            for name, known in (("shaft", shafts), ("final_shaft", shafts), ("bearing", [*bushings, *pins])):
-                if (value := getattr(self.complaint, name)) is not None:
-                    _refuse_unknown(f"complaint.{name}", value, known)
+            _refuse_complaint(self.complaint, shafts, [*bushings, *pins])
         gears = [gear.name for gear in self.gears]
         for index, mesh in enumerate(self.meshes):
             _refuse_unknown(f"meshes[{index}].driver", mesh.driver, gears)
@@ -198,6 +196,16 @@ def _further_shafts(scene: SceneInput) -> Iterator[tuple[str, str]]:
             for name in names:
                 if getattr(part, name) is not None:
                     yield f"{kind}[{index}].{name}", getattr(part, name)
+
+
+def _refuse_complaint(complaint: ComplaintInput, shafts: list[str], bearings: list[str]) -> None:
+    """Refuse a complaint about parts that there are not, or at a torque of its own."""
+    for name, known in (("shaft", shafts), ("final_shaft", shafts), ("bearing", bearings)):
+        if (value := getattr(complaint, name)) is not None:
+            _refuse_unknown(f"complaint.{name}", value, known)
+    if complaint.torque_n_m is not None:
+        bound = "left out: the loads of the scene are those at which it is heard"
+        refuse("complaint.torque_n_m", complaint.torque_n_m, bound, "Change the loads.")
 
 
 def _refuse_unknown(field: str, name: str, known: list[str]) -> None:

@@ -14,7 +14,7 @@ from dynamics.linearize import HarmonicResponse
 from dynamics.linearize.operating_speeds import mesh_frequencies
 from fe_contact.analysis.estimates.excitation_errors import excitation_errors
 from fe_contact.ste import SteDatabase
-from lineofaction.gearbox.convert.complaint import complaint_of
+from lineofaction.gearbox.convert.complaint import Complaint, complaint_of
 from lineofaction.gearbox.convert.scene import TabledScene
 
 Result = TypeVar("Result")
@@ -36,14 +36,14 @@ def excitations_of(response: HarmonicResponse, system: System, subject: TabledSc
     return rows
 
 
-def excitation_levels(system: System, subject: TabledScene) -> dict[str, tuple[float, ...]]:
-    """Return by mesh the forces, N, by which its harmonics excite: transmission error times mean stiffness.
+def complaint_at_loads(system: System, subject: TabledScene) -> Complaint:
+    """Return the complaint of a scene that has one, with torques and excitations at its loads.
 
-    At the nominal mesh force, or the highest that is stored, and the stored alignment nearest to none. Meshes
-    without a table or without load are left out.
+    Excitations are the transmission error times the mean stiffness at the nominal mesh force, or the highest
+    that is stored, and the stored alignment nearest to none: of meshes with a table and a load.
     """
-    levels, flanks = {}, system.flanks
-    names = [mesh.name for mesh in system.scene.meshes]
+    names, flanks = [mesh.name for mesh in system.scene.meshes], system.flanks
+    torques, levels = {}, {}
     for mesh, table in subject.databases.items():
         index = names.index(mesh)
         torque = abs(float(flanks.nominal_force[index])) * table.facts.base_radius[0]
@@ -56,8 +56,9 @@ def excitation_levels(system: System, subject: TabledScene) -> dict[str, tuple[f
                 allow_failed=True,
             )
             stiffness = float(flanks.mean_stiffness[index])
+            torques[mesh] = torque
             levels[mesh] = tuple(stiffness * harmonic.value for harmonic in curve.harmonics)
-    return levels
+    return complaint_of(subject.inputs, subject.scene, levels, torques)
 
 
 def _of_mesh(
@@ -101,5 +102,4 @@ def facts_of_scene(subject: TabledScene) -> Json:
     costs = {name: asdict(body.cost) for name, body in subject.housings.items() if body.cost is not None}
     if subject.inputs.complaint is None:
         return {"reduction_cost": costs}
-    levels = excitation_levels(assemble(subject.scene), subject)
-    return {"reduction_cost": costs, "complaint": complaint_of(subject.inputs, subject.scene, levels).marks}
+    return {"reduction_cost": costs, "complaint": complaint_at_loads(assemble(subject.scene), subject).marks}

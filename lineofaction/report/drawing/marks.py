@@ -25,7 +25,8 @@ NAME = "complaint"
 Marks = Mapping[str, Any]
 """``axes``: values by the labels of axes; ``order``: by which results count; ``bearing``; ``words``."""
 DRIVER = "speed of the driving gear, rpm"
-"""Label of the axis of a run."""
+TORQUE = "torque on the driving gear, N m"
+"""Labels of axes of runs and tables."""
 BOLDER = 2.0
 """Width of the line of the order, of what it is without a complaint."""
 
@@ -37,12 +38,13 @@ def marks_of(result: Any) -> Marks | None:
 
 
 def of_run(marks: Marks, mesh: str) -> Marks:
-    """Return the marks in the plots of a run, whose orders and speeds are those of a mesh."""
+    """Return the marks in the plots of a run or a table, whose orders, speeds and torques are of a mesh."""
     own = marks["meshes"].get(mesh, {})
     axes = {label: value for label, value in marks["axes"].items() if label == "frequency, Hz"}
     if own:
         axes |= {"mesh order": own["order"]}
-        axes |= {} if own["driver_rpm"] is None else {DRIVER: own["driver_rpm"]}
+        known = {DRIVER: own["driver_rpm"], TORQUE: own.get("torque_n_m")}
+        axes |= {label: value for label, value in known.items() if value is not None}
     return {**marks, "order": own.get("order", np.nan), "axes": axes}
 
 

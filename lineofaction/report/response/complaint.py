@@ -159,9 +159,14 @@ def _apart(first: Passing, others: Sequence[Passing]) -> str:
 def _text(answer: AnsweredComplaint) -> Iterator[Table | str]:
     complaint = answer.complaint
     yield _passing_table(answer)
+    for mesh, torque in complaint.torques.items():
+        yield f'load: {number(torque, 4)} N m on the driving gear of "{mesh}"'
     if answer.modes:
         yield ""
         yield _mode_table(answer)
+    elif answer.facts["effect_ledger"] is None:
+        yield "of a pair alone no mode and no force is known: the scene of the gearbox has them"
+        return
     elif complaint.frequency is None:
         yield "an order at any speed: no mode is looked for; give a speed"
     else:

@@ -15,13 +15,22 @@ from typer.testing import CliRunner
 import lineofaction as loa
 from dynamics.mechanism.passing import MESH, SIDEBAND
 from lineofaction.cli.commands import app
-from lineofaction.gearbox.convert.complaint import Complaint, complaint_of
+from lineofaction.gearbox.convert.case import CheckedCase
+from lineofaction.gearbox.convert.complaint import (
+    Complaint,
+    complaint_of,
+    complaint_of_case,
+    marks_of_case,
+)
+from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated
+from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.complaint import ComplaintFields, ComplaintInput, with_options
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.report.document import read_inputs
+from lineofaction.report.drawing.marks import of_run
 
 Json = dict[str, Any]
 ROOT = Path(__file__).parents[3]
@@ -225,6 +234,71 @@ def test_a_bearing_is_named_behind_a_mesh_only_where_it_is_nearer() -> None:
     assert [each.excitation.kind for each in farther] == [MESH]
 
 
+GEARS = {"face_width_mm": 30.0, "bore_diameter_mm": 20.0}
+CASE: Json = {
+    "pair": {
+        "normal_module_mm": 2.0,
+        "center_distance_mm": 86.0,
+        "pinion": {"teeth": 25, **GEARS},
+        "wheel": {"teeth": 61, **GEARS},
+    },
+    "load": {"torque_n_m": [40.0, 80.0]},
+}
+
+
+@pytest.mark.parametrize(
+    ("fields", "harmonic", "hertz"),
+    [
+        # 40 km/h: 5.7045 rev/s x 4.02 of the wheel x 61 = 1398.9 Hz
+        ({"frequency_hz": 1400.0, **AT_40, "final_ratio": 4.02}, 1, 1398.9),
+        # the same with the pinion on the axle: 5.7045 x 4.02 x 25 x 2 = 1146.6 Hz
+        ({"frequency_hz": 1150.0, **AT_40, "final_ratio": 4.02, "final_shaft": "pinion"}, 2, 1146.6),
+        # 3360 rpm of the pinion: 56 x 25 x 3 = 4200 Hz
+        ({"frequency_hz": 4150.0, "speed_rpm": 3360.0}, 3, 4200.0),
+        # order 122 of the wheel at 40 km/h: 2 x 61, at 5.7045 rev/s
+        ({"order": 122.0, "shaft": "wheel", **AT_40}, 2, 695.9),
+        ({"order": 50.0}, 2, math.nan),
+    ],
+)
+def test_a_case_complains_of_its_pair(fields: Json, harmonic: int, hertz: float) -> None:
+    complaint = complaint_of_case(validated(Case, CASE | {"complaint": fields}))
+    (only,) = complaint.within
+    assert (only.excitation.kind, only.harmonic) == (MESH, harmonic)
+    found = complaint.hertz(only.order)
+    assert found is None if math.isnan(hertz) else found == approx(hertz, rel=1e-4)
+    assert complaint.torques == {"pair": 80.0}
+
+
+def test_the_table_of_a_case_is_marked_at_its_harmonic_its_speed_and_its_torque() -> None:
+    fields = {"frequency_hz": 1400.0, "speed_rpm": 3360.0 / 2.44, "shaft": "wheel", "torque_n_m": 60.0}
+    case = validated(Case, CASE | {"complaint": fields})
+    marks = of_run(marks_of_case(case.model_dump(mode="json")) or {}, "pair")
+    assert marks["axes"] == {
+        "frequency, Hz": 1400.0,
+        "mesh order": approx(1.0),
+        "speed of the driving gear, rpm": approx(3360.0),
+        "torque on the driving gear, N m": 60.0,
+    }
+    assert marks_of_case(CASE) is None
+
+
+@pytest.mark.parametrize(
+    ("fields", "field", "said"),
+    [
+        ({"order": 25.0, "shaft": "axle"}, "complaint.shaft", "pinion, wheel"),
+        ({"order": 25.0, "bearing": "left"}, "complaint.bearing", "neither bearings"),
+        ({"order": 25.0, "microphone_mm": [0.0, 0.0, 1.0]}, "complaint.microphone_mm", "nor housing"),
+        # 1000 rpm: 416.7 and 833.3 Hz
+        ({"frequency_hz": 550.0, "speed_rpm": 1000.0}, "complaint.frequency_hz", "416.7 Hz, off by -24 %"),
+    ],
+)
+def test_a_bad_complaint_of_a_case_is_refused_by_every_verb(fields: Json, field: str, said: str) -> None:
+    with pytest.raises(BadInput) as error:
+        case_warnings(CheckedCase(validated(Case, CASE | {"complaint": fields})))
+    (fault,) = error.value.faults
+    assert fault.field == field and said in f"{fault.bound} {fault.suggestion}"
+
+
 REFUSED: tuple[tuple[Json, str, str], ...] = (
     ({"frequency_hz": math.nan, "speed_rpm": 1000.0}, "complaint.frequency_hz", "finite"),
     ({"frequency_hz": -1400.0, "speed_rpm": 1000.0}, "complaint.frequency_hz", "above 0"),
@@ -254,6 +328,7 @@ REFUSED: tuple[tuple[Json, str, str], ...] = (
         "complaint.microphone_mm",
         "no housing",
     ),
+    ({"order": 25.0, "torque_n_m": 60.0}, "complaint.torque_n_m", "loads of the scene"),
 )
 
 
@@ -308,8 +383,8 @@ def test_a_run_keeps_what_its_scene_complains_of(tmp_path: Path) -> None:
     marks = read_inputs([tmp_path / "run.nc"]).marks
     assert marks is not None
     assert marks["meshes"] == {
-        "mesh 0": {"order": approx(2.0 / 3.0), "driver_rpm": approx(3000.0)},
-        "mesh 1": {"order": approx(2.0), "driver_rpm": approx(3000.0 * 25 / 63)},
+        "mesh 0": {"order": approx(2.0 / 3.0), "driver_rpm": approx(3000.0), "torque_n_m": None},
+        "mesh 1": {"order": approx(2.0), "driver_rpm": approx(3000.0 * 25 / 63), "torque_n_m": None},
     }
     assert marks["axes"]["frequency, Hz"] == 833.0
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
+from fe_contact.ste import SteDatabase
+from lineofaction.report.document import Inputs, page_of
 from lineofaction.report.drawing.figure import Axis, Figure, HeatMap, Line, Panel
 from lineofaction.report.drawing.marks import marked, marks_of, of_run, shown_orders
 
@@ -99,3 +101,22 @@ def test_a_result_without_a_complaint_has_no_marks() -> None:
     assert marks_of(Result()) is None
     assert marks_of(Result({"complaint": MARKS})) is MARKS
     assert marks_of(object()) is None
+
+
+def test_a_table_is_marked_where_its_case_is_heard(database: SteDatabase) -> None:
+    """20/20 teeth at 200 N m: order 40 of the pinion is the second harmonic."""
+    case = database.metadata.case | {"complaint": {"order": 40.0, "torque_n_m": 200.0}}
+    heard = replace(database, metadata=replace(database.metadata, case=case))
+    marked_by = {
+        figure.key: {name for panel in figure.content for name in references_of(panel)}
+        for section in page_of(Inputs(heard)).sections
+        for figure in section.figures
+    }
+    assert marked_by["ripple"] == {"complaint, 200 N m"}
+    assert "complaint, mesh order 2" in marked_by["ste_spectrum"]
+    plain = [figure for section in page_of(Inputs(database)).sections for figure in section.figures]
+    assert not any(name for figure in plain for panel in figure.content for name in references_of(panel))
+
+
+def references_of(panel: Panel) -> list[str]:
+    return [one.label for one in panel.references if one.label.startswith("complaint")]

@@ -1,4 +1,4 @@
-"""What is complained of, over what the scene says of it."""
+"""What is complained of, over what case or scene says of it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from lineofaction.gearbox.schemas.figures import Equilibrium, Figures, Ledger, P
 
 
 class Inputs(ComplaintFields):
-    """What is complained of; what is left out is taken from the scene."""
+    """What is complained of; what is left out is taken from case or scene."""
 
 
 class ComplaintFigures(Figures):
@@ -45,11 +45,12 @@ class ComplaintFigures(Figures):
     frequency_hz: float | None
     speed_rpm: float | None
     tolerance_percent: float
+    torque_n_m: dict[str, float]
     ranked_by: str
     passing: list[PassingFigures]
     nearest: list[PassingFigures]
     modes: list[ModeFigures]
-    equilibrium: Equilibrium
+    equilibrium: Equilibrium | None
     cpu_seconds: Seconds
     reduction_cost: ReductionCosts
-    effect_ledger: Ledger
+    effect_ledger: Ledger | None

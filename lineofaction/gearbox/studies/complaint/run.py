@@ -1,4 +1,4 @@
-"""A complaint about a scene: which mesh and harmonic it is, what else passes, which modes are in reach."""
+"""A complaint: which mesh and harmonic it is, what else passes, which modes are within reach."""
 
 from __future__ import annotations
 
@@ -12,16 +12,26 @@ from dynamics.assembly.assemble import System, assemble
 from dynamics.errors import InputError
 from dynamics.linearize import ForcedResponse, ModalAnalysis, forced_response, modal_analysis
 from dynamics.mechanism.passing import Passing
-from lineofaction.gearbox.convert.case import boundary_errors
-from lineofaction.gearbox.convert.complaint import Complaint, complaint_of, leading_shaft, sentence
+from host import cpu_seconds
+from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
+from lineofaction.gearbox.convert.complaint import (
+    Complaint,
+    complaint_of_case,
+    leading_shaft,
+    sentence,
+)
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.complaint import ComplaintInput, with_options
 from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.complaint import ComplaintFigures, Inputs
-from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
-from lineofaction.gearbox.studies.excitations import excitation_levels, with_facts_of_scene
+from lineofaction.gearbox.studies.computation import Computation, Means, record_file
+from lineofaction.gearbox.studies.excitations import (
+    complaint_at_loads,
+    with_facts_of_scene,
+)
 from lineofaction.gearbox.studies.figures import figures_of
 from model_studies import in_unit
 
@@ -30,6 +40,8 @@ REACH = 2.0
 RESOLVED = 1.5
 """Frequency to which shafts that bend are resolved, over that of the complaint: modes above have less."""
 MOST_ORDERS = 100
+PAIR_ALONE: Json = {"equilibrium": None, "effect_ledger": None}
+"""Facts of the answer about a case: teeth and speeds say it."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +72,7 @@ class AnsweredComplaint:
     forces : tuple of OrderForce
         Of all that passes within the tolerance, in its sequence.
     modes : tuple of NearMode
-        The most amplified first; empty without a speed.
+        The most amplified first; empty without a speed, and of a case.
     """
 
     complaint: Complaint
@@ -69,30 +81,45 @@ class AnsweredComplaint:
     facts: Json
 
 
-class _ComplaintStudy(SceneStudy[Inputs, ComplaintFigures, AnsweredComplaint]):
+class _ComplaintStudy(
+    Computation[
+        CheckedCase | SceneInput, CheckedCase | TabledScene, Inputs, ComplaintFigures, AnsweredComplaint
+    ]
+):
     inputs, answer, file = Inputs, ComplaintFigures, record_file(("complaint", AnsweredComplaint))
 
-    def narrowed(self, scene: SceneInput, inputs: Inputs) -> SceneInput:
-        """Return the scene with the complaint, as options state it over the scene's own."""
-        fields = with_options(scene.complaint, inputs)
+    def narrowed(self, subject: CheckedCase | SceneInput, inputs: Inputs) -> CheckedCase | SceneInput:
+        """Return case or scene with the complaint, as options state it over its own."""
+        written = subject.case if isinstance(subject, CheckedCase) else subject
+        fields = with_options(written.complaint, inputs)
         if not fields:
-            bound, advice = "given by the scene or by options", "For example frequency_hz and speed_rpm."
+            bound, advice = "given by the file or by options", "For example frequency_hz and speed_rpm."
             raise BadInput.of("complaint", None, bound, advice)
         try:
             complaint = validated(ComplaintInput, fields)
         except BadInput as error:
             raise error.within("complaint") from None
-        return validated(SceneInput, {**dict(scene), "complaint": complaint})
+        changed = {**dict(written), "complaint": complaint}
+        if isinstance(subject, CheckedCase):
+            return CheckedCase(validated(Case, changed))
+        return validated(SceneInput, changed)
 
-    def normalized(self, _scene: SceneInput, _inputs: Inputs) -> Json:
-        """Return nothing: the scene has all of it."""
+    def normalized(self, _subject: CheckedCase | SceneInput, _inputs: Inputs) -> Json:
+        """Return nothing: case or scene has all of it."""
         return {}
 
-    def compute(self, tabled: TabledScene, _inputs: Inputs, means: Means) -> AnsweredComplaint:
-        subject = tabled.steady
+    def check(self, subject: CheckedCase | SceneInput, _inputs: Inputs) -> None:
+        """Refuse a case whose complaint nothing passes; a scene is, where it is checked."""
+        if isinstance(subject, CheckedCase):
+            complaint_of_case(subject.case)
+
+    def compute(self, made: CheckedCase | TabledScene, _inputs: Inputs, means: Means) -> AnsweredComplaint:
+        if isinstance(made, CheckedCase):
+            return _of_pair(made.case, means)
+        subject = made.steady
         with boundary_errors():
             system = assemble(subject.scene)
-        complaint = complaint_of(subject.inputs, subject.scene, excitation_levels(system, subject))
+        complaint = complaint_at_loads(system, subject)
         with boundary_errors():
             speed = _leading_speed(complaint, subject)
             reach = None if complaint.frequency is None else RESOLVED * complaint.frequency
@@ -111,12 +138,21 @@ class _ComplaintStudy(SceneStudy[Inputs, ComplaintFigures, AnsweredComplaint]):
             result.facts,
             words=sentence(complaint),
             tolerance_percent=100.0 * complaint.tolerance,
+            torque=complaint.torques,
             passing=[(force, _figures_of(each, complaint)) for each, force in within],
             nearest=[
                 (OrderForce("", np.nan), _figures_of(each, complaint)) for each in complaint.passing[:5]
             ],
             modes=[(mode, {"distance_percent": 100.0 * mode.distance}) for mode in result.modes],
         )
+
+
+def _of_pair(case: Case, means: Means) -> AnsweredComplaint:
+    began, complaint = cpu_seconds(), complaint_of_case(case)
+    means.report("modes", 1.0)
+    forces = tuple(OrderForce("", np.nan) for _ in complaint.within)
+    facts = PAIR_ALONE | {"seconds": {"complaint": cpu_seconds() - began}}
+    return AnsweredComplaint(complaint, forces, (), facts)
 
 
 def _figures_of(each: Passing, complaint: Complaint) -> Json:
