@@ -282,7 +282,7 @@ class Studies:
             ("band", 0.2),
             ("sensitivities", 0.2),
         ),
-        version="6",
+        version="7",
         further=(".vtu",),
         housed=True,
     )

@@ -140,6 +140,14 @@ REFUSED: dict[str, list[tuple[Json, str]]] = {
     "noise": [
         ({"run": None, "sensitivities": True, "speed_rpm": []}, "speed_rpm"),
         ({"speed_rpm": [300.0], "orders": 0}, "orders"),
+        (
+            {
+                "speed_rpm": [300.0],
+                "radiation": "equivalent_radiated_power",
+                "microphone_mm": [0.0, 0.0, 1000.0],
+            },
+            "microphone_mm",
+        ),
     ],
     "vibration": [({}, "speed_rpm"), ({"speed_rpm": [300.0], "mode": 0}, "mode")],
     "listen": [

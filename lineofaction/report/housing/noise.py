@@ -39,6 +39,7 @@ from lineofaction.report.housing.forces import (
     third_octaves_over_time,
     total_line,
 )
+from lineofaction.report.housing.microphone import pressure_headline, pressure_table
 from lineofaction.report.presentation import Presentation, dynamics_page, model_text
 from lineofaction.report.response.excitations import excitation_figures, excitation_table
 
@@ -344,6 +345,8 @@ def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
         Headline("loudest order", f"{point.weighted_level:.1f} dB(A)", words)
         for point, words in zip(points, _sentences(sound), strict=True)
     ]
+    if (pressure := sound.facts.get("pressure")) is not None:
+        shown.append(pressure_headline(pressure, sound.facts))
     parting = sound.speed[~sound.in_contact] / RPM
     if parting.size:
         first = f"from {number(parting[0], 4)} rpm on"
@@ -472,6 +475,8 @@ def _text(sound: RadiatedSound) -> Iterator[Table | str]:
     yield from _model_tables(sound)
     yield from _uncertainty_tables(sound.facts)
     yield from _narrowest(sound.facts)
+    if (pressure := sound.facts.get("pressure")) is not None:
+        yield pressure_table(pressure)
     left_out = sound.facts["sensitivities_left_out"]
     yield from (f"no sensitivity to {name}: {why}" for name, why in left_out.items())
     yield from model_text(sound.facts)
@@ -483,6 +488,9 @@ def _page(sound: RadiatedSound) -> Page:
     if missing := sound.facts["sensitivities_left_out"]:
         tables += (Table("No sensitivity", ("to", "because"), tuple(missing.items())),)
     bands = (Section("Bands, and what 1 dB costs", tables=tables),) if tables else ()
+    if (pressure := sound.facts.get("pressure")) is not None:
+        heard = Section("Sound pressure", tables=(pressure_table(pressure),))
+        bands = (heard, *bands)
     rests = Table("Radiation models, and what the levels do not hold", ("what", "how"), tuple(_limits(sound)))
     accuracy = Section("Accuracy of the levels", tables=(rests, *_model_tables(sound)), part=Part.ACCURACY)
     return replace(whole, sections=(*whole.sections, *bands, accuracy))

@@ -19,6 +19,7 @@ from lineofaction.gearbox.schemas.figures import (
     Seconds,
     Source,
 )
+from lineofaction.gearbox.schemas.model import Point
 from lineofaction.gearbox.schemas.studied import NoiseRanges, OverSpeedsOrRun
 
 
@@ -39,6 +40,12 @@ class Inputs(NoiseRanges, OverSpeedsOrRun):
         "most four, and in 60 CPU s, kept; a line is then within 0.5 dB. Needs the extra boundary-elements; "
         "without it the result says so, and the estimate stands with its wider band",
         examples=[False],
+    )
+    microphone_mm: Point | None = Field(
+        default=None,
+        description="Where the sound pressure is found too, x, y, z in mm in the frame of the scene: free "
+        "field; default: the microphone of the scene's complaint, if it has one",
+        examples=[[40.0, 60.0, 1000.0]],
     )
 
 
@@ -153,6 +160,27 @@ class SoundOverTimeFigures(Part):
     highest_hz: float
 
 
+class PressureFigures(Part):
+    """Sound pressure at a microphone: levels by order, then by speed; orders where each is loudest.
+
+    Bands are those of the sound power; null without one.
+    """
+
+    class OrderPressure(Part):
+        """The largest level of an order over the speeds, and its band."""
+
+        order: float
+        speed_rpm: float
+        level_db_a: Annotated[float, Source("level_db_a")]
+        low_db_a: Annotated[float | None, Source("low_db_a")]
+        high_db_a: Annotated[float | None, Source("high_db_a")]
+
+    microphone_mm: list[float]
+    level_db_a: list[list[float]]
+    total_level_db_a: list[float]
+    orders: list[OrderPressure]
+
+
 class NoiseFigures(Figures):
     """Sound power levels re 1 pW by order, then by speed; third octaves; the loudest points."""
 
@@ -197,6 +225,7 @@ class NoiseFigures(Figures):
     housings: dict[str, HousingSound]
     natural_frequency_hz: list[float]
     parting_rpm: list[float]
+    pressure: Annotated[PressureFigures | None, Source("pressure", missing=None, document=True)]
     band: Annotated[SoundBandFigures | None, Source("band", document=True)]
     sensitivities: Annotated[list[SensitivityFigures], Source("sensitivities", document=True)]
     sensitivities_left_out: dict[str, str]

@@ -63,8 +63,15 @@ from lineofaction.gearbox.studies.housings import (
     radiation_of,
     require_surface,
 )
-from lineofaction.gearbox.studies.noise import Inputs, NoiseFigures, SoundOverTimeFigures
+from lineofaction.gearbox.studies.noise import (
+    Inputs,
+    NoiseFigures,
+    PressureFigures,
+    SoundOverTimeFigures,
+)
+from lineofaction.gearbox.studies.noise.microphone import SoundSource, pressure_at
 from lineofaction.gearbox.studies.noise.uncertainty import uncertainty
+from lineofaction.gearbox.units import MM
 from model_studies.workers import spent
 
 PLANE, MONOPOLES = EquivalentRadiatedPower(), ElementalRadiators()
@@ -89,10 +96,13 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
     writers = MappingProxyType({".vtu": _write_panels})
 
     def check(self, subject: SceneInput, inputs: Inputs) -> None:
-        """Refuse a scene without a housing that has a surface, and sensitivities of a run."""
+        """Refuse a scene without a housing that has a surface, sensitivities of a run, a plane at an ear."""
         if inputs.run is not None and inputs.sensitivities:
             advice = "They vary the linear response: leave out the run."
             raise BadInput.of("sensitivities", True, "left out with a run", advice)
+        if inputs.microphone_mm is not None and inputs.radiation == PLANE.model_name:
+            bound = f"left out with {PLANE.model_name}, which has no sound pressure"
+            raise BadInput.of("microphone_mm", list(inputs.microphone_mm), bound, "Take the estimate.")
         require_surface(subject)
 
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> RadiatedSound:
@@ -124,7 +134,13 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
         own |= facts_of_scene(subject)
         known = {**whole.facts, **own, "models": compared, "seconds": seconds}
         whole = replace(whole, facts=known)
-        return replace(whole, facts={**known, **uncertainty(subject, whole, radiation, off, inputs, means)})
+        known |= uncertainty(subject, whole, radiation, off, inputs, means)
+        if (place := _microphone(subject.inputs, inputs)) is not None:
+            sources = [SoundSource(each.body, each.bearings, each.cheap) for each in housings]
+            with boundary_errors():
+                heard_there = pressure_at(response, sources, np.array(place) * MM, known["band"])
+            known["pressure"] = figures_of(PressureFigures, heard_there)
+        return replace(whole, facts=known)
 
     def _derived(self, sound: RadiatedSound) -> Json:
         about = sound.facts
@@ -139,6 +155,13 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
             "housings": {name: _housing(about, name) for name in sound.housing},
             "parting": sound.speed[~sound.in_contact],
         }
+
+
+def _microphone(scene: SceneInput, inputs: Inputs) -> tuple[float, float, float] | None:
+    """Return where the sound pressure is found, mm; None: nowhere."""
+    if inputs.microphone_mm is not None or scene.complaint is None or inputs.radiation == PLANE.model_name:
+        return inputs.microphone_mm
+    return scene.complaint.microphone_mm
 
 
 def _bearing(sound: RadiatedSound, bearing: int) -> Json:
