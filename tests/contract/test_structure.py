@@ -12,9 +12,9 @@ ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
     ("fe_contact",): (39_908, 718),
-    ("dynamics",): (42_854, 824),
-    ("lineofaction.gearbox",): (25_164, 505),
-    ("lineofaction.report",): (11_302, 209),
+    ("dynamics",): (42_859, 825),
+    ("lineofaction.gearbox",): (25_419, 510),
+    ("lineofaction.report",): (11_371, 211),
     ("service",): (14_797, 339),
     ("lineofaction.client",): (2_712, 53),
     ("lineofaction.cli",): (4_982, 71),
@@ -22,7 +22,7 @@ BUDGETS = {
     ("bounds", "host", "model_studies"): (4_441, 153),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 800
+MOST_FILES = 802
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
