@@ -157,7 +157,7 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
         }
 
 
-def _microphone(scene: SceneInput, inputs: Inputs) -> tuple[float, float, float] | None:
+def _microphone(scene: SceneInput, inputs: Inputs) -> tuple[float, ...] | None:
     """Return where the sound pressure is found, mm; None: nowhere."""
     if inputs.microphone_mm is not None or scene.complaint is None or inputs.radiation == PLANE.model_name:
         return inputs.microphone_mm
