@@ -162,7 +162,7 @@ def _table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreporte
     """
     if plan.positions is not None:
         return unmeasured_nodes(plan.positions, len(points.assessed) * plan.load.size)
-    windows = _assessed_windows(points.places[0].model, plan.nodes.assessed_pitches)
+    windows = _assessed_windows(points.nominal.pair, points.places[0].model, plan.nodes.assessed_pitches)
     tried, expected = 0, expected_tries(plan)
 
     def solve(position: FloatArray) -> FloatArray:
@@ -178,7 +178,7 @@ def _table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreporte
     return _adaptive_nodes(replace(plan.nodes, most=most), solve)
 
 
-def _assessed_windows(model: ContactModel, most: int) -> tuple[IntArray, ...]:
+def _assessed_windows(pair: ParallelAxes, model: ContactModel, most: int) -> tuple[IntArray, ...]:
     """Return base pitches to assess, each with its neighbors.
 
     Where all teeth are alike, the one pitch there is: ``([0],)``. Else ``[m - 1, m, m + 1]`` of pitches m, at
@@ -188,7 +188,9 @@ def _assessed_windows(model: ContactModel, most: int) -> tuple[IntArray, ...]:
     if model.period == 1:
         return (np.zeros(1, dtype=np.int64),)
     meeting = np.arange(model.period)[:, None] + np.arange(-1, 2)
-    spread = np.ptp(sum(term(meeting) for term in model.tooth_gaps), axis=1)
+    at_pitch_point = np.array(pair.path_of_contact.pitch_point)
+    at = meeting, at_pitch_point, pair.mating_roll_length(at_pitch_point), 0.0
+    spread = np.ptp(sum(term(pair, *at) for term in model.tooth_gaps), axis=1)
     order = np.argsort(spread, kind="stable")
     chosen = np.unique(np.linspace(0, order.size - 1, min(most, order.size)).astype(int))
     return tuple(order[k] + np.arange(-1, 2) for k in chosen)

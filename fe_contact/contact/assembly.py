@@ -23,7 +23,9 @@ from host.loops import njit
 # The same positions in several base pitches: other teeth, hence other gaps, but the same compliance.
 
 
-def in_pitches(problem: ContactProblem, model: ContactModel, pitch: IntArray) -> ContactProblem:
+def in_pitches(
+    pair: ParallelAxes, problem: ContactProblem, model: ContactModel, pitch: IntArray
+) -> ContactProblem:
     """Put the positions of a problem into whole base pitches, and add the gaps of the teeth that meet there.
 
     Parameters
@@ -53,8 +55,8 @@ def in_pitches(problem: ContactProblem, model: ContactModel, pitch: IntArray) ->
     }
     touch = Touch(**tiled)
     if model.tooth_gaps:
-        meeting = pitch[:, None] - candidates.pair
-        touch = replace(touch, gap=touch.gap + sum(term(meeting) for term in model.tooth_gaps))
+        at = pitch[:, None] - candidates.pair, *rolls_at(pair, touch.s_1, touch.s_2), candidates.face_position
+        touch = replace(touch, gap=touch.gap + sum(term(pair, *at) for term in model.tooth_gaps))
     moved = replace(
         candidates,
         position=np.tile(candidates.position, times) + pitch,

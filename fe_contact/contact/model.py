@@ -75,17 +75,29 @@ class GapTerm(Protocol):
 
 
 class ToothGap(Protocol):
-    """A rigid gap that differs from tooth to tooth, the same all over a flank."""
+    """A rigid gap that differs from tooth to tooth."""
 
     @property
     def period(self) -> int:
         """Number of base pitches after which it repeats."""
 
-    def __call__(self, meeting: IntArray) -> FloatArray:
+    @property
+    def largest(self) -> float:
+        """Bound of the gap in m, of whichever tooth."""
+
+    def __call__(
+        self,
+        pair: ParallelAxes,
+        meeting: IntArray,
+        roll_1: FloatArray,
+        roll_2: FloatArray,
+        face: FloatArray | float,
+    ) -> FloatArray:
         """Gap in m, > 0 where material is missing, of the `meeting`-th tooth pair since position 0.
 
         Meeting 0 is pair 0 at position 0; meeting k touches at the pitch point at position k, with the k-th
-        next teeth of both gears. Values repeat with the period, also below 0.
+        next teeth of both gears. Values repeat with the period, also below 0. Taken at the touching roll
+        lengths of the two flanks and at `face`, the distance from the pinion's mid-face, in m; all broadcast.
         """
 
 

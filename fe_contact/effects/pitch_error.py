@@ -10,7 +10,7 @@ import numpy as np
 
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects.effect import ContactScene, Effect, Verdict
-from fe_contact.geometry import PitchDeviation
+from fe_contact.geometry import ParallelAxes, PitchDeviation
 from fe_contact.types import FloatArray, IntArray
 
 
@@ -26,8 +26,13 @@ class _PitchGap:
     wheel: tuple[float, ...]
     period: int
 
-    def __call__(self, meeting: IntArray) -> FloatArray:
-        """Sum over both teeth of the `meeting`-th pair, m."""
+    @property
+    def largest(self) -> float:
+        """Bound of the gap, m."""
+        return max(self.pinion) + max(self.wheel)
+
+    def __call__(self, pair: ParallelAxes, meeting: IntArray, *_place: FloatArray | float) -> FloatArray:
+        """Sum over both teeth of the `meeting`-th pair, m: the same all over a flank."""
         count = np.asarray(meeting) % self.period
         gears = (np.array(self.pinion), np.array(self.wheel))
         return np.asarray(sum(gap[count % gap.size] for gap in gears))

@@ -13,6 +13,7 @@ from fe_contact.effects.pitch_error import PitchError
 from fe_contact.effects.shaft_deflection import ShaftDeflection
 from fe_contact.effects.thin_rim import ThinRim
 from fe_contact.effects.tooth_coupling import ToothCoupling
+from fe_contact.effects.tooth_deviations import ToothDeviations
 
 EFFECTS: tuple[Effect, ...] = (
     ToothCoupling(),
@@ -23,6 +24,7 @@ EFFECTS: tuple[Effect, ...] = (
     LeadModification(),
     Misalignment(),
     PitchError(),
+    ToothDeviations(),
     ShaftDeflection(),
     ThinRim(),
     BoreSeatElasticity(),

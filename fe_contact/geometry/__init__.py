@@ -11,11 +11,13 @@ from fe_contact.geometry.gear_pair import GearPair, InternalGearPair
 from fe_contact.geometry.iso6336_stiffness import blank_factor, iso6336_stiffness
 from fe_contact.geometry.parallel_axes import ParallelAxes, sliding_factor, specific_sliding
 from fe_contact.geometry.ring_gear import RingGear
+from fe_contact.geometry.tooth_deviations import NO_RUN_OUT, RunOut, Wave, deviations_period
 from fe_contact.geometry.toothing import PitchDeviation, Toothing
 from fe_contact.geometry.web_compliance import web_compliance
 
 __all__ = [
     "CLAMPED",
+    "NO_RUN_OUT",
     "BasicRack",
     "BoreSeat",
     "CornerContact",
@@ -29,12 +31,15 @@ __all__ = [
     "ParallelAxes",
     "PitchDeviation",
     "RingGear",
+    "RunOut",
     "Shaft",
     "Side",
     "ToothProfile",
     "Toothing",
+    "Wave",
     "blank_factor",
     "corner_contact",
+    "deviations_period",
     "edge_gap",
     "iso6336_stiffness",
     "seat_compliance",

@@ -44,18 +44,11 @@ class GearPair(ParallelAxes):
         """Return the same pair with the wheel driving: the same flanks loaded, the gears turning back."""
         return replace(
             self,
-            pinion=_turning_back(self.wheel),
-            wheel=_turning_back(self.pinion),
+            pinion=self.wheel.turning_back,
+            wheel=self.pinion.turning_back,
             axial_offset=-self.axial_offset,
             shafts=self.shafts[::-1],
         )
-
-
-def _turning_back(gear: Gear) -> Gear:
-    """Return the gear with its teeth in the order in which they mesh the other way round."""
-    if gear.pitch_deviation.neutral:
-        return gear
-    return replace(gear, pitch_deviation=gear.pitch_deviation.reversed)
 
 
 @dataclass(frozen=True)

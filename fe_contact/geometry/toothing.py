@@ -20,6 +20,7 @@ from fe_contact.errors import InputError, declared_fields, within
 from fe_contact.flank.involute import involute_function, roll_length_at_radius
 from fe_contact.flank.modification import UNMODIFIED, FlankModification
 from fe_contact.geometry.basic_rack import ADDENDUM, DEDENDUM, NORMAL_MODULE, PRESSURE_ANGLE, ROOT_RADIUS
+from fe_contact.geometry.tooth_deviations import NO_RUN_OUT, RunOut, Wave, deviations_period
 from fe_contact.material import STEEL, Material
 from fe_contact.types import FloatArray
 
@@ -150,6 +151,9 @@ _ALLOWANCE = Declared(
     written="um",
 )
 
+_OF_AXIS = "Axis of the teeth off the axis of rotation; left out: they are one"
+_RUN_OUT = Declared(Kind.PART, "", None, _OF_AXIS, part=RunOut, later=True)
+
 MATING = ("normal_module", "normal_pressure_angle", "helix_angle")
 """Fields in which mating gears agree, but for the hand of external ones."""
 
@@ -161,7 +165,7 @@ class Toothing:
 
     All numbers are positive for both kinds. The tool of a thickness allowance is that much thicker; the root
     circle stays where it is. `modification`: departures of the flanks from the involute helicoid; `material`:
-    elasticity; `pitch_deviation`: of the loaded flank of every tooth.
+    elasticity; `pitch_deviation`: of the loaded flank of every tooth; `waves`: on all loaded flanks.
     """
 
     teeth: int = required(counted(4, 4000))
@@ -179,6 +183,8 @@ class Toothing:
     modification: FlankModification = UNMODIFIED
     material: Material = STEEL
     pitch_deviation: PitchDeviation = NO_PITCH_DEVIATION
+    run_out: RunOut = declared(NO_RUN_OUT, _RUN_OUT)
+    waves: tuple[Wave, ...] = ()
 
     sign: ClassVar[int] = 1  # of the tooth number in ISO 21771-1: +1 external, -1 internal
 
@@ -243,6 +249,22 @@ class Toothing:
         """d_f / 2: m_n (h_fP - x) below the reference circle (beyond it for an internal gear), m."""
         depth = self.dedendum_coefficient - self.profile_shift_coefficient
         return self.reference_radius - self.sign * self.normal_module * depth
+
+    @property
+    def period(self) -> int:
+        """Number of teeth after which its deviations repeat: 1 where all are alike."""
+        turning = deviations_period(self.run_out, self.waves, self.teeth)
+        return math.lcm(self.pitch_deviation.period, turning)
+
+    @property
+    def turning_back(self) -> Self:
+        """The gear with its teeth in the order in which they mesh the other way round."""
+        return replace(
+            self,
+            pitch_deviation=self.pitch_deviation.reversed,
+            run_out=self.run_out.reversed,
+            waves=tuple(wave.reversed for wave in self.waves),
+        )
 
     def right_handed(self) -> Self:
         """Return the gear if it is spur or right hand, else its mirror image."""

@@ -171,7 +171,7 @@ class Evaluator:
             moved = modified_touch(pair, bodies.candidates.touch, face, moving)
             touches[key] = bodies.candidates.following(moved).touch if bodies.tilt.size else moved
         touch = modified_touch(pair, touches[key], face, steady) if steady else touches[key]
-        problem = _in_all_pitches(bodies.touching(bodies.candidates.touching(touch)), model)
+        problem = _in_all_pitches(pair, bodies.touching(bodies.candidates.touching(touch)), model)
         return pair, problem, solve_contact(problem, load)
 
 
@@ -192,11 +192,11 @@ def least_deviation(designed: float, name: str) -> float:
     return -(0.9 if quantity in LENGTHS else 1.0) * designed
 
 
-def _in_all_pitches(problem: ContactProblem, model: ContactModel) -> ContactProblem:
+def _in_all_pitches(pair: ParallelAxes, problem: ContactProblem, model: ContactModel) -> ContactProblem:
     if model.period == 1:
         return problem
     rows = np.repeat(np.arange(model.period), problem.candidates.position.size)
-    return in_pitches(problem, model, rows)
+    return in_pitches(pair, problem, model, rows)
 
 
 @dataclass(frozen=True)

@@ -237,9 +237,7 @@ def _closing(point: OperatingPoint) -> float:
     """Distance by which deviations and misalignment close the coast side beyond the driving side, m."""
     pair, gaps = point.contact.pair, point.model.gaps
     skew = sum(term.reach(pair) for term in gaps if isinstance(term, MisalignmentGap))
-    meeting = np.arange(point.model.period)
-    teeth = sum(float(np.max(term(meeting))) for term in point.model.tooth_gaps)
-    return skew + teeth
+    return skew + sum(term.largest for term in point.model.tooth_gaps)
 
 
 def _load_patches(run: SolvedRun) -> Assumption:

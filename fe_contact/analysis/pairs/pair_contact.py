@@ -114,7 +114,7 @@ class PairContact:
         if pitch is None and not model.tooth_gaps:
             return problem
         first = np.zeros(position.size, dtype=np.int64)
-        return in_pitches(problem, model, first if pitch is None else pitch)
+        return in_pitches(self.pair, problem, model, first if pitch is None else pitch)
 
     def candidates(self, model: ContactModel, position: FloatArray) -> Candidates:
         """Return where plain involutes can touch at positions (P,) in [0, 1); nothing is assembled."""

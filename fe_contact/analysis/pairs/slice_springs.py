@@ -111,7 +111,8 @@ class SpringContact(PairContact):
         modulus = contact_modulus(self.pair.pinion.material, self.pair.wheel.material)
         problem = ContactProblem(touching, np.zeros((position.size, 0, 0)), modulus, 0.0, 0.0)
         if pitch is not None or seen.tooth_gaps:
-            problem = in_pitches(problem, seen, np.zeros_like(position, int) if pitch is None else pitch)
+            first = np.zeros_like(position, int)
+            problem = in_pitches(self.pair, problem, seen, first if pitch is None else pitch)
         stiffness = _slice_stiffness(self.pair, problem.candidates, self.law)
         return problem, _solve_springs(problem.candidates, stiffness, load)
 

@@ -67,7 +67,7 @@ class Springs:
         problem, count = self.problem(model), _positions(model)
         if model.tooth_gaps:
             pitches = np.arange(min(model.period, MOST_PITCHES))
-            problem = in_pitches(problem, model, np.repeat(pitches, count))
+            problem = in_pitches(self.pair, problem, model, np.repeat(pitches, count))
         key = repr(model.gaps), problem.candidates.position.size, load.size
         solution = solve_contact(problem, load, self._last.get(key))
         self._last[key] = Start(problem.candidates, solution.force)

@@ -78,7 +78,8 @@ def test_the_teeth_of_every_pair_by_turning_the_gears(position):
     tooth of pair 0 stood at position 0.
     """
     first, second = np.arange(Z1) * 1e-6, np.arange(Z2) * 3e-5
-    model = composed(GearPair(gear(Z1, first), gear(Z2, second)))
+    gears = GearPair(gear(Z1, first), gear(Z2, second))
+    model = composed(gears)
     pitch, fraction = math.floor(position), position - math.floor(position)
     for pair in (-2, -1, 0, 1, 2):
         ahead = np.exp(-2j * np.pi * (pair + fraction) / Z1), np.exp(2j * np.pi * (pair + fraction) / Z2)
@@ -87,7 +88,7 @@ def test_the_teeth_of_every_pair_by_turning_the_gears(position):
         # into mesh come teeth that stand counter-clockwise on the pinion, clockwise on the wheel
         expected = first[tooth_1] + second[-tooth_2 % Z2]
         (term,) = model.tooth_gaps
-        found = term(np.array([pitch - pair]))
+        found = term(gears, np.array([pitch - pair]))
         assert found == pytest.approx([-expected * COSINE], rel=1e-12, abs=1e-20)
 
 
@@ -98,7 +99,7 @@ def test_pairs_keep_their_teeth_as_they_move_on():
     plain = contact_candidates(
         pair, model, np.array([0.0, 1.0 - 1e-9]), PatchRule(3e-4, 2e-4), Slices.of_pair(pair, 1)
     )
-    problem = in_pitches(_without_compliance(plain), model, np.repeat(np.arange(4), 2))
+    problem = in_pitches(pair, _without_compliance(plain), model, np.repeat(np.arange(4), 2))
     possible = np.isfinite(plain.gap)
     start = np.tile(np.where(possible, plain.gap, np.nan), (4, 1))
     added = (problem.candidates.gap - start).reshape(4, 2, -1)
@@ -246,6 +247,6 @@ def test_the_verdict_gives_the_figures_of_the_standard_and_periods_multiply():
     pair = GearPair(gear(Z1, np.arange(Z1) * 1e-6), gear(Z2, np.arange(Z2) * 1e-5))
     (term,) = composed(pair, pitches=30).tooth_gaps
     assert composed(pair, pitches=30).period == 30
-    assert term(np.array([29, 30, 31])) == pytest.approx(
+    assert term(pair, np.array([29, 30, 31])) == pytest.approx(
         -COSINE * np.array([9e-6 + 6e-5, 0.0, 1e-6 + 1e-5]), abs=1e-18
     )

@@ -1,0 +1,134 @@
+"""What turns with a gear: run-out, wobble and waves, against the closed forms of stiff teeth."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from fe_contact.contact.model import ContactModel
+from fe_contact.effects import EFFECTS, ContactScene, compose
+from fe_contact.geometry import Gear, GearPair, InternalGearPair, RingGear, RunOut, Wave
+
+HELIX = math.radians(22.0)
+AMPLITUDE, ANGLE = 2e-7, 0.7
+PINION, WHEEL = 0, 1
+
+
+def gear(teeth, hand=0, **changes):
+    values = {"normal_module": 2e-3, "face_width": 30e-3, "bore_diameter": 20e-3} | changes
+    return Gear(teeth=teeth, helix_angle=hand * HELIX, **values)
+
+
+def pair_of(kind, index, **deviations):
+    own = [deviations if index == each else {} for each in (PINION, WHEEL)]
+    if kind == "internal":
+        ring = RingGear(
+            teeth=67, normal_module=2e-3, face_width=30e-3, rim_diameter=150e-3, tip_diameter=131e-3, **own[1]
+        )
+        return InternalGearPair(gear(23, **own[0]), ring)
+    hand = 1 if kind == "helical" else 0
+    return GearPair(gear(23, hand, **own[0]), gear(67, -hand, **own[1]), axial_offset=0.0)
+
+
+def gaps(pair, position, face):
+    """Gap of all teeth that stand at the path of contact, at positions (P,) and faces (F,) -> (P, J, F)."""
+    model, _ = compose(ContactScene(pair, np.array([100.0]), EFFECTS), {})
+    meeting = np.rint(position)[:, None] + np.arange(-2, 3)
+    roll = pair.path_of_contact.pitch_point + (position[:, None] - meeting) * pair.base_pitch
+    roll_1 = roll[:, :, None] - face * math.tan(pair.base_helix_angle)
+    at = meeting[:, :, None].astype(int), roll_1, pair.mating_roll_length(roll_1), face
+    return sum(term(pair, *at) for term in model.tooth_gaps), model
+
+
+POSITION = np.linspace(0.0, 67.0, 335, endpoint=False)
+FACE = np.linspace(-15e-3, 15e-3, 7)
+TEETH = {PINION: 23, WHEEL: 67}
+
+
+@pytest.mark.parametrize("kind", ["spur", "helical", "internal"])
+@pytest.mark.parametrize("index", [PINION, WHEEL])
+def test_an_eccentric_gear_moves_all_contacts_alike_by_its_turned_eccentricity(kind, index):
+    """A rigid gear that stands off by e moves along the line of action by e cos(turn - angle)."""
+    run_out = RunOut(eccentricity=5e-6, eccentricity_angle=ANGLE)
+    found, model = gaps(pair_of(kind, index, run_out=run_out), POSITION, FACE)
+    turn = 2.0 * math.pi * POSITION / TEETH[index]
+    assert model.period == TEETH[index]
+    assert np.abs(found + 5e-6 * np.cos(turn - ANGLE)[:, None, None]).max() < 1e-6 * 5e-6
+
+
+@pytest.mark.parametrize("kind", ["spur", "helical", "internal"])
+@pytest.mark.parametrize("index", [PINION, WHEEL])
+def test_a_wobbling_gear_tilts_all_contacts_alike(kind, index):
+    run_out = RunOut(wobble=5e-6, wobble_angle=ANGLE)
+    found, _ = gaps(pair_of(kind, index, run_out=run_out), POSITION, FACE)
+    turn = 2.0 * math.pi * POSITION / TEETH[index]
+    tilt = 5e-6 * np.cos(turn - ANGLE)[:, None, None] * FACE / 30e-3
+    assert np.abs(found + tilt).max() < 1e-6 * 5e-6
+
+
+@pytest.mark.parametrize("kind", ["spur", "helical", "internal"])
+@pytest.mark.parametrize("index", [PINION, WHEEL])
+def test_a_wave_along_the_contact_lines_is_the_same_on_all_of_them(kind, index):
+    """It does not average out: the flanks stand off by it at its own order."""
+    found, _ = gaps(pair_of(kind, index, waves=(Wave(11, AMPLITUDE, ANGLE),)), POSITION, FACE)
+    turn = 2.0 * math.pi * POSITION / TEETH[index]
+    assert np.abs(found + AMPLITUDE * np.cos(11 * turn - ANGLE)[:, None, None]).max() < 1e-6 * AMPLITUDE
+
+
+def test_a_wave_along_the_axis_averages_by_its_phase_over_a_contact_line():
+    """Its mean over a line whose phase runs through n lead is sinc times the amplitude."""
+    order, face = 40, np.linspace(-15e-3, 15e-3, 3001)
+    pair = pair_of("helical", PINION, waves=(Wave(order, AMPLITUDE, face_waves=0.0),))
+    found, _ = gaps(pair, POSITION[:40], face)
+    mean = found.mean(axis=2)[:, 0]
+    run = order * 30e-3 * math.tan(pair.base_helix_angle) / pair.pinion.base_radius
+    turn = 2.0 * math.pi * POSITION[:40] / 23
+    expected = -AMPLITUDE * math.sin(0.5 * run) / (0.5 * run) * np.cos(order * turn)
+    assert np.abs(mean - expected).max() < 1e-3 * AMPLITUDE
+
+
+def test_waves_of_the_contact_lines_are_those_of_so_many_over_the_face():
+    pair = pair_of("helical", PINION, waves=(Wave(11, AMPLITUDE, ANGLE),))
+    lead = 30e-3 * math.tan(pair.base_helix_angle) / pair.pinion.base_radius
+    stated = pair_of("helical", PINION, waves=(Wave(11, AMPLITUDE, ANGLE, 11 * lead / (2 * math.pi)),))
+    first, second = (gaps(each, POSITION, FACE)[0] for each in (pair, stated))
+    assert np.abs(first - second).max() < 1e-12 * AMPLITUDE
+
+
+def test_pairs_keep_their_gap_as_they_move_on():
+    """What is pair j just below a whole pitch is pair j + 1 above it."""
+    waves = (Wave(11, AMPLITUDE, ANGLE, 3.0), Wave(0, AMPLITUDE, 0.0, 2.0))
+    pair = pair_of("helical", WHEEL, waves=waves, run_out=RunOut(1e-6, 0.2, 2e-6, 0.5))
+    below, above = (gaps(pair, np.arange(1.5, 60.0) + by, FACE)[0] for by in (-1e-9, 0.0))
+    assert np.abs(below[:, 1:] - above[:, :-1]).max() < 1e-6 * AMPLITUDE
+
+
+@pytest.mark.parametrize(("orders", "period"), [((23,), 1), ((46, 69), 1), ((11,), 23), ((0,), 1)], ids=str)
+def test_the_period_is_that_of_the_teeth_that_differ(orders, period):
+    waves = tuple(Wave(order, AMPLITUDE, face_waves=1.0) for order in orders)
+    assert gear(23, waves=waves).period == period
+
+
+def test_a_gear_that_turns_back_shows_the_same_flanks_the_other_way():
+    waves = (Wave(11, AMPLITUDE, ANGLE, 3.0),)
+    pair = pair_of("helical", WHEEL, waves=waves, run_out=RunOut(1e-6, 0.2, 2e-6, 0.5))
+    found, _ = gaps(pair, POSITION, FACE)
+    turned, _ = gaps(pair.swapped(), -POSITION, FACE)
+    assert np.abs(turned[:, ::-1] - found).max() < 1e-6 * AMPLITUDE
+
+
+def test_nothing_named_adds_nothing():
+    pair = pair_of("helical", PINION, run_out=RunOut(), waves=(Wave(11, 0.0),))
+    model, ledger = compose(ContactScene(pair, np.array([100.0]), EFFECTS), {})
+    assert model.tooth_gaps == ContactModel().tooth_gaps
+    (entry,) = [entry for entry in ledger if entry.name == "tooth_deviations"]
+    assert entry.verdict.neutral
+
+
+def test_the_verdict_states_the_amounts_and_the_period():
+    pair = pair_of("helical", PINION, waves=(Wave(11, 5e-7),), run_out=RunOut(eccentricity=1e-5))
+    _, ledger = compose(ContactScene(pair, np.array([100.0]), EFFECTS), {})
+    (entry,) = [entry for entry in ledger if entry.name == "tooth_deviations"]
+    assert entry.verdict.reason == ("pinion eccentricity 10 um, 11 waves 0.5 um, over 23 base pitches")
