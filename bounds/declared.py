@@ -38,6 +38,8 @@ class Kind(StrEnum):
     """A table of its own."""
     PART = auto()
     """A part of declared fields."""
+    PARTS = auto()
+    """Any number of them."""
     STIFFNESS = auto()
     """A force, traction or stress per displacement or strain."""
     DAMPING = auto()

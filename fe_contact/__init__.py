@@ -29,7 +29,9 @@ if TYPE_CHECKING:
         InternalGearPair,
         PitchDeviation,
         RingGear,
+        RunOut,
         Shaft,
+        Wave,
     )
     from fe_contact.material import STEEL, Material
     from fe_contact.microgeometry.objective import Limits
@@ -70,6 +72,7 @@ __all__ = [
     "RingGear",
     "RootStress",
     "Run",
+    "RunOut",
     "Sampling",
     "Scatter",
     "Search",
@@ -80,6 +83,7 @@ __all__ = [
     "TableAxes",
     "ToleranceStudy",
     "Tolerances",
+    "Wave",
     "ablate",
     "analyze",
     "contact_pattern",
@@ -105,7 +109,7 @@ _NAMES = {
     "fe_contact.analysis.studies.sensitivity": "Sensitivity study_sensitivity",
     "fe_contact.geometry": (
         "BoreSeat FlankGrid FlankModification Gear GearBlank GearPair InternalGearPair PitchDeviation "
-        "RingGear Shaft"
+        "RingGear RunOut Shaft Wave"
     ),
     "fe_contact.material": "STEEL Material",
     "fe_contact.microgeometry.objective": "Limits",

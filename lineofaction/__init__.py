@@ -34,8 +34,10 @@ if TYPE_CHECKING:
         Material,
         PitchDeviation,
         RingGear,
+        RunOut,
         SteDatabase,
         Tolerances,
+        Wave,
     )
     from fe_contact.types import Estimate, Status
     from lineofaction.client import AsyncLineOfActionClient as AsyncClient
@@ -72,6 +74,7 @@ _HOME = {
     "PlanetarySet": ("dynamics.scene", "PlanetarySet"),
     "RingGear": ("fe_contact", "RingGear"),
     "RollingBearing": ("dynamics.bearings.rolling_bearing", "RollingBearing"),
+    "RunOut": ("fe_contact", "RunOut"),
     "RunResult": ("dynamics.results", "RunResult"),
     "Scene": ("lineofaction.gearbox.schemas.scene", "SceneInput"),
     "Status": ("fe_contact.types", "Status"),
@@ -79,6 +82,7 @@ _HOME = {
     "TimeLaw": ("dynamics.loads.time_law", "TimeLaw"),
     "Tolerances": ("fe_contact", "Tolerances"),
     "Unit": ("lineofaction.gearbox.from_rexs.opened", "OpenedUnit"),
+    "Wave": ("fe_contact", "Wave"),
     "write": ("lineofaction.report.document", "write"),
 }
 """Of the names that are neither studies nor of the workbench: module, and name there."""
@@ -107,6 +111,7 @@ __all__ = [
     "PlanetarySet",
     "RingGear",
     "RollingBearing",
+    "RunOut",
     "RunResult",
     "Scene",
     "Status",
@@ -114,6 +119,7 @@ __all__ = [
     "TimeLaw",
     "Tolerances",
     "Unit",
+    "Wave",
     "analyze",
     "facts",
     "open_unit",

@@ -45,8 +45,8 @@ def in_pitches(
     Notes
     -----
     Pair j of pitch m is the pair of teeth that meets (m - j)-th: one pitch later each pair has moved on to
-    the place of the next one. The touching points stay those of perfect pitches: micrometers of rolling are
-    nothing to the curvatures there.
+    the place of the next one. Load patches stay those of perfect pitches: micrometers of rolling are nothing
+    to the bodies.
     """
     candidates = problem.candidates
     times = pitch.size // candidates.position.size
@@ -55,8 +55,7 @@ def in_pitches(
     }
     touch = Touch(**tiled)
     if model.tooth_gaps:
-        at = pitch[:, None] - candidates.pair, *rolls_at(pair, touch.s_1, touch.s_2), candidates.face_position
-        touch = replace(touch, gap=touch.gap + sum(term(pair, *at) for term in model.tooth_gaps))
+        touch = _of_teeth(pair, touch, model, pitch[:, None] - candidates.pair, candidates.face_position)
     moved = replace(
         candidates,
         position=np.tile(candidates.position, times) + pitch,
@@ -64,6 +63,33 @@ def in_pitches(
         width=np.concatenate([candidates.width] * times),
     )
     return problem.touching(moved)
+
+
+_BESIDE = 1e-6
+"""Way along the flank in m over which slope and curvature of the gaps of teeth are taken."""
+_FLATTEST = 0.2
+"""Of the curvature of plain flanks: flatter than that teeth count as if they were not curved themselves."""
+
+
+def _of_teeth(
+    pair: ParallelAxes, touch: Touch, model: ContactModel, meeting: IntArray, face: FloatArray
+) -> Touch:
+    """Add the gaps of teeth that meet: they slope along the flank, so the least gap is beside the point.
+
+    With slope s and curvature c of the gap of the teeth it is s^2/(2 (1/R + c)) less than at the point, where
+    the flanks are free to touch beside it: at an edge or a break they are not.
+    """
+
+    def gap(way: float) -> FloatArray:
+        at = meeting, *rolls_at(pair, touch.s_1 + way, touch.s_2 - way), face
+        return np.asarray(sum(term(pair, *at) for term in model.tooth_gaps))
+
+    here, above, below = gap(0.0), gap(_BESIDE), gap(-_BESIDE)
+    slope, bend = (above - below) / (2.0 * _BESIDE), (above - 2.0 * here + below) / _BESIDE**2
+    curvature = np.maximum(touch.curvature + bend, _FLATTEST * touch.curvature)
+    way = np.where(touch.slope == 0.0, np.clip(-slope / curvature, touch.low, touch.high), 0.0)
+    least = here + way * (slope + 0.5 * curvature * way)
+    return replace(touch, gap=touch.gap + least, curvature=curvature)
 
 
 def with_flanks(pair: ParallelAxes, problem: ContactProblem, model: ContactModel) -> ContactProblem:

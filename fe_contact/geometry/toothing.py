@@ -153,6 +153,8 @@ _ALLOWANCE = Declared(
 
 _OF_AXIS = "Axis of the teeth off the axis of rotation; left out: they are one"
 _RUN_OUT = Declared(Kind.PART, "", None, _OF_AXIS, part=RunOut, later=True)
+_OF_FLANKS = "Waves on all loaded flanks, left by machining"
+_WAVES = Declared(Kind.PARTS, "", None, _OF_FLANKS, part=Wave, later=True)
 
 MATING = ("normal_module", "normal_pressure_angle", "helix_angle")
 """Fields in which mating gears agree, but for the hand of external ones."""
@@ -165,7 +167,7 @@ class Toothing:
 
     All numbers are positive for both kinds. The tool of a thickness allowance is that much thicker; the root
     circle stays where it is. `modification`: departures of the flanks from the involute helicoid; `material`:
-    elasticity; `pitch_deviation`: of the loaded flank of every tooth; `waves`: on all loaded flanks.
+    elasticity; `pitch_deviation`: of the loaded flank of every tooth.
     """
 
     teeth: int = required(counted(4, 4000))
@@ -184,7 +186,7 @@ class Toothing:
     material: Material = STEEL
     pitch_deviation: PitchDeviation = NO_PITCH_DEVIATION
     run_out: RunOut = declared(NO_RUN_OUT, _RUN_OUT)
-    waves: tuple[Wave, ...] = ()
+    waves: tuple[Wave, ...] = declared((), _WAVES)
 
     sign: ClassVar[int] = 1  # of the tooth number in ISO 21771-1: +1 external, -1 internal
 

@@ -21,7 +21,9 @@ from fe_contact.geometry import (
     ParallelAxes,
     PitchDeviation,
     RingGear,
+    RunOut,
     Toothing,
+    Wave,
     sliding_factor,
     specific_sliding,
 )
@@ -55,6 +57,8 @@ _PARTS: dict[str, Callable[..., object]] = {
     "pitch_deviation": PitchDeviation,
     "blank": GearBlank,
     "seat": BoreSeat,
+    "run_out": RunOut,
+    "waves": Wave,
 }
 
 
@@ -90,8 +94,12 @@ def _from_si(case: Json) -> ParallelAxes | None:
 
 
 def _fields(content: Json) -> Json:
-    parts = {name: kind(**content[name]) for name, kind in _PARTS.items() if content.get(name) is not None}
+    parts = {name: _parts(kind, content[name]) for name, kind in _PARTS.items() if content.get(name)}
     return content | parts
+
+
+def _parts(kind: Callable[..., object], content: Json | list[Json]) -> object:
+    return tuple(kind(**each) for each in content) if isinstance(content, list) else kind(**content)
 
 
 def pair_title(facts: PairFacts) -> str:

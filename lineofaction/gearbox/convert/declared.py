@@ -42,8 +42,14 @@ def in_si(kind: type[Any], *models: BaseModel) -> dict[str, Any]:
             facts[name] = _in_unit(getattr(model, field), unit)
         for name, fact in parts_of(kind).items():
             if fact.part is not None and (value := getattr(model, name, None)) is not None:
-                facts[name] = part_of(fact.part, value, name)
+                facts[name] = _parts(fact.part, value, name)
     return facts
+
+
+def _parts(kind: type[Part], value: BaseModel | tuple[BaseModel, ...], name: str) -> object:
+    if isinstance(value, tuple):
+        return tuple(part_of(kind, each, f"{name}[{index}]") for index, each in enumerate(value))
+    return part_of(kind, value, name)
 
 
 @cache

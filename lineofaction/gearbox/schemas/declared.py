@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import MISSING, dataclass, fields, replace
 from functools import cache
@@ -10,11 +11,13 @@ from typing import Annotated, Any, Literal, TypeVar
 from pydantic import Field, create_model
 
 from bounds import Choice, Declared, Interval, Kind, Unit, declarations
-from lineofaction.gearbox.schemas.model import BoundaryModel
+from lineofaction.gearbox.schemas.model import BoundaryModel, Listed
 from lineofaction.gearbox.units import BY_SUFFIX, as_typed, suffix_of
 
 Fields = Mapping[str, tuple[Any, Any]]
 Model = TypeVar("Model", bound=BoundaryModel)
+
+_MOST_PARTS = 100
 
 
 @dataclass(frozen=True)
@@ -109,7 +112,7 @@ def figures(kind: type[Any], *kinds: Kind) -> tuple[Figure, ...]:
     return tuple(
         Figure(name, fact, defaults[name])
         for name, fact in declarations(kind).items()
-        if fact.kind not in (Kind.SURFACE, Kind.PART) and (not kinds or fact.kind in kinds)
+        if fact.kind not in (Kind.SURFACE, Kind.PART, Kind.PARTS) and (not kinds or fact.kind in kinds)
     )
 
 
@@ -131,19 +134,21 @@ def parts_of(kind: type[Any]) -> Mapping[str, Declared]:
 
 
 def parts_in(parts: Mapping[str, Declared]) -> Fields:
-    """Return parts as fields of a model, tables that may be left out."""
-    return {
-        name: (
-            _model_of(fact.part) | None,
-            Field(
-                default=None,
-                description=fact.description,
-                examples=[{own.field: own.own(own.what.example) for own in figures(fact.part)}],
-            ),
-        )
-        for name, fact in parts.items()
-        if fact.part is not None
-    }
+    """Return parts as fields of a model, tables that may be left out, or lists of them."""
+    return {name: _part_field(fact, fact.part) for name, fact in parts.items() if fact.part is not None}
+
+
+def _part_field(fact: Declared, part: type) -> tuple[Any, Any]:
+    model, example = _model_of(part), {own.field: own.own(own.what.example) for own in figures(part)}
+    several = fact.kind is Kind.PARTS
+    field = Field(
+        default=() if several else None,
+        max_length=_MOST_PARTS if several else None,
+        description=fact.description,
+        examples=[[example] if several else example],
+        exclude_if=operator.not_ if fact.later else None,
+    )
+    return (Listed[model] if several else model | None), field
 
 
 @cache
