@@ -31,7 +31,14 @@ class _PitchGap:
         """Bound of the gap, m."""
         return max(self.pinion) + max(self.wheel)
 
-    def __call__(self, pair: ParallelAxes, meeting: IntArray, *_place: FloatArray | float) -> FloatArray:
+    def __call__(
+        self,
+        pair: ParallelAxes,
+        meeting: IntArray,
+        roll_1: FloatArray,
+        roll_2: FloatArray,
+        face: FloatArray | float,
+    ) -> FloatArray:
         """Sum over both teeth of the `meeting`-th pair, m: the same all over a flank."""
         count = np.asarray(meeting) % self.period
         gears = (np.array(self.pinion), np.array(self.wheel))

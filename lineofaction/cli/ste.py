@@ -19,7 +19,7 @@ from lineofaction.gearbox.problems import BadInput
 
 _FARTHEST = 1e6
 _SHOWN_ORDERS = 8
-_NAME, _NUMBER, _DECIMALS, _BAR, _SPARKS = 12, 9, 4, 16, 24
+_NAME, _NUMBER, _DECIMALS, _BAR, _SPARKS = 17, 9, 4, 16, 24
 _BLOCKS = "▁▂▃▄▅▆▇█"
 
 
@@ -139,10 +139,11 @@ def _figure(name: str, value: float, error: float | None, decimals: int) -> str:
 def _orders(curve: dict[str, Any]) -> tuple[list[_Line], list[_Line]]:
     """Return the largest lines of the spectrum above their errors, and those below."""
     if curve["period"] > 1:
-        largest = sorted(zip(curve["amplitude_um"], curve["order"], strict=True), reverse=True)
-        return [
-            (f"order {order:.4g}", size, None) for size, order in largest[:_SHOWN_ORDERS] if size > 0.0
-        ], []
+        lines = sorted(zip(curve["amplitude_um"], curve["order_name"], strict=True), reverse=True)
+        of_mesh = {f"mesh {k}": error for k, error in enumerate(curve.get("harmonics_error_um") or (), 1)}
+        errors = [of_mesh.get(name, curve.get("amplitude_error_um")) for _, name in lines]
+        own = [(name, size, error) for (size, name), error in zip(lines, errors, strict=True)]
+        return [line for line in own if line[1] > (line[2] or 0.0)][:_SHOWN_ORDERS], []
     sizes, errors = _with_error(curve, "harmonics_um")
     named = [(f"harmonic {k}", size, errors[k - 1] if errors else None) for k, size in enumerate(sizes, 1)]
     known = [line for line in named[:_SHOWN_ORDERS] if line[1] > (line[2] or 0.0)]

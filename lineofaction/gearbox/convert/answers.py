@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -59,7 +60,10 @@ def curve_json(
     }
     if curve.period > 1:  # over one base pitch the orders are the harmonics
         answer["order"] = curve.spectrum.order.tolist()
+        answer["order_name"] = list(curve.spectrum.names)
         answer["amplitude_um"] = (curve.spectrum.amplitude / UM).tolist()
+        if math.isfinite(curve.spectrum.error):
+            answer["amplitude_error_um"] = curve.spectrum.error / UM
     if not all(np.all(np.isfinite(answer[name])) for name in ("ste_um", "load_share")):
         raise JobFailed(
             "The curve has points without a solution. Compute the table again with other settings."

@@ -6,7 +6,7 @@ import operator
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import MISSING, dataclass, fields, replace
 from functools import cache
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, Literal, TypeVar, cast
 
 from pydantic import Field, create_model
 
@@ -139,7 +139,7 @@ def parts_in(parts: Mapping[str, Declared]) -> Fields:
 
 
 def _part_field(fact: Declared, part: type) -> tuple[Any, Any]:
-    model, example = _model_of(part), {own.field: own.own(own.what.example) for own in figures(part)}
+    example = {own.field: own.own(own.what.example) for own in figures(part)}
     several = fact.kind is Kind.PARTS
     field = Field(
         default=() if several else None,
@@ -148,7 +148,8 @@ def _part_field(fact: Declared, part: type) -> tuple[Any, Any]:
         examples=[[example] if several else example],
         exclude_if=operator.not_ if fact.later else None,
     )
-    return (Listed[model] if several else model | None), field
+    model, many = _model_of(part), cast("Any", Listed)
+    return (many[model] if several else model | None), field
 
 
 @cache

@@ -369,7 +369,11 @@ def ste_spectrum(database: SteDatabase) -> Figure:
         title=f"Spectrum of the transmission error at {label}",
         caption="Order 1 is the mesh frequency. Amplitudes in the gray are below their stated "
         "error."
-        + (" Orders between the whole ones come from the pitch errors." if database.period > 1 else ""),
+        + (
+            " Orders between the whole ones come from deviations of single teeth, run-out or waves."
+            if database.period > 1
+            else ""
+        ),
         alternative=_spectrum_words(label, order, amplitude, error),
         content=(_panel(order, amplitude, error),),
         table=Table("Orders of the transmission error", ("mesh order", "amplitude, µm", "error, µm"), rows),

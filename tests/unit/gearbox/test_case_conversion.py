@@ -109,6 +109,8 @@ def test_every_field_of_the_gear_schema_reaches_the_gear() -> None:
         "tip_diameter_mm": 87.0,
         "thickness_allowance_um": 100.0,
         "pitch_deviation_um": [1.0] * 20,
+        "run_out": {"eccentricity_um": 5.0},
+        "waves": [{"order": 11, "amplitude_um": 0.2}],
         "tip_rounding_mm": 0.2,
         "material": {"youngs_modulus_gpa": 100.0},
         "seat": {"tangential_foundation_n_per_mm3": 1e4},
@@ -409,3 +411,31 @@ def test_a_grid_that_differs_over_the_face_is_no_matter_of_the_plane() -> None:
     check_case(validated(Case, changed(plane, {"pair.pinion.flank_grid": even})))
     with refused("pair.pinion.flank_grid.removed_um"):
         check_case(validated(Case, changed(plane, {"pair.pinion.flank_grid": INLINE})))
+
+
+def test_run_out_and_waves_arrive_in_si() -> None:
+    wave = {"order": 11, "amplitude_um": 0.2, "phase_deg": 90.0, "face_waves": 2.0}
+    pair = gear_pair(case(run_out={"eccentricity_um": 5.0, "wobble_angle_deg": 30.0}, waves=[wave]))
+    assert pair.pinion.run_out.eccentricity == pytest.approx(5e-6, rel=1e-15)
+    assert pair.pinion.run_out.wobble_angle == pytest.approx(math.radians(30.0), rel=1e-15)
+    (found,) = pair.pinion.waves
+    assert (found.order, found.face_waves) == (11, 2.0)
+    assert (found.amplitude, found.phase) == pytest.approx((2e-7, 0.5 * math.pi), rel=1e-15)
+    assert pair.wheel.run_out.neutral and pair.wheel.waves == ()
+
+
+@pytest.mark.parametrize(
+    ("gear", "field"),
+    [
+        ({"waves": [{"order": 11, "amplitude_um": 2000.0}]}, "pair.pinion.waves[0].amplitude_um"),
+        ({"waves": [{"order": -1, "amplitude_um": 0.2}]}, "pair.pinion.waves[0].order"),
+        ({"waves": [{"order": 0, "amplitude_um": 0.2}]}, "pair.pinion.waves[0].order"),
+        ({"waves": [{"amplitude_um": 0.2}]}, "pair.pinion.waves[0].order"),
+        ({"waves": [{"order": 1, "amplitude_um": float("nan")}]}, "pair.pinion.waves[0].amplitude_um"),
+        ({"waves": [{"order": 1, "amplitude_um": 0.2}] * 101}, "pair.pinion.waves"),
+        ({"run_out": {"eccentricity_um": -1.0}}, "pair.pinion.run_out.eccentricity_um"),
+    ],
+)
+def test_bad_waves_are_refused_by_the_name_of_the_case(gear: dict[str, Any], field: str) -> None:
+    with refused(field, ""):
+        gear_pair(case(**gear))

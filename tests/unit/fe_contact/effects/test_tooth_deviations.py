@@ -10,6 +10,7 @@ import pytest
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.geometry import Gear, GearPair, InternalGearPair, RingGear, RunOut, Wave
+from fe_contact.ste.curve_quantities import Spectrum
 
 HELIX = math.radians(22.0)
 AMPLITUDE, ANGLE = 2e-7, 0.7
@@ -132,3 +133,12 @@ def test_the_verdict_states_the_amounts_and_the_period():
     _, ledger = compose(ContactScene(pair, np.array([100.0]), EFFECTS), {})
     (entry,) = [entry for entry in ledger if entry.name == "tooth_deviations"]
     assert entry.verdict.reason == ("pinion eccentricity 10 um, 11 waves 0.5 um, over 23 base pitches")
+
+
+def test_orders_are_named_by_what_turns():
+    orders = np.array([1 / 23, 11 / 23, 22 / 23, 1.0, 24 / 23, 66 / 67, 5 / 67, 2.0, 1 / 23 + 1 / 67])
+    lines = Spectrum(orders, orders, orders, 0.0, (23, 67))
+    assert lines.names == (
+        "pinion 1", "pinion 11", "mesh 1 - pinion 1", "mesh 1", "mesh 1 + pinion 1", "mesh 1 - wheel 1",
+        "wheel 5", "mesh 2", "mesh 0.0584",
+    )  # fmt: skip
