@@ -6,10 +6,14 @@ import math
 
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
+from fe_contact.analysis.pairs.pair_contact import operating_points, pair_contact
+from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.geometry import Gear, GearPair, InternalGearPair, RingGear, RunOut, Wave
+from fe_contact.planning.plan import make_plan
 from fe_contact.ste.curve_quantities import Spectrum
 
 HELIX = math.radians(22.0)
@@ -142,3 +146,47 @@ def test_orders_are_named_by_what_turns():
         "pinion 1", "pinion 11", "mesh 1 - pinion 1", "mesh 1", "mesh 1 + pinion 1", "mesh 1 - wheel 1",
         "wheel 5", "mesh 2", "mesh 0.0584",
     )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def solved(tmp_path_factory):
+    """STE (23 pitches x 8 positions, 2 loads) of a plane pair in m."""
+    cache, position = tmp_path_factory.mktemp("compliance"), np.arange(8) / 8
+
+    def solve(pair):
+        request = table_request(torques=(1e-3, 100.0), level="draft", effects={"corner_contact": "off"})
+        checked = check_request(pair, *request, whole_table=False)
+        plan = make_plan(pair, checked.request.load, checked.request.options, checked.model)
+        contact = pair_contact(pair, plan, cache)
+        (place,) = operating_points(checked.request.scene, checked.request.choices, contact).places
+        solution = place.solve(position, plan.load, np.repeat(np.arange(23), position.size))[1]
+        assert solution.converged
+        return solution.deflection.reshape(23 * position.size, -1)
+
+    return solve
+
+
+@pytest.fixture(scope="module")
+def plain(solved):
+    return solved(pair_of("spur", PINION))
+
+
+TURN = 2.0 * math.pi * np.arange(23 * 8) / (23 * 8)
+
+
+def test_under_any_load_an_eccentric_gear_adds_its_turned_eccentricity(solved, plain):
+    """All contacts on the line of action stand off alike: the loads stay, the gears run ahead by it."""
+    run_out = RunOut(eccentricity=1e-7, eccentricity_angle=ANGLE)
+    found = solved(pair_of("spur", PINION, run_out=run_out))
+    assert np.abs(found - plain + 1e-7 * np.cos(TURN - ANGLE)[:, None]).max() < 1e-3 * 1e-7
+
+
+@pytest.mark.parametrize("order", [11, 23 + 11])
+def test_a_wave_is_a_ghost_order_of_its_amplitude(solved, plain, order):
+    """Absent from the mesh orders; under load the strip averages over its width, (k a)^2/8 of the wave."""
+    found = solved(pair_of("spur", PINION, waves=(Wave(order, AMPLITUDE),)))
+    light, heavy = 2.0 / TURN.size * np.abs(np.fft.rfft(found - plain, axis=0)).T
+    assert light[order] == pytest.approx(AMPLITUDE, rel=5e-3)
+    assert 0.9 * AMPLITUDE < heavy[order] < AMPLITUDE
+    for lines in (light, heavy):
+        assert np.delete(lines, [0, order]).max() < 2e-2 * AMPLITUDE
