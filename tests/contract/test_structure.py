@@ -11,18 +11,18 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (39_908, 718),
+    ("fe_contact",): (40_271, 722),
     ("dynamics",): (42_859, 825),
-    ("lineofaction.gearbox",): (25_419, 510),
-    ("lineofaction.report",): (11_371, 211),
+    ("lineofaction.gearbox",): (25_435, 510),
+    ("lineofaction.report",): (11_383, 211),
     ("service",): (14_797, 339),
     ("lineofaction.client",): (2_712, 53),
-    ("lineofaction.cli",): (4_982, 71),
+    ("lineofaction.cli",): (4_983, 71),
     ("lineofaction.hardcases",): (3_844, 35),
-    ("bounds", "host", "model_studies"): (4_441, 153),
+    ("bounds", "host", "model_studies"): (4_443, 153),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 802
+MOST_FILES = 804
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
