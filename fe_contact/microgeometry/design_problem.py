@@ -238,6 +238,8 @@ class CountedMerit:
     ----------
     designs : list of (Assessed, ndarray)
         In their order.
+    ends : list of (Assessed, ndarray)
+        Those of them at which walks ended.
     """
 
     def __init__(
@@ -249,6 +251,7 @@ class CountedMerit:
     ) -> None:
         self.problem, self.workers, self._seconds = problem, workers, 0.0
         self.designs: list[Design] = []
+        self.ends: list[Design] = []
         self._budget, self._most = budget, most
 
     def __call__(self, point: FloatArray) -> float:
@@ -293,6 +296,16 @@ class CountedMerit:
         self.problem.keep(point, assessed)
         self._budget.tell()
         return assessed.merit
+
+    def end(self, point: FloatArray) -> None:
+        """Remember the design at which a walk ended."""
+        self.ends.append(next(own for own in reversed(self.designs) if np.array_equal(own[1], point)))
+
+    @property
+    def levels(self) -> FloatArray:
+        """Objectives at which walks ended that exceed the limits by no more than the best of them."""
+        least = min((own.violation for own, _ in self.ends), default=0.0)
+        return np.array([own.objective for own, _ in self.ends if own.violation <= least])
 
     @property
     def best(self) -> Design | None:

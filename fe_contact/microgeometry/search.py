@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from itertools import count
 from typing import Protocol
@@ -46,6 +46,9 @@ TRIED = 7
 
 ASIDE, LEAST_GAIN, MISSES = 0.05, 0.005, 3
 """Where a walk ends it is taken up again beside, so far away at most, until that gains less so often."""
+
+FINISHED = 3
+"""Rough walks that are followed on by the merit: the best by it."""
 
 
 class Method(Protocol):
@@ -133,39 +136,90 @@ class SequentialLinearProgramming:
     ) -> None:
         """Search; the sequence and the points beside an end are random."""
         walks = [_begun(merit, _Walk(start))]
-        walks += [_begun(merit, _Walk(point)) for point in self._best(rough, start.size, seed)]
+        walks += [
+            _begun(merit, _Walk(point))
+            for point in _screened(rough, self.sample, self.trials, start.size, seed)
+        ]
         if len(walks) > 1:
             walks = list(_each_followed(merit, walks, TRIED))
-        best = _followed(merit, min(walks, key=lambda walk: walk.value))
-        random, misses = np.random.default_rng(seed.spawn(1)[0]), 0
-        draws: list[FloatArray] = []
-        while misses < MISSES and np.isfinite(best.value):
-            fresh = MISSES - misses - len(draws)
-            draws += [random.uniform(-1.0, 1.0, start.size) for _ in range(fresh)]
-            asides = [np.clip(best.place + ASIDE * draw, 0.0, 1.0) for draw in draws]
-            for other in _each_followed(merit, [_Walk(aside, 2.0 * ASIDE) for aside in asides]):
-                draws.pop(0)
-                misses = 0 if other.value < (1.0 - LEAST_GAIN) * best.value else misses + 1
-                if other.value < best.value:
-                    best = other
-                    break  # the others began beside another design
-
-    def _best(self, rough: CountedMerit, dimensions: int, seed: np.random.SeedSequence) -> list[FloatArray]:
-        """Return the best points of the sequence, as far as the designs reach."""
-        from scipy.stats import qmc  # noqa: PLC0415 (start-up time)
-
-        explored: list[tuple[float, FloatArray]] = []
-        with suppress(BudgetUsed):
-            sequence = qmc.Sobol(dimensions, rng=np.random.default_rng(seed))
-            points = list(sequence.random_base2((self.sample - 1).bit_length())[: self.sample])
-            for value, point in zip(rough.each(points), points, strict=True):
-                explored.append((value, point))
-        explored.sort(key=lambda trial: trial[0])
-        return [point for value, point in explored[: self.trials] if np.isfinite(value)]
+        _beside(merit, _followed(merit, min(walks, key=lambda walk: walk.value)), seed)
 
     def to_json(self) -> Json:
         """Return plain JSON."""
         return {"method": "sequential_linear_programming", "sample": self.sample, "trials": self.trials}
+
+
+@dataclass(frozen=True)
+class StagedLinearProgramming:
+    """Sequential linear programmes for a rough merit that is nearly the merit itself, and much cheaper.
+
+    The best points of a Sobol' sequence and the start are followed to their ends by the rough merit: where a
+    walk comes to is not told by its first steps. The best ends by the merit are followed on by it.
+
+    Attributes
+    ----------
+    sample, trials : int
+        As of `SequentialLinearProgramming`.
+    """
+
+    sample: int = 64
+    trials: int = 8
+
+    def minimize(
+        self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
+    ) -> None:
+        """Search; where walks of the rough merit end, and those of the merit, is remembered by each."""
+        merit(start)
+        with suppress(BudgetUsed):
+            points = [start, *_screened(rough, self.sample, self.trials, start.size, seed)]
+            for walk in _each_followed(rough, [_Walk(point) for point in points]):
+                rough.end(walk.place)
+            assessed, place = min(rough.ends, key=lambda design: design[0].merit)
+            _beside(rough, _Walk(place, value=assessed.merit), seed)
+        known = sorted([*rough.ends, *filter(None, (rough.best,))], key=lambda design: design[0].order)
+        places: list[FloatArray] = []
+        for _, place in known:
+            if all(np.abs(place - other).max() > ASIDE for other in places):
+                places.append(place)
+        ranked = sorted(zip(merit.each(places), range(len(places)), strict=True))
+        for _ in _each_followed(merit, [_Walk(places[index]) for _, index in ranked[:FINISHED]]):
+            pass  # the merit remembers the best
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {"method": "staged_linear_programming", "sample": self.sample, "trials": self.trials}
+
+
+def _screened(
+    rough: CountedMerit, sample: int, trials: int, dimensions: int, seed: np.random.SeedSequence
+) -> list[FloatArray]:
+    """Return the best trials of a sample of a Sobol' sequence, as far as the designs reach."""
+    from scipy.stats import qmc  # noqa: PLC0415 (start-up time)
+
+    explored: list[tuple[float, FloatArray]] = []
+    with suppress(BudgetUsed):
+        sequence = qmc.Sobol(dimensions, rng=np.random.default_rng(seed))
+        points = list(sequence.random_base2((sample - 1).bit_length())[:sample])
+        for value, point in zip(rough.each(points), points, strict=True):
+            explored.append((value, point))
+    explored.sort(key=lambda trial: trial[0])
+    return [point for value, point in explored[:trials] if np.isfinite(value)]
+
+
+def _beside(merit: CountedMerit, best: _Walk, seed: np.random.SeedSequence) -> None:
+    """Take a walk up again beside its end, until that gains too little so often."""
+    random, misses = np.random.default_rng(seed.spawn(1)[0]), 0
+    draws: list[FloatArray] = []
+    while misses < MISSES and np.isfinite(best.value):
+        fresh = MISSES - misses - len(draws)
+        draws += [random.uniform(-1.0, 1.0, best.place.size) for _ in range(fresh)]
+        asides = [np.clip(best.place + ASIDE * draw, 0.0, 1.0) for draw in draws]
+        for other in _each_followed(merit, [_Walk(aside, 2.0 * ASIDE) for aside in asides]):
+            draws.pop(0)
+            misses = 0 if other.value < (1.0 - LEAST_GAIN) * best.value else misses + 1
+            if other.value < best.value:
+                best = other
+                break  # the others began beside another design
 
 
 @dataclass(frozen=True)
@@ -344,6 +398,9 @@ class SearchRun:
         Of the evaluations, those at few positions.
     spread : float
         Largest less least objective of all others.
+    ends : ndarray, shape (E,)
+        Objectives to which its walks came from each start, few positions and no scatter; of those that keep
+        the limits best.
     """
 
     place: FloatArray
@@ -353,6 +410,7 @@ class SearchRun:
     cpu_seconds: float
     explored: int = 0
     spread: float = 0.0
+    ends: FloatArray = field(default_factory=lambda: np.zeros(0))
 
     @property
     def converged(self) -> bool:
@@ -405,7 +463,8 @@ def search_from(
         ended = Ended.CANCELLED
     assessed, point = _best(problem, merit, rough, start)
     seconds = spent(workers) - begun
-    return SearchRun(point, assessed, budget.used, ended, seconds, len(rough.designs), merit.spread)
+    found = len(rough.designs), merit.spread, rough.levels
+    return SearchRun(point, assessed, budget.used, ended, seconds, *found)
 
 
 def _best(

@@ -99,7 +99,7 @@ def _design_table(result: HeardOptimization) -> Table:
 
 def _text(result: HeardOptimization) -> Iterator[Table | str]:
     yield f"{result.reason}."
-    yield result.costs()
+    yield " ".join(filter(None, (result.costs(), result.within_tolerances())))
     yield " ".join((result.ended(), *result.partings()))
     yield _design_table(result)
     yield _levels_table(result)
@@ -113,7 +113,8 @@ def _page(result: HeardOptimization) -> Page:
         Headline("after", f"{result.optimum.objective.value:.1f} {result.unit}"),
         Headline("gain", f"{result.gain.value:.1f} dB", gain),
     )
-    lead = f"{result.reason}. {result.costs()} {result.ended()}"
+    told = f"{result.reason}.", result.within_tolerances(), result.costs(), result.ended()
+    lead = " ".join(filter(None, told))
     heard = Section("What is heard", "", (_levels_figure(result),), (_flank_table(result),))
     design = Section("Design", "", tables=(_design_table(result),))
     return Page(

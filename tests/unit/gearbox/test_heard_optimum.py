@@ -18,7 +18,7 @@ from fe_contact.types import FloatArray
 from host.directories import cache_home
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import change, optimize
-from lineofaction.gearbox.studies.change.heard_flanks import HeardFlanks
+from lineofaction.gearbox.studies.change.heard_flanks import system_with
 from lineofaction.gearbox.studies.change.question import heard_mesh
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.optimize import Inputs
@@ -76,9 +76,8 @@ def test_a_design_is_as_loud_as_its_table_in_a_scene_assembled_anew() -> None:
     own = problems()[0]
     tabled_at = own.tables_of(list(tabled_loads(own.evaluator, DESIGN, (0,))))
     subject = tabled(scene())
-    empty = HeardFlanks(subject, "mesh", None, "worst", (), np.zeros(0))  # type: ignore[arg-type]
     for at, each in zip(own.heard.at, tabled_at, strict=True):
-        whole = at.case.transfer.excitation(empty.system(each.table, at.case.load))
+        whole = at.case.transfer.excitation(system_with(subject, "mesh", each.table, at.case.load))
         power = at.case.form.weighted(at.case.transfer.inputs(whole)) @ at.counted
         np.testing.assert_allclose(at.power(each.table), power, rtol=1e-7)
 

@@ -12,8 +12,9 @@ import numpy as np
 from dynamics.acoustics import ElementalRadiators
 from dynamics.assembly.assemble import System, assemble
 from dynamics.deflection.loaded_scene import with_loads
-from dynamics.linearize import FlankTransfer, flank_transfer
+from dynamics.linearize import FlankTransfer, OtherFlanks, flank_transfer
 from dynamics.linearize.operating_speeds import common_period
+from dynamics.linearize.transfer import FlankExcitation
 from dynamics.noise import (
     BearingForce,
     Quantity,
@@ -74,52 +75,58 @@ class HeardLoad:
 
     Attributes
     ----------
-    system : System
-        Assembled, with the flanks about which the transfer functions are.
+    others : OtherFlanks
+        Of the mesh, about the flanks about which the transfer functions are.
     lines : (K, H) array
         1 where a harmonic of the common period belongs to a line.
     """
 
     load: LoadCase
-    system: System = field(repr=False)
+    others: OtherFlanks = field(repr=False)
     transfer: FlankTransfer
     form: QuantityForm
     lines: FloatArray
 
-    def levels(self, system: System, over_speeds: str) -> tuple[FloatArray, float]:
-        """Return levels (K,) of flanks, dB, and by what share of the mesh force they part."""
-        flanks = self.transfer.excitation(system)
-        power = self.form.weighted(self.transfer.inputs(flanks))
-        least = self.transfer.response(flanks).least_mesh_force.min(axis=1)
-        apart = np.max(-least / np.abs(flanks.mean_force), initial=0.0)
-        return self._heard(power, over_speeds), float(apart)
+    def with_table(self, table: SteDatabase) -> OtherFlanks:
+        """Return the scene at rest with the flanks of a table."""
+        return self.others.with_table(table.force_table())
 
-    def errors(self, system: System, mesh: int, table: SteDatabase, over_speeds: str) -> FloatArray:
-        """Return how far the levels may be below and above for the errors of a mesh's table, (2, K) dB.
+    def power(self, flanks: FlankExcitation) -> FloatArray:
+        """Return what is heard of flanks at each speed and harmonic (S, H)."""
+        return self.form.weighted(self.transfer.inputs(flanks))
+
+    def parting(self, flanks: FlankExcitation) -> float:
+        """Return by what share of the static mesh force flanks part at most; 0: they do not."""
+        least = self.transfer.response(flanks).least_mesh_force.min(axis=1)
+        return float(np.max(-least / np.abs(flanks.mean_force), initial=0.0))
+
+    def levels(self, power: FloatArray, worst_speed: bool) -> FloatArray:
+        """Return the levels (K,) of a weighted power (S, H), dB."""
+        lines = power @ self.lines.T
+        return self.form.decibels(lines.max(axis=0) if worst_speed else lines.mean(axis=0))
+
+    def errors(self, table: SteDatabase, worst_speed: bool) -> FloatArray:
+        """Return how far the levels may be below and above for the errors of a table, (2, K) dB.
 
         Those of transmission error, load arm and friction are independent; each adds in phase at worst.
         """
-        flanks = self.transfer.excitation(system)
-        torque = abs(float(flanks.mean_force[mesh])) * table.facts.base_radius[0]
+        scene = self.with_table(table)
+        flanks = scene.excitation
+        torque = abs(float(flanks.mean_force[scene.mesh])) * table.facts.base_radius[0]
         errors = excitation_errors(table, table.facts.normal_force(torque))
         known = np.minimum(np.arange(len(self.lines) - 1), errors.load_arm.size - 1)
         of_table = errors.transmission_error, errors.load_arm, errors.friction
         parts = tuple(own[known] @ self.lines[1:] for own in of_table)
-        changes = self.transfer.excitation_errors(system, flanks, mesh, parts)
+        changes = self.transfer.excitation_errors(scene.at.system, flanks, scene.mesh, parts)
         inputs = self.transfer.inputs(flanks)
         added = np.moveaxis(self.transfer.input_changes(flanks, inputs, changes), 3, 0)
         off = np.sqrt(sum(self.form.weighted(each) for each in added))
         size = np.sqrt(self.form.weighted(inputs))
         low, own, high = (
-            self._heard(each**2, over_speeds)
+            self.levels(each**2, worst_speed)
             for each in (np.maximum(size - off, CANCELED * size), size, size + off)
         )
         return np.stack([own - low, high - own])
-
-    def _heard(self, power: FloatArray, over_speeds: str) -> FloatArray:
-        """Return the levels (K,) of a weighted power (S, H), dB."""
-        lines = power @ self.lines.T
-        return self.form.decibels(lines.max(axis=0) if over_speeds == "worst" else lines.mean(axis=0))
 
 
 @dataclass(frozen=True)
@@ -128,45 +135,43 @@ class HeardFlanks:
 
     Attributes
     ----------
+    known : SteDatabase
+        Table of the mesh in the scene: at its forces, misalignment and center distance flanks are solved.
     bodies : CondensedPair
         Of the mesh: both designs are flanks on them.
-    torque : (L,) array
-        On its driving gear, N m.
     """
 
-    subject: TabledScene
-    mesh: str
+    known: SteDatabase = field(repr=False)
     bodies: CondensedPair
-    over_speeds: str
-    load_cases: tuple[HeardLoad, ...]
-    torque: FloatArray
+    worst_speed: bool
+    load_cases: tuple[HeardLoad, ...] = ()
+
+    @property
+    def torque(self) -> FloatArray:
+        """On the driving gear of the mesh (L,), N m."""
+        force = [case.others.excitation.mean_force[case.others.mesh] for case in self.load_cases]
+        return np.array(force) * self.known.facts.base_radius[0]
 
     def table(self, pair: ParallelAxes, misalignment: float = 0.0) -> SteDatabase:
         """Return the table of flanks, at a misalignment beside that of the scene, m."""
-        known = self.subject.databases[self.mesh]
+        known = self.known
         force = np.union1d(known.force, known.support_force)
         torques = np.asarray(pair.torque(force[force <= self.bodies.largest_load * (1.0 + 1e-9)]))
         skew, change = float(known.misalignment[0]), float(known.center_distance_change[0])
         return self.bodies.table(pair, torques, skew + misalignment, change)
 
-    def system(self, table: SteDatabase, load: LoadCase) -> System:
-        """Return the scene with a table of the mesh under a load case."""
-        return assemble(with_loads(_scene_with(self.subject, self.mesh, table), load))
-
     def levels(self, table: SteDatabase) -> FlankLevels:
         """Return the levels with a table of the mesh."""
-        found = [case.levels(self.system(table, case.load), self.over_speeds) for case in self.load_cases]
-        level, parting = zip(*found, strict=True)
+        level, parting = [], []
+        for case in self.load_cases:
+            flanks = case.with_table(table).excitation
+            level.append(case.levels(case.power(flanks), self.worst_speed))
+            parting.append(case.parting(flanks))
         return FlankLevels(np.stack(level), np.array(parting))
 
     def errors(self, table: SteDatabase) -> FloatArray:
         """Return how far levels may be below and above by the errors of a table, (2, L, K) dB."""
-        mesh = mesh_index(self.subject.scene, self.mesh)
-        found = [
-            case.errors(self.system(table, case.load), mesh, table, self.over_speeds)
-            for case in self.load_cases
-        ]
-        return np.stack(found, axis=1)
+        return np.stack([case.errors(table, self.worst_speed) for case in self.load_cases], axis=1)
 
     def of_pair(self, pair: ParallelAxes, names: Sequence[str], deviation: FloatArray) -> FlankLevels:
         """Return the levels of a design that deviates by (d,), m; no material is removed below zero."""
@@ -175,28 +180,13 @@ class HeardFlanks:
         return self.levels(self.table(deviating(pair, by_name), misalignment))
 
 
-def heard_flanks(
-    subject: TabledScene,
-    mesh: str,
-    question: HeardQuestion,
-    bodies: CondensedPair,
-    table: SteDatabase,
-    means: Means,
-) -> HeardFlanks:
-    """Solve the transfer functions of a scene under every load case, about the flanks of a table."""
-    cases = heard_loads(subject, mesh, question, [table] * len(question.load_cases), means)
-    torque = mesh_torques(subject, mesh, cases)
-    return HeardFlanks(subject, mesh, bodies, question.heard.over_speeds, cases, torque)
-
-
 def heard_loads(
     subject: TabledScene, mesh: str, question: HeardQuestion, tables: Sequence[SteDatabase], means: Means
 ) -> tuple[HeardLoad, ...]:
     """Solve the transfer functions under every load case, each about the flanks of its own table."""
-    scenes = [_scene_with(subject, mesh, table) for table in tables]
     loads = load_cases(question.load_cases)
-    systems = [assemble(with_loads(scene, load)) for scene, load in zip(scenes, loads, strict=True)]
-    index = mesh_index(scenes[0], mesh)
+    systems = [system_with(subject, mesh, table, load) for table, load in zip(tables, loads, strict=True)]
+    index = mesh_index(subject.scene, mesh)
     speed, transfers = np.array(question.speed_rpm) * RPM, []
     for done, system in enumerate(systems):
         period = common_period(system)
@@ -205,29 +195,21 @@ def heard_loads(
         orders = math.ceil(question.orders * abs(period.pitches[index]) / period.counted)
         transfers.append(flank_transfer(system, speed, orders, cache=means.home / FOLDER))
         means.report("transfer functions", (done + 1) / len(systems))
-    model = _sound_model(
-        subject, scenes[0], transfers[0].frequency, quantity_of(subject, question.heard), means
-    )
+    quantity = quantity_of(subject, question.heard)
+    model = _sound_model(subject, systems[0].scene, transfers[0].frequency, quantity, means)
     cases = []
     for load, system, transfer in zip(loads, systems, transfers, strict=True):
         step = abs(common_period(system).pitches[index])
         own = (step * np.arange(1, question.orders + 1))[:, None] == transfer.harmonics
         lines = np.vstack([own.any(axis=0), own]).astype(float)
         form = _form(subject, transfer, model, question.heard)
-        cases.append(HeardLoad(load, system, transfer, form, lines))
+        cases.append(HeardLoad(load, OtherFlanks.of(system, index, transfer), transfer, form, lines))
     return tuple(cases)
 
 
 def mesh_index(scene: Scene, mesh: str) -> int:
     """Return which of the meshes one is."""
     return [part.name for part in scene.meshes].index(mesh)
-
-
-def mesh_torques(subject: TabledScene, mesh: str, cases: Sequence[HeardLoad]) -> FloatArray:
-    """Return the torque on the driving gear of a mesh under load cases (L,), N m."""
-    index = mesh_index(subject.scene, mesh)
-    force = [case.transfer.excitation(case.system).mean_force[index] for case in cases]
-    return np.array(force) * subject.databases[mesh].facts.base_radius[0]
 
 
 def line_names(orders: int) -> tuple[str, ...]:
@@ -245,14 +227,15 @@ def quantity_of(subject: TabledScene, heard: HeardInput) -> str:
     return SOUND_POWER if sounds and heard.bearing is None else BEARING_FORCE
 
 
-def _scene_with(subject: TabledScene, mesh: str, table: SteDatabase) -> Scene:
-    """Return the scene with another table of a mesh, which runs at the misalignment of that table."""
+def system_with(subject: TabledScene, mesh: str, table: SteDatabase, load: LoadCase) -> System:
+    """Return the scene under a load case with another table of a mesh, run at the misalignment of that."""
     aligned = {"misalignment_um": float(table.misalignment[0]) / UM}
     meshes = tuple(
         part.model_copy(update=aligned) if part.name == mesh else part for part in subject.inputs.meshes
     )
     inputs = subject.inputs.model_copy(update={"meshes": meshes})
-    return dynamic_scene(inputs, {**subject.databases, mesh: table}, subject.housings)
+    scene = dynamic_scene(inputs, {**subject.databases, mesh: table}, subject.housings)
+    return assemble(with_loads(scene, load))
 
 
 def _sound_model(

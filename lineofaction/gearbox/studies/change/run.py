@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,7 @@ from lineofaction.gearbox.studies.change.heard_flanks import (
     UNITS,
     FlankLevels,
     HeardFlanks,
-    heard_flanks,
+    heard_loads,
     line_names,
     quantity_of,
 )
@@ -198,9 +199,10 @@ def _heard(
         CheckedCase(mesh.case).pair, database, dict(mesh.case.effects), cache, compute=True
     )
     assert bodies is not None
-    empty = HeardFlanks(subject, mesh.name, bodies, inputs.heard.over_speeds, (), np.zeros(0))
-    first = empty.table(pairs[0])
-    heard = heard_flanks(subject, mesh.name, inputs, bodies, first, means)
+    heard = HeardFlanks(database, bodies, inputs.heard.over_speeds == "worst")
+    first = heard.table(pairs[0])
+    cases = heard_loads(subject, mesh.name, inputs, [first] * len(inputs.load_cases), means)
+    heard = replace(heard, load_cases=cases)
     before, began = heard.levels(first), cpu_seconds()
     second = heard.table(pairs[1])
     after = heard.levels(second)  # as every pair; all is compiled by now

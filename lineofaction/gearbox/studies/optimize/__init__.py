@@ -17,7 +17,11 @@ from lineofaction.gearbox.schemas.query import MANY, ONE, ONE_OR_MANY
 from lineofaction.gearbox.schemas.studied import OverOrders
 from lineofaction.gearbox.studies.change import HeardInput
 from lineofaction.gearbox.studies.deflect import LoadCaseInput, LoadCases
+from lineofaction.gearbox.studies.scatter import Inputs as ToleranceInputs
 
+TRIALS, HEARD_TRIALS = 3, 8
+PAIRS = 32
+"""Over which start and optimum are told: a few CPU seconds."""
 Deviation = Annotated[float, Field(gt=0.0, le=1000.0)]
 _EACH = (Strict(False), Field(min_length=1, max_length=64))
 Torques = Annotated[tuple[Load, ...], *_EACH]
@@ -110,12 +114,13 @@ class SearchInput(BoundaryModel):
         description="Number of start designs that sequential_linear_programming ranks",
         examples=[64],
     )
-    trials: int = Field(
-        default=3,
+    trials: int | None = Field(
+        default=None,
         ge=0,
         le=64,
-        description="Number of best start designs from which a search begins",
-        examples=[3],
+        description="Number of best start designs from which a search begins; left out: "
+        f"{TRIALS}, of a scene {HEARD_TRIALS}",
+        examples=[TRIALS],
     )
     population: int = Field(
         default=5, ge=3, le=50, description="Population of differential_evolution per variable", examples=[5]
@@ -159,8 +164,8 @@ class HeardObjectiveInput(OverOrders, HeardInput):
     )
     misalignment_um: Misalignments | None = Field(
         default=None,
-        description="Misalignment of the mesh in um, one value or one for each load case; left out: those of "
-        "the deflection of the scene",
+        description="Misalignment of the mesh in um, one value or one for each load case; left out: that of "
+        "the mesh in the scene, where it is none those of the deflection of the scene",
         examples=[[3.0]],
     )
     over_loads: Literal["worst", "energy_mean"] = Field(
@@ -171,6 +176,17 @@ class HeardObjectiveInput(OverOrders, HeardInput):
     counted_orders: Annotated[
         tuple[Annotated[int, Field(ge=1, le=100)], ...], Strict(False), Field(max_length=100)
     ] = Field(default=(), description="Orders of the mesh that count; left out: all", examples=[[1]])
+    tolerances: ToleranceInputs = Field(
+        default=ToleranceInputs(samples=PAIRS),
+        description="Tolerances of both gears and the sample of pairs over which start and optimum are told",
+        examples=[{"tolerance_class": 5, "samples": 32}],
+    )
+    quantile: Annotated[float, Field(ge=0.5, le=0.99)] | None = Field(
+        default=None,
+        description="Share of the pairs within tolerances that are no louder than what is minimized; left "
+        "out: the level as designed, or that of the mean power over scatter",
+        examples=[0.9],
+    )
 
     @property
     def heard(self) -> HeardInput:
@@ -271,6 +287,13 @@ class Inputs(BoundaryModel):
     search: SearchInput = Field(default=SearchInput(), description="Search method and its settings")
 
     @model_validator(mode="after")
+    def _one_sample(self) -> Self:
+        """Refuse a quantile of pairs over the expectation of others."""
+        if self.heard is not None and self.heard.quantile is not None and self.scatter != ScatterInput():
+            refuse("scatter", "given", "left out with heard.quantile", "Its pairs are heard.tolerances.")
+        return self
+
+    @model_validator(mode="after")
     def _loads(self) -> Self:
         """Refuse misalignments of other loads, torques that fall, and a load twice."""
         torques, stated_um = self.torque_n_m, self.misalignment_um
@@ -301,6 +324,17 @@ class HeardDesignFigures(Part):
     edge_load_share: list[float]
 
 
+class WithinFigures(Part):
+    """Levels of pairs within tolerances: what 5, 50 and 95 % are below, and the share that gets louder."""
+
+    tolerance_class: int
+    pairs: int
+    before_db: tuple[float, float, float]
+    after_db: tuple[float, float, float]
+    change_db: tuple[float, float, float]
+    louder_share: float
+
+
 class HeardFigures(Part):
     """What is heard before and after, by load case then by order ("all": all of them together)."""
 
@@ -328,6 +362,7 @@ class HeardFigures(Part):
     worse: list[str]
     parting: list[str]
     ended: str
+    pairs: WithinFigures | None = None
 
 
 class OptimizeFigures(Figures):

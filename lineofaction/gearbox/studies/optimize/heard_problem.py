@@ -4,23 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import chain
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 
 from dynamics.errors import DynamicsError
-from dynamics.linearize import OtherFlanks
 from dynamics.types import FloatArray
 from fe_contact.errors import FeContactError
 from fe_contact.microgeometry.design_problem import PENALTY, Assessed, SearchProblem
 from fe_contact.microgeometry.evaluator import LoadFigures
 from fe_contact.microgeometry.linearized_table import TabledLoads, tabled_loads
 from fe_contact.microgeometry.objective import LinearProgram, Rows
+from fe_contact.microgeometry.scatter import ONE_NODE
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.studies.change.heard_flanks import HeardLoad
-from model_studies.workers import InProcess, Workers
+from model_studies.workers import InProcess, Workers, divided
 
 BESIDE_EACH = np.array([1.0 - 1e-3, 1.0, 1.0 + 1e-3])
 """Loads of a table in parts of that of a load case: beside it, for how arm and stiffness change with it."""
@@ -56,28 +56,17 @@ class HeardAt:
     """
 
     case: HeardLoad
-    others: OtherFlanks
     counted: FloatArray
     share: float
 
     def power(self, table: SteDatabase) -> FloatArray:
         """Return what is heard of a table at each speed (S,)."""
-        transfer, form = self.case.transfer, self.case.form
-        inputs = transfer.inputs(self.others.with_table(table.force_table()).excitation)
-        return np.asarray(form.weighted(inputs) @ self.counted)
-
-    def lines(self, table: SteDatabase) -> tuple[FloatArray, float]:
-        """Return powers (S, K) of a table by the lines, and by what share of the mesh force flanks part."""
-        transfer, form = self.case.transfer, self.case.form
-        flanks = self.others.with_table(table.force_table()).excitation
-        least = transfer.response(flanks).least_mesh_force.min(axis=1)
-        parting = float(np.max(-least / np.abs(flanks.mean_force), initial=0.0))
-        return form.weighted(transfer.inputs(flanks)) @ self.case.lines.T, parting
+        return np.asarray(self.case.power(self.case.with_table(table).excitation) @ self.counted)
 
     def powers(self, tabled: TabledLoads) -> Powers:
         """Return what is heard of designs about a table, to first order of what excites."""
         transfer, form = self.case.transfer, self.case.form
-        flanks = self.others.with_table(tabled.table.force_table())
+        flanks = self.case.with_table(tabled.table)
         excitation = flanks.excitation
         inputs = transfer.inputs(excitation)
         largest = np.abs(tabled.by["static_transmission_error"]).max(axis=(1, 2))
@@ -187,9 +176,24 @@ class HeardProblem(SearchProblem):
     """The search for the lowest level: the objective is in dB, the merit the amplitude over the start's.
 
     The evaluator has three loads for each load case: a little below it, its own, and a little above.
+
+    Attributes
+    ----------
+    quantile : float or None
+        Share of the nodes that are no louder than the objective; None: it is that of their mean power.
     """
 
     heard: HeardObjective = field(kw_only=True)
+    quantile: float | None = field(default=None, kw_only=True)
+
+    def at(self, positions: int) -> Self:
+        """Return the problem at fewer positions."""
+        return super().rough(positions)
+
+    def rough(self, positions: int) -> Self:
+        """Return the problem without scatter, at fewer positions."""
+        own = self.at(positions)
+        return replace(own, evaluator=replace(own.evaluator, nodes=ONE_NODE))
 
     def linearize(self, point: FloatArray, workers: Workers) -> tuple[Assessed, HeardMerit]:
         """Evaluate the design at a point (d,) with the derivatives of what excites."""
@@ -201,10 +205,11 @@ class HeardProblem(SearchProblem):
         except (FeContactError, DynamicsError):
             return self._with_merit(math.inf, math.inf), _no_merit(point.size)
         powers = Powers(*(np.stack(each) for each in zip(*(part[1] for part in parts), strict=True)))
-        expected = Powers(*(np.tensordot(self.evaluator.nodes.weight, each, 1) for each in powers))
-        objective = self.heard.level(expected.constant)
+        objective, weight = self._over_nodes(powers.constant)
+        expected = Powers(*(np.tensordot(weight, each, 1) for each in powers))
         violation = self._violation([figures for part in parts for figures in part[0]])
-        start = self.heard.at[0].case.form.reference * 10.0 ** (self.scale / 10.0)
+        level = self.heard.level(expected.constant) - objective + self.scale  # of the start, on its scale
+        start = self.heard.at[0].case.form.reference * 10.0 ** (level / 10.0)
         rows = Powers(*(self.heard.rows(each) / start for each in expected))
         ranges, limits = self.ranges, _joined([part[2] for part in parts])
         scaled = Powers(rows.constant, rows.slope * ranges, rows.bend * ranges[:, None] * ranges)
@@ -217,8 +222,27 @@ class HeardProblem(SearchProblem):
             parts = [_node(self, values, node) for node in range(self.evaluator.nodes.weight.size)]
         except (FeContactError, DynamicsError):
             return math.inf, math.inf
-        power = np.tensordot(self.evaluator.nodes.weight, np.stack([part[1] for part in parts]), 1)
-        return self.heard.level(power), self._violation([each for part in parts for each in part[0]])
+        level, _ = self._over_nodes(np.stack([part[1] for part in parts]))
+        return level, self._violation([each for part in parts for each in part[0]])
+
+    def levels(self, values: dict[str, float], workers: Workers) -> FloatArray:
+        """Return the levels of a design at each node (N,), dB; NaN where one cannot be solved."""
+        return np.array(
+            [*divided(workers, _level_at, (self, values), range(self.evaluator.nodes.weight.size))]
+        )
+
+    def _over_nodes(self, power: FloatArray) -> tuple[float, FloatArray]:
+        """Return the level of powers (N, L, S) at the nodes, dB, and the weights (N,) of its derivatives.
+
+        Those of a quantile are of the nodes that are as loud: it is followed by their mean power.
+        """
+        if self.quantile is None:
+            weight = self.evaluator.nodes.weight
+            return self.heard.level(np.tensordot(weight, power, 1)), weight
+        levels = np.array([self.heard.level(own) for own in power])
+        level = float(np.quantile(levels, self.quantile))
+        loud = levels >= min(level, levels.max())
+        return level, loud / loud.sum()
 
     def relative(self, objective: float) -> float:
         """Return the amplitude over that of the start."""
@@ -242,6 +266,15 @@ def _node(problem: HeardProblem, values: dict[str, float], node: int) -> _Node:
     tabled = list(tabled_loads(problem.evaluator, values, (node,)))
     at = zip(problem.heard.at, problem.tables_of(tabled), strict=True)
     return [each.figures for each in tabled], np.stack([load.power(own.table) for load, own in at])
+
+
+def _level_at(shared: tuple[HeardProblem, dict[str, float]], node: int) -> float:
+    """Return the level of a design at a node, dB: one task."""
+    problem, values = shared
+    try:
+        return problem.heard.level(_node(problem, values, node)[1])
+    except (FeContactError, DynamicsError):
+        return math.nan
 
 
 def _linearized_nodes(

@@ -9,24 +9,36 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bounds import engineering
 from dynamics.assembly.assemble import assemble
 from dynamics.deflection.loaded_scene import with_loads
-from dynamics.linearize import OtherFlanks
 from dynamics.linearize.steady_vibration import excited
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.condensed_request import condensed_pair
 from fe_contact.analysis.tables import table_of_solution
-from fe_contact.errors import SolveError
+from fe_contact.effects import EFFECTS, named
+from fe_contact.errors import InputError, SolveError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.confirmation import DesignSpace, design_study
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.optimization import OptimizationRequest
 from fe_contact.microgeometry.optimize import search_all
-from fe_contact.microgeometry.search import SearchRun, never
-from fe_contact.microgeometry.variables import modified
+from fe_contact.microgeometry.scatter import MISALIGNMENT, ScatterNodes
+from fe_contact.microgeometry.search import (
+    EXPLORED,
+    FINISHED,
+    MISSES,
+    Search,
+    StagedLinearProgramming,
+    never,
+)
+from fe_contact.microgeometry.tolerance_study import iso1328_tolerances
+from fe_contact.microgeometry.variables import effect_of, modified
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate, FloatArray
+from host import cpu_seconds
 from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.studies.change.heard_flanks import (
     UNITS,
@@ -52,6 +64,9 @@ from lineofaction.gearbox.units import RPM, UM
 from model_studies.progress import silent
 from model_studies.stage_clock import StageClock
 
+WALK, FINISH, LINEARIZED = 20, 8, 2.5
+"""Designs of a usual walk at few positions and of one that goes on in full; values that their slopes cost."""
+
 
 @dataclass(frozen=True)
 class Heard:
@@ -59,11 +74,14 @@ class Heard:
 
     Attributes
     ----------
+    sample : HeardProblem or None
+        The same problem over pairs within tolerances; None where the standard has none for these gears.
     torque, misalignment : (L,) arrays
         Of the load cases on the driving gear, N m, and of the mesh, m.
     """
 
     problem: HeardProblem
+    sample: HeardProblem | None
     bodies: CondensedPair
     torque: FloatArray
     misalignment: FloatArray
@@ -91,21 +109,25 @@ def heard_optimum(
     assert mesh.case is not None  # a scene with its tables has its cases written out
     clock, run = StageClock(means.workers.cost), means.analysis
     with clock.stage("deflection"):
-        misalignment = _misalignments(subject, mesh.name, question, means)
+        misalignment = misalignments(subject, mesh, question, means)
     with clock.stage("transfer functions"):
         heard = heard_problem(subject, mesh, question, request, misalignment, means)
     with clock.stage("search"):
-        start, _ = heard.problem.evaluated(dict(zip(heard.problem.names, request.own, strict=True)))
-        if not math.isfinite(start):
+        own, sample = dict(zip(heard.problem.names, request.own, strict=True)), heard.sample
+        problem = heard.problem if question.quantile is None or sample is None else sample
+        expected = _expected_seconds(problem, own, request.search)
+        problem = replace(problem, scale=problem.evaluated(own)[0])
+        if not math.isfinite(problem.scale):
             raise SolveError("the contact of the start design cannot be solved at every position and load")
-        problem = replace(heard.problem, scale=start)
-        cancel = means.cancel or never
-        runs = search_all(problem, request.search, request.own, run, cancel)
+        means.report(f"search; about {engineering(expected, 2)} CPU s", 0.0)
+        runs = search_all(problem, request.search, request.own, run, means.cancel or never)
     best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
+    designs = own, problem.values(runs[best].place)
     with clock.stage("confirmation"):
-        own = dict(zip(problem.names, request.own, strict=True))
-        heard = replace(heard, problem=problem)
-        before, after = (_confirmed(heard, values) for values in (own, problem.values(runs[best].place)))
+        before, after = (_confirmed(replace(heard, problem=problem), values) for values in designs)
+    with clock.stage("pairs"):
+        rough = None if sample is None else sample.at(request.search.exploration)
+        pairs = [np.zeros(0) if rough is None else rough.levels(values, means.workers) for values in designs]
     run.progress("confirmation", 1.0)
     quantity = quantity_of(subject, question)
     return HeardOptimization(
@@ -124,27 +146,52 @@ def heard_optimum(
         after,
         runs,
         best,
-        _tied(runs, best, after.objective.error),
+        question.tolerances.tolerance_class,
+        np.stack(pairs),
         mesh.case.model_dump(mode="json", exclude_unset=True),
-        clock.to_json() | {"evaluations": sum(each.evaluations for each in runs)},
+        clock.to_json()
+        | {"evaluations": sum(each.evaluations for each in runs), "search_expected_cpu_seconds": expected},
     )
 
 
-def _misalignments(
-    subject: TabledScene, mesh: str, question: HeardObjectiveInput, means: Means
+def _expected_seconds(problem: HeardProblem, values: dict[str, float], search: Search) -> float:
+    """Return the CPU seconds of a usual search, by a design at few positions and one in full."""
+    rough, seconds = problem.rough(search.exploration), []
+    for each in (rough, rough, problem):  # the first loads code
+        began = cpu_seconds()
+        each.evaluated(values)
+        seconds.append(cpu_seconds() - began)
+    method, few, many = search.method, 0.0, float(search.evaluations)
+    if isinstance(method, StagedLinearProgramming):
+        few = min(method.sample + LINEARIZED * WALK * (method.trials + 1 + MISSES), EXPLORED * many)
+        many = min(LINEARIZED * FINISH * FINISHED, many)
+    return search.starts * (few * seconds[1] + many * seconds[2])
+
+
+def misalignments(
+    subject: TabledScene, mesh: MeshInput, question: HeardObjectiveInput, means: Means
 ) -> FloatArray:
-    """Return the misalignment of the mesh under each load case (L,), m: stated, or by the deflection."""
-    loads = len(question.load_cases)
+    """Return the misalignment of the mesh under each load case (L,), m.
+
+    It is what the question states, or the scene of the mesh, else that of the deflection.
+    """
+    known, shape = subject.databases[mesh.name], (len(question.load_cases),)
+    plane = known.metadata.receipt["plan"]["model"] in ("plane_strain", "plane_stress")
+    own = subject.scene.meshes[mesh_index(subject.scene, mesh.name)].misalignment
     if question.misalignment_um is not None:
-        return np.broadcast_to(np.asarray(question.misalignment_um, dtype=float) * UM, (loads,)).copy()
-    known = subject.databases[mesh]
-    if known.metadata.receipt["plan"]["model"] in ("plane_strain", "plane_stress"):
-        return np.full(loads, float(known.misalignment[0]))
+        return np.broadcast_to(np.asarray(question.misalignment_um, dtype=float) * UM, shape).copy()
+    if plane or own:
+        return np.full(shape, own)
     deflected = DEFLECT.compute(subject, DeflectInputs(load_cases=question.load_cases), means)
     if failure := DEFLECT.failure(deflected):
         raise SolveError(failure)
     return np.array(
-        [own.misalignment for case in deflected.deflection.cases for own in case.meshes if own.name == mesh]
+        [
+            own.misalignment
+            for case in deflected.deflection.cases
+            for own in case.meshes
+            if own.name == mesh.name
+        ]
     )
 
 
@@ -166,20 +213,40 @@ def heard_problem(
     loads = heard_loads(subject, mesh.name, question, tables, means)
     evaluator = _evaluator(request, torque, misalignment, means)
     shares = np.array([each.load.share for each in loads])
-    index = mesh_index(subject.scene, mesh.name)
     counted = list(question.counted_orders)  # the first line is all orders, then each
     at = tuple(
-        HeardAt(
-            case,
-            OtherFlanks.of(case.system, index, case.transfer),
-            case.lines[counted].sum(axis=0) if counted else case.lines[0],
-            float(share),
-        )
+        HeardAt(case, case.lines[counted].sum(axis=0) if counted else case.lines[0], float(share))
         for case, share in zip(loads, shares / shares.sum(), strict=True)
     )
     objective = HeardObjective(at, question.over_speeds == "worst", question.over_loads == "worst")
     problem = HeardProblem(evaluator, request.variables, request.limits, 0.0, heard=objective)
-    return Heard(problem, bodies, torque, misalignment)
+    return Heard(problem, _sampled(problem, mesh.case, question), bodies, torque, misalignment)
+
+
+def _sampled(problem: HeardProblem, case: Case, question: HeardObjectiveInput) -> HeardProblem | None:
+    """Return the problem with pairs within tolerances as nodes; what an effect that is off hides stays."""
+    evaluator, stated = problem.evaluator, question.tolerances
+    try:
+        tolerances = iso1328_tolerances(
+            evaluator.contact.pair,
+            stated.tolerance_class,
+            misalignment=stated.misalignment_um * UM,
+            across_face=evaluator.contact.face is not None,
+            distribution=stated.distribution,
+        )
+    except InputError as error:
+        if {"tolerances", "quantile"} & question.model_fields_set:
+            raise error.within("heard.tolerances") from None
+        return None
+    drawn = tolerances.sample(stated.samples, stated.seed)
+    skew = {MISALIGNMENT: named(EFFECTS, MISALIGNMENT)}
+    effect = {name: skew.get(name) or effect_of(name, EFFECTS) for name in tolerances.widths}
+    acting = [k for k, name in enumerate(effect) if case.effects.get(effect[name]) != "off"]
+    names = [list(effect)[k] for k in acting]
+    nodes = ScatterNodes(tuple(names), drawn[:, acting], np.full(len(drawn), 1.0 / len(drawn)))
+    choices = {**evaluator.choices, **dict.fromkeys((effect[name] for name in names), "on")}
+    pairs = replace(evaluator, choices=choices, nodes=nodes)
+    return replace(problem, evaluator=pairs, quantile=question.quantile)
 
 
 def _torques(subject: TabledScene, mesh: str, question: HeardObjectiveInput) -> FloatArray:
@@ -251,14 +318,14 @@ class _Levels(NamedTuple):
 
 def _levels(problem: HeardProblem, tables: Sequence[SteDatabase]) -> _Levels:
     """Return the levels of tables, one for each load case."""
-    heard, lines, parting = problem.heard, [], []
+    heard, level, power, parting = problem.heard, [], [], []
     for at, table in zip(heard.at, tables, strict=True):
-        power, parts = at.lines(table)
-        over_speeds = power.max(axis=0) if heard.worst_speed else power.mean(axis=0)
-        lines.append(at.case.form.decibels(over_speeds))
-        parting.append(parts)
-    power = np.stack([at.power(table) for at, table in zip(heard.at, tables, strict=True)])
-    return _Levels(np.stack(lines), heard.level(power), np.array(parting))
+        flanks = at.case.with_table(table).excitation
+        weighted = at.case.power(flanks)
+        level.append(at.case.levels(weighted, heard.worst_speed))
+        power.append(weighted @ at.counted)
+        parting.append(at.case.parting(flanks))
+    return _Levels(np.stack(level), heard.level(np.stack(power)), np.array(parting))
 
 
 def _rougher(
@@ -275,10 +342,3 @@ def _rougher(
         )
         for solved in bodies.solve_rougher(pair, torques, misalignment)
     ]
-
-
-def _tied(runs: Sequence[SearchRun], best: int, error: float) -> int:
-    """Return how many other starts of the search ended in designs that are as quiet within an error, dB."""
-    own = runs[best].assessed
-    others = (run.assessed for k, run in enumerate(runs) if k != best)
-    return sum(each.violation <= own.violation and each.objective - own.objective <= error for each in others)

@@ -13,7 +13,7 @@ from fe_contact.microgeometry.optimization import Outcome
 from fe_contact.microgeometry.search import SearchRun
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.types import Estimate, FloatArray
-from lineofaction.gearbox.studies.change.result import ALL, AUDIBLE
+from lineofaction.gearbox.studies.change.result import ALL, AUDIBLE, HIGH, LOW, MEDIAN
 from model_studies import in_unit
 
 FALL = 25.0
@@ -73,8 +73,9 @@ class HeardOptimization:
         On the driving gear of the mesh, N m, and of the mesh, m.
     speed : (S,) array
         Of the leading shaft, rad/s.
-    tied : int
-        Designs of the search that cannot be told from the optimum within its error.
+    tolerance_class : int
+    pairs : (2, N) array
+        Levels of start and optimum with the same deviations within that class, dB; none where it has none.
     case : dict
         Of the mesh, as a case file has it.
     cost : dict
@@ -96,7 +97,8 @@ class HeardOptimization:
     optimum: HeardDesign
     runs: tuple[SearchRun, ...]
     best_run: int
-    tied: int
+    tolerance_class: int
+    pairs: FloatArray = field(metadata=in_unit("dB", "design", "pair"))
     case: Json
     cost: Json
 
@@ -143,13 +145,39 @@ class HeardOptimization:
         return f"{engineering(100.0 * self.optimum.violation, 2)} % of them, or of the load on tip edges"
 
     def ended(self) -> str:
-        """Return how the search ended, and what cannot be told from its best, in a sentence."""
-        run = self.runs[self.best_run]
+        """Return how the search ended, and how many of its starts agree, in a sentence."""
+        run, ends = self.runs[self.best_run], np.concatenate([each.ends for each in self.runs])
         ended = "The search converged" if run.converged else f"The search ended: {run.ended.value}"
-        tie = (
-            f"; {self.tied} of its designs cannot be told from the best within the error" if self.tied else ""
+        agreeing = int(np.sum(ends <= ends.min(initial=np.inf) + AUDIBLE))
+        agree = f"; {agreeing} of {ends.size} starts end within {AUDIBLE} dB of the quietest"
+        further = ": a larger sample or more trials may find quieter flanks" if agreeing == 1 else ""
+        return f"{ended}, {self.evaluations} designs{f'{agree}{further}' if ends.size > 1 else ''}."
+
+    @property
+    def bands(self) -> FloatArray:
+        """Levels of start and optimum and their change (3, 3) that 5, 50 and 95 % of the pairs are below, dB.
+
+        NaN without pairs.
+        """
+        before, after = self.pairs
+        levels = np.stack([before, after, after - before])
+        return np.asarray(np.nanquantile(levels, (LOW, MEDIAN, HIGH), axis=1).T)
+
+    @property
+    def louder_share(self) -> float:
+        """Share of the pairs that get louder."""
+        return float(np.mean(self.pairs[1] > self.pairs[0]))
+
+    def within_tolerances(self) -> str:
+        """Return what the flanks bring of pairs as they are made, in a sentence; empty where none are."""
+        if not self.pairs.size:
+            return ""
+        (_, _, before), (_, _, after), (low, median, high) = self.bands
+        return (
+            f"Within class {self.tolerance_class}: {median:+.1f} dB ({low:+.1f} to {high:+.1f} dB), "
+            f"{100.0 * self.louder_share:.0f} % of {self.pairs.shape[1]} pairs get louder; 95 % of them are "
+            f"below {after:.1f} dB, before {before:.1f} dB."
         )
-        return f"{ended}, {self.evaluations} designs{tie}."
 
     def worse(self) -> Iterator[str]:
         """Yield what gets worse: orders by load case, largest first, then ripple, pressure, K_Hbeta."""

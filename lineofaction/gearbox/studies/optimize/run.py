@@ -23,6 +23,7 @@ from fe_contact.microgeometry.search import (
     NelderMead,
     Search,
     SequentialLinearProgramming,
+    StagedLinearProgramming,
     never,
 )
 from fe_contact.microgeometry.variables import DesignVariable
@@ -37,6 +38,8 @@ from lineofaction.gearbox.schemas.toml import toml_text
 from lineofaction.gearbox.studies.change.question import check_driving, check_heard, heard_mesh
 from lineofaction.gearbox.studies.computation import Computation, Means, record_file
 from lineofaction.gearbox.studies.optimize import (
+    HEARD_TRIALS,
+    TRIALS,
     GearScatterInput,
     GearVariablesInput,
     HeardObjectiveInput,
@@ -202,7 +205,16 @@ def _heard_figures(result: HeardOptimization) -> Json:
         name: (design, {"values": _at_boundary(design.values)})
         for name, design in (("start", result.start), ("optimum", result.optimum))
     }
-    told = {"worse": list(result.worse()), "parting": list(result.partings()), "ended": result.ended()}
+    told: Json = {"worse": list(result.worse()), "parting": list(result.partings()), "ended": result.ended()}
+    told["pairs"] = None
+    if result.pairs.size:
+        names = "before_db", "after_db", "change_db"
+        told["pairs"] = {
+            "tolerance_class": result.tolerance_class,
+            "pairs": result.pairs.shape[1],
+            **dict(zip(names, map(tuple, result.bands.tolist()), strict=True)),
+            "louder_share": result.louder_share,
+        }
     of_case = dict.fromkeys(("gain", "gain_error", "start", "optimum", "runs", "torque", "misalignment"))
     variables = [
         {"name": boundary_name(var.name), "bounds": _range(var.name, var.low, var.high)}
@@ -254,7 +266,7 @@ def _library_request(checked: CheckedCase, study: Inputs) -> OptimizationRequest
         np.asarray(study.misalignment_um) * UM,
         objective,
         limits,
-        _search(study.search),
+        _search(study.search, heard=study.heard is not None),
         checked.options,
     )
 
@@ -280,9 +292,15 @@ def _stated_fields(gear: str, inputs: GearVariablesInput | GearScatterInput) -> 
     ]
 
 
-def _search(search: SearchInput) -> Search:
+def _search(search: SearchInput, *, heard: bool) -> Search:
+    """Return the search; few positions tell a level nearly as well as many, but not a ripple."""
+    linear: Method = (
+        StagedLinearProgramming(search.sample, HEARD_TRIALS if search.trials is None else search.trials)
+        if heard
+        else SequentialLinearProgramming(search.sample, TRIALS if search.trials is None else search.trials)
+    )
     methods: dict[str, Method] = {
-        "sequential_linear_programming": SequentialLinearProgramming(search.sample, search.trials),
+        "sequential_linear_programming": linear,
         "differential_evolution": DifferentialEvolution(search.population),
         "nelder_mead": NelderMead(),
     }
