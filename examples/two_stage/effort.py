@@ -39,6 +39,6 @@ class Effort:
     band: str
 
 
-THOROUGH = Effort({"evaluations": 120}, 1.0, 4, 20.0, 80, "500:6000:25", 3, "--band")
-FEW_DESIGNS = {"evaluations": 32, "sample": 12, "trials": 1}
+THOROUGH = Effort({"evaluations": 600}, 1.0, 4, 20.0, 80, "500:6000:25", 3, "--band")
+FEW_DESIGNS = {"evaluations": 64, "sample": 12, "trials": 1}
 QUICK = Effort(FEW_DESIGNS, 0.0, 1, 40.0, 40, "500:6000:50", 1, "--no-band")

@@ -21,6 +21,9 @@ from model_studies.workers import InProcess, Workers, divided, pays, spent
 PENALTY = 10.0
 """Merit of a limit exceeded by its own size, in parts of the scale: 1 % costs a tenth of it."""
 
+SLACK = 0.005
+"""Limits exceeded by less, in parts of them, are kept: a full analysis has more positions than a search."""
+
 
 @dataclass(frozen=True)
 class Assessed:
@@ -302,10 +305,10 @@ class CountedMerit:
         self.ends.append(next(own for own in reversed(self.designs) if np.array_equal(own[1], point)))
 
     @property
-    def levels(self) -> FloatArray:
-        """Objectives at which walks ended that exceed the limits by no more than the best of them."""
-        least = min((own.violation for own, _ in self.ends), default=0.0)
-        return np.array([own.objective for own, _ in self.ends if own.violation <= least])
+    def levels(self) -> tuple[float, ...]:
+        """Objectives at which walks ended that exceed the limits by hardly more than the best of them."""
+        least = min((own.violation for own, _ in self.ends), default=0.0) + SLACK
+        return tuple(own.objective for own, _ in self.ends if own.violation <= least)
 
     @property
     def best(self) -> Design | None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.request.request import Checked
+from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
 from fe_contact.contact import CarryingStrips, ContactProblem, ContactSolution, force_changes, load_arm
 from fe_contact.contact.model import GapTerm
 from fe_contact.effects.flank_modification import ModificationGap
@@ -174,21 +175,14 @@ def curve_derivatives(
     for name in names:
         _check_name(name, pair, checked)
     strips = CarryingStrips.of(solved.pair, problem, solution)
-
     arm = load_arm(solved.pair, problem, solution)
-
-    def by_distance() -> tuple[FloatArray, FloatArray]:
-        further = bodies.solve(pair, loads, misalignment, center_distance_change + DISTANCE_STEP)
-        _require_solved(further.solution)
-        moved = load_arm(further.pair, further.problem, further.solution)
-        change = further.solution.deflection - solution.deflection
-        return change / DISTANCE_STEP, (moved - arm) / DISTANCE_STEP
 
     def derivative(name: str) -> tuple[FloatArray, FloatArray]:
         if name == TORQUE:
             return solution.tangent * (solution.load / loads), (strips.added_arm - arm) / loads
         if name == CENTER_DISTANCE:
-            return by_distance()
+            further = bodies.solve(pair, loads, misalignment, center_distance_change + DISTANCE_STEP)
+            return _differences(further, solution, arm)
         opened = _Difference.of(pair, name).opened(strips)
         return strips.change(opened), strips.arm_change(opened)
 
@@ -197,9 +191,18 @@ def curve_derivatives(
     weights = np.stack([quantity_derivatives(curve, period) for curve in curves], axis=-1)
     changes = np.einsum("qpf,apf->aqf", weights, derivatives)
     of_quantities = changes[:, MEAN], changes[:, PEAK_TO_PEAK], changes[:, FIRST_HARMONIC:]
-    position, ste = problem.candidates.position, solution.deflection
-    arms = arm, of_arm
-    return CurveDerivatives(names, loads, position, ste, derivatives, *arms, *of_quantities, strips, weights)
+    own = names, loads, problem.candidates.position, solution.deflection, derivatives
+    return CurveDerivatives(*own, arm, of_arm, *of_quantities, strips, weights)
+
+
+def _differences(
+    further: SolvedOperatingPoint, solution: ContactSolution, arm: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return what a step of the center distance changes of deflection and load arm, per m."""
+    _require_solved(further.solution)
+    moved = load_arm(further.pair, further.problem, further.solution)
+    change = further.solution.deflection - solution.deflection
+    return change / DISTANCE_STEP, (moved - arm) / DISTANCE_STEP
 
 
 def _all_names(pair: ParallelAxes, checked: Checked) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ import numpy as np
 from bounds import engineering, written
 from fe_contact.errors import SolveError
 from fe_contact.microgeometry.confirmation import ConfirmedDesign, DesignStudy, confirm, design_study, rising
-from fe_contact.microgeometry.design_problem import Cancelled, DesignProblem, SearchProblem
+from fe_contact.microgeometry.design_problem import SLACK, Cancelled, DesignProblem, SearchProblem
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.optimization import Optimization, OptimizationRequest, Outcome, Perturbation
 from fe_contact.microgeometry.scatter import MISALIGNMENT, Scatter
@@ -118,8 +118,6 @@ def _name(values: FloatArray, position: FloatArray) -> bytes:
 
 # The best design of all searches, assessed by full analyses of it and of the design to begin with.
 
-SLACK = 0.005
-"""Limits exceeded by less, in parts of them, are kept: the full analysis has more positions than a search."""
 REFINED = 4
 """Where they are exceeded by more, the search goes on at those positions, with a quarter of the designs."""
 ROUNDS = 3

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import count
 from typing import Protocol
@@ -398,7 +398,7 @@ class SearchRun:
         Of the evaluations, those at few positions.
     spread : float
         Largest less least objective of all others.
-    ends : ndarray, shape (E,)
+    ends : tuple of float
         Objectives to which its walks came from each start, few positions and no scatter; of those that keep
         the limits best.
     """
@@ -410,7 +410,7 @@ class SearchRun:
     cpu_seconds: float
     explored: int = 0
     spread: float = 0.0
-    ends: FloatArray = field(default_factory=lambda: np.zeros(0))
+    ends: tuple[float, ...] = ()
 
     @property
     def converged(self) -> bool:

@@ -14,6 +14,7 @@ from small_inputs import small_inputs
 from fe_contact.microgeometry.design_problem import PENALTY
 from fe_contact.microgeometry.linearized_table import tabled_loads
 from fe_contact.microgeometry.objective import Limits
+from fe_contact.microgeometry.scatter import ScatterNodes
 from fe_contact.types import FloatArray
 from host.directories import cache_home
 from lineofaction.gearbox.problems import BadInput
@@ -23,7 +24,7 @@ from lineofaction.gearbox.studies.change.question import heard_mesh
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.optimize import Inputs
 from lineofaction.gearbox.studies.optimize.heard_problem import HeardMerit, HeardProblem, Powers
-from lineofaction.gearbox.studies.optimize.heard_search import heard_problem
+from lineofaction.gearbox.studies.optimize.heard_search import heard_problem, misalignments
 from lineofaction.gearbox.studies.optimize.result import HeardOptimization
 from lineofaction.gearbox.studies.optimize.run import request_of
 from lineofaction.gearbox.workbench import tabled
@@ -36,7 +37,7 @@ FREE: Json = {
     "pinion": {"tip_relief_um": [0.0, 8.0], "profile_crowning_um": [0.0, 4.0]},
     "wheel": {"tip_relief_um": [0.0, 8.0]},
 }
-FEW: Json = {"evaluations": 24, "sample": 4, "trials": 1, "positions": 32}
+FEW: Json = {"evaluations": 60, "sample": 4, "trials": 1, "positions": 32}
 
 
 def scene() -> Json:
@@ -110,8 +111,8 @@ def test_a_mean_over_loads_or_speeds_is_no_louder_than_the_worst() -> None:
     assert means < worst
 
 
-def searched(question: Json) -> HeardOptimization:
-    result = optimize(scene(), question)
+def searched(question: Json, subject: Json | None = None) -> HeardOptimization:
+    result = optimize(subject or scene(), question)
     assert isinstance(result, HeardOptimization)
     return result
 
@@ -148,6 +149,84 @@ def test_limits_are_held_or_said_to_be_exceeded() -> None:
     own = searched(asked)
     assert own.outcome != "limits_exceeded"
     assert own.optimum.pressure.max() / 1e6 <= 1.002 * before * (1.0 + 1e-3)
+    free = found().optimum.objective
+    assert free.value <= own.optimum.objective.value + 0.1  # a limit makes nothing quieter
+
+
+@pytest.mark.law
+def test_a_pair_within_tolerances_is_as_loud_as_its_flanks() -> None:
+    """At the same position in the sample as a design whose amounts are those of the pair."""
+    own = replace(problems()[1], quantile=0.75)
+    deviation = 1e-6 * np.array([[0.0], [0.4], [-0.3], [1.0]])
+    nodes = ScatterNodes(("pinion.tip_relief",), deviation, np.full(4, 0.25))
+    pairs = replace(own, evaluator=replace(own.evaluator, nodes=nodes))
+    made = [DESIGN | {"pinion.tip_relief": DESIGN["pinion.tip_relief"] + each} for each in deviation[:, 0]]
+    levels = [level(own, each) for each in made]
+    np.testing.assert_allclose(pairs.levels(DESIGN, InProcess()), levels, atol=1e-6)
+    assert pairs.evaluated(DESIGN)[0] == pytest.approx(np.quantile(levels, 0.75))
+    scaled = replace(pairs, scale=pairs.evaluated(DESIGN)[0])
+    assessed, merit = scaled.linearize(place(pairs), InProcess())
+    assert assessed.objective == pytest.approx(scaled.scale)
+    assert merit.amplitudes(np.zeros(3)).max() == pytest.approx(1.0)  # of the start, as of every objective
+
+
+def test_the_flanks_are_told_within_the_tolerance_class() -> None:
+    own = found()
+    assert own.pairs.shape == (2, 32) and "Within class 6: " in own.within_tolerances()
+    low, median, high = own.bands[2]
+    assert low <= median <= high and own.bands[0, 1] == np.median(own.pairs[0])
+    same = replace(own, pairs=np.stack([own.pairs[0], own.pairs[0]]))
+    assert not same.bands[2].any() and same.louder_share == 0.0
+    assert not replace(own, pairs=np.zeros((2, 0))).within_tolerances()
+
+
+def test_a_quantile_of_the_pairs_is_minimized() -> None:
+    """Of those that are told: the same sample at as many positions, so no pair of it is left out."""
+    few: Json = {"search": FEW | {"positions": 16}, "heard": HEARD | {"load_cases": [{"name": "whole"}]}}
+    few["heard"] |= {"tolerances": {"samples": 4, "tolerance_class": 4}, "orders": 1}
+    own = searched({"variables": FREE, **few, "heard": few["heard"] | {"quantile": 0.75}})
+    levels = np.quantile(own.pairs, 0.75, axis=1)
+    ends = own.start.objective.value, own.optimum.objective.value
+    np.testing.assert_allclose(levels, ends, atol=1e-6)
+    assert levels[1] < levels[0]
+
+
+def test_a_mesh_that_states_its_misalignment_is_heard_at_it() -> None:
+    """It would be deflected twice: the misalignment stated is part of what a deflection finds."""
+    study, subject = Inputs.model_validate(inputs()), tabled(scene())
+    mesh = heard_mesh(subject.inputs, None)
+    assert study.heard is not None
+    table = subject.databases["mesh"]
+    receipt = table.metadata.receipt
+    facts = replace(table.metadata, receipt=receipt | {"plan": receipt["plan"] | {"model": "3d"}})
+    across = {"mesh": replace(table, metadata=facts)}
+    stated = replace(subject.scene, meshes=(replace(subject.scene.meshes[0], misalignment=4e-6),))
+    means = Means(cache_home(), lambda _stage, _part: None)
+    own = misalignments(replace(subject, scene=stated, databases=across), mesh, study.heard, means)
+    np.testing.assert_array_equal(own, [4e-6, 4e-6])
+
+
+@pytest.mark.parametrize(
+    "heard",
+    [{"quantity": "surface_velocity"}, {"microphone_mm": [10.0, 10.0, 400.0]}],
+    ids=["velocity", "pressure"],
+)
+def test_velocity_and_pressure_are_heard_as_the_comparison_has_them(heard: Json) -> None:
+    """And all orders together follow from the orders, so that the right lines are counted."""
+    sounding: Json = small_inputs("noise")["scene"]
+    sounding["meshes"][0]["case"] = scene()["meshes"][0]["case"]
+    few: Json = {"evaluations": 8, "sample": 4, "trials": 1, "positions": 32}
+    asked: Json = {"speed_rpm": [300.0, 3000.0], "orders": 2}
+    own = searched({"variables": FREE, "search": few, "heard": asked | heard}, sounding)
+    after = copy.deepcopy(sounding["meshes"][0]["case"])
+    for name, value in own.optimum.values.items():
+        gear, quantity = name.split(".")
+        after["pair"][gear][f"{quantity}_um"] = 1e6 * value
+    compared = change(sounding, {"after": after, "tolerances": {"samples": 2}, "heard": heard, **asked})
+    assert own.quantity == compared.quantity and own.unit == compared.unit
+    for design, side in ((own.start, compared.before), (own.optimum, compared.after)):
+        loud = side.nominal > side.nominal.max() - 25.0
+        np.testing.assert_allclose(design.level[loud], side.nominal[loud], atol=0.3)
 
 
 def test_what_gets_worse_is_said_first() -> None:
@@ -162,6 +241,7 @@ def test_what_gets_worse_is_said_first() -> None:
     [
         ({}, "heard"),
         ({"heard": HEARD, "torque_n_m": [1.0]}, "torque_n_m"),
+        ({"heard": HEARD | {"quantile": 0.9}, "scatter": {"misalignment_um": 1.0}}, "scatter"),
         ({"heard": HEARD | {"mesh": "second"}}, "heard.mesh"),
         ({"heard": HEARD | {"quantity": "sound_power"}}, "housings"),
         ({"heard": HEARD | {"microphone_mm": [0.0, 0.0, 1000.0]}}, "housings"),

@@ -146,12 +146,12 @@ class HeardOptimization:
 
     def ended(self) -> str:
         """Return how the search ended, and how many of its starts agree, in a sentence."""
-        run, ends = self.runs[self.best_run], np.concatenate([each.ends for each in self.runs])
+        run, ends = self.runs[self.best_run], np.array([end for each in self.runs for end in each.ends])
         ended = "The search converged" if run.converged else f"The search ended: {run.ended.value}"
-        agreeing = int(np.sum(ends <= ends.min(initial=np.inf) + AUDIBLE))
-        agree = f"; {agreeing} of {ends.size} starts end within {AUDIBLE} dB of the quietest"
-        further = ": a larger sample or more trials may find quieter flanks" if agreeing == 1 else ""
-        return f"{ended}, {self.evaluations} designs{f'{agree}{further}' if ends.size > 1 else ''}."
+        same = max(AUDIBLE, self.optimum.objective.error)
+        agreeing = int(np.sum(ends <= ends.min(initial=np.inf) + same))
+        agree = f"; {agreeing} of {ends.size} starts end within {engineering(same, 2)} dB of the quietest"
+        return f"{ended}, {self.evaluations} designs{agree if ends.size > 1 else ''}."
 
     @property
     def bands(self) -> FloatArray:

@@ -26,6 +26,7 @@ from fe_contact.microgeometry.search import (
     Search,
     SearchRun,
     SequentialLinearProgramming,
+    StagedLinearProgramming,
     search_from,
 )
 from fe_contact.microgeometry.variables import DesignVariable
@@ -101,6 +102,51 @@ def test_the_simplex_keeps_its_part_of_the_designs() -> None:
     assert run.evaluations == 200 and run.ended is Ended.SPENT
     longer = searched(Bowl(), Search(EVOLUTION, seed=1, evaluations=400))
     assert longer.assessed.objective <= run.assessed.objective
+
+
+STAGED = StagedLinearProgramming(sample=16, trials=3)
+
+
+def test_stages_follow_every_start_roughly_and_settle_the_best_in_full() -> None:
+    bowl = Bowl()
+    run = searched(bowl, Search(STAGED, seed=1))
+    assert run.ended is Ended.CONVERGED and len(run.ends) == 1 + STAGED.trials
+    np.testing.assert_allclose(run.place, BOTTOM, atol=0.02)  # a bowl is flat to first order at its bottom
+    assert bowl.roughened is not None
+    assert run.explored == len(bowl.roughened.seen) > 3 * len(bowl.seen)
+
+
+@dataclass
+class Valleys(Bowl):
+    """Two bowls in one: the deeper one is away from the start."""
+
+    roughened: Bowl | None = None
+
+    def assess(self, place: FloatArray) -> Assessed:
+        self.seen.append(place)
+        near, far = (((place - bottom) ** 2).sum() for bottom in (START, self.bottom))
+        value = 1.0 + float(min(near + 0.1, far))
+        return Assessed(value, 0.0, value)
+
+    def linearize(self, place: FloatArray, _workers: object) -> tuple[Assessed, Tangent]:
+        assessed = self.assess(place)
+        near, far = (((place - bottom) ** 2).sum() for bottom in (START, self.bottom))
+        return assessed, Tangent(place - (START if near + 0.1 < far else self.bottom))
+
+    def rough(self, positions: int) -> Bowl:
+        return Valleys(self.bottom)
+
+
+def test_stages_leave_the_valley_of_the_start_for_a_deeper_one_and_say_that_starts_differ() -> None:
+    run = searched(Valleys(), Search(STAGED, seed=1))
+    np.testing.assert_allclose(run.place, BOTTOM, atol=0.02)
+    assert max(run.ends) == pytest.approx(1.1, abs=1e-3) and min(run.ends) < 1.01
+
+
+def test_stages_end_with_what_the_designs_reach() -> None:
+    for evaluations in (1, 2, 5, 20, 40):
+        run = searched(Bowl(), Search(STAGED, seed=1, evaluations=evaluations))
+        assert run.evaluations <= evaluations and np.isfinite(run.assessed.objective)
 
 
 def test_programmes_follow_the_best_of_a_sample() -> None:
@@ -200,10 +246,14 @@ def test_cancelled_before_the_first_design_the_start_is_left(workers: Any) -> No
 
 
 @pytest.mark.law
-def test_walks_by_others_end_for_the_same_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    "method",
+    [SequentialLinearProgramming(sample=4, trials=2), StagedLinearProgramming(sample=4, trials=2)],
+    ids=["each", "staged"],
+)
+def test_walks_by_others_end_for_the_same_reason(method: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever the number of designs: also where a walk by itself ends with the last of them."""
     monkeypatch.setattr(executor, "START_SECONDS", -1.0)
-    method = SequentialLinearProgramming(sample=4, trials=2)
     with ThreadPoolExecutor(1) as one, ThreadPoolExecutor(2) as two:
         reasons = set()
         for evaluations in range(1, 150):
