@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from page_visit import CASE, Visit, choose_case, computed, opened
+from page_visit import CASE, Visit, answered, choose_case, computed, control, opened, tab
 from playwright.sync_api import Browser, Page, Route, expect
 from running_service import until
 
@@ -21,28 +21,16 @@ EDITED = "Edited since: pinion tip relief 0 µm → 7 µm"
 
 
 def type_relief(page: Page) -> None:
-    page.locator("#f-pair-pinion-tip_relief_um").fill("7")
+    control(page, "#f-pair-pinion-tip_relief_um").fill("7")
     expect(page.locator("#results-design")).to_contain_text(EDITED)
-
-
-def test_the_menu_leaves_the_result_in_the_address(visit: Visit, analyzed: str) -> None:
-    page = visit.page
-    before = page.url
-    for link in page.get_by_role("navigation").get_by_role("link").all():
-        link.press("Enter")
-        section = (link.get_attribute("href") or "")[1:]
-        assert page.evaluate("document.activeElement.id") == section
-    assert page.url == before
-    page.reload()
-    expect(page.locator("#results [data-figure=ste] .plot")).to_have_attribute("data-drawn", "yes")
 
 
 @pytest.mark.law
 def test_a_reload_shows_what_was_typed_and_moved(visit: Visit) -> None:
     page = visit.page
     type_relief(page)
-    page.locator("#live-wheel-tip_relief_um").press("End")
-    page.locator("#study-Tolerances-samples").fill("77")
+    control(page, "#live-wheel-tip_relief_um").press("End")
+    control(page, "#study-Tolerances-samples").fill("77")
     page.reload()
     expect(page.locator("#live-wheel-tip_relief_um-exact")).to_have_value("20")
     expect(page.locator("#f-pair-pinion-tip_relief_um")).to_have_value("7")
@@ -95,9 +83,11 @@ def test_a_job_under_way_goes_on_after_a_reload_and_is_left_by_the_way_back(
     with LineOfActionClient(address) as client:
         job = client.submit("frontier", {"case": LONG})
         page.goto(f"{address}/#frontier={job.id}")
+        tab(page, "Errors and cost")
         card = page.locator(".study").filter(has=page.get_by_role("heading", name="Accuracy frontier"))
         expect(card.get_by_role("button", name="Run the accuracy study")).to_be_disabled()
         page.reload()
+        tab(page, "Errors and cost")
         expect(card.locator("progress")).to_be_visible()
         page.go_back()
         expect(card.locator(".job")).to_have_count(0)
@@ -118,12 +108,12 @@ def test_an_analysis_survives_a_reload_in_mid_job(
     page.wait_for_url(re.compile("#analyze="))
     page.unroute_all(behavior="ignoreErrors")
     page.reload()
-    expect(page.locator("#live-body")).to_have_attribute("data-answers", re.compile(r"\d"))
+    answered(page)
     assert analyzed in page.url and "analyze=" not in page.url
     expect(page.locator("#f-pair-pinion-teeth")).to_have_value("20")
     page.go_back()
     expect(page.locator("#results-none")).to_be_visible()
-    expect(page.locator("#live-body")).to_be_hidden()
+    expect(page.locator("#live-figures")).to_be_empty()
     page.close()
 
 
@@ -165,13 +155,15 @@ def test_a_study_whose_answer_is_lost_is_asked_again(visit: Visit, address: str,
         route.abort()
 
     page.route("**/v1/processes/scatter/execution", lose, times=1)
-    page.locator("#study-Tolerances-tolerance_class").fill("8")
-    page.locator("#study-Tolerances-samples").fill("50")
+    control(page, "#study-Tolerances-tolerance_class").fill("8")
+    control(page, "#study-Tolerances-samples").fill("50")
+    tab(page, "Tolerance")
     page.get_by_role("button", name="Draw pairs").press("Enter")
     expect(page.locator("[data-figure=scatter] .plot")).to_have_attribute("data-drawn", "yes")
     assert len(lost) == 1
-    assert page.locator("#studies [role=alert]").count() == 0
+    assert page.locator("#panels [role=alert]").count() == 0
     page.reload()
+    tab(page, "Tolerance")
     expect(page.locator("[data-figure=scatter] .plot")).to_have_attribute("data-drawn", "yes")
 
 
@@ -219,11 +211,11 @@ def test_the_address_of_an_analysis_shows_its_design_and_its_result(
     choose_case(sender, tmp_path)
     sender.locator("#analyze").press("Enter")
     expect(sender).to_have_url(re.compile(f"#database={analyzed}$"))
-    expect(sender.locator("#live-body")).to_have_attribute("data-answers", re.compile(r"\d"))
+    answered(sender)
     for name in (f"analyze={job}", f"job={job}", sender.url.partition("#")[2]):
         with other_browser(browser, f"{address}/#{name}") as page:
             expect(page).to_have_url(re.compile(f"#database={analyzed}$"))
-            expect(page.locator("#live-body")).to_have_attribute("data-answers", re.compile(r"\d"))
+            answered(page)
             shows_the_same(page, sender)
             assert page.locator(".design-note").count() == 0
     sender.close()
@@ -246,35 +238,40 @@ def test_a_study_is_sent_with_the_design_as_edited_and_what_was_typed_for_it(
     visit: Visit, browser: Browser
 ) -> None:
     page = visit.page
-    page.locator("#f-pair-pinion-tip_relief_um").fill("7")
-    page.locator("#f-pair-pinion-tip_relief_length_mm").fill("0.3")
-    page.locator("#study-Flank-pressure-torque_n_m").fill("0.8")
+    control(page, "#f-pair-pinion-tip_relief_um").fill("7")
+    control(page, "#f-pair-pinion-tip_relief_length_mm").fill("0.3")
+    control(page, "#study-Flank-pressure-torque_n_m").fill("0.8")
+    tab(page, "Flank")
     page.get_by_role("button", name="Compute flank pressure").press("Enter")
     expect(page.locator("[data-figure=contact_pattern] .plot")).to_have_attribute("data-drawn", "yes")
     expect(page.locator("#results-design")).to_contain_text(EDITED)
     with other_browser(browser, page.url) as other:
+        tab(other, "Flank")
         expect(other.locator("[data-figure=contact_pattern] .plot")).to_have_attribute("data-drawn", "yes")
         expect(other.locator("#results-design")).to_contain_text(EDITED)
-        expect(other.locator("#live-body")).to_have_attribute("data-answers", re.compile(r"\d"))
+        answered(other)
         shows_the_same(other, page)
-        assert other.locator("#study-list .design-note").count() == 0
+        assert other.locator("#panels .design-note").count() == 0
     assert visit.complaints == []
 
 
 @pytest.mark.nightly
 def test_a_run_up_is_sent_with_its_result_and_what_was_typed_for_it(visit: Visit, browser: Browser) -> None:
     page = visit.page
-    page.locator("#study-Run-up-duration_s").fill("0.05")
-    page.locator("#study-Run-up-torque_n_m").fill("0.9")
+    control(page, "#study-Run-up-duration_s").fill("0.05")
+    control(page, "#study-Run-up-torque_n_m").fill("0.9")
+    tab(page, "Orders")
     page.get_by_role("button", name="Simulate the run-up").press("Enter")
     drawn = "#dynamics-body [data-figure=dynamic_error] .plot"
     expect(page.locator(drawn)).to_have_attribute("data-drawn", "yes")
     with other_browser(browser, page.url) as other:
+        tab(other, "Orders")
         expect(other.locator(drawn)).to_have_attribute("data-drawn", "yes")
         shows_the_same(other, page)
         assert other.locator(".design-note").count() == 0
     job = page.url.partition("simulate=")[2]
     with other_browser(browser, f"{page.url.partition('#')[0]}#simulate={job}") as other:
+        tab(other, "Jobs")
         expect(other.locator(drawn.replace("dynamics-body", "jobs-result"))).to_have_attribute(
             "data-drawn", "yes"
         )
@@ -284,6 +281,7 @@ def test_a_run_up_is_sent_with_its_result_and_what_was_typed_for_it(visit: Visit
 
 def test_a_scene_is_sent_with_its_text_and_its_speeds(visit: Visit, browser: Browser) -> None:
     page = visit.page
+    tab(page, "Sound")
     page.get_by_role("button", name="Write the scene of the pair").press("Enter")
     expect(page.locator("#scene-text")).to_have_value(re.compile("database_hash"))
     page.get_by_label("Compute", exact=True).select_option("modes")
@@ -293,6 +291,7 @@ def test_a_scene_is_sent_with_its_text_and_its_speeds(visit: Visit, browser: Bro
     drawn = "#scene-body [data-figure=modal_campbell] .plot"
     expect(page.locator(drawn)).to_have_attribute("data-drawn", "yes")
     with other_browser(browser, page.url) as other:
+        tab(other, "Sound")
         expect(other.locator(drawn)).to_have_attribute("data-drawn", "yes")
         shows_the_same(other, page)
 
@@ -304,17 +303,20 @@ def test_a_job_of_the_list_takes_the_page_with_its_design(
     load = {"torque_n_m": [0.9, 1.1]}
     entered(address, "flank", case=CASE | {"load": load})
     page.reload()
-    expect(page.locator("#live-plots .plot").first).to_have_attribute("data-drawn", "yes")  # with its sliders
+    expect(page.locator("#live-ripple .plot")).to_have_attribute("data-drawn", "yes")  # with its sliders
+    tab(page, "Jobs")
     page.get_by_role("button", name=re.compile("^Open flank")).first.press("Enter")
     expect(page.locator("#jobs-result .plot").first).to_have_attribute("data-drawn", "yes")
     expect(page.locator("#f-load-torque_n_m")).to_have_value("0.9, 1.1")
     assert page.locator(".design-note").count() == 0
     with other_browser(browser, page.url) as other:
+        tab(other, "Jobs")
         expect(other.locator("#jobs-result .plot").first).to_have_attribute("data-drawn", "yes")
         shows_the_same(other, page)
     page.go_back()
     expect(page.locator("#f-load-torque_n_m")).to_have_value("0.5, 1")
-    expect(page.locator("#results [data-figure=ste] .plot")).to_have_attribute("data-drawn", "yes")
+    tab(page, "Ripple")
+    expect(page.locator("#live-ripple .plot")).to_have_attribute("data-drawn", "yes")
 
 
 def test_a_job_that_failed_says_so_beside_its_design(browser: Browser, address: str) -> None:
@@ -345,7 +347,7 @@ def test_four_openings_file_one_job(browser: Browser, address: str) -> None:
     assert after - before <= 1
     with other_browser(browser, address) as page:
         expect(page).to_have_url(re.compile("#database=[0-9a-f]{64}$"))
-        expect(page.locator("#glance-plot")).to_have_attribute("data-drawn", "yes")
+        expect(page.locator("#live-ripple .plot")).to_have_attribute("data-drawn", "yes")
         assert page.locator(".design-note").count() == 0
     assert len(jobs()) == after
 

@@ -27,7 +27,7 @@ def test_it_asks_until_the_key_is_right_and_keeps_it_for_the_tab(
     address, secret = served
     page = browser.new_page(viewport={"width": 1000, "height": 800})
     page.set_default_timeout(page_visit.PATIENCE)
-    page.goto(f"{address}/#pair")
+    page.goto(f"{address}/#rail")
     dialog = page.get_by_role("dialog", name="Access key")
     expect(dialog).to_contain_text("asks for an access key")
     assert dialog.count() == 1, "one question for all requests that wait"

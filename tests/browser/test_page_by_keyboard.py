@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
-from page_visit import Visit, answers, shown
+from page_visit import Visit, answers, control, shown, tab
 from playwright.sync_api import Browser, Page
 from running_service import until
 
@@ -35,7 +35,7 @@ def stops(page: Page, most: int) -> list[dict[str, object]]:
     return found
 
 
-def test_the_first_stop_skips_to_the_gear_pair(browser: Browser, address: str) -> None:
+def test_the_first_stop_skips_to_the_design(browser: Browser, address: str) -> None:
     page = browser.new_page()
     page.route("**/execution", lambda _: None)  # the first example is not computed
     page.goto(address)
@@ -44,30 +44,57 @@ def test_the_first_stop_skips_to_the_gear_pair(browser: Browser, address: str) -
     assert page.evaluate("document.activeElement.className") == "skip"
     assert page.locator(".skip").bounding_box()["x"] >= 0  # type: ignore[index]
     page.keyboard.press("Enter")
-    assert page.evaluate("document.activeElement.id") == "pair"
+    assert page.evaluate("document.activeElement.id") == "rail"
     page.keyboard.press("Tab")
-    assert page.evaluate("document.activeElement.id") == "example"
+    assert page.evaluate("document.activeElement.role") == "tab"
     page.close()
 
 
 @pytest.mark.law
 def test_every_stop_is_seen_and_the_order_is_that_of_the_page(visit: Visit) -> None:
     page = visit.page
-    page.evaluate("document.querySelector('#pair').focus()")
-    first = stops(page, 2)
-    assert first[1]["own"] == "import-file"
-    assert first[1]["ring"]
-    page.evaluate("document.querySelector('#run').focus()")
-    found = stops(page, 120)
+    tab(page, "Flanks, live")
+    page.locator(".skip").focus()
+    found = stops(page, 60)
     assert not [stop for stop in found if not stop["body"] and not (stop["ring"] and stop["inside"])]
     names = [str(stop["own"]) for stop in found]
-    places = [names.index(name) for name in ("analyze", "live-torque_n_m", "keep")]
+    places = [
+        names.index(name)
+        for name in ("example", "import-file", "analyze", "ripple-tab", "split", "live-torque_n_m", "keep")
+    ]
     assert places == sorted(places)
+    assert names.index("ripple-tab") < 20, "the first result"
     assert "forget" not in names, "what is hidden is no stop"
 
 
+def test_arrows_go_from_tab_to_tab_and_the_address_says_which(visit: Visit) -> None:
+    page = visit.page
+    page.locator("#ripple-tab").focus()
+    page.keyboard.press("End")
+    assert page.evaluate("document.activeElement.id") == "jobs-tab"
+    assert page.locator("#jobs").is_visible() and page.locator("#ripple").is_hidden()
+    assert page.url.endswith("&tab=jobs")
+    page.keyboard.press("Home")
+    assert "tab=" not in page.url
+
+
+def test_rail_and_dock_fold_and_the_split_moves(visit: Visit) -> None:
+    page = visit.page
+    width = page.locator("#stage").evaluate("node => node.clientWidth")
+    for name in ("rail", "dock"):
+        page.locator(f"#{name}-fold").press("Enter")
+        assert page.locator(f"#{name}").is_hidden()
+    assert page.locator("#stage").evaluate("node => node.clientWidth") > width + 500
+    for name in ("rail", "dock"):
+        page.locator(f"#{name}-fold").press("Enter")
+    height = page.locator("#thing").evaluate("node => node.clientHeight")
+    page.locator("#split").press("ArrowUp")
+    assert page.locator("#thing").evaluate("node => node.clientHeight") < height
+    page.locator("#split").press("ArrowDown")
+
+
 def test_a_slider_says_its_value_with_the_unit(visit: Visit) -> None:
-    slider = visit.page.locator("#live-wheel-tip_relief_um")
+    slider = control(visit.page, "#live-wheel-tip_relief_um")
     assert slider.get_attribute("aria-valuetext") == "0 µm"
     count = answers(visit.page)
     slider.press("ArrowRight")
@@ -77,25 +104,14 @@ def test_a_slider_says_its_value_with_the_unit(visit: Visit) -> None:
     assert slider.get_attribute("aria-valuetext") == f"{value} µm"
 
 
-@pytest.mark.parametrize(("motion", "behavior"), [("reduce", "auto"), ("no-preference", "smooth")])
-def test_nothing_glides_where_less_motion_is_asked_for(visit: Visit, motion: str, behavior: str) -> None:
-    visit.page.emulate_media(reduced_motion=motion)  # type: ignore[arg-type]
-    assert visit.page.evaluate("document.getAnimations().length") == 0
-    style = "getComputedStyle(document.documentElement).scrollBehavior"
-    assert visit.page.evaluate(style) == behavior
-    visit.page.emulate_media(reduced_motion="reduce")
-
-
 @pytest.mark.parametrize("width", [700, 320])  # 200 % of 1400 pixels; what WCAG 1.4.10 asks for
 def test_zoomed_in_nothing_is_cut_off_or_covered(visit: Visit, width: int) -> None:
     page = visit.page
     page.set_viewport_size({"width": width, "height": 450})
     until(lambda: page.evaluate("document.documentElement.scrollWidth") <= width)  # plots follow in a moment
-    sliders, plots = (page.locator(name).bounding_box() for name in ("#sliders", "#live-plots"))
-    assert sliders is not None and plots is not None
-    assert sliders["y"] + sliders["height"] <= plots["y"], "one column"
-    page.evaluate("document.querySelector('#dynamics').focus()")
-    stop = stops(page, 1)[0]
-    bar = page.locator(".top").bounding_box()
-    box = page.evaluate("document.activeElement.getBoundingClientRect().top")
-    assert stop["inside"] and bar is not None and box >= max(bar["y"] + bar["height"], 0.0)
+    thing, panels = (page.locator(name).bounding_box() for name in ("#thing", "#panels"))
+    assert thing is not None and panels is not None
+    assert thing["y"] + thing["height"] <= panels["y"], "one column"
+    page.locator("#stage").focus()
+    for stop in stops(page, 6):
+        assert stop["inside"] and stop["ring"], stop

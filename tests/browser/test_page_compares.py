@@ -14,10 +14,12 @@ from page_visit import (
     Visit,
     answers,
     computed,
+    control,
     found_inaccessible,
     moved,
     opened,
     shown,
+    tab,
     unfold,
 )
 from playwright.sync_api import Browser, Page, expect
@@ -36,7 +38,7 @@ def other(address: str) -> str:
 
 def curves(page: Page, folder: Path) -> dict[str, list[float]]:
     with page.expect_download() as given:
-        page.locator("[data-figure=live_ste] [data-tool=CSV]").press("Enter")
+        control(page, "[data-figure=live_ste] [data-tool=CSV]").press("Enter")
     given.value.save_as(folder / "live.csv")
     head, *rows = csv.reader((folder / "live.csv").read_text(encoding="utf-8").splitlines())
     return {
@@ -56,6 +58,7 @@ def test_flanks_are_compared_with_those_that_were_kept(visit: Visit, tmp_path: P
     moved(page, "#live-pinion-tip_relief_um", "End")
     relieved = curves(page, tmp_path)["now"]
     count = answers(page)
+    tab(page, "Flanks, live")
     page.get_by_role("button", name="Keep as reference").press("Enter")
     until(lambda: answers(page) > count)
     expect(page.locator("#kept-words")).to_contain_text("20/20, pinion tip relief 20 µm")
@@ -67,9 +70,10 @@ def test_flanks_are_compared_with_those_that_were_kept(visit: Visit, tmp_path: P
     found = curves(page, tmp_path)
     assert found["reference"] == relieved
     assert found["now"] == found["as analyzed"] != relieved
-    bars = page.locator("[data-figure=live_harmonics] .barlayer .trace")
-    assert bars.count() == 3
+    bars = control(page, "[data-figure=live_harmonics] .plot").locator(".barlayer .trace")
+    expect(bars).to_have_count(3)
     count = answers(page)
+    tab(page, "Flanks, live")
     page.get_by_role("button", name="Forget the reference").press("Enter")
     until(lambda: answers(page) > count)
     assert page.evaluate("document.activeElement.id") == "keep", "the button that had the focus is gone"
@@ -82,8 +86,10 @@ def test_another_pair_is_compared_at_the_torque_that_is_looked_at(
 ) -> None:
     page = visit.page
     count = answers(page)
+    tab(page, "Flanks, live")
     page.get_by_role("button", name="Keep as reference").press("Enter")
     until(lambda: answers(page) > count)
+    tab(page, "Jobs")
     row = page.get_by_role("row").filter(has=page.get_by_role("button", name=re.compile("Open analyze")))
     count = answers(page)
     row.first.get_by_role("button", name=re.compile("^Open")).press("Enter")  # the newest: the other pair
@@ -110,6 +116,7 @@ def test_in_three_dimensions_misalignment_and_crowning_act(
     expect(page.locator("#live-figures dd").first).not_to_have_text(before or "")
     moved(page, "#live-pinion-helix_crowning_um", "End")
     assert page.locator("#live-pinion-helix_crowning_um").get_attribute("aria-valuetext") == "30 µm"
+    tab(page, "Flanks, live")
     page.get_by_role("button", name="Keep as reference").press("Enter")
     kept = page.locator("#kept-words")
     expect(kept).to_contain_text("pinion helix crowning 30 µm, misalignment 50 µm")
@@ -117,6 +124,7 @@ def test_in_three_dimensions_misalignment_and_crowning_act(
     page.get_by_role("button", name="As analyzed").press("Enter")
     until(lambda: answers(page) > count)
     expect(kept).to_contain_text("pinion helix crowning 30 µm (now 0 µm), misalignment 50 µm (now 0 µm)")
+    tab(page, "Flank")
     page.get_by_role("button", name="Compute flank pressure").press("Enter")
     pattern = page.locator("[data-figure=contact_pattern] .plot")
     expect(pattern).to_have_attribute("data-drawn", "yes")
@@ -129,6 +137,7 @@ def test_in_three_dimensions_misalignment_and_crowning_act(
 def test_one_button_computes_in_three_dimensions(browser: Browser, address: str, analyzed: str) -> None:
     visit = opened(browser, f"{address}/#database={analyzed}")
     page = visit.page
+    tab(page, "Flanks, live")
     page.get_by_role("button", name="Analyze in three dimensions").press("Enter")
     expect(page.locator("#live-misalignment_um")).to_be_enabled()
     expect(page.locator("#f-accuracy-model")).to_have_value("3d")
@@ -139,6 +148,7 @@ def test_one_button_computes_in_three_dimensions(browser: Browser, address: str,
 def test_two_analyses_of_the_list_are_compared_with_their_errors(visit: Visit, other: str) -> None:
     page = visit.page
     page.reload()
+    tab(page, "Jobs")
     buttons = page.get_by_role("button", name=re.compile("^Compare analyze"))
     rows = page.get_by_role("row").filter(has=buttons)
     over_face, others = rows.filter(has_text="20/24"), rows.filter(has_text=IN_THE_PLANE)
@@ -159,6 +169,7 @@ def test_results_without_a_load_in_common_are_not_compared_and_it_says_why(
     computed(address, case=CASE | {"load": {"torque_n_m": [3.0, 4.0]}})
     page = visit.page
     page.reload()
+    tab(page, "Jobs")
     rows = page.get_by_role("row")
     for text in ("up to 4 N m", IN_THE_PLANE):
         row = rows.filter(has=page.get_by_role("button", name=re.compile("^Compare analyze")), has_text=text)
@@ -183,7 +194,7 @@ def figure(page: Page, name: str) -> float:
 def test_a_misaligned_pair_is_pressed_harder_and_carries_less_evenly(over_face: Visit) -> None:
     page = over_face.page
     for key in PLOTS:
-        expect(page.locator(f"[data-figure={key}] .plot")).to_have_attribute("data-drawn", "yes")
+        expect(control(page, f"[data-figure={key}] .plot")).to_have_attribute("data-drawn", "yes")
     pressure, factor = figure(page, "largest pressure"), figure(page, "K_Hbeta")
     before = page.locator("#live-figures").text_content() or ""
     assert 1.0 <= factor < 1.2

@@ -7,7 +7,7 @@ import re
 from typing import Any
 
 import pytest
-from page_visit import CASE, computed, found_inaccessible, opened
+from page_visit import CASE, answers, computed, found_inaccessible, opened, tab, unfold
 from playwright.sync_api import Browser, CDPSession, Page, expect
 
 from lineofaction.client import LineOfActionClient
@@ -17,13 +17,10 @@ from lineofaction.client import LineOfActionClient
 def test_the_first_example_is_computed_when_the_page_opens(browser: Browser, address: str) -> None:
     visit = opened(browser, f"{address}/#")
     page = visit.page
-    expect(page.locator("#glance-words")).to_contain_text(re.compile("is computed now|Result, as analyzed"))
-    expect(page.locator("#glance-plot")).to_have_attribute("data-drawn", "yes")
-    expect(page.locator("#glance-words")).to_contain_text("Result, as analyzed: Gear pair 23/67")
-    expect(page.locator("#glance-figures")).to_contain_text("peak-to-peak")
-    expect(page.locator("#glance-figures")).to_contain_text("largest pressure")
-    box = page.locator("#glance-plot").bounding_box()
-    assert box is not None and box["y"] + box["height"] < 900.0, "on the first screen"
+    expect(page.locator("#live-ripple .plot")).to_have_attribute("data-drawn", "yes")
+    expect(page.locator("#dock-words")).to_contain_text("Gear pair 23/67")
+    expect(page.locator("#live-figures")).to_contain_text(re.compile("peak to peak.*±.*largest pressure"))
+    assert page.evaluate(BEYOND) == [], "on the first screen, which does not scroll"
     expect(page).to_have_url(re.compile("#database=[0-9a-f]{64}$"))
     assert page.locator(".design-note").count() == 0
     assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)
@@ -37,7 +34,13 @@ def test_the_first_example_is_computed_when_the_page_opens(browser: Browser, add
     again.close()
 
 
-OUTSIDE = """() => [...document.querySelectorAll("#results-body .plot")].flatMap((plot) => {
+BEYOND = """() => ["#live-figures", "#analyze", "#thing", "#live-ripple .plot"].filter((name) => {
+  const { right, bottom } = document.querySelector(name).getBoundingClientRect();
+  const { scrollHeight, scrollWidth } = document.documentElement;
+  return right > innerWidth || bottom > innerHeight || scrollHeight > innerHeight || scrollWidth > innerWidth;
+})"""
+"""Parts of the first screen that end beyond it."""
+OUTSIDE = """() => [...document.querySelectorAll(":is(#results-body, .report) .plot")].flatMap((plot) => {
   const { right } = plot.getBoundingClientRect();
   const beyond = (label) => label.getBoundingClientRect().right > right + 1;
   return [...plot.querySelectorAll(".annotation-text")].filter(beyond).map((label) => label.textContent);
@@ -47,16 +50,22 @@ OUTSIDE = """() => [...document.querySelectorAll("#results-body .plot")].flatMap
 def test_labels_at_lines_stay_within_plots_on_a_narrow_screen(browser: Browser, address: str) -> None:
     page = opened(browser, f"{address}/#", width=400).page
     expect(page.locator("#results-body[aria-busy=false]")).to_have_count(1)
-    assert page.locator("#results-body .annotation-text").count() > 20
+    unfold(page)
+    for title, least in {"Ripple": 20, "Orders": 0}.items():
+        tab(page, title)
+        figures = page.locator("[role=tabpanel]:not([hidden]) .report .plot")
+        for plot in figures.all():
+            expect(plot).to_have_attribute("data-drawn", "yes")
+        assert page.locator(".report .annotation-text").count() > least
     assert page.evaluate(OUTSIDE) == []
     page.close()
 
 
 def test_a_section_of_the_page_computes_nothing(browser: Browser, address: str) -> None:
-    page = opened(browser, f"{address}/#terms").page
+    page = opened(browser, f"{address}/#rail").page
     page.wait_for_selector("#plan dl")
-    expect(page.locator("#glance")).to_be_hidden()
-    assert page.url.endswith("#terms")
+    expect(page.locator("#live-figures")).to_be_empty()
+    assert page.url.endswith("#rail")
     page.close()
 
 
@@ -92,7 +101,7 @@ def test_the_first_screen_is_light_and_has_no_plots_and_no_description_of_the_se
     paths: list[str] = []
     session.on("Network.loadingFinished", lambda event: received.append(event["encodedDataLength"]))
     page.on("request", lambda request: paths.append(request.url.removeprefix(address)))
-    page.goto(f"{address}/#pair")  # where nothing is computed
+    page.goto(f"{address}/#rail")  # where nothing is computed
     page.wait_for_selector("#plan dl")
     page.wait_for_load_state("networkidle")
     assert len(received) > 20
@@ -103,12 +112,12 @@ def test_the_first_screen_is_light_and_has_no_plots_and_no_description_of_the_se
 
 def visited(page: Page, key: str) -> None:
     """Go to a result within the page and wait until it is drawn, live flanks included."""
-    before = int(page.locator("#live-body").get_attribute("data-answers") or 0)
+    before = answers(page)
     page.evaluate("key => { location.hash = `database=${key}`; }", key)
     page.wait_for_function(
-        "before => Number(document.querySelector('#live-body').dataset.answers) > before", arg=before
+        "before => Number(document.querySelector('#live-figures').dataset.answers) > before", arg=before
     )
-    expect(page.locator("#results [aria-busy=false]")).to_have_count(1)
+    expect(page.locator("#results-body[aria-busy=false]")).to_have_count(1)
 
 
 def weight(session: CDPSession) -> tuple[float, float]:

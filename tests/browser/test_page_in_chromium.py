@@ -13,11 +13,14 @@ from page_visit import (
     GEAR,
     PATIENCE,
     Visit,
+    answered,
     answers,
     choose_case,
     computed,
+    control,
     found_inaccessible,
     opened,
+    tab,
     unfold,
 )
 from playwright.sync_api import Browser, Page, expect
@@ -27,6 +30,7 @@ from bounds import DEPTHS, Direction, Kind
 from fe_contact.flank.modification import FlankModification
 from lineofaction.gearbox.schemas.declared import figures
 
+TABS = ("Flank", "Load", "Orders", "Sound", "Tolerance", "Errors and cost", "Jobs")
 FIGURES = (
     "ste",
     "ripple",
@@ -58,7 +62,7 @@ def visit(browser: Browser, address: str, tmp_path_factory: pytest.TempPathFacto
     page.keyboard.press("Tab")
     tab_to(page, "#analyze")
     page.keyboard.press("Enter")
-    page.wait_for_selector("#live-body[data-answers]")
+    answered(page)
     return seen
 
 
@@ -68,7 +72,7 @@ def peak_to_peak(page: Page) -> str:
 
 @pytest.mark.parametrize("key", FIGURES)
 def test_every_plot_is_drawn_and_has_words(visit: Visit, key: str) -> None:
-    node = visit.page.locator(f"[data-figure='{key}'] .plot")
+    node = control(visit.page, f"[data-figure='{key}'] .plot")
     expect(node).to_have_attribute("data-drawn", "yes", timeout=PATIENCE)
     assert node.locator(".scatterlayer .trace path.js-line, .barlayer .point path").count() >= (
         1 if key == "live_pressure" else 2  # of the flank as it is now
@@ -79,12 +83,12 @@ def test_every_plot_is_drawn_and_has_words(visit: Visit, key: str) -> None:
 def test_a_slider_redraws_the_curve_by_arrow_keys(visit: Visit) -> None:
     page = visit.page
     before, count = peak_to_peak(page), answers(page)
-    page.locator("#live-pinion-tip_relief_um").focus()
+    control(page, "#live-pinion-tip_relief_um").focus()
     for _ in range(8):
         page.keyboard.press("ArrowRight")
     until(lambda: answers(page) > count)
     expect(page.locator("#live-figures dd").first).not_to_have_text(before)
-    now = page.locator("[data-figure=live_ste] .scatterlayer .trace path.js-line")
+    now = control(page, "[data-figure=live_ste]").locator(".scatterlayer .trace path.js-line")
     until(lambda: now.nth(0).get_attribute("d") != now.nth(1).get_attribute("d"))  # drawn in a moment
     page.get_by_role("button", name="As analyzed").press("Enter")
     expect(page.locator("#live-figures dd").first).to_have_text(before)
@@ -92,7 +96,7 @@ def test_a_slider_redraws_the_curve_by_arrow_keys(visit: Visit) -> None:
 
 def test_flanks_go_from_the_sliders_into_the_case(visit: Visit) -> None:
     page = visit.page
-    page.locator("#live-wheel-tip_relief_um").focus()
+    control(page, "#live-wheel-tip_relief_um").focus()
     page.keyboard.press("End")
     most = page.locator("#live-wheel-tip_relief_um").input_value()
     page.get_by_role("button", name="Take these flanks").press("Enter")
@@ -123,8 +127,7 @@ def test_every_depth_and_length_has_a_slider_and_acts_along_what_it_is_declared_
 def test_a_folded_slider_redraws_the_curve_and_takes_the_length_that_its_relief_needs(visit: Visit) -> None:
     page = visit.page
     before, count = peak_to_peak(page), answers(page)
-    page.locator("#sliders summary").first.press("Enter")
-    page.locator("#live-pinion-root_relief_um").press("End")
+    control(page, "#live-pinion-root_relief_um").press("End")
     until(lambda: answers(page) > count)
     expect(page.locator("#live-figures dd").first).not_to_have_text(before)
     page.get_by_role("button", name="Take these flanks").press("Enter")
@@ -164,6 +167,7 @@ def test_the_case_is_saved_as_toml_that_reads_back(visit: Visit, tmp_path: Path)
     ("tool", "begin"), [("PNG", b"\x89PNG"), ("CSV", b'"0.5 N m, x"'), ("JSON", b'{"data"')]
 )
 def test_a_plot_is_saved(visit: Visit, tool: str, begin: bytes) -> None:
+    control(visit.page, "[data-figure=ste]")
     with visit.page.expect_download() as given:
         visit.page.get_by_role("button", name=f"{tool} of: Static transmission error over").press("Enter")
     content = Path(given.value.path()).read_bytes()
@@ -172,6 +176,7 @@ def test_a_plot_is_saved(visit: Visit, tool: str, begin: bytes) -> None:
 
 
 def test_the_result_is_saved_as_netcdf(visit: Visit) -> None:
+    tab(visit.page, "Errors and cost")
     with visit.page.expect_download() as given:
         visit.page.get_by_role("button", name="netCDF").first.press("Enter")
     assert Path(given.value.path()).read_bytes()[1:4] == b"HDF"
@@ -202,6 +207,9 @@ def test_the_page_is_accessible(
     page.set_viewport_size({"width": width, "height": 900})
     unfold(page)
     assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)
+    for title in TABS:
+        tab(page, title)
+        assert not (told := found_inaccessible(page, "#panels")), json.dumps(told, indent=1)
     until(lambda: page.evaluate("document.documentElement.scrollWidth") <= width)
 
 
@@ -225,13 +233,13 @@ def test_a_script_from_elsewhere_does_not_run(browser: Browser, address: str, vi
     page.close()
 
 
-def test_what_is_implausible_is_said_above_the_plan_and_above_the_results(
+def test_what_is_implausible_is_said_with_the_plan_and_with_the_results(
     browser: Browser, address: str
 ) -> None:
     pair = CASE["pair"] | {"pinion": GEAR | {"face_width_mm": 1000.0}}  # of module 1
     page = opened(browser, f"{address}/#database={computed(address, case=CASE | {'pair': pair})}").page
-    for part in ("#plan", "#results-body"):
-        expect(page.locator(f"{part} > .alarm + .headline")).to_be_visible()
+    expect(page.locator("#plan > .alarm + .headline")).to_be_visible()
+    for part in ("#plan", "#results-alarms"):
         expect(page.locator(f"{part} > .alarm")).to_contain_text(
             "Warning: pair.pinion.face_width_mm = 1000 mm"
         )

@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from page_visit import CASE, Visit, answers, choose_case, found_inaccessible, opened
+from page_visit import CASE, Visit, answers, choose_case, control, found_inaccessible, opened, tab
 from playwright.sync_api import Browser, expect
 from running_service import until
 
@@ -19,9 +19,11 @@ LONG = CASE | {"accuracy": {"level": "fine", "model": "3d", "positions": 512}}
 @pytest.mark.law
 def test_a_job_is_cancelled_from_the_list(visit: Visit, address: str) -> None:
     page = visit.page
+    tab(page, "Jobs")
     with LineOfActionClient(address) as client:
         job = client.submit("frontier", {"case": LONG})
         page.reload()
+        tab(page, "Jobs")
         row = page.get_by_role("row").filter(
             has=page.get_by_role("button", name=re.compile("Cancel frontier"))
         )
@@ -34,11 +36,13 @@ def test_a_job_is_cancelled_from_the_list(visit: Visit, address: str) -> None:
 
 def test_the_jobs_of_a_batch_are_shown_beneath_it(visit: Visit, address: str) -> None:
     page = visit.page
+    tab(page, "Jobs")
     loads = [{"torque_n_m": [torque]} for torque in (0.5, 0.75)]
     with LineOfActionClient(address) as client:
         batch = client.with_terms(title="Two loads").analyze.batch([CASE | {"load": load} for load in loads])
         batch.wait()
     page.reload()
+    tab(page, "Jobs")
     row = page.get_by_role("row").filter(has_text="Two loads")
     expect(row).to_contain_text("analyze, 2 jobs")
     assert row.get_by_role("button", name=re.compile("^(Open|Compare)")).count() == 0
@@ -49,6 +53,7 @@ def test_the_jobs_of_a_batch_are_shown_beneath_it(visit: Visit, address: str) ->
     assert not (told := found_inaccessible(page, "#jobs")), json.dumps(told, indent=1)
     inner.nth(1).get_by_role("button", name=re.compile("^Open analyze")).press("Enter")
     expect(page).to_have_url(re.compile("#database="))
+    tab(page, "Jobs")
     row.get_by_role("button", name=re.compile("^Hide jobs")).press("Enter")
     expect(inner).to_have_count(0)
     assert visit.complaints == []
@@ -56,10 +61,13 @@ def test_the_jobs_of_a_batch_are_shown_beneath_it(visit: Visit, address: str) ->
 
 def test_a_result_opens_again_in_another_window(visit: Visit, browser: Browser, address: str) -> None:
     page = visit.page
+    tab(page, "Jobs")
+    tab(page, "Orders")
     page.get_by_role("button", name="Find the modes").press("Enter")
     expect(page.locator("[data-figure=modal_campbell] .plot")).to_have_attribute("data-drawn", "yes")
     expect(page.locator("#jobs-rows tr").first).to_contain_text("scene of 1 mesh")
     later = opened(browser, address).page
+    tab(later, "Jobs")
     later.get_by_role("button", name=re.compile("^Open modes")).first.press("Enter")
     again = later.locator("#jobs-result [data-figure=modal_campbell] .plot")
     expect(again).to_have_attribute("data-drawn", "yes")
@@ -70,10 +78,12 @@ def test_a_result_opens_again_in_another_window(visit: Visit, browser: Browser, 
 
 def test_a_job_is_renamed_and_found_by_title_and_tag(visit: Visit, address: str) -> None:
     page = visit.page
+    tab(page, "Jobs")
     with LineOfActionClient(address) as client:
         job = client.with_terms(tags=["EV-3"]).submit("analyze", {"case": CASE})
         client.submit("analyze", {"case": CASE})
         page.reload()
+        tab(page, "Jobs")
         rows = page.locator("#jobs-rows tr")
         row = rows.filter(has_text="#ev-3")
         page.once("dialog", lambda dialog: dialog.accept("Tip relief"))
@@ -94,6 +104,7 @@ def test_a_job_is_renamed_and_found_by_title_and_tag(visit: Visit, address: str)
 
 def test_a_job_tells_what_sets_it_apart(visit: Visit, address: str) -> None:
     page = visit.page
+    tab(page, "Jobs")
     with LineOfActionClient(address) as client:
         for torques in ([0.5, 1.0], [0.5]):
             client.submit("analyze", {"case": CASE | {"load": {"torque_n_m": torques}}})
@@ -103,10 +114,11 @@ def test_a_job_tells_what_sets_it_apart(visit: Visit, address: str) -> None:
 
 def test_a_job_under_way_outlasts_a_service_that_is_away(visit: Visit, address: str, tmp_path: Path) -> None:
     page = visit.page
+    tab(page, "Jobs")
     with LineOfActionClient(address) as client:
         busy = client.submit("frontier", {"case": LONG})  # the one worker: the job waits
     choose_case(page, tmp_path)
-    page.locator("#f-load-torque_n_m").fill("0.7, 1.3")
+    control(page, "#f-load-torque_n_m").fill("0.7, 1.3")
     page.wait_for_selector("#plan dl")
     page.locator("#analyze").press("Enter")
     page.wait_for_selector("#analyze-job .job")
@@ -115,7 +127,7 @@ def test_a_job_under_way_outlasts_a_service_that_is_away(visit: Visit, address: 
     expect(page.locator("#analyze-job [role=status]")).to_contain_text("asked for again")
     assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)
     count = answers(page)
-    page.locator("#live-pinion-tip_relief_um").press("End")
+    control(page, "#live-pinion-tip_relief_um").press("End")
     page.context.set_offline(False)
     with LineOfActionClient(address) as client:
         client.dismiss(busy.id)

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from faulty_units import LEFT_OUT, TWO_STAGE
 from housing_solid import housed_scene, write_block
-from page_visit import PATIENCE, Visit, shown
+from page_visit import PATIENCE, Visit, shown, tab
 from playwright.sync_api import Browser, Route, expect
 from running_service import until
 
@@ -33,6 +33,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "planetary_scene.toml"
 @pytest.fixture(scope="module")
 def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
     seen = shown(browser, address, analyzed)
+    tab(seen.page, "Sound")
     yield seen
     seen.page.close()
 

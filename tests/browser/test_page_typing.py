@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 
 import pytest
-from page_visit import Visit, found_inaccessible, opened
+from page_visit import Visit, control, found_inaccessible, opened
 from playwright.sync_api import Browser, Error, Page, Route, expect
 
 PAIR = {
@@ -22,7 +22,10 @@ PAIR = {
     "load-torque_n_m": "10, 40",
 }
 TYPED_SLOWLY = 30  # milliseconds between keys; a field is left for the service to answer
-EDGES = "() => document.querySelector('#fields').getBoundingClientRect().top + scrollY"
+EDGES = """() => {
+  const [fields, rail] = ["#fields", "#rail"].map((name) => document.querySelector(name));
+  return fields.getBoundingClientRect().top + rail.scrollTop;
+}"""
 
 
 @pytest.fixture
@@ -34,7 +37,7 @@ def visit(browser: Browser, address: str) -> Iterator[Visit]:
 
 def typed(page: Page, key: str, text: str) -> None:
     """Type into a field as a person does, and see that it holds what was typed while the service answers."""
-    field = page.locator(f"#f-{key}")
+    field = control(page, f"#f-{key}")
     field.focus()
     page.keyboard.press("ControlOrMeta+a")
     with page.expect_response("**/v1/cases/outline"):
@@ -92,8 +95,8 @@ def test_a_field_that_is_being_typed_into_is_not_blamed_before_it_is_finished(vi
 
 def test_an_example_says_which_settings_it_replaces(visit: Visit) -> None:
     page = visit.page
-    page.locator("#f-accuracy-model").select_option("3d")
-    page.locator("#f-accuracy-tolerance").fill("0.005")
+    control(page, "#f-accuracy-model").select_option("3d")
+    control(page, "#f-accuracy-tolerance").fill("0.005")
     page.locator("#example").select_option("internal_gear")
     said = page.locator("#example-replaced")
     expect(said).to_contain_text("tolerance 0.005 → not set")
@@ -134,8 +137,8 @@ def test_an_edit_gives_up_the_plan_that_the_edit_before_asked_for(visit: Visit) 
     page.route("**/v1/plans", as_a_busy_service)
     for width in ("21", "22"):
         with page.expect_request("**/v1/plans"):
-            page.locator("#f-pair-pinion-face_width_mm").fill(width)
+            control(page, "#f-pair-pinion-face_width_mm").fill(width)
     with page.expect_response("**/v1/plans"):
-        page.locator("#f-pair-pinion-face_width_mm").fill("23")
+        control(page, "#f-pair-pinion-face_width_mm").fill("23")
     expect(page.locator("#plan dl")).to_be_visible()
     assert [line for line in visit.console if line.startswith("error")] == []

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from axe_playwright_python.sync_playwright import Axe
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Locator, Page, expect
 from running_service import PATIENCE_S, until
 
 from lineofaction.client import LineOfActionClient
@@ -78,7 +78,7 @@ def opened(browser: Browser, address: str, scheme: str = "light", width: int = 1
     page.on("console", lambda message: seen.console.append(f"{message.type}: {message.text}"))
     page.on("pageerror", lambda error: seen.console.append(f"error: {error}"))
     page.on("request", lambda request: seen.requests.append(request.url))
-    page.goto(address if "#" in address else f"{address}/#pair")
+    page.goto(address if "#" in address else f"{address}/#rail")
     page.wait_for_selector("html[data-ready=yes]")
     return seen
 
@@ -118,17 +118,36 @@ def computed(address: str, process: str = "analyze", **inputs: Any) -> str:
 
 def shown(browser: Browser, address: str, key: str) -> Visit:
     seen = opened(browser, f"{address}/#database={key}")
-    seen.page.wait_for_selector("#live-body[data-answers]")
+    answered(seen.page)
     return seen
 
 
+def answered(page: Page) -> None:
+    """Wait for the live figures of a result."""
+    page.wait_for_selector("#live-figures[data-answers]", state="attached")
+
+
+def control(page: Page, selector: str) -> Locator:
+    """Return a control of a tab or a node of the rail, which is shown for it."""
+    page.evaluate(
+        "async (selector) => (await import('/page/tabs.js')).reveal(document.querySelector(selector))",
+        selector,
+    )
+    return page.locator(selector)
+
+
+def tab(page: Page, title: str) -> None:
+    """Show a tab of the stage, or a node of the rail."""
+    page.get_by_role("tab", name=title, exact=True).click()
+
+
 def answers(page: Page) -> int:
-    return int(page.locator("#live-body").get_attribute("data-answers") or 0)
+    return int(page.locator("#live-figures").get_attribute("data-answers") or 0)
 
 
 def moved(page: Page, slider: str, key: str) -> None:
     count = answers(page)
-    page.locator(slider).press(key)
+    control(page, slider).press(key)
     until(lambda: answers(page) > count)
 
 

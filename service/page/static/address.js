@@ -4,6 +4,8 @@
 
 const HASH = /^[0-9a-f]{64}$/;
 const JOB = /^[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}$/;
+const VIEWS = new Set(["tab"]); // how it is looked at
+const WORD = /^[a-z]+$/;
 const LEFT = "left";
 
 /**
@@ -32,6 +34,8 @@ export class Address {
     this.kept = history.state ?? {};
     /** @type {Map<string, string>} */
     this.names = new Map();
+    /** @type {Map<string, string>} */
+    this.views = new Map();
     /** @type {string[]} */
     this.faults = [];
     this.section = "";
@@ -44,6 +48,10 @@ export class Address {
   /** @param {string} part */
   readPart(part) {
     const [name, value] = part.split("=");
+    if (VIEWS.has(name) && WORD.test(value ?? "")) {
+      this.views.set(name, value);
+      return;
+    }
     const pattern = name === "database" ? HASH : this.places.has(name) ? JOB : null;
     if (pattern?.test(value ?? "")) this.names.set(name, value);
     else this.faults.push(part);
@@ -52,6 +60,14 @@ export class Address {
   /** @param {string} name */
   get(name) {
     return this.names.get(name) ?? null;
+  }
+
+  /** Say how it is looked at; null: as usual. @param {string} name @param {string | null} value */
+  look(name, value) {
+    if ((this.views.get(name) ?? null) === value) return;
+    if (value) this.views.set(name, value);
+    else this.views.delete(name);
+    this.keep({});
   }
 
   /**
@@ -130,7 +146,7 @@ export class Address {
 
   get text() {
     if (this.faults.length || (this.section && !this.names.size)) return location.href;
-    const fragment = [...this.names].map((pair) => pair.join("=")).join("&");
+    const fragment = [...this.names, ...this.views].map((pair) => pair.join("=")).join("&");
     return `${location.pathname}${location.search}${fragment ? `#${fragment}` : ""}`;
   }
 }

@@ -103,7 +103,7 @@ export class Drawing {
 
   mark(text) {
     byId("drawing-state").textContent = text;
-    byId("mesh-figure").parentElement.classList.toggle("stale", Boolean(text));
+    byId("thing").classList.toggle("stale", Boolean(text));
   }
 
   reach(points) {

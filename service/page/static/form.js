@@ -3,6 +3,7 @@
 import { byId, folded, make } from "./elements.js";
 import { Field, unitOf, wordsOf } from "./field.js";
 import { at, leaves, ofFlank, put, resolved } from "./schema.js";
+import { reveal } from "./tabs.js";
 
 /** Rows of the table of gears that are always shown; the others open when asked for. */
 const MAIN = new Set([
@@ -11,9 +12,9 @@ const MAIN = new Set([
 ]);
 const TEETH = /^(addendum|dedendum|root_radius|tip_diameter|thickness|cutter)/;
 const GROUPS = {
-  "More of the teeth": (name) => TEETH.test(name),
-  "More flank modifications": ofFlank,
-  "Body, seat, shaft and material": () => true,
+  "Teeth": (name) => TEETH.test(name),
+  "Flank modifications": ofFlank,
+  "Body, seat and shaft": () => true,
 };
 
 const TYPING = 1500; // milliseconds after which a field that has the focus says what is wrong with it
@@ -29,18 +30,18 @@ export class CaseForm {
     this.changed = changed;
     const { schema } = resolved(root, root);
     const part = (name) => resolved(schema.properties[name], root).schema;
-    byId("fields").replaceChildren(
-      this.pair(part("pair"), root),
+    byId("fields").prepend(
+      ...this.pair(part("pair"), root),
+      this.plain("Material", "material", part("material"), root),
       this.plain("Loads", "load", part("load"), root),
       this.plain("Assembly errors", "errors", part("errors"), root),
       this.plain("Accuracy", "accuracy", part("accuracy"), root, ["tolerance", "level", "model"]),
-      folded("Material of both gears", this.plain("Material", "material", part("material"), root)),
-      folded("Effects", this.effects(effects)),
+      this.effects(effects),
     );
     byId("case-form").addEventListener("input", (event) => {
       this.fields.get(event.target.name)?.fault("");
       event.target.closest(".replaced")?.classList.remove("replaced");
-      if (event.target.closest("#fields")) changed();
+      if (this.fields.has(event.target.name)) changed();
     });
     byId("case-form").addEventListener("submit", (event) => event.preventDefault());
   }
@@ -67,9 +68,7 @@ export class CaseForm {
     const shown = main ? found.filter((field) => main.includes(field.name)) : found;
     const rest = found.filter((field) => !shown.includes(field));
     const grid = (fields) => make("div", { class: "fields" }, ...fields.map((field) => this.block(field)));
-    return make(
-      "fieldset", {}, make("legend", {}, title), grid(shown), rest.length ? folded("More", grid(rest)) : null,
-    );
+    return node(title, grid(shown), rest.length ? folded("More", grid(rest)) : null);
   }
 
   pair(schema, root) {
@@ -89,16 +88,13 @@ export class CaseForm {
     const groups = Object.entries(GROUPS).map(([title, belongs]) => {
       const mine = [...left].filter((name) => belongs(name, leaf(name).schema));
       mine.forEach((name) => left.delete(name));
-      return folded(title, this.gearTable(title, mine, gears));
+      return node(title, this.gearTable(title, mine, gears), null, 1);
     });
-    return make(
-      "fieldset", {}, make("legend", {}, "Gears"), make("div", { class: "fields" }, ...fields),
-      main, ...groups,
-    );
+    return [node("Gear pair", make("div", { class: "fields" }, ...fields, main)), ...groups];
   }
 
   gearTable(caption, names, gears) {
-    const heads = ["", "Pinion (drives)", "Wheel"].map((text, k) => (
+    const heads = ["", "Pinion", "Wheel"].map((text, k) => (
       k === 0 ? make("td") : make("th", { scope: "col" }, text)));
     const rows = names.map((name) => {
       const words = name.split(".").map(wordsOf).join(" · ");
@@ -109,7 +105,7 @@ export class CaseForm {
         return make("td", {}, field.entry, field.message);
       });
       const field = this.fields.get((gears[0].get(name) || gears[1].get(name)).path.join("."));
-      const label = make("th", { scope: "row" }, words, make("span", { class: "hint" }, field.hint));
+      const label = make("th", { scope: "row" }, field.spoken, make("span", { class: "hint" }, field.hint));
       return make("tr", {}, label, ...cells);
     });
     return make(
@@ -128,7 +124,7 @@ export class CaseForm {
       return this.block(this.add(leaf, wordsOf(effect.name)));
     });
     const note = make("p", { class: "hint" }, "auto: on where the case calls for it and the accuracy asked for needs it.");
-    return make("fieldset", {}, make("legend", {}, "Effects"), note, make("div", { class: "fields" }, ...fields));
+    return node("Effects", make("div", { class: "fields" }, note, ...fields));
   }
 
   /** Show a case. */
@@ -212,9 +208,12 @@ export class CaseForm {
   }
 
   reveal(field) {
-    for (let node = field.input; node; node = node.parentElement) {
-      if (node.tagName === "DETAILS") node.open = true;
-    }
+    reveal(field.input);
     field.input.focus();
   }
+}
+
+/** A node of the tree of the design with its fields. */
+function node(title, content, more = null, level = 0) {
+  return make("div", { id: `node-${title.toLowerCase().replaceAll(/\W+/g, "-")}`, "data-title": title, "data-level": level }, content, more);
 }

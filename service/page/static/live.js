@@ -14,6 +14,7 @@ const STYLES = {
   kept: { name: "reference", color: "#B34C00", width: 2, dash: "dot" },
   now: { name: "now", color: "#0072B2", width: 2.4, dash: "solid" },
 };
+const PLACES = { ste: "live-ripple", harmonics: "live-orders", sharing: "live-load", flanks: "live-flank" };
 const AWAY = 2; // seconds after which a service that does not answer is asked again
 
 export class Live {
@@ -44,7 +45,7 @@ export class Live {
     if (known) {
       this.controls();
       this.plots();
-    } else for (const id of ["sliders", "live-plots"]) byId(id).replaceChildren();
+    } else for (const id of ["live-figures", "sliders", "quick", ...Object.values(PLACES)]) byId(id).replaceChildren();
   }
 
   /** The sliders and the reference stand where the address left them: draw that. */
@@ -75,8 +76,9 @@ export class Live {
         button("Forget the reference", () => this.forget(), "forget"),
       ),
       make("p", { class: "hint", id: "kept-words" }, make("span", { id: "kept-name", role: "status" }), " ", make("span", { id: "kept-differs" })),
-      make("p", { class: "hint", id: "live-time" }, ""),
     );
+    byId("quick").replaceChildren();
+    this.sliders.follow(byId("quick"));
     this.sayKept();
   }
 
@@ -178,7 +180,7 @@ export class Live {
     const broken = (found.assumptions ?? []).filter(({ holds }) => holds === false);
     said.push(...broken.map(({ assumption, reason }) => `Violated: ${assumption} (${reason}).`));
     byId("live-time").textContent = said.join(" ");
-    const body = byId("live-body").dataset;
+    const body = byId("live-figures").dataset;
     Object.assign(body, { answered: round.toFixed(1), milliseconds: all.toFixed(1), cpu: found.cpu_seconds });
     body.answers = Number(body.answers || 0) + 1;
   }
@@ -190,11 +192,11 @@ export class Live {
       harmonics: block("live_harmonics", "Mesh harmonics", "Amplitudes of the mesh frequency and its multiples."),
       sharing: block("live_load_share", "Load sharing", "Part of the load on each pair of teeth."),
     };
-    const pair = make("div", { class: "live-pair" }, this.blocks.ste.block, this.blocks.harmonics.block);
     this.numbers = folded("Numbers");
+    this.blocks.ste.block.append(this.numbers);
     this.flanks = new LiveFlanks();
-    const onFlanks = make("div", { class: "live-pair even" }, ...this.flanks.blocks);
-    byId("live-plots").replaceChildren(pair, this.numbers, onFlanks, this.blocks.sharing.block);
+    for (const [name, { block: shown }] of Object.entries(this.blocks)) byId(PLACES[name]).replaceChildren(shown);
+    byId(PLACES.flanks).replaceChildren(...this.flanks.blocks);
   }
 
   async draw(now, kept) {

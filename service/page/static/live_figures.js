@@ -18,13 +18,13 @@ function over(curve, values) {
   return { x: [...x, curve.position[0] + turns.length * curve.period], y: [...y, values[0]] };
 }
 
-export function layout(height, x, y, more = {}) {
+export function layout(x, y, more = {}) {
   const axis = (text) => ({
     title: { text, standoff: 8, font: { size: 13 } }, gridcolor: "#DDE1E6", linecolor: "#59636E", zeroline: false, ticks: "outside",
     tickcolor: "#59636E", automargin: true,
   });
   return {
-    height, font: { ...FONT, color: "#1B1F24" }, margin: { l: 60, r: 12, t: 34, b: 48 }, xaxis: axis(x), yaxis: axis(y),
+    font: { ...FONT, color: "#1B1F24" }, margin: { l: 60, r: 12, t: 28, b: 44 }, xaxis: axis(x), yaxis: axis(y),
     legend: { orientation: "h", x: 0, y: 1, yref: "container", yanchor: "top" }, hovermode: "x unified", ...more,
   };
 }
@@ -38,7 +38,7 @@ export function steFigure(shown) {
     ...over(curve, curve.ste_um.map((value) => value - curve.mean_um)), type: "scatter", mode: "lines", name,
     line: { color, width, dash },
   }));
-  return { data, layout: layout(360, "position, base pitches", "transmission error less its mean, µm") };
+  return { data, layout: layout("position, base pitches", "transmission error less its mean, µm") };
 }
 
 /** @param {Shown[]} shown */
@@ -47,7 +47,7 @@ export function harmonicsFigure(shown) {
   const data = shown.map(({ name, curve, color }) => ({
     type: "bar", name, x: order, y: curve.harmonics_um.slice(0, SHOWN_HARMONICS), marker: { color },
   }));
-  const made = layout(360, "harmonic of the mesh", "amplitude, µm", { bargap: 0.25 });
+  const made = layout("harmonic of the mesh", "amplitude, µm", { bargap: 0.25 });
   made.xaxis.dtick = 1;
   return { data, layout: made };
 }
@@ -70,7 +70,7 @@ export function sharingFigure(now) {
     ...line, y: line.y.map((share) => (share > 1e-9 ? share : null)), type: "scatter", mode: "lines", name: `pair ${pair > 0 ? "+" : ""}${pair}`,
     line: { color: PAIRS[((-pair % PAIRS.length) + PAIRS.length) % PAIRS.length], width: 2 },
   }));
-  const made = layout(280, "position, base pitches", "load share");
+  const made = layout("position, base pitches", "load share");
   made.yaxis.range = [-0.02, 1.05];
   return { data, layout: made };
 }

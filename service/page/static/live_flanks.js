@@ -25,7 +25,7 @@ function pressureFigure(flanks) {
   const { face_position_mm: x, roll_length_mm: y, pressure_mpa: z } = flanks;
   if (!overFace(flanks)) {
     const line = { type: "scatter", mode: "lines", name: "pressure", x: y, y: z.map(([value]) => value), line: { color: "#0072B2", width: 2.4 } };
-    return { data: [line], layout: layout(360, ROLL, "Hertz pressure, MPa") };
+    return { data: [line], layout: layout(ROLL, "Hertz pressure, MPa") };
   }
   const largest = largestOf(z);
   const size = isolineStep(largest);
@@ -35,7 +35,7 @@ function pressureFigure(flanks) {
     contours: { coloring: "heatmap", start: size, end: 0.92 * largest, size, showlabels: true, labelfont: { size: 11, color: "#FFFFFF" } },
     hovertemplate: "face %{x:.3g} mm<br>roll length %{y:.3g} mm<br>%{z:.4g} MPa<extra></extra>",
   };
-  return { data: [map], layout: layout(360, FACE, ROLL, { hovermode: "closest" }) };
+  return { data: [map], layout: layout(FACE, ROLL, { hovermode: "closest" }) };
 }
 
 /** Load over the face of every curve, and of the one now at its worst position too. @param {Shown[]} shown */
@@ -45,7 +45,7 @@ function faceLoadFigure(shown) {
     line(`${name}, mean`, flanks.face_position_mm, flanks.mean_load_n_per_mm, { color, width, dash })));
   const { curve: { flanks }, name } = shown.at(-1);
   const worst = line(`${name}, worst position`, flanks.face_position_mm, flanks.worst_load_n_per_mm, { color: "#56B4E9", width: 1.5, dash: "solid" });
-  const made = layout(360, FACE, "load per face width, N/mm");
+  const made = layout(FACE, "load per face width, N/mm");
   made.yaxis.rangemode = "tozero";
   return { data: [...means, worst], layout: made };
 }

@@ -4,16 +4,15 @@
 import { Address } from "./address.js";
 import { Problem, get, patiently } from "./api.js";
 import { watchService } from "./away.js";
+import { layOut } from "./bench.js";
 import { CaseFiles } from "./case_files.js";
 import { typedIn } from "./controls.js";
 import { Design } from "./design.js";
 import { Dynamics } from "./dynamics.js";
 import { byId } from "./elements.js";
-import { Glance } from "./glance.js";
 import { referenceOf, submitted } from "./job.js";
 import { Jobs } from "./jobs.js";
 import { Live } from "./live.js";
-import { goToSection, sectionLinks } from "./menu.js";
 import { clearNotice, sayMissing } from "./notice.js";
 import { caseOf, ordersOf, pairOf } from "./orders.js";
 import { showReport } from "./report.js";
@@ -21,10 +20,12 @@ import { Results } from "./results.js";
 import { SceneEditor } from "./scene_editor.js";
 import { Slot } from "./slot.js";
 import { showResult, showStudies, studiesOf } from "./studies.js";
+import { Tabs, reveal } from "./tabs.js";
 
 const STARTS = ["/v1/examples", "/v1/processes/analyze", "/v1/effects", "/v1/processes", "/v1/"];
 const PLACES = ["analyze", "simulate", "modes", "scene", "job"]; // beside the studies
 const OF_RESULT = { simulate: null, modes: null }; // jobs on a result, which go with it
+const USUAL_TAB = "ripple";
 const RESTING = 150; // milliseconds between two writings of what is typed
 
 class Page {
@@ -41,14 +42,15 @@ class Page {
     /** @type {Map<string, Slot>} */
     this.slots = new Map();
     this.parts(studies);
+    this.nodes = new Tabs(byId("tree"), byId("fields"));
+    this.tabs = layOut((id) => this.address.look("tab", id === USUAL_TAB ? null : id));
     this.keepTyped();
-    sectionLinks();
     addEventListener("popstate", () => {
       this.address.read();
       this.render();
     });
     await this.render();
-    goToSection(this.address.section);
+    byId(this.address.section)?.focus();
     document.documentElement.dataset.ready = "yes";
   }
 
@@ -61,8 +63,7 @@ class Page {
     const dynamics = new Dynamics({ slot, show });
     this.scenes = new SceneEditor({ slot, show, design: this.design });
     const live = new Live(this, { take, inThreeDimensions: () => this.inThreeDimensions() });
-    this.glance = new Glance();
-    this.results = new Results(this, this.glance, live, [dynamics, this.scenes]);
+    this.results = new Results(this, live, [dynamics, this.scenes]);
     const button = byId("analyze");
     this.analysis = slot("analyze", { progress: byId("analyze-job"), result: byId("analyze-result"), button },
       (target, reference) => this.tabled("analyze", reference));
@@ -96,6 +97,10 @@ class Page {
     if (!kept.fields) this.beginWith(pair, orders);
     this.fill(orders.filter(({ name }) => !(name in OF_RESULT)));
     for (const [name, slot] of this.slots) slot.follow(this.address.get(name));
+    const [newest] = [...this.address.names.keys()].reverse();
+    if (this.address.views.has("tab")) this.tabs.select(this.address.views.get("tab"));
+    else if (newest && newest !== "database") reveal(this.slots.get(newest).result);
+    else this.tabs.select(USUAL_TAB);
     await this.results.show(this.address.get("database"));
     if (turn !== this.turn) return;
     this.fill(orders.filter(({ name }) => name in OF_RESULT)); // showing a result resets them
@@ -133,7 +138,6 @@ class Page {
       await this.results.show(hash);
       return;
     }
-    this.glance.waits();
     const { jobID } = await submitted(byId("analyze-job"), "analyze", inputs).catch((problem) => this.notFirst(problem));
     if (!jobID || !this.address.empty) return;
     this.address.replace({ analyze: jobID });
@@ -142,7 +146,6 @@ class Page {
 
   notFirst(problem) {
     if (!(problem instanceof Problem)) throw problem;
-    this.glance.leave();
     this.analysis.refused(problem);
     return {};
   }
@@ -176,6 +179,7 @@ class Page {
   /** A job has ended with a table: that is what the address names in its place from now on. */
   async tabled(name, { hash }) {
     this.address.settle(name, "database", hash);
+    this.tabs.select(this.tabs.shown === "jobs" ? USUAL_TAB : this.tabs.shown);
     this.address.replace(OF_RESULT);
     for (const other of [name, ...Object.keys(OF_RESULT)]) this.slots.get(other).follow(null);
     await this.results.show(hash);
@@ -189,11 +193,13 @@ class Page {
   /** Show what came of an earlier job. */
   async reopen({ jobID: job }) {
     this.address.open("job", job);
+    this.tabs.select("jobs");
     const before = document.activeElement;
     await this.render();
     await this.reopened.followed;
     if (document.activeElement !== before) return; // the reader went on while plots were drawn
-    byId(this.address.get("job") ? "jobs-result" : "results").focus();
+    if (!this.address.get("job")) this.tabs.select(USUAL_TAB);
+    byId(this.address.get("job") ? "jobs-result" : "stage").focus();
   }
 
   /** Show what differs between the results of two jobs, below the list. */
@@ -218,12 +224,12 @@ class Page {
       ([gear, changes]) => Object.entries(changes).map(([name, value]) => [`pair.${gear}.${name}`, value]),
     );
     this.design.take(Object.fromEntries(entries.filter(([key]) => key.startsWith("pair.pinion.") || key.startsWith("pair.wheel."))));
-    byId("pair").focus();
+    reveal(byId("f-pair-pinion-teeth"));
+    byId("rail").focus();
   }
 
   inThreeDimensions() {
     this.design.take({ "accuracy.model": "3d" });
-    byId("run").focus();
     this.analyze();
   }
 }

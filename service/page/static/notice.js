@@ -2,6 +2,7 @@
 /** What the first screen says of an address that names what cannot be shown. */
 
 import { byId, make } from "./elements.js";
+import { reveal } from "./tabs.js";
 
 export function clearNotice() {
   byId("notice").replaceChildren();
@@ -14,7 +15,7 @@ export function sayMissing(text) {
     box.append(
       make("strong", {}, "Not all that this address names can be shown."), make("ul"),
       make("p", {}, make("a", { href: "/" }, "Begin anew"), ", or reopen an earlier result from the ",
-        make("a", { href: "#jobs" }, "list of jobs"), "."),
+        make("button", { type: "button", class: "small", onclick: () => reveal(byId("jobs")) }, "list of jobs"), "."),
     );
   }
   box.querySelector("ul").prepend(make("li", {}, text));

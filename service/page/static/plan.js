@@ -32,7 +32,9 @@ export function showPlan(found) {
     ...found.warnings.map(({ message }) => make("p", { class: "alarm", role: "alert" }, `Warning: ${message}`)),
     head,
     make("p", { class: choice.met && !found.conflict ? "hint" : "alarm" }, `Mesh ${choice.level}: ${said}.`),
-    folded("All meshes", dataTable(levels, (row) => row === chosen)),
+  );
+  byId("plan-tables").replaceChildren(
+    folded("All meshes: what each is predicted to take", dataTable(levels, (row) => row === chosen)),
     folded("Effect ledger: which physics is in, why, and its influence", dataTable(ledger(found.effect_ledger))),
   );
   return prediction.cpu_seconds;
@@ -58,4 +60,5 @@ function ledger(entries) {
 
 export function noPlan() {
   byId("plan").replaceChildren(make("p", { class: "hint" }, "No plan yet: see above what is missing."));
+  byId("plan-tables").replaceChildren();
 }

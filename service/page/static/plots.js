@@ -9,7 +9,7 @@ const NARROW = window.matchMedia("(max-width: 40rem)"); // also a wide screen th
 const NARROW_LINE = 36; // characters
 const NARROW_LABEL = 72; // pixels beside a plot
 // without the bar of buttons: a plot is an image to a screen reader, and an image holds no controls
-const CONFIG = { responsive: true, displaylogo: false, displayModeBar: false };
+const CONFIG = { displaylogo: false, displayModeBar: false };
 const shown = new Map();
 
 function channels(color) {
@@ -85,6 +85,7 @@ function fitted({ data, layout }, width) {
 async function swept() {
   for (const old of [...shown.keys()].filter((node) => !node.isConnected && node.dataset.drawn)) {
     shown.delete(old);
+    sizes.unobserve(old);
     (await plotly()).purge(old);
   }
 }
@@ -99,15 +100,30 @@ export const painted = () => new Promise((done) => {
 export async function plot(node, figure) {
   await swept();
   shown.set(node, figure);
+  sizes.observe(node);
+  if (node.clientWidth) await draw(node, figure);
+}
+
+/** Draw every plot that comes into sight or changes its size; what nobody sees is not drawn. */
+const sizes = new ResizeObserver((entries) => {
+  for (const { target, contentRect } of entries) {
+    if (!contentRect.width) delete target.dataset.size; // it may change unseen
+    const size = `${Math.round(contentRect.width)} ${Math.round(contentRect.height)}`;
+    if (contentRect.width && shown.has(target) && size !== target.dataset.size) draw(target, shown.get(target));
+  }
+});
+
+async function draw(node, figure) {
+  if (figure.layout.height) node.style.height = `${figure.layout.height}px`; // others take the height of their place
+  node.dataset.size = `${node.clientWidth} ${node.clientHeight}`;
   const { data, layout } = fitted(themed(figure), node.clientWidth || 800);
-  node.style.height = `${layout.height}px`; // a plot that is resized takes the height of its place
   await (await patiently(plotly)).react(node, data, layout, CONFIG);
   node.dataset.drawn = "yes";
 }
 
 for (const query of [DARK, NARROW]) {
   query.addEventListener("change", () => {
-    for (const [node, figure] of [...shown]) if (node.isConnected) plot(node, figure);
+    for (const [node, figure] of [...shown]) if (node.isConnected && node.clientWidth) draw(node, figure);
   });
 }
 

@@ -9,9 +9,9 @@ import { soundBlock } from "./sound.js";
  * Show the report of a result.
  * @param {HTMLElement} target
  * @param {{href: string, type: string, hash: string, against?: string}} result reference to it, and the hash of another one to compare it with
- * @param {{making?: boolean, signal: AbortSignal, first?: (report: any) => Promise<void>}} options with the tables that say how it was made; given up when it is left; what shows the report before its plots are drawn
+ * @param {{making?: boolean, signal: AbortSignal, place?: (key: string) => HTMLElement | null, alarms?: HTMLElement}} options with the tables that say how it was made; given up when it is left; where a figure stands, and the warnings, if not in `target`
  */
-export async function showReport(target, result, { making = false, signal, first }) {
+export async function showReport(target, result, { making = false, signal, place = () => null, alarms: warnings }) {
   target.setAttribute("aria-busy", "true");
   const figuresAt = `${result.href}/figures${result.against ? `?against=${result.against}` : ""}`;
   const report = await patiently(() => get(figuresAt)).catch((problem) => {
@@ -19,18 +19,17 @@ export async function showReport(target, result, { making = false, signal, first
     throw problem;
   });
   if (signal.aborted) return null;
-  await first?.(report);
-  if (signal.aborted) return null;
   const head = make("dl", { class: "headline" });
   figures(head, report.headlines.map(({ name, value, remark }) => [name, value, remark]));
   const alarms = report.alarms.map((text) => make("p", { class: "alarm", role: "alert" }, text));
   const drawn = [];
   const shown = report.sections.filter((one) => making || one.part === "results" || one.figures.length);
-  const sections = shown.map((one) => sectionBlock(one, drawn, result));
+  const sections = shown.map((one) => sectionBlock(one, { drawn, result, place }));
   const lead = report.lead ? `${report.title}: ${report.lead.replace(/\.$/, "")}.` : `${report.title}.`;
   target.replaceChildren(
-    make("p", { class: "lead" }, lead), ...alarms, head, files(result, figuresAt), ...sections,
+    make("p", { class: "lead" }, lead), ...(warnings ? [] : alarms), head, files(result, figuresAt), ...sections,
   );
+  warnings?.replaceChildren(...alarms);
   for (const [node, figure] of drawn) {
     await painted(); // between two plots the page answers
     if (signal.aborted) return null;
@@ -40,16 +39,19 @@ export async function showReport(target, result, { making = false, signal, first
   return report;
 }
 
-function sectionBlock(section, drawn, result) {
-  const parts = section.figures.map((figure) => {
+function sectionBlock(section, { drawn, result, place }) {
+  const parts = section.figures.flatMap((figure) => {
     const { block, node } = figureBlock(figure);
     if (figure.sound) block.append(soundBlock(node, figure, result));
     drawn.push([node, figure.plot]);
-    return block;
+    const elsewhere = place(figure.key);
+    elsewhere?.append(block);
+    return elsewhere ? [] : [block];
   });
   const tables = section.tables.map((table) => dataTable(table));
   const more = section.folded.map((table) => folded(table.caption, dataTable(table)));
   const text = section.text ? make("p", {}, section.text) : null;
+  if (!parts.length && !tables.length && !more.length && !text) return "";
   if (!parts.length && section.part !== "results") return folded(section.title, ...(text ? [text] : []), ...tables, ...more);
   return make("div", {}, make("h3", {}, section.title), text ?? "", ...parts, ...tables, ...more);
 }

@@ -10,24 +10,27 @@ import { fetchPlotly } from "./plotly.js";
 import { showReport } from "./report.js";
 
 const PLANE = /plane/;
-const OWN = ["live-body", "dynamics-body"]; // parts of the page whose controls belong to one result
-const NOTES = ["results-design", "live-design", "dynamics-design"];
+const OWN = ["live-body", "quick", "dynamics-body"]; // parts of the page whose controls belong to one result
+const TABS = { // where the figures of the report stand; those of no other tab are with the tables
+  ripple: ["ste", "ripple", "ripple_over_torque"], flank: ["flanks_over_torque", "face_load", "pair_drawing"],
+  load: ["load_sharing", "mesh_stiffness"], orders: ["ste_spectrum", "harmonics"],
+};
+const PLACES = new Map(Object.entries(TABS).flatMap(([tab, keys]) => keys.map((key) => [key, `report-${tab}`])));
 
 export class Results {
   /**
    * @param {object} page
    * @param {import("./address.js").Address} page.address
    * @param {import("./design.js").Design} page.design
-   * @param {import("./glance.js").Glance} glance
    * @param {import("./live.js").Live} live
    * @param {{show: (known: object | null) => void}[]} others what is offered for an analyzed pair
    */
-  constructor({ address, design }, glance, live, others) {
-    Object.assign(this, { address, design, glance, live, others });
+  constructor({ address, design }, live, others) {
+    Object.assign(this, { address, design, live, others });
     this.key = null;
     this.shown = null;
     this.stopping = new AbortController();
-    this.notes = NOTES.map((id) => new DesignNote(byId(id), design));
+    this.note = new DesignNote(byId("results-design"), design);
   }
 
   /**
@@ -82,23 +85,29 @@ export class Results {
     this.shown = key;
   }
 
-  /** The report, its main figures first at the top of the page. */
-  report(href, hash, signal) {
-    const first = (report) => this.glance.show(report);
-    return showReport(byId("results-body"), { href, type: "application/x-netcdf", hash }, { making: true, signal, first });
+  /** The report: its figures in the tabs, its warnings in the dock. */
+  async report(href, hash, signal) {
+    const place = (key) => byId(PLACES.get(key) ?? "");
+    const result = { href, type: "application/x-netcdf", hash };
+    this.unreport();
+    const report = await showReport(byId("results-body"), result, { making: true, signal, place, alarms: byId("results-alarms") });
+    if (report) byId("dock-words").textContent = `${report.title}, ${report.lead}.`;
+  }
+
+  unreport() {
+    for (const id of ["results-body", "results-alarms", "dock-words", ...PLACES.values()]) byId(id).replaceChildren();
   }
 
   /** @param {any} known */
   offer(known) {
     this.live.show(known);
     for (const other of this.others) other.show(known);
-    for (const note of this.notes) note.of(known?.case ?? null);
+    this.note.of(known?.case ?? null);
   }
 
   clear() {
     byId("results-none").hidden = false;
-    byId("results-body").replaceChildren();
-    this.glance.leave();
+    this.unreport();
     this.offer(null);
   }
 

@@ -6,6 +6,7 @@ import { evenly, usualScene } from "./dynamics.js";
 import { byId, make, save } from "./elements.js";
 import { showFailure } from "./job.js";
 import { textAndFiles } from "./named_files.js";
+import { reveal } from "./tabs.js";
 
 const WHAT = [
   ["simulate", "Run over time"], ["modes", "Modes over speed"], ["response", "Forced response over speed"],
@@ -80,8 +81,8 @@ export class SceneEditor {
    */
   async take(name, { scene, load_cases: cases }) {
     await this.put(scene, name, cases);
-    byId("scene-text").closest("section").focus();
-    this.text.scrollIntoView({ block: "center" });
+    reveal(this.text);
+    this.text.focus();
   }
 
   /** Put a scene into the text. */

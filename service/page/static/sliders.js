@@ -8,6 +8,8 @@ const MAIN = [ // the others are folded away
   "torque_n_m", "pinion.tip_relief_um", "pinion.tip_relief_length_mm", "wheel.tip_relief_um", "wheel.tip_relief_length_mm",
   "pinion.helix_crowning_um", "misalignment_um",
 ];
+const QUICK = "pinion.tip_relief_um"; // beside the curve of a narrow screen
+const NARROW = window.matchMedia("(max-width: 62rem)");
 const KINDS = ["amount", "slope", "length"]; // of figures that have a slider
 const ACROSS = 30; // most of a depth across the face, µm
 const USUAL_LENGTH = { profile: 0.5, face: 0.1 }; // normal modules, face widths; where the case has none
@@ -91,6 +93,16 @@ export class Sliders {
     put(knob.value);
     const label = make("label", { for: id }, `${knob.label}, ${knob.unit}`);
     return { knob, exact, put, told, block: make("div", { class: "slider" }, label, range, exact) };
+  }
+
+  /** Show the slider that is looked at in a place of a narrow screen. @param {HTMLElement} place */
+  follow(place) {
+    const { block } = this.controls.find(({ knob }) => knob.key === QUICK);
+    const home = document.createComment(QUICK);
+    block.replaceWith(home);
+    const put = () => (NARROW.matches ? place.append(block) : home.after(block));
+    NARROW.onchange = put;
+    put();
   }
 
   reset() {

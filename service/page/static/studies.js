@@ -5,6 +5,8 @@ import { byId } from "./elements.js";
 import { showOptimization } from "./optimize.js";
 import { showReport } from "./report.js";
 
+const TABS = { optimize: "ripple", sweep: "ripple", flank: "flank", "root-stress": "load", ablate: "errors", frontier: "errors" };
+
 /** The studies of a case among the processes of a service. */
 export function studiesOf(processes) {
   return processes.map(cardOf).filter(({ action, subjects = [] }) => action && subjects.includes("case"));
@@ -36,8 +38,10 @@ export async function showResult(target, reference, { take, signal }) {
  * @param {{design: import("./design.js").Design, slot: Function, show: Function}} page
  */
 export function showStudies(studies, { design, slot, show }) {
-  byId("study-list").replaceChildren(...studies.map((study) => {
+  for (const study of studies) {
     const { process } = study;
-    return card(study, (parts) => slot(process, parts, show), (values) => ({ process, inputs: { case: design.case, ...values } }));
-  }));
+    byId(TABS[process] ?? "tolerance").append(
+      card(study, (parts) => slot(process, parts, show), (values) => ({ process, inputs: { case: design.case, ...values } })),
+    );
+  }
 }
