@@ -5,10 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from functools import cache, partial
 
+from dynamics.acoustics import OrderPower
+from dynamics.assembly.assemble import assemble
 from dynamics.checks import finite
 from dynamics.errors import DynamicsError, InputError
+from dynamics.linearize import flank_transfer
 from dynamics.noise.sound_band import GUESSES, SoundModel, forced_power, largest_level
+from dynamics.noise.transferred_quantities import SoundPower
 from dynamics.scene import Scene
 from dynamics.types import FloatArray
 from model_studies.frontier import run_variants
@@ -102,6 +107,29 @@ def _ranked(rows: Iterable[Sensitivity]) -> tuple[Sensitivity, ...]:
     return tuple(sorted(rows, key=lambda row: -abs(row.change)))
 
 
+def _whole_level(model: SoundModel, speed: FloatArray, orders: int) -> float:
+    return largest_level(speed, forced_power(model, speed, orders)[1])
+
+
+def _flank_levels(model: SoundModel, speed: FloatArray, orders: int) -> Callable[[Scene], float]:
+    """Return from a scene with other flanks to its largest level, by the transfer functions of the model's.
+
+    They hold what other tables change of excitation, stiffness and bearings. A scene with other freedoms, as
+    where its flanks call for another effect, has a response of its own.
+    """
+    transfer = flank_transfer(assemble(model.scene), speed, orders)
+    form = SoundPower().form(transfer, model)
+
+    def level(scene: Scene) -> float:
+        try:
+            inputs = transfer.inputs(transfer.excitation(assemble(scene)))
+        except InputError:
+            return _whole_level(replace(model, scene=scene), speed, orders)
+        return largest_level(speed, OrderPower(transfer.frequency.T, form.of(inputs).T))
+
+    return level
+
+
 def sound_sensitivities(
     model: SoundModel,
     speed: FloatArray,
@@ -117,7 +145,7 @@ def sound_sensitivities(
     model, speed, orders
         As of `forced_power`; the level is the `largest_level`.
     scenes : callable
-        From one of them to the scene by its value.
+        From one of them to the scene by its value: its level is by `flank_transfer`.
     progress : callable
         Called as progress("sensitivities", fraction).
 
@@ -127,19 +155,17 @@ def sound_sensitivities(
     left_out : dict of str to str
         Name of a figure to the reason why it has none.
     """
+    level_of = cache(partial(_flank_levels, model, speed, orders))
 
-    def varied(figure: DesignFigure) -> Callable[[float], SoundModel]:
-        if figure.name in GUESSES:
-            change = GUESSES[figure.name].varied
-            return lambda value: change(model, value) if value != 1.0 else model
-        scene = scenes(figure)
-        return lambda value: replace(model, scene=scene(value))
+    def level(figure: DesignFigure) -> Callable[[float], float]:
+        if figure.name not in GUESSES:
+            at, heard = scenes(figure), level_of()
+            return lambda value: heard(at(value))
+        change = GUESSES[figure.name].varied
+        return lambda value: _whole_level(change(model, value) if value != 1.0 else model, speed, orders)
 
     def compute(figure: DesignFigure) -> Sensitivity:
-        at = varied(figure)
-        return Sensitivity.of(
-            figure, lambda value: largest_level(speed, forced_power(at(value), speed, orders)[1])
-        )
+        return Sensitivity.of(figure, level(figure))
 
     known = [name for name, guess in GUESSES.items() if guess.varied(model, 2.0) is not model]
     figures = (DesignFigure(name, "", 1.0, STEPS.get(name, STEP)) for name in known)

@@ -12,7 +12,14 @@ import pytest
 from housing_solid import housed_scene, write_block
 
 from dynamics.acoustics import EquivalentRadiatedPower
-from dynamics.noise import GUESSES, SoundModel, forced_power, housing_radiation
+from dynamics.noise import (
+    GUESSES,
+    DesignFigure,
+    SoundModel,
+    forced_power,
+    housing_radiation,
+    sound_sensitivities,
+)
 from dynamics.noise.sound_band import largest_level
 from lineofaction.cli.subjects import tabled_scene
 from lineofaction.gearbox.convert.housings import housings_in
@@ -111,6 +118,24 @@ def test_a_step_of_a_relief_changes_the_level_as_a_scene_with_that_relief_does(
     ]
     assert abs(levels[1] - levels[0]) > 0.5
     assert levels[3] - levels[2] == pytest.approx(levels[1] - levels[0], abs=0.1)
+
+
+@pytest.mark.law
+def test_sensitivities_to_flanks_are_those_of_whole_responses(
+    subject: TabledScene, model: SoundModel, tmp_path: Path
+) -> None:
+    scenes = _flank_scenes(subject, RELIEF, tmp_path)
+    figure = DesignFigure(RELIEF, "um", 10.0, 15.0)
+    rows, left_out = sound_sensitivities(
+        model, SPEED, 3, [figure], lambda _: lambda value: scenes.scene({RELIEF: value}), quiet
+    )
+    (row,) = (row for row in rows if row.figure == figure)
+    own, once, twice = (
+        largest_level(SPEED, forced_power(replace(model, scene=scenes.scene({RELIEF: value})), SPEED, 3)[1])
+        for value in (10.0, 25.0, 40.0)
+    )
+    assert not left_out and abs(once - own) > 0.1
+    assert (row.change, row.change_of_two) == pytest.approx((once - own, twice - own), abs=1e-6)
 
 
 def test_bands_go_to_json(subject: TabledScene, model: SoundModel, tmp_path: Path) -> None:

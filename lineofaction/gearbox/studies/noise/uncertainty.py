@@ -10,6 +10,7 @@ import numpy as np
 
 from bounds.types import Json
 from dynamics.acoustics import Range
+from dynamics.mechanism.kinematics import at_steady_speeds
 from dynamics.noise import (
     DesignFigure,
     HousingRadiation,
@@ -121,7 +122,7 @@ def _sensitivities_of(
 
     def scenes(flank: DesignFigure) -> Callable[[float], Scene]:
         varied = _flank_scenes(subject, flank.name, means.home)
-        return lambda value: varied.scene({flank.name: value})
+        return lambda value: at_steady_speeds(varied.scene({flank.name: value}))
 
     flanks = _flank_figures(subject.inputs)
     return sound_sensitivities(model, speed, orders, flanks, scenes, means.report)
