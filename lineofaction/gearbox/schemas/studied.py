@@ -116,7 +116,8 @@ class NoiseRanges(BoundaryModel):
     sensitivities: bool = Field(
         default=False,
         description="Whether to find what 1 dB costs: in damping and stiffness, three responses each, and in "
-        "tip relief and crowning of meshes with a case, whose contact is solved again three times each",
+        "tip relief and crowning of meshes with a case, whose contact is solved again three times each, and "
+        "heard by the transfer functions of the scene",
         examples=[True],
     )
     housing_damping: Factors | None = Field(

@@ -171,6 +171,12 @@ def _text(answer: AnsweredComplaint) -> Iterator[Table | str]:
         yield "an order at any speed: no mode is looked for; give a speed"
     else:
         yield "no mode within reach: none amplifies the frequency by 6 dB"
+    if answer.facts.get("parting", 0.0) > 0.0:
+        share = engineering(100.0 * answer.facts["parting"], 2)
+        yield (
+            f"flanks part: a linear mesh would pull by {share} % of its mean force, so no force here holds; "
+            "loa steady and loa simulate have it"
+        )
     if any(each.excitation.kind == MESH for each in complaint.within) and not np.any(
         np.isfinite([force.force for force in answer.forces])
     ):

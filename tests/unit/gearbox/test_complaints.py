@@ -31,6 +31,7 @@ from lineofaction.gearbox.schemas.complaint import ComplaintFields, ComplaintInp
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.report.document import read_inputs
 from lineofaction.report.drawing.marks import of_run
+from lineofaction.report.response.complaint import PAGE
 
 Json = dict[str, Any]
 ROOT = Path(__file__).parents[3]
@@ -401,3 +402,17 @@ def test_a_study_over_speed_leaves_out_the_torque_of_a_run_up() -> None:
     assert running.mean_force[0] == approx(10.0 / (0.061 * math.cos(ANGLE)), rel=1e-9)
     assert rising.mean_force == approx(running.mean_force, rel=1e-12)
     assert rising.mesh_force == approx(running.mesh_force, rel=1e-9)
+
+
+def test_a_force_that_no_linear_response_holds_is_told() -> None:
+    """A stiffness that swings by 80 % parts the flanks in the torsional mode, at any load."""
+    scene = train((25, 61))
+    mode = loa.modes(scene, speed_rpm=[1.0]).natural_frequency[-1]
+    said = {}
+    for swing in (3e6, 2.4e8):
+        stiffness = {"value": [3e8], "amplitude": [swing]}
+        scene["meshes"][0]["stiffness"]["stiffness_n_per_m"] = stiffness
+        answer = loa.complaint(scene, order=25.0, speed_rpm=60.0 * mode / 25.0)
+        said[swing] = answer.facts["parting"], any("flanks part" in str(line) for line in PAGE.text(answer))
+    assert said[3e6] == (0.0, False)
+    assert said[2.4e8][0] > 0.1 and said[2.4e8][1]

@@ -50,6 +50,7 @@ class ComplaintFigures(Figures):
     passing: list[PassingFigures]
     nearest: list[PassingFigures]
     modes: list[ModeFigures]
+    parting_percent: float
     equilibrium: Equilibrium | None
     cpu_seconds: Seconds
     reduction_cost: ReductionCosts

@@ -40,7 +40,7 @@ REACH = 2.0
 RESOLVED = 1.5
 """Frequency to which shafts that bend are resolved, over that of the complaint: modes above have less."""
 MOST_ORDERS = 100
-PAIR_ALONE: Json = {"equilibrium": None, "effect_ledger": None}
+PAIR_ALONE: Json = {"equilibrium": None, "effect_ledger": None, "parting": 0.0}
 """Facts of the answer about a case: teeth and speeds say it."""
 
 
@@ -125,8 +125,10 @@ class _ComplaintStudy(
             reach = None if complaint.frequency is None else RESOLVED * complaint.frequency
             modes = modal_analysis(system, speed, highest_frequency=reach)
         means.report("modes", 1.0)
-        forces = _forces(system, complaint, speed)
-        answer = AnsweredComplaint(complaint, forces, _near_modes(modes, complaint), modes.facts)
+        response = _response(system, complaint, speed)
+        forces = tuple(_force(response, order, complaint.bearing) for order in _orders(complaint))
+        facts = modes.facts | {"parting": _parting(response)}
+        answer = AnsweredComplaint(complaint, forces, _near_modes(modes, complaint), facts)
         return with_facts_of_scene(answer, subject)
 
     def figures(self, result: AnsweredComplaint) -> Json:
@@ -139,6 +141,7 @@ class _ComplaintStudy(
             words=sentence(complaint),
             tolerance_percent=100.0 * complaint.tolerance,
             torque=complaint.torques,
+            parting_percent=100.0 * result.facts.get("parting", 0.0),
             passing=[(force, _figures_of(each, complaint)) for each, force in within],
             nearest=[
                 (OrderForce("", np.nan), _figures_of(each, complaint)) for each in complaint.passing[:5]
@@ -192,17 +195,28 @@ def _near_modes(modes: ModalAnalysis, complaint: Complaint) -> tuple[NearMode, .
     return tuple(sorted(near, key=lambda mode: -mode.amplification))
 
 
-def _forces(system: System, complaint: Complaint, speed: Sequence[float]) -> tuple[OrderForce, ...]:
-    """Return the force of each order that passes on a bearing, by default on the one that feels it most."""
-    orders = [each.order * complaint.per_pitch for each in complaint.within]
-    highest = int(np.ceil(max(orders) - 1e-6))
-    response: ForcedResponse | None = None
-    if speed and highest <= MOST_ORDERS:
-        try:
-            response = forced_response(system, speed, max(highest, 1))
-        except InputError:  # nothing excites, or no common period: the orders are named all the same
-            response = None
-    return tuple(_force(response, order, complaint.bearing) for order in orders)
+def _orders(complaint: Complaint) -> list[float]:
+    """Return the orders that pass, as results count them."""
+    return [each.order * complaint.per_pitch for each in complaint.within]
+
+
+def _response(system: System, complaint: Complaint, speed: Sequence[float]) -> ForcedResponse | None:
+    """Return the linear response up to the orders that pass; None: without a speed, or nothing excites."""
+    highest = max(int(np.ceil(max(_orders(complaint)) - 1e-6)), 1)
+    if not speed or highest > MOST_ORDERS:
+        return None
+    try:
+        return forced_response(system, speed, highest)
+    except InputError:  # nothing excites, or no common period: the orders are named all the same
+        return None
+
+
+def _parting(response: ForcedResponse | None) -> float:
+    """Return by what share of the mean mesh force flanks would pull in a linear response; 0: none part."""
+    if response is None:
+        return 0.0
+    pull = -response.least_mesh_force[:, 0] / np.maximum(np.abs(response.mean_force), 1e-300)
+    return float(np.max(pull, initial=0.0))
 
 
 def _force(response: ForcedResponse | None, order: float, bearing: str | None) -> OrderForce:
