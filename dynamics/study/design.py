@@ -87,7 +87,6 @@ class Uniform:
         return np.asarray(self.low + (self.high - self.low) * fraction)
 
 
-Distribution = Normal | Uniform
 Factor = Levels | Listed | Normal | Uniform
 
 

@@ -25,7 +25,6 @@ from model_studies.spread import quantile_bounds, rank_correlation
 from model_studies.workers import InProcess, Workers, task_cpu_seconds
 
 FRACTIONS = (0.05, 0.5, 0.95)
-POINT = ("point",)
 
 
 @dataclass(frozen=True)

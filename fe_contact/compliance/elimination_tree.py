@@ -79,11 +79,6 @@ class EliminationTree:
         """Numbers copied in gathering the fronts."""
         return sum((len(f.inner) + len(f.border)) ** 2 for f in self.root.fronts())
 
-    @property
-    def front_count(self) -> int:
-        """Number of fronts."""
-        return sum(1 for _ in self.root.fronts())
-
     def working_entries(self) -> int:
         """Most numbers held at a time besides factors, and what they leave behind."""
         return _working(self.root)

@@ -114,11 +114,6 @@ def corner_contact(pair: ParallelAxes, side: Side, overshoot: ArrayLike) -> Corn
     raise InputError("side", side, 'one of "approach" and "exit"')
 
 
-def _corner_gap(pair: ParallelAxes, side: Side, overshoot: ArrayLike) -> FloatArray:
-    """Rigid gap of `corner_contact` in m, NaN where the edge meets no involute."""
-    return corner_contact(pair, side, overshoot).gap
-
-
 def edge_gap(pair: ParallelAxes, side: Side, edge: ArrayLike, roll_length: ArrayLike) -> FloatArray:
     """Exact rigid gap in m of points of one flank on the other, as if the flank ended in an edge there.
 

@@ -83,11 +83,6 @@ class InternalGearPair(ParallelAxes):
             refuse_trimming_interference(self.radial_assembly_clearance)
 
     @property
-    def tooth_number_difference(self) -> int:
-        """Teeth of the ring less teeth of the pinion."""
-        return self.wheel.teeth - self.pinion.teeth
-
-    @property
     def radial_assembly_clearance(self) -> float:
         """Play in m on the pinion's base circle when it is put in radially, in the middle of its backlash.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -322,6 +322,3 @@ def _status_name(code: int) -> str:
 
 def _same_bits(first: NDArray[Any], second: NDArray[Any]) -> bool:
     return first.dtype == second.dtype and first.shape == second.shape and first.tobytes() == second.tobytes()
-
-
-STORED = tuple(entry.name for entry in fields(SteFields))

@@ -265,8 +265,7 @@ def stored_results(
     data_directory: Path,
     database_url: str | None = None,
     results_url: str | None = None,
-    keys: Keys | None = None,
 ) -> ResultStore:
     """Return the store of a data directory, or of what the URLs name, for one who reads now and then."""
     engine = open_database(database_url or data_directory / DATABASE_FILE, pooled=False)
-    return result_store(engine, data_directory, results_url, keys=keys)
+    return result_store(engine, data_directory, results_url)

@@ -25,7 +25,6 @@ from service.settings import Settings
 BINARY = ("application/x-netcdf", "application/octet-stream", "audio/wav")
 _directory = tempfile.TemporaryDirectory(prefix="loa-examples-")
 _app = create_app(Settings(data_directory=Path(_directory.name)))
-RESPONSES = DESCRIPTION["components"]["responses"]
 OPERATIONS = [
     (method, path, operation)
     for path, methods in DESCRIPTION["paths"].items()

@@ -15,7 +15,6 @@ import pytest
 import lineofaction as loa
 
 ROOT = Path(__file__).parents[2]
-_OURS = "from (fe_contact|dynamics|service)|import lineofaction"
 PAGES = sorted(
     page
     for page in (ROOT / "README.md", *(ROOT / "docs").rglob("*.md"))

@@ -1,7 +1,5 @@
 """Tables of a mesh mean the same in both libraries: axes, forces, and how often they are evaluated."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -7,8 +7,6 @@ damping to the ground: (d - e)'' + 2 z (d - e)' + f = Fm - e'' - 2 z e', and the
 of amplitude A W sqrt(W^2 + 4 z^2), wanted to be Fa W^2.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

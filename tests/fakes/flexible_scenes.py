@@ -1,7 +1,5 @@
 """Scenes whose shafts bend and twist, and what closed forms say of them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

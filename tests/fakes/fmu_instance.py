@@ -10,8 +10,6 @@ import pytest
 fmpy = pytest.importorskip("fmpy", reason="FMPy is not installed: pip install fmpy")
 from fmpy.fmi2 import FMU2Slave  # noqa: E402
 
-FMI2_OK = 0
-
 
 class Instance:
     """One instance; use as a context."""

@@ -1,7 +1,5 @@
 """The pair in a housing with mass whose modes are known."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

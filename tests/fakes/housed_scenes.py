@@ -1,7 +1,5 @@
 """Gear pairs and blocks in housings with mass."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

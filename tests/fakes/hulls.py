@@ -1,7 +1,5 @@
 """Hulls of tests: spheres and boxes of triangles with outward normals."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.spatial import ConvexHull
 

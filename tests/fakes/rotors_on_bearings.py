@@ -1,7 +1,5 @@
 """A rotor on two rolling bearings of every kind."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A helical two-stage gearbox with elastic shafts on linear bearings, for the tests of its deflection."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

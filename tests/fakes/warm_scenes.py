@@ -1,7 +1,5 @@
 """A gear pair on two shafts in a housing, every part with a temperature."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

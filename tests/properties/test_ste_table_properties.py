@@ -1,7 +1,5 @@
 """Laws of the mesh-force extraction over random tables: any knots, loads and shapes that rise with load."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings

@@ -1,7 +1,5 @@
 """Line contact against published and recomputed numbers (units of the tables: N, mm, MPa, um)."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

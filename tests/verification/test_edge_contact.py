@@ -12,8 +12,6 @@ constant. `local_approach` counts from the patch: that constant is ln(a) + 1/4 -
 pressure of resultant one.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

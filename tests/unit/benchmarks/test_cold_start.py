@@ -1,7 +1,5 @@
 """Time of imports, from the record that Python keeps of them."""
 
-from __future__ import annotations
-
 from benchmarks.cold_start import own_microseconds
 
 RECORD = """\

@@ -1,7 +1,5 @@
 """Laws of the model that predicts what more workers would take."""
 
-from __future__ import annotations
-
 import pytest
 
 from benchmarks.shared_table import Share

@@ -1,7 +1,5 @@
 """Errors measured at some nodes of an axis: exact there, exact for what is linear, NaN beside NaN."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

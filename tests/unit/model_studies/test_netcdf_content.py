@@ -1,7 +1,5 @@
 """The file of a content is what xarray writes of the same content, for xarray and for readers of HDF5."""
 
-from __future__ import annotations
-
 import h5netcdf
 import h5py
 import numpy as np

@@ -91,7 +91,7 @@ def test_every_reader_walks_a_file_first(reader: str, name: str, strike) -> None
 
 def test_files_of_the_program_open(good: Path) -> None:
     for kind in WRITERS:
-        READERS[kind](good / f"{kind}.nc")
+        assert READERS[kind](good / f"{kind}.nc") is not None
 
 
 def test_a_dataset_is_that_of_xarray(tmp_path: Path) -> None:

@@ -27,7 +27,7 @@ from service.store.database import writing
 from service.store.deployment import Deployment
 from service.store.files import ResultName, new_name
 from service.store.maintenance import reindex, verify_store
-from service.store.results import Mark, ResultStore
+from service.store.results import Mark
 from service.worker.order import WorkOrder
 from service.worker.process import SIMULATE
 from service.worker.simulation_work import _table
@@ -127,10 +127,6 @@ def test_results_are_listed_page_by_page_in_their_project(machine: Bench) -> Non
         assert [store.verified(key, "database").path.read_text() for key in keys] == [
             project + k for k in keys
         ]
-
-
-def _text(store: ResultStore, key: str) -> str:
-    return store.verified(key, "database").path.read_text()
 
 
 def test_upkeep_is_of_all_projects(machine: Bench) -> None:

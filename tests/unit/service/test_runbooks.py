@@ -76,7 +76,7 @@ def test_what_a_runbook_names_exists(title: str) -> None:
 def test_a_command_is_one_of_the_program(command: str) -> None:
     group, verb, *rest = command.split()
     found = get_command(app).commands[group].commands[verb]  # type: ignore[attr-defined]
-    found.make_context(verb, list(rest), resilient_parsing=False)
+    assert found.make_context(verb, list(rest), resilient_parsing=False).command is found
 
 
 def commands(title: str) -> str:

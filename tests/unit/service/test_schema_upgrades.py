@@ -201,6 +201,8 @@ def test_rows_of_a_program_that_knows_no_newer_column_are_taken(fresh: Engine) -
         connection.execute(text(job))
         result = "INSERT INTO result (key, kind, sha256, size, created, file, used)"
         connection.execute(text(f"{result} VALUES ('k', 'database', '', 0, '', '', '')"))
+        for table in ("computation", "job", "result"):
+            assert connection.execute(text(f"SELECT count(*) FROM {table}")).scalar() == 1
 
 
 def test_the_numbers_count_the_steps() -> None:

@@ -8,10 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from typer.main import get_command
 
 from fe_contact import SteDatabase, analyze
-from lineofaction.cli.commands import app
 from lineofaction.client import LineOfActionClient
 from lineofaction.client.offers import offers
 from lineofaction.gearbox.convert.answers import metadata_json, summary_json
@@ -34,7 +32,6 @@ from service.schemas.answers import UnitBody
 from service.schemas.examples import CASE
 from service.worker.process import default_registry
 
-LOA = get_command(app)
 EVERY = pytest.mark.parametrize("study", STUDIES.values(), ids=list(STUDIES))
 
 

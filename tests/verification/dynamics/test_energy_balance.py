@@ -1,7 +1,5 @@
 """Energy of runs, and which source an error has."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Helical planetary sets at rest: thrusts, overturning moments, load sharing, against closed forms."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """One mesh: linear, with backlash, rattling, and with kinks in its table."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Bearings of a catalog, and the passing of their elements."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

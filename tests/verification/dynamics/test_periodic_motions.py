@@ -1,7 +1,5 @@
 """Periodic motions: their branches, folds and Floquet multipliers."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Planetary sets: modes in the plane and of helical sets, and shares of the load."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

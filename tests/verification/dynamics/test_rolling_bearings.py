@@ -1,7 +1,5 @@
 """Bearings by geometry: closed forms, published displacements and lives, laws of an elastic contact."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

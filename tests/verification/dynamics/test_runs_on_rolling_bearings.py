@@ -1,7 +1,5 @@
 """The pair of Palermo et al. on catalog bearings, as a scene file states it."""
 
-from __future__ import annotations
-
 import tomllib
 from dataclasses import replace
 from pathlib import Path

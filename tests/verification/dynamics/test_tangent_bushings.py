@@ -1,7 +1,5 @@
 """Scenes on bearings by geometry, taken linear where they rest."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

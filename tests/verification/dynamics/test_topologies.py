@@ -1,7 +1,5 @@
 """Whole runs of trains with idlers, several stages, loops and planets: speeds, torques, energy."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -21,7 +21,6 @@ from lineofaction.gearbox.studies.root_stress import Inputs, RootStressFigures
 from model_studies import in_unit
 
 GEARS = ("pinion", "wheel")
-MPA = 1e6
 
 
 @dataclass(frozen=True)

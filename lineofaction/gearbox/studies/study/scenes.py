@@ -36,7 +36,6 @@ Place = tuple[str | int, ...]
 
 _EVERY = "*"
 _ENTRY = re.compile(r"^(\w+)(?:\[(\d+)\])?$")
-_CASE = ("case", "pair")
 FLANKS = tuple(figure.field for figure in figures(FlankModification))
 """Fields of a case that leave the bodies of its gears as they are."""
 

@@ -1,7 +1,5 @@
 """The accuracy study: errors that fall, models that are what they say, fidelities without a result."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The coast flank: geometry of the gap, mirror rule, what loads it, and when a run calls for it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -35,7 +35,6 @@ from dynamics.simulation import simulate
 
 LOAD_INERTIA = 0.02
 TORSION = 5e4
-UNEVEN = tuple(map(tuple, np.triu(np.ones((6, 6)))))
 
 
 def coupled(coupling=None, table=None, **changes):

@@ -1,7 +1,5 @@
 """Flexible shafts in small motion: an independent assembly, closed forms, limits."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

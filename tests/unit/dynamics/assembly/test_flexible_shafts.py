@@ -1,7 +1,5 @@
 """Flexible shafts of a scene: statics, modes, and whole runs."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

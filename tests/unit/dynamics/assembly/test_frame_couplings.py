@@ -1,7 +1,5 @@
 """Couplings between shafts of frames that turn against each other: forces, energy, either frame the same."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """Trains that only torques move: unlimited rotation, exact phase, rigid acceleration."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from fractions import Fraction

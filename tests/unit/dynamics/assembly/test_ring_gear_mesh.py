@@ -1,7 +1,5 @@
 """The line of action in a ring gear: action = reaction, torques, thrust, virtual work, coast flank."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Gyroscopic and frame terms in time: derivatives, energy, whirl, the same from both frames."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

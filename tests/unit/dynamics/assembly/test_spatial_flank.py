@@ -1,7 +1,5 @@
 """Flanks in space: derivatives, reaction, signs, static limit, energy, and what is said beyond the axes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import product
 
@@ -25,7 +23,6 @@ from dynamics.types import StaticStatus
 
 EFFECTS = ("dynamic_misalignment", "dynamic_center_distance", "moving_application_point")
 M, A = (-60e-6, -30e-6, -10e-6, 0.0, 10e-6, 30e-6, 60e-6), (-1e-4, 0.0, 1e-4)
-FORCE = 100.0 / BASE_RADIUS
 
 
 @pytest.fixture(scope="module")

@@ -1,7 +1,5 @@
 """Rolling bearings as parts of a scene: their forces, rest, tangents, preload, arrangement, runs."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

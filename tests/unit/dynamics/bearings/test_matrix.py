@@ -1,7 +1,5 @@
 """Bearings by a matrix, and runs on them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -61,7 +59,8 @@ def test_axes_turned_and_turned_back_leave_a_bearing(seed):
     damping = np.zeros((5, 5))
     damping[:2, :2] = damper_along_x(turned)
     damping = 0.5 * (damping + damping.T)
-    bearing(damping=damping, stiffness=STIFF / 2.0e3 * damping)
+    turned_back = bearing(damping=damping, stiffness=STIFF / 2.0e3 * damping)
+    np.testing.assert_array_equal(turned_back.seat_damping, damping)
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -1,7 +1,5 @@
 """Rating life under load cases: that of the bearing alone, linear damage, the cube of a ball's load."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -24,7 +22,6 @@ ROLLERS = RollerBearing(
 LOOSE = replace(ROLLERS, count=16, contact_angle=0.0, clearance=30e-6)
 PLACES = 64  # around the circle, at which elements are taken on average
 ROW = RollingBearing("left", "input", BALL, 0.0, dynamic_capacity=CAPACITY)
-CARRIED = (900.0, -300.0, 200.0, 0.0, 0.0)
 
 
 def on_rows(capacity=CAPACITY, row=BALL, preload=50.0):

@@ -1,7 +1,5 @@
 """Static deflection: closed forms, the law of the sum, scaling, mirror images, load against deflection."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Forces under load cases: reactions by statics, scaling, both sides of the teeth, and what is refused."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

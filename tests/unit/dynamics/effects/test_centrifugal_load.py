@@ -1,7 +1,5 @@
 """Centrifugal load of planets: m r W^2 on the pin, the closed form of a mass on a turning spring, energy."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Only the freedoms a scene calls for, with reasons; choices are obeyed."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import partial

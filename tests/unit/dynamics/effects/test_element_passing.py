@@ -1,7 +1,5 @@
 """Elements that pass one by one: angle of the cage, motion under a load, energy, decision, refusals."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

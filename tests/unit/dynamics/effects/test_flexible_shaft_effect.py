@@ -1,7 +1,5 @@
 """The effect of flexible shafts: what calls for it, its influence, what cannot bend, refusals."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

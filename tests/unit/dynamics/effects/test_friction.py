@@ -1,7 +1,5 @@
 """Sliding friction: its loss against the analytic mesh loss factor, directions, derivatives, energy."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -21,8 +19,6 @@ from dynamics.scene import Integration
 from dynamics.simulation import simulate
 
 MU = 0.06
-PITCH = 2.0 * math.pi * BASE_RADIUS / 20
-SPATIAL = ("dynamic_misalignment", "dynamic_center_distance", "moving_application_point")
 
 
 @pytest.fixture(scope="module")

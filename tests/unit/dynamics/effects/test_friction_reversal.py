@@ -1,7 +1,5 @@
 """Friction over reversal, start-stop and creep: against a two-body brake's closed forms, losses only grow."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

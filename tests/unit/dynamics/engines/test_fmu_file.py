@@ -1,7 +1,5 @@
 """The FMU as a file: valid, deterministic, rebuilt from its own sources, refused with one clear error."""
 
-from __future__ import annotations
-
 import subprocess
 import zipfile
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """What Exudyn is handed: forces that balance, and the derivatives that belong to them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from geared_scenes import BASE_RADIUS

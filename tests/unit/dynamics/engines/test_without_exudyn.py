@@ -1,7 +1,5 @@
 """Exudyn is an extra: without it nothing else misses it, and its element says what to install."""
 
-from __future__ import annotations
-
 import sys
 
 import pytest

@@ -1,7 +1,5 @@
 """Universal files, read back by pyuff: units, positions, directions, values."""
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import replace
 

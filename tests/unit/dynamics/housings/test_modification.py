@@ -1,7 +1,5 @@
 """Structural modification of a reduced housing, against reductions of the modified mesh."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A reduced housing as a part of a scene: the same motion of its seats, and seats along z alone."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

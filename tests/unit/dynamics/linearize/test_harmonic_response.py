@@ -1,7 +1,5 @@
 """Harmonic response to the transmission error: closed form, laws of scaling and phasing, the time domain."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

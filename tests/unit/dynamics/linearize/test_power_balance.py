@@ -1,7 +1,5 @@
 """Power of a forced response: the balance of all parts, closed forms, the losses of a run in steady state."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

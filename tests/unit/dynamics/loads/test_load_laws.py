@@ -1,7 +1,5 @@
 """Laws of loads: over angle, time and speed."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -125,9 +123,6 @@ def test_bad_laws_are_refused_by_name(time, value, shape, field):
 
 
 # Torques by speed: curves, terminal speed, run-up against closed forms, power.
-
-
-DRY = SpeedCurve.constant(1.0, 1.0)
 
 
 def scene_by_speed(*torques, speed=None, **changes):

@@ -1,7 +1,5 @@
 """The effect of a housing's modes: off it changes no bit, and the ledger calls for it where they matter."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Housings with mass: statics of their matrices, modes and response in closed form, forces, any bearing."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

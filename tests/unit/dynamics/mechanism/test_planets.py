@@ -1,7 +1,5 @@
 """Planets of one set: bearings inside them, and copies in unequal places."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Bearings that are not linear in a housing without mass: their laws at rest, in motion their tangents."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

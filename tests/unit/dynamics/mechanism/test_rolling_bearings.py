@@ -1,7 +1,5 @@
 """Rolling contacts and spring curves: derivatives, energy, statics, impacts, tangents, bad input."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

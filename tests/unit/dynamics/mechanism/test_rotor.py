@@ -1,7 +1,5 @@
 """A shaft with its gears as one rigid body."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Bushings with matrices and preload, and housings under them: transport, statics, series, bad input."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

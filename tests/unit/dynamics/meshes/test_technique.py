@@ -1,7 +1,5 @@
 """The constant-torque technique: F = k(x) d with k = nominal force over STE."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

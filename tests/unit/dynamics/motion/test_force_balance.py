@@ -1,7 +1,5 @@
 """Forces in a state and their derivatives: against finite differences, through all elements."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, square_wave_table, with_gear, with_mesh

@@ -1,7 +1,5 @@
 """Mesh orders of bearing forces along a run: exact at any sweep, phases, smearing, what orders leave."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from swept_runs import BEARINGS, TEETH, drawn_amplitudes, order_forces, swept_run

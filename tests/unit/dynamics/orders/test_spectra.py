@@ -1,7 +1,5 @@
 """Spectra of orders, and their bands of a third octave."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene

@@ -1,7 +1,5 @@
 """Waterfalls, order cuts and sidebands of signals in closed form."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

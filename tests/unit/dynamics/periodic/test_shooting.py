@@ -1,7 +1,5 @@
 """Periodic motions of a gear pair: against the linear response and a long run, their errors, bad input."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

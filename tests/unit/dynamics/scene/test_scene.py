@@ -1,7 +1,5 @@
 """Scenes name what is wrong with them."""
 
-from __future__ import annotations
-
 import math
 import pickle
 from dataclasses import replace

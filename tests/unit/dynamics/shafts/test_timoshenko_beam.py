@@ -1,7 +1,5 @@
 """Shafts as beams, and their reduction: closed forms, convergence, rigid limit, bad input."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Results that no effect can mend end a run or a study: unbalanced work, loads beyond the table."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Vibration of housings: motion under forces, and which mode or bearing it is of."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

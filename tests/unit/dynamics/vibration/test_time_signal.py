@@ -1,7 +1,5 @@
 """Motion over time: steady states, transients against an integrator, rigid motions, a run's own housing."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 
@@ -23,8 +22,6 @@ from fe_contact.errors import InputError
 from fe_contact.geometry import Gear
 from fe_contact.material import Material
 from fe_contact.mesh import MeshRecipe, SectorRecipe
-
-MakeGear = Callable[..., Gear]
 
 
 def beyond(gear: Gear, teeth: int = 3) -> FiniteWidthCompliance:

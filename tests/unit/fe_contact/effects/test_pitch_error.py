@@ -1,7 +1,5 @@
 """Teeth out of their places: which of them meet, and what the transmission error makes of it."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

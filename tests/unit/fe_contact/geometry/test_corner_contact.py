@@ -21,7 +21,7 @@ from fe_contact.geometry import (
     sliding_factor,
     specific_sliding,
 )
-from fe_contact.geometry.corner_contact import Side, _corner_gap
+from fe_contact.geometry.corner_contact import Side
 
 SIDES: tuple[Side, Side] = ("approach", "exit")
 sides = pytest.mark.parametrize("side", SIDES)
@@ -48,10 +48,10 @@ def test_gap_and_slope_grow_from_the_path_until_the_edge_leaves_the_flank(pair: 
     assert np.all(state.valid)
     assert np.all(np.diff(state.gap) > 0.0)
     assert np.all(np.diff(state.slope_angle) > 0.0)
-    gap = _corner_gap(pair, side, np.array([1e-5, 2e-5]))
+    gap = corner_contact(pair, side, np.array([1e-5, 2e-5])).gap
     assert gap[1] / gap[0] == pytest.approx(4.0, rel=1e-2)
-    assert _corner_gap(pair, side, 1e-4).shape == ()
-    assert _corner_gap(pair, side, np.full((2, 3), 1e-4)).shape == (2, 3)
+    assert corner_contact(pair, side, 1e-4).gap.shape == ()
+    assert corner_contact(pair, side, np.full((2, 3), 1e-4)).gap.shape == (2, 3)
     over = np.linspace(0.0, 0.05, 300)
     state = corner_contact(pair, side, over)
     assert state.valid[0]
@@ -66,14 +66,16 @@ def test_gap_and_slope_grow_from_the_path_until_the_edge_leaves_the_flank(pair: 
 
 def test_lever_arms_are_rates_of_the_gap(pair: GearPair) -> None:
     over, step = np.linspace(1e-4, 6e-3, 20), 1e-7
-    rate = (_corner_gap(pair, "exit", over + step) - _corner_gap(pair, "exit", over - step)) / (2.0 * step)
+    rate = (corner_contact(pair, "exit", over + step).gap - corner_contact(pair, "exit", over - step).gap) / (
+        2.0 * step
+    )
     state = corner_contact(pair, "exit", over)
     assert 1.0 - rate == pytest.approx(state.lever_arm_ratio_pinion, rel=1e-8)
     assert np.all(state.lever_arm_ratio_wheel == 1.0)
     over, step = np.linspace(1e-4, 3e-3, 20), 1e-7
-    rate = (_corner_gap(pair, "approach", over + step) - _corner_gap(pair, "approach", over - step)) / (
-        2.0 * step
-    )
+    rate = (
+        corner_contact(pair, "approach", over + step).gap - corner_contact(pair, "approach", over - step).gap
+    ) / (2.0 * step)
     state = corner_contact(pair, "approach", over)
     assert 1.0 / (1.0 + rate) == pytest.approx(state.lever_arm_ratio_wheel, rel=1e-8)
     assert np.all(state.lever_arm_ratio_pinion == 1.0)
@@ -82,10 +84,13 @@ def test_lever_arms_are_rates_of_the_gap(pair: GearPair) -> None:
 def test_swapping_the_gears_swaps_the_sides_to_first_order(pair: GearPair) -> None:
     # the driving gear is held in both cases, so they differ by the gap itself over the overshoot only
     over = np.array([1e-6, 1e-5])
-    exit_gap, approach_gap = _corner_gap(pair, "exit", over), _corner_gap(pair.swapped(), "approach", over)
+    exit_gap, approach_gap = (
+        corner_contact(pair, "exit", over).gap,
+        corner_contact(pair.swapped(), "approach", over).gap,
+    )
     assert approach_gap == pytest.approx(exit_gap, rel=1e-2)
     # exactly: a lag e of the tip gear is an overshoot larger by e
-    assert _corner_gap(pair, "exit", over + approach_gap) == pytest.approx(approach_gap, rel=1e-9)
+    assert corner_contact(pair, "exit", over + approach_gap).gap == pytest.approx(approach_gap, rel=1e-9)
 
 
 @sides
@@ -94,17 +99,17 @@ def test_lengths_scale(side: Side) -> None:
     one = GearPair(make_gear(teeth=25), make_gear(teeth=31))
     three = GearPair(make_gear(teeth=25, **large), make_gear(teeth=31, **large))
     over = np.linspace(0.0, 3e-3, 9)
-    assert _corner_gap(three, side, 3.0 * over) == pytest.approx(
-        3.0 * _corner_gap(one, side, over), rel=1e-9, abs=1e-16
+    assert corner_contact(three, side, 3.0 * over).gap == pytest.approx(
+        3.0 * corner_contact(one, side, over).gap, rel=1e-9, abs=1e-16
     )
 
 
 def test_bad_arguments_are_refused(pair: GearPair) -> None:
     for overshoot in (-1e-9, np.nan):
         with pytest.raises(InputError, match="overshoot"):
-            _corner_gap(pair, "exit", overshoot)
+            corner_contact(pair, "exit", overshoot)
     with pytest.raises(InputError, match="side"):
-        _corner_gap(pair, "middle", 0.0)  # type: ignore[arg-type]
+        corner_contact(pair, "middle", 0.0)  # type: ignore[arg-type]
 
 
 def test_newton_ends_where_rounding_begins(pair: GearPair, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -113,13 +118,13 @@ def test_newton_ends_where_rounding_begins(pair: GearPair, monkeypatch: pytest.M
     calls, touch = [], module._touch
     monkeypatch.setattr(module, "_touch", lambda *given: calls.append(0) or touch(*given))
     over = np.linspace(0.0, 0.3, 200) * pair.base_pitch
-    gap = _corner_gap(pair, "approach", over)
+    gap = corner_contact(pair, "approach", over).gap
     assert len(calls) <= 8
-    alone = [_corner_gap(pair, "approach", one) for one in over]
+    alone = [corner_contact(pair, "approach", one).gap for one in over]
     assert np.array_equal(gap, alone)  # no bit depends on what is asked beside it
     calls.clear()
     monkeypatch.setattr(module, "_ROUNDING", 0.0)
-    assert gap == pytest.approx(_corner_gap(pair, "approach", over), rel=1e-12, abs=1e-16)
+    assert gap == pytest.approx(corner_contact(pair, "approach", over).gap, rel=1e-12, abs=1e-16)
     assert len(calls) == 50
 
 

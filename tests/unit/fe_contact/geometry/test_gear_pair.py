@@ -210,10 +210,9 @@ def test_ring_of_very_many_teeth_is_a_rack() -> None:
     assert abs(errors[1][0]) < 4e-3 * MODULE
 
 
-def test_tip_clearances_and_tooth_number_difference() -> None:
+def test_tip_clearances_of_an_internal_pair() -> None:
     pair = InternalGearPair(gear(), ring())
     assert pair.tip_clearances == pytest.approx((0.25 * MODULE, 0.45 * MODULE), rel=1e-10)
-    assert pair.tooth_number_difference == 50
 
 
 def test_refusal_of_jamming_teeth_tells_what_would_fit() -> None:

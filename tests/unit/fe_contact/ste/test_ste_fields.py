@@ -1,7 +1,5 @@
 """What a database accepts and says of itself, its repair, its error against another, its content hash."""
 
-from __future__ import annotations
-
 import hashlib
 import math
 from dataclasses import FrozenInstanceError, replace
@@ -190,9 +188,6 @@ def test_lift_off_is_not_moved_nor_series_in_order(make, spur):
     assert np.array_equal(repaired.static_transmission_error, database.static_transmission_error)
     with pytest.raises(SolveError, match="1 of 320"):
         failed_at(spur, (1, 1)).monotone_repaired()
-
-
-OFFSET = (np.arange(64) + 0.5) / 64
 
 
 def test_a_known_difference_is_found_where_it_is(spur, make):

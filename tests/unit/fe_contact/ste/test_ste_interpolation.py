@@ -1,7 +1,5 @@
 """Interpolation along one axis and of levels over several: exact at knots, C1, no overshoot, order kept."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Levels between the loads: the kink where a further pair comes into contact."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from held_out import held_out_error

@@ -1,7 +1,5 @@
 """The mesh force that dynamics gets: its laws, and the table it is made from."""
 
-from __future__ import annotations
-
 from dataclasses import fields, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The netCDF file, bit-exact and atomic, and tables over several base pitches."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Tables of pairs with pitch deviations: their period, positions, cost and error."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

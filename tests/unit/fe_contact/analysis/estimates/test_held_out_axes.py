@@ -1,7 +1,5 @@
 """What a table says of its error between the nodes of its axes is what it misses there."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
