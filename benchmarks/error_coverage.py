@@ -75,7 +75,7 @@ def _worst(found: Sequence[Assessed]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def publish(found: Sequence[Assessed], machine: Mapping[str, str], whole: Sequence[Assessed] = ()) -> None:
+def publish(found: Sequence[Assessed], machine: Mapping[str, str]) -> None:
     """Write the section of the page between its marks; see `markdown`."""
     versions = ", ".join(f"{name} {machine[name]}" for name in ("lineofaction", "numpy", "scipy"))
-    replace_section(PAGE, SECTION, f"{markdown(found, whole)}\nMeasured with {versions}.\n")
+    replace_section(PAGE, SECTION, f"{markdown(found, in_full())}\nMeasured with {versions}.\n")

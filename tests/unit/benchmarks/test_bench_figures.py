@@ -98,7 +98,7 @@ def test_only_named_subjects_are_measured(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(bench, "ROOT", tmp_path)
-    monkeypatch.setattr(bench.finite_width, "figures", lambda: [FIGURES[0]])
+    monkeypatch.setattr("benchmarks.finite_width.figures", lambda: [FIGURES[0]])
     assert bench.main(["finite_width"]) == 0
     printed = capsys.readouterr().out
     assert "| table | cold |" in printed
