@@ -14,9 +14,9 @@ import signal
 import struct
 import tomllib
 import uuid
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from html import unescape
+from html import escape, unescape
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +26,6 @@ import pytest
 from click import Context
 from declared_figures import check_declared
 from running_service import until
-from shown_effects import check_effects_shown
 from small_inputs import small_inputs
 from study_rows import ROWS, StudyRow
 from study_runs import StudyRuns, unmeasured, without_file
@@ -51,6 +50,18 @@ pytestmark = pytest.mark.chain  # each question is asked once each way, by the f
 LOA = get_command(app)
 BEFORE = {"compliance", "contact", "housing"}
 """Stages of the tables and housings of a scene, in Python."""
+
+
+def check_effects_shown(ledger: Mapping[str, Any], printed: str, report: str) -> None:
+    assert len(ledger["entries"]) > 3
+    for entry in ledger["entries"]:
+        row = "".join(f"<td>{cell}</td>" for cell in (entry["part"], "yes" if entry["on"] else "no"))
+        assert f'<th scope="row">{entry["effect"]}</th>{row}' in report
+        assert f"<td>{escape(entry['reason'])}</td>" in report
+        assert entry["effect"] in printed or not (entry["on"] or entry["possible"])
+    assert "<td>nothing</td>" in report and "<td>0 µm at" not in report
+    for name in ledger["left_out"]:
+        assert name.replace("_", " ") in report
 
 
 @pytest.fixture(scope="module")

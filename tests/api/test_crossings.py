@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import tempfile
+from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -15,7 +16,6 @@ from fastapi.testclient import TestClient
 from httpx2 import Response
 from service_fakes import EXECUTION, REGISTRY
 from small_table import small_table
-from walked_routes import WalkedRoute, walked_routes
 
 from lineofaction.gearbox.problems import KeyExpired, MissingScope, NotFound, Unauthorised
 from service.access.keyring import KeyFile, Scope
@@ -32,6 +32,36 @@ BODIES: dict[str, Any] = {
     "fake": {"inputs": {"wish": {"text": "unseen"}}},
     "relabel_job": {"title": "shown"},
 }
+
+
+@dataclass(frozen=True)
+class WalkedRoute:
+    """A route with one of its methods."""
+
+    method: str
+    path: str
+    route: Any
+
+    def __str__(self) -> str:
+        return f"{self.method} {self.path}"
+
+    def at(self, **parameters: str) -> str:
+        """Return the path with parameters, some more than it has."""
+        return self.path.format_map(parameters)
+
+
+def walked_routes(app: FastAPI) -> list[WalkedRoute]:
+    return list(_walk(app.routes, ""))
+
+
+def _walk(routes: Any, prefix: str) -> Iterator[WalkedRoute]:
+    for route in routes:
+        inner = getattr(route, "original_router", None)
+        if inner is not None:
+            yield from _walk(inner.routes, prefix + route.include_context.prefix)
+        else:
+            for method in sorted(route.methods):
+                yield WalkedRoute(method, prefix + route.path, route)
 
 
 def key_at(walked: WalkedRoute) -> str:
