@@ -61,6 +61,7 @@ class Evaluation:
         for value, limit in (
             (self.pressure, limits.max_pressure),
             (self.face_load_factor, limits.face_load_factor),
+            (self.peak_to_peak, limits.peak_to_peak),
         ):
             excess += 0.0 if limit is None else max(0.0, float(value.max()) / limit - 1.0)
         if limits.edge_load_share is not None:

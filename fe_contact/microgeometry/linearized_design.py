@@ -272,6 +272,8 @@ def _gap(pair: ParallelAxes, gear: str, figures: Mapping[str, Any]) -> Modificat
 
 NEAR = 0.8
 """Pressures from this part of the largest on are followed."""
+FOLLOWED = 16
+"""Highest and lowest positions that are followed."""
 _POINT = 1e-9
 """Half length in m of the strip of an edge that is not in contact."""
 
@@ -386,7 +388,19 @@ def limit_rows(solved: _Solved, limits: Limits) -> tuple[Rows, ...]:
         rows.append(_face_load(solved, limits.face_load_factor))
     if limits.edge_load_share is not None:
         rows.append(_edge_load(solved, limits.edge_load_share))
+    if limits.peak_to_peak is not None:
+        rows.append(_ripple(solved, limits.peak_to_peak))
     return tuple(rows)
+
+
+def _ripple(solved: _Solved, limit: float) -> Rows:
+    """Return how far the peak-to-peak exceeds its limit: each high position above each low one."""
+    ste, loads = solved.figures.ste, np.arange(solved.figures.ste.shape[1])
+    order = np.argsort(ste, axis=0)
+    high, low = order[-FOLLOWED:], order[:FOLLOWED]
+    above = ste[high, loads][:, None] - ste[low, loads]
+    by = solved.ste[:, high, loads][:, :, None] - solved.ste[:, low, loads][:, None]
+    return above.ravel() / limit - 1.0, by.reshape(len(by), -1).T / limit
 
 
 def _pressure(solved: _Solved, limit: float) -> Rows:

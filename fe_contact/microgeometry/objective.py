@@ -93,11 +93,14 @@ class Limits:
         K_Hbeta of the mean over a mesh cycle, > 1 (ISO 6336-1).
     edge_load_share : float, optional
         Largest part of the load that tip edges carry at any position; 0 forbids their contact.
+    peak_to_peak : float, optional
+        Largest peak-to-peak of the transmission error, m.
     """
 
     max_pressure: float | None = None
     face_load_factor: float | None = None
     edge_load_share: float | None = None
+    peak_to_peak: float | None = None
 
     def __post_init__(self) -> None:
         if self.max_pressure is not None:
@@ -113,6 +116,8 @@ class Limits:
         ):
             bound = Bound(0.0, 1.0, high_open=True)
             raise InputError("limits.edge_load_share", self.edge_load_share, bound)
+        if self.peak_to_peak is not None:
+            positive("limits.peak_to_peak", self.peak_to_peak, SiNote("In m: 1 um is 1e-6."))
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -120,6 +125,7 @@ class Limits:
             "max_pressure_pa": self.max_pressure,
             "face_load_factor": self.face_load_factor,
             "edge_load_share": self.edge_load_share,
+            "peak_to_peak_m": self.peak_to_peak,
         }
 
 

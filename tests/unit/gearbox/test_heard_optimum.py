@@ -286,3 +286,21 @@ def test_a_limit_of_pressure_is_a_row_of_the_merit() -> None:
     _, merit = own.linearize(place(own), InProcess())
     ((value, by),) = merit.limits
     assert by.shape == (value.size, len(DESIGN))
+
+
+@pytest.mark.law
+def test_a_limit_of_ripple_is_rows_of_the_merit_with_their_slopes() -> None:
+    """The largest row is the peak-to-peak of the worst load, and moves as that of solved contacts does."""
+    own = replace(problems()[0], limits=Limits(peak_to_peak=2e-7), scale=level(problems()[0], DESIGN))
+
+    def ripple(values: dict[str, float]) -> float:
+        return float(own.evaluator.evaluate(values).peak_to_peak.max())
+
+    assessed, merit = own.linearize(place(own), InProcess())
+    ((value, by),) = merit.limits
+    assert value.max() == pytest.approx(ripple(DESIGN) / 2e-7 - 1.0)
+    assert assessed.violation == pytest.approx(max(0.0, value.max()))
+    step, row = 1e-8, by[value.argmax()] / own.ranges * 2e-7
+    for name, slope in zip(own.names, row, strict=True):
+        above, below = (ripple(DESIGN | {name: DESIGN[name] + side * step}) for side in (1.0, -1.0))
+        assert slope == pytest.approx((above - below) / (2.0 * step), abs=2e-3)

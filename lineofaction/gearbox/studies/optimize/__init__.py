@@ -258,6 +258,13 @@ class Inputs(BoundaryModel):
             description="Largest share of the load on tip edges; 0 forbids their contact",
             examples=[0.0],
         )
+        peak_to_peak_um: float | None = Field(
+            default=None,
+            gt=0.0,
+            le=1e4,
+            description="Largest peak-to-peak of the transmission error in um",
+            examples=[0.5],
+        )
 
     torque_n_m: Torques | None = Field(
         default=None,

@@ -126,8 +126,10 @@ class _OptimizeStudy(
 
     def _of_case(self, result: Optimization) -> Json:
         limits = dict(result.asked["limits"])
-        pressure = limits.pop("max_pressure_pa")
-        limits = {"max_pressure_mpa": None if pressure is None else pressure / MPA, **limits}
+        units = {"max_pressure_mpa": ("max_pressure_pa", MPA), "peak_to_peak_um": ("peak_to_peak_m", UM)}
+        for name, (known, unit) in units.items():
+            value = limits.pop(known, None)  # files of version 0.2 lack some
+            limits[name] = None if value is None else value / unit
         nodes = result.nodes
         deviation = [
             [_typed(name, float(x)) for name, x in zip(nodes.names, row, strict=True)]
@@ -252,11 +254,12 @@ def _library_request(checked: CheckedCase, study: Inputs) -> OptimizationRequest
         for gear, fields in gears.items()
         for name, ends, unit in _stated_fields(gear, fields)
     ]
-    pressure = study.limits.max_pressure_mpa
+    pressure, ripple = study.limits.max_pressure_mpa, study.limits.peak_to_peak_um
     limits = Limits(
         None if pressure is None else pressure * MPA,
         study.limits.face_load_factor,
         study.limits.edge_load_share,
+        None if ripple is None else ripple * UM,
     )
     return OptimizationRequest(
         pair,
