@@ -123,6 +123,26 @@ def test_an_answer_knows_how_wrong_it_is_and_what_it_cost(client: TestClient, ke
     LiveOutput.model_validate_json(json.dumps(first))
 
 
+def test_a_passage_meets_what_all_pairs_carry(client: TestClient, key: str) -> None:
+    question = {"torque_n_m": [0.5, 1.0], "pinion": RELIEF, "flanks": True, "passage": True}
+    answer = client.post(f"/v1/databases/{key}/ste", json=question).json()
+    LiveOutput.model_validate_json(json.dumps(answer))
+    assert answer["cost"]["passage_cpu_seconds"] > 0.0
+    for curve in answer["curves"]:
+        passage, shares = curve["passage"], np.array(curve["load_share"])
+        pressure = np.array(passage["pressure_mpa"])[:, 0]
+        place = passage["first_place"] + passage["step"] * np.arange(pressure.size)
+        most = max(curve["flanks"]["largest_pressure_mpa"], curve["flanks"]["edge_pressure_mpa"])
+        assert pressure.max() == pytest.approx(most, rel=0.03)
+        # a pair carries where it meets pressure: at every position, by its place
+        at = np.array(curve["position"])[:, None] + np.array(curve["pair"])
+        met = np.interp(at, place, pressure, left=0.0, right=0.0)
+        assert np.array_equal(met[shares > 0.02] > 0.0, np.ones(np.sum(shares > 0.02), dtype=bool))
+        assert met[(shares == 0.0) & (np.abs(at) > 1.5)].max(initial=0.0) == 0.0
+        apart = np.array(passage["apart_um"])[:, 0]
+        assert 0.0 < apart[pressure > 0].mean() < curve["mean_um"]  # the rest is the approach of the flanks
+
+
 def test_the_flanks_of_an_answer_are_those_of_the_study_of_flanks(client: TestClient, key: str) -> None:
     question = {"torque_n_m": [0.5, 1.0], "pinion": RELIEF}
     plain, full = (

@@ -35,11 +35,16 @@ def playwright() -> Iterator[Playwright]:
 
 
 @pytest.fixture(scope="session")
-def browser(playwright: Playwright) -> Iterator[Browser]:
+def browser_path() -> str:
     path = chromium()
     if path is None:
         pytest.skip("no Chromium on this machine: apt-get install chromium, or name one in CHROMIUM")
-    started = playwright.chromium.launch(executable_path=path, args=FLAGS)
+    return path
+
+
+@pytest.fixture(scope="session")
+def browser(playwright: Playwright, browser_path: str) -> Iterator[Browser]:
+    started = playwright.chromium.launch(executable_path=browser_path, args=FLAGS)
     yield started
     started.close()
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import cast
 
@@ -104,6 +105,38 @@ def _flanks_json(flanks: LoadDistribution) -> Json:
     }
 
 
+_STEPS, _COLUMNS = 32, 64
+"""Positions in a base pitch and most columns over the face of a passage."""
+
+
+def _passage_json(flanks: LoadDistribution, apart: FloatArray) -> Json:
+    """Return what one pair of teeth meets on its way through the mesh; `apart` (P, N, K) in m.
+
+    The place of a pair is position plus index. Rows are evenly spaced from where the pair begins to carry to
+    where it ends. Where teeth differ, the period has several base pitches: the first one stands for all.
+    """
+    first = flanks.position - flanks.position[0] < 1.0
+    place = (flanks.position[first, None] + flanks.pair).ravel()
+    order = np.argsort(place)
+    loaded = (flanks.pressure[first] > 0.0).any(axis=-1).ravel()
+    low, high = math.floor(place[loaded].min() * _STEPS) - 1, math.ceil(place[loaded].max() * _STEPS) + 1
+    rows = np.arange(low, high + 1) / _STEPS
+    face = np.linspace(flanks.face_position[0], flanks.face_position[-1], min(_COLUMNS, len(apart[0, 0])))
+
+    def laid(values: FloatArray) -> FloatArray:
+        table = values[first].reshape(place.size, -1)[order]
+        here = np.column_stack([np.interp(rows, place[order], column) for column in table.T])
+        return np.stack([np.interp(face, flanks.face_position, row) for row in here])
+
+    return {
+        "first_place": low / _STEPS,
+        "step": 1.0 / _STEPS,
+        "face_position_mm": _short(face / MM),
+        "pressure_mpa": np.rint(laid(flanks.pressure) / _MPA).astype(int).tolist(),
+        "apart_um": np.round(laid(apart) / UM, 2).tolist(),
+    }
+
+
 def _short(values: FloatArray) -> list[float]:
     """Return numbers of five digits: they are drawn."""
     return [float(f"{value:.{_DIGITS}g}") for value in values]
@@ -162,14 +195,22 @@ def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput) -> Jso
     curves = [_curve(table, k) for k in range(table.force.size)]
     answer = {"curves": curves, **_receipt(table)}
 
+    @cache
+    def loaded(k: int) -> LoadDistribution:
+        return load_distribution(solved.pair, solved.problem, solved.solution, k)
+
     def on_flanks() -> Iterator[Json]:
+        return (_flanks_json(loaded(k)) for k in range(table.force.size))
+
+    def passages() -> Iterator[Json]:
+        apart = solved.problem.moved(solved.solution.force)
         for k in range(table.force.size):
-            yield _flanks_json(load_distribution(solved.pair, solved.problem, solved.solution, k))
+            yield _passage_json(loaded(k), apart[:, k].reshape(loaded(k).force.shape))
 
     def derivatives() -> Iterator[Json]:
         return iter(_derivatives_json(curve_derivatives(bodies, pair, torques, None, *alignment)))
 
-    for name, made in (("flanks", on_flanks), ("derivatives", derivatives)):
+    for name, made in (("flanks", on_flanks), ("passage", passages), ("derivatives", derivatives)):
         if getattr(change, name):
             begin = cpu_seconds()
             for curve, part in zip(curves, made(), strict=True):
@@ -244,8 +285,17 @@ def pair_outline(pair: ParallelAxes) -> Json:
     gears = {"pinion": _gear(pair.pinion), "wheel": _gear(pair.wheel)}
     centers = ((0.0, 0.0), (0.0, sign * pair.center_distance))
     turns = (-1.0, -1.0 if pair.internal else 1.0)
+    middles = (0.0, pair.axial_offset)
+    # the wheel rolls with every section of the pinion
+    rises = (1.0, -sign * pair.pinion.teeth / pair.wheel.teeth)
+    twist = math.tan(pair.base_helix_angle) / pair.pinion.base_radius * MM / DEGREE
     for gear, angle, center, turn in zip(gears.values(), angles, centers, turns, strict=True):
         gear |= {"angle_deg": angle / DEGREE, "centre_mm": [value / MM for value in center], "turn": turn}
+    for gear, body, middle, rise in zip(
+        gears.values(), (pair.pinion, pair.wheel), middles, rises, strict=True
+    ):
+        half = 0.5 * body.face_width
+        gear |= {"face_mm": [(middle - half) / MM, (middle + half) / MM], "twist_deg_per_mm": rise * twist}
     return gears | {"internal": pair.internal, "path_of_contact": _path(pair)}
 
 

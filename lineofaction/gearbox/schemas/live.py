@@ -75,6 +75,12 @@ class LiveInput(BoundaryModel):
         description="Also return pressure over the driving gear's flank, load over the face and K_Hbeta",
         examples=[True],
     )
+    passage: bool = Field(
+        default=False,
+        description="Also return what a pair of teeth meets on its way through the mesh: pressure and "
+        "deflection along its contact line",
+        examples=[True],
+    )
     condense: bool = Field(
         default=False,
         description="Compute the compliance first if it is not in the cache of this service, as for gears "
@@ -216,6 +222,24 @@ class LiveCurve(BoundaryModel):
         )
         worst_position: float = Field(description="That position in base pitches", examples=[0.25])
 
+    class LivePassage(BoundaryModel):
+        """What a pair of teeth meets on its way through the mesh; rows by place, columns over the face.
+
+        The place of a pair is the position plus the index of the pair. Its contact line is where the roll
+        length of the driving gear is that of the pitch point, plus place times base pitch, less face
+        position times tan(beta_b).
+        """
+
+        first_place: float = Field(description="Place of the first row, base pitches", examples=[-1.5])
+        step: float = Field(description="Of the place between rows", examples=[0.03125])
+        face_position_mm: list[float] = Field(
+            description="Columns: distance from the driving gear's mid-face", examples=[[-5.0, 5.0]]
+        )
+        pressure_mpa: list[list[int]] = Field(description="Hertz pressure in MPa", examples=[[[0, 900]]])
+        apart_um: list[list[float]] = Field(
+            description="How far the load moves the flanks of the pair apart, in um", examples=[[[8.1, 9.2]]]
+        )
+
     torque_n_m: float = Field(description="Torque on the driving gear in N m", examples=[100.0])
     normal_force_n: float = Field(description="Normal tooth force in N", examples=[2660.4])
     misalignment_um: float = Field(description="Misalignment in um", examples=[0.0])
@@ -258,6 +282,9 @@ class LiveCurve(BoundaryModel):
     flanks: LiveFlanks | None = Field(
         default=None, description="Load and pressure on the flanks, if requested"
     )
+    passage: LivePassage | None = Field(
+        default=None, description="A pair of teeth on its way through the mesh, if requested"
+    )
 
 
 class LiveOutput(BoundaryModel):
@@ -285,6 +312,9 @@ class LiveOutput(BoundaryModel):
         error_estimate_cpu_seconds: float = Field(description="Estimating their errors", examples=[0.02])
         flanks_cpu_seconds: float = Field(
             default=0.0, description="Load and pressure on the flanks, if requested", examples=[0.01]
+        )
+        passage_cpu_seconds: float = Field(
+            default=0.0, description="A pair of teeth on its way, if requested", examples=[0.01]
         )
         derivatives_cpu_seconds: float = Field(
             default=0.0, description="Computing their derivatives, if requested", examples=[0.03]

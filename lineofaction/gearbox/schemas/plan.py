@@ -176,6 +176,8 @@ class OutlineBody(BaseModel):
         angle_deg: float = Field(description="By which the whole is turned counter-clockwise")
         centre_mm: Point
         turn: float = Field(description="Sense of rotation, 1 counter-clockwise")
+        face_mm: Point = Field(description="Ends of the face along z, from the pinion's mid-face")
+        twist_deg_per_mm: float = Field(description="Counter-clockwise turn of the section along z, helix")
 
     class PathOfContact(BaseModel):
         """The usable path of contact."""

@@ -8,6 +8,7 @@ import { Drawing } from "./drawing.js";
 import { byId, make } from "./elements.js";
 import { CaseForm } from "./form.js";
 import { noPlan, showPlan } from "./plan.js";
+import { PairView } from "./view_pair.js";
 
 const SETTLED = 350; // milliseconds without an edit after which the case is planned and drawn
 const EMPTY = { name: "empty", title: "Empty fields, to type a pair", note: "", case: {} };
@@ -27,6 +28,7 @@ export class Design {
     this.watchers = [];
     this.stands = false; // whether the form holds what the address says, or what was typed since
     this.drawing = new Drawing();
+    this.view = new PairView(byId("view"));
     this.form = new CaseForm(schema, effects, () => this.edited());
     this.offer();
   }
@@ -146,6 +148,7 @@ export class Design {
       if (signal.aborted) return;
       this.form.clear();
       this.drawing.show(outline);
+      this.view.show(outline);
       drawn = true;
       const plan = await post("/v1/plans", { ...body, caller: this.caller }, signal);
       if (!signal.aborted) this.expected = showPlan(plan);

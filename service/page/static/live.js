@@ -45,7 +45,10 @@ export class Live {
     if (known) {
       this.controls();
       this.plots();
-    } else for (const id of ["live-figures", "sliders", "quick", ...Object.values(PLACES)]) byId(id).replaceChildren();
+    } else {
+      this.design.view.press(null);
+      for (const id of ["live-figures", "sliders", "quick", ...Object.values(PLACES)]) byId(id).replaceChildren();
+    }
   }
 
   /** The sliders and the reference stand where the address left them: draw that. */
@@ -140,9 +143,10 @@ export class Live {
       const begin = performance.now();
       await this.baseline(waiting.torque_n_m, key);
       const kept = await this.kept?.at(waiting.torque_n_m[0], `${this.caller}-kept`) ?? null;
-      const found = await post(`/v1/databases/${key}/ste`, { ...waiting, flanks: true, caller: this.caller });
+      const found = await post(`/v1/databases/${key}/ste`, { ...waiting, flanks: true, passage: true, caller: this.caller });
       const round = performance.now() - begin;
       if (key !== this.known?.key) return;
+      this.roll(found.curves[0]);
       await this.draw(found.curves[0], kept);
       this.timed(round, performance.now() - begin, found);
       this.sayKept();
@@ -163,6 +167,14 @@ export class Live {
     if (this.before?.asked === torque[0] && this.before?.key === key) return;
     const found = await post(`/v1/databases/${key}/ste`, { torque_n_m: torque, flanks: true, caller: `${this.caller}-before` });
     this.before = { ...found.curves[0], key, asked: torque[0] };
+  }
+
+  /** Pressure on the pair that rolls. @param {any} curve */
+  async roll(curve) {
+    const { known } = this;
+    known.outline ??= post("/v1/cases/outline", { inputs: { case: known.case } });
+    const outline = await known.outline;
+    if (known === this.known) this.design.view.press(curve, outline);
   }
 
   refuse(problem) {

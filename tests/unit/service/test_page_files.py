@@ -68,10 +68,12 @@ def test_toml_holds_every_kind_of_value() -> None:
     assert read == content
 
 
-def placed(gear: dict[str, Any]) -> np.ndarray:
-    """Return one turn of outline points (teeth, n, 2), placed as drawn."""
+def placed(gear: dict[str, Any], z: float | None = None) -> np.ndarray:
+    """Return one turn of outline points (teeth, n, 2), placed as drawn; z in mm: the section there."""
     tooth = np.array(gear["tooth_mm"])
-    angle = math.radians(gear["angle_deg"]) + 2.0 * np.pi * np.arange(gear["teeth"]) / gear["teeth"]
+    along = 0.0 if z is None else z - sum(gear["face_mm"]) / 2
+    turned = math.radians(gear["angle_deg"] + gear["twist_deg_per_mm"] * along)
+    angle = turned + 2.0 * np.pi * np.arange(gear["teeth"]) / gear["teeth"]
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     return np.asarray(np.einsum("ijt,nj->tni", turn, tooth) + np.array(gear["centre_mm"]))
 
@@ -91,6 +93,20 @@ def test_the_drawn_flanks_touch_at_the_pitch_point_and_nowhere_overlap(name: str
     inside = sign * (tip - np.linalg.norm(arm, axis=1)) > 0.0
     depth = [_depth(point, drawn["wheel"]) for point in arm[inside]]
     assert inside.any() and max(depth) < 0.01 * modulus
+
+
+@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("z", [-9.0, 4.0])
+def test_sections_along_the_face_touch_and_nowhere_overlap(name: str, z: float) -> None:
+    drawn, modulus = outline_json(CASES[name]), CASES[name].pair.normal_module_mm
+    wheel = drawn["wheel"]
+    along = z - sum(wheel["face_mm"]) / 2
+    section = wheel | {"angle_deg": wheel["angle_deg"] + wheel["twist_deg_per_mm"] * along}
+    arm = placed(drawn["pinion"], z).reshape(-1, 2) - np.array(wheel["centre_mm"])
+    sign = -1.0 if drawn["internal"] else 1.0
+    inside = sign * (wheel["radius_mm"]["tip"] - np.linalg.norm(arm, axis=1)) > 0.0
+    depth = [_depth(point, section) for point in arm[inside]]
+    assert -0.08 * modulus < max(depth) < 0.01 * modulus
 
 
 def _depth(point: np.ndarray, gear: dict[str, Any]) -> float:

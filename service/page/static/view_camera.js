@@ -1,0 +1,106 @@
+// @ts-check
+/** A camera that orbits about a point: its matrix, and how pointer, wheel and keys move it. */
+
+const FIELD = 1 / Math.tan((15 * Math.PI) / 180); // half of the field of view, upright
+const STEEPEST = 1.5; // rad
+const STEP = 0.08; // rad a key
+const STILL = 4; // pixels within which a press is a click
+
+/** @typedef {[number, number, number]} Point */
+
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const clamped = (value, low, high) => Math.min(Math.max(value, low), high);
+
+export class Camera {
+  constructor() {
+    this.look([0, 0, 0], 100);
+  }
+
+  /**
+   * Stand so that a ball fills the picture.
+   * @param {Point} center @param {number} radius @param {number} [yaw] about y, from +z to +x @param {number} [pitch] upwards
+   * @param {number} [closer] part of the distance to the whole ball
+   */
+  look(center, radius, yaw = 0.7, pitch = 0.3, closer = 1) {
+    Object.assign(this, { center, radius, yaw, pitch, distance: closer * 1.1 * FIELD * radius });
+    this.home = { center, yaw, pitch, distance: this.distance };
+  }
+
+  /** @returns {Point} from the center towards the eye */
+  get back() {
+    const flat = Math.cos(this.pitch);
+    return [Math.sin(this.yaw) * flat, Math.sin(this.pitch), Math.cos(this.yaw) * flat];
+  }
+
+  /** The matrix (16, by columns) from the world to clip coordinates. @param {number} aspect width over height */
+  matrix(aspect) {
+    const { back, center, distance, radius } = this;
+    const right = [Math.cos(this.yaw), 0, -Math.sin(this.yaw)];
+    const up = [back[1] * right[2] - back[2] * right[1], back[2] * right[0] - back[0] * right[2], back[0] * right[1] - back[1] * right[0]];
+    const eye = center.map((value, k) => value + distance * back[k]);
+    const [far, near] = [distance + 3 * radius, Math.max(0.01 * distance, distance - 3 * radius)];
+    const [depth, shift] = [(far + near) / (near - far), (2 * far * near) / (near - far)];
+    const row = (axis, scale, more = 0) => [...axis.map((value) => scale * value), -scale * dot(axis, eye) + more];
+    const field = FIELD * Math.min(1, aspect); // a narrow picture shows as much
+    const rows = [row(right, field / aspect), row(up, field), row(back, depth, shift), row(back, -1)];
+    return new Float32Array([0, 1, 2, 3].flatMap((column) => rows.map((values) => values[column])));
+  }
+
+  turn(across, upwards) {
+    this.yaw -= across;
+    this.pitch = clamped(this.pitch + upwards, -STEEPEST, STEEPEST);
+  }
+
+  zoom(factor) {
+    this.distance = clamped(this.distance * factor, 0.15 * this.radius, 12 * this.radius);
+  }
+
+  /** @param {string} key @returns {boolean} whether it moves the camera */
+  press(key) {
+    const moves = {
+      ArrowLeft: () => this.turn(-STEP, 0), ArrowRight: () => this.turn(STEP, 0), ArrowUp: () => this.turn(0, -STEP), ArrowDown: () => this.turn(0, STEP),
+      "+": () => this.zoom(0.9), "-": () => this.zoom(1 / 0.9), Home: () => Object.assign(this, this.home),
+    };
+    moves[key]?.();
+    return key in moves;
+  }
+
+  /**
+   * Follow the pointers over a canvas: one turns, two or the wheel zoom.
+   * @param {HTMLCanvasElement} canvas
+   * @param {{moved: () => void, clicked: (x: number, y: number) => void}} told places in CSS pixels from the upper left
+   */
+  follow(canvas, { moved, clicked }) {
+    /** @type {Map<number, {x: number, y: number}>} */
+    const held = new Map();
+    let way = 0;
+    const apart = () => {
+      const [a, b] = [...held.values()];
+      return Math.hypot(a.x - b.x, a.y - b.y);
+    };
+    canvas.addEventListener("pointerdown", ({ pointerId, clientX: x, clientY: y }) => {
+      canvas.setPointerCapture(pointerId);
+      held.set(pointerId, { x, y });
+      way = held.size > 1 ? Infinity : 0;
+    });
+    canvas.addEventListener("pointermove", ({ pointerId, clientX: x, clientY: y }) => {
+      const before = held.get(pointerId);
+      if (!before) return;
+      const distance = held.size > 1 ? apart() : 0;
+      held.set(pointerId, { x, y });
+      way += Math.hypot(x - before.x, y - before.y);
+      if (distance) this.zoom(distance / apart());
+      else this.turn(0.008 * (x - before.x), 0.008 * (y - before.y));
+      moved();
+    });
+    canvas.addEventListener("pointerup", ({ pointerId, offsetX, offsetY }) => {
+      if (held.delete(pointerId) && way < STILL) clicked(offsetX, offsetY);
+    });
+    canvas.addEventListener("pointercancel", ({ pointerId }) => held.delete(pointerId));
+    canvas.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      this.zoom(1.001 ** event.deltaY);
+      moved();
+    }, { passive: false });
+  }
+}

@@ -1,0 +1,293 @@
+// @ts-check
+/** The pair as it rolls: teeth from the outline, pressure and bending from the live answer. */
+
+import { byId, make, number } from "./elements.js";
+import { flankMap } from "./view_flank.js";
+import { drawable, Stage } from "./view_stage.js";
+import { freed, held, program, tables } from "./view_gl.js";
+import { BENT as BENDING, FLANK, PICK, STEEL, TOOTH } from "./view_shaders.js";
+import { toothMesh } from "./view_teeth.js";
+
+const SPEED = 0.4; // base pitches a second
+const BENT = 200; // times
+const COLORS = { pinion: [0.58, 0.70, 0.82], wheel: [0.82, 0.66, 0.52] };
+const SEEN_THROUGH = 0.35; // opacity of the wheel
+const GEARS = ["pinion", "wheel"];
+const LINE = 0.05; // half width of a contact line as drawn, base pitches
+const STEPS = [1, 1.2, 1.6, 2, 2.5, 3, 4, 5, 7.5, 10]; // of the ends of a scale
+
+/** @typedef {{first_place: number, step: number, face_position_mm: number[], pressure_mpa: number[][], apart_um: number[][]}} Passage */
+/** @typedef {{position: number[], period: number, pair: number[], load_share: number[][], normal_force_n: number, passage: Passage}} Curve */
+
+const radians = (degrees) => (degrees * Math.PI) / 180;
+const most = (rows) => rows.reduce((top, row) => Math.max(top, ...row), 0);
+
+/** The end of a scale that holds a value. @param {number} value */
+function scaleOf(value) {
+  const size = 10 ** Math.floor(Math.log10(value || 1));
+  return size * (STEPS.find((step) => step * size >= value) ?? 10);
+}
+
+/** The rolling pair, drawn by a stage. @implements {import("./view_stage.js").Subject} */
+class RollingPair {
+  constructor() {
+    this.outline = null;
+    /** @type {Curve | null} */
+    this.curve = null;
+    this.position = 0;
+    this.top = 0;
+    this.bent = 0;
+    this.through = true;
+    this.meshes = null;
+    this.told = (/** @type {string} */ _words, /** @type {HTMLElement | undefined} */ _map) => {};
+  }
+
+  /** @param {WebGL2RenderingContext} gl */
+  begin(gl) {
+    const made = (define) => Object.fromEntries(Object.entries({ STEEL, FLANK, PICK }).map(([name, source]) => [name, program(gl, define + TOOTH, source)]));
+    this.programs = { straight: made(""), bent: made(BENDING) };
+    this.texture = gl.createTexture();
+    this.meshes = null;
+    this.press(gl, this.curve);
+  }
+
+  /** @param {any} outline answer of /v1/cases/outline */
+  show(gl, outline) {
+    this.outline = outline;
+    if (this.meshes) freed(gl, Object.values(this.meshes));
+    this.meshes = null;
+  }
+
+  /** @param {WebGL2RenderingContext} gl @param {Curve | null} curve */
+  press(gl, curve) {
+    this.curve = curve;
+    const passage = curve?.passage;
+    tables(gl, this.texture, passage?.pressure_mpa ?? [[0]], passage?.apart_um ?? [[0]]);
+    if (passage) this.top = Math.max(this.top, scaleOf(most(passage.pressure_mpa)));
+  }
+
+  /** @param {import("./view_camera.js").Camera} camera */
+  frame(camera) {
+    const { pinion, path_of_contact: { points_mm: { C } } } = this.outline;
+    const [low, high] = pinion.face_mm;
+    camera.look([C[0], C[1], 0.5 * (low + high)], Math.max(1.3 * pinion.radius_mm.tip, 0.7 * (high - low)), 0.95, 0.3);
+  }
+
+  advance(seconds) {
+    if (!this.outline) return;
+    const period = this.outline.pinion.teeth * this.outline.wheel.teeth;
+    this.position = (this.position + SPEED * seconds) % period;
+  }
+
+  draw(gl, frame) {
+    if (!this.outline) return;
+    this.meshes ??= this.made(gl);
+    gl.bindTexture(gl.TEXTURE_2D, this.texture);
+    gl.enable(gl.CULL_FACE);
+    if (frame.picking) {
+      for (const name of this.through ? ["pinion"] : GEARS) this.gear(gl, name, ["PICK"], frame, 1); // what is seen through is clicked through
+      return;
+    }
+    const flank = this.curve ? "FLANK" : "SMOOTH";
+    this.gear(gl, "pinion", ["STEEL"], frame, 1);
+    if (this.through) {
+      gl.enable(gl.BLEND);
+      gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+      gl.depthMask(false);
+    }
+    this.gear(gl, "wheel", [flank, "STEEL"], frame, this.through ? SEEN_THROUGH : 1);
+    gl.depthMask(true);
+    gl.disable(gl.BLEND);
+    this.gear(gl, "pinion", [flank], frame, 1); // last: not behind what is seen through
+  }
+
+  made(gl) {
+    const mesh = (name, coarse) => held(gl, toothMesh(this.outline[name], this.outline.internal && name === "wheel", coarse));
+    return Object.fromEntries(GEARS.flatMap((name) => [[name, mesh(name, false)], [`${name} moving`, mesh(name, true)]]));
+  }
+
+  /** Parts of a gear: FLANK or SMOOTH, its flanks that carry; STEEL, all else; PICK, both. */
+  gear(gl, name, parts, { view, back, moving }, opacity) {
+    const programs = this.programs[this.bent && this.curve ? "bent" : "straight"];
+    const { teeth } = this.outline[name];
+    const { array, count, marked } = this.meshes[moving ? `${name} moving` : name];
+    const rest = count - marked;
+    const ranges = { FLANK: [rest, marked], SMOOTH: [rest, marked], STEEL: [0, rest], PICK: [0, count] };
+    gl.bindVertexArray(array);
+    for (const part of parts) {
+      const { program: used, at } = programs[part] ?? programs.STEEL;
+      const [from, length] = ranges[part];
+      gl.useProgram(used);
+      gl.uniformMatrix4fv(at.view, false, view);
+      gl.uniform3fv(at.back, back);
+      gl.uniform1f(at.gear, 1 + GEARS.indexOf(name));
+      gl.uniform4f(at.color, ...COLORS[name], opacity);
+      this.place(gl, at, name);
+      gl.drawElementsInstanced(gl.TRIANGLES, length, gl.UNSIGNED_INT, 4 * from, teeth);
+    }
+    gl.bindVertexArray(null);
+  }
+
+  /** Where the teeth of a gear stand, and where and how much they are loaded. */
+  place(gl, at, name) {
+    const gear = this.outline[name];
+    const [contact, passage] = [this.contact(name), this.curve?.passage];
+    const { root, base } = gear.radius_mm;
+    const bent = this.bent * 1e-3 * gear.turn;
+    gl.uniform4f(at.turning, radians(gear.angle_deg), (gear.turn * 2 * Math.PI) / gear.teeth, this.position, gear.teeth);
+    gl.uniform4f(at.center, ...gear.centre_mm, 0.5 * (gear.face_mm[0] + gear.face_mm[1]), radians(gear.twist_deg_per_mm));
+    gl.uniform4f(at.contact, contact.pitch, contact.sense, contact.basePitch, contact.rise);
+    gl.uniform4f(at.bend, name === "pinion" ? -bent : bent, name === "pinion" ? 0 : (-bent * this.apart) / base, root, base);
+    gl.uniform4f(at.table, passage?.first_place ?? 0, passage?.step ?? 1, ...this.face);
+    gl.uniform2f(at.shown, this.top, LINE * contact.basePitch);
+    gl.uniform2f(at.ends, ...contact.ends);
+    gl.uniform2f(at.face, ...gear.face_mm);
+  }
+
+  /** Where the flank of a gear is touched: roll lengths in mm at the pitch point and the ends of the path. */
+  contact(name) {
+    const { pinion, internal, path_of_contact: { points_mm: points, base_pitch_mm: basePitch } } = this.outline;
+    const gear = this.outline[name];
+    const roll = ([x, y]) => Math.sqrt(Math.max(0, Math.hypot(x - gear.centre_mm[0], y - gear.centre_mm[1]) ** 2 - gear.radius_mm.base ** 2));
+    const rise = pinion.radius_mm.base * radians(pinion.twist_deg_per_mm);
+    const ends = [roll(points.A), roll(points.E)].sort((a, b) => a - b);
+    return { pitch: roll(points.C), sense: name === "pinion" || internal ? 1 : -1, basePitch, rise, ends };
+  }
+
+  /** How far apart the loaded flanks are moved now, in um: the mean by pressure over what carries. */
+  get apart() {
+    if (!this.curve) return 0;
+    const { first_place: first, step, pressure_mpa: pressure, apart_um: apart } = this.curve.passage;
+    let [weight, sum] = [0, 0];
+    const turn = this.position - Math.floor(this.position);
+    for (let row = (((turn - first) / step) % (1 / step)); row < pressure.length; row += 1 / step) {
+      const k = Math.min(Math.max(Math.round(row), 0), pressure.length - 1);
+      pressure[k].forEach((value, i) => {
+        weight += value;
+        sum += value * apart[k][i];
+      });
+    }
+    return weight ? sum / weight : 0;
+  }
+
+  /** @param {Uint8Array | null} texel */
+  picked(texel) {
+    if (!texel) this.told("");
+    else {
+      const [words, map] = this.flank(texel);
+      this.told(words, map);
+    }
+  }
+
+  /** Both ends of the face over which pressure is known: of a plane model, where the faces meet. */
+  get face() {
+    const { pinion, wheel } = this.outline;
+    const known = this.curve?.passage.face_position_mm ?? [];
+    const common = [Math.max(pinion.face_mm[0], wheel.face_mm[0]), Math.min(pinion.face_mm[1], wheel.face_mm[1])];
+    return known.length > 1 ? [known[0], known[known.length - 1]] : common;
+  }
+
+  /** What stands at a picked place, in words and as a map: tooth, place on its flank, pressure, share of the load. */
+  flank([code, low, along, across]) {
+    const name = GEARS[((code % 8) - 1) % 2];
+    const gear = this.outline[name];
+    const tooth = low + 256 * Math.floor(code / 8);
+    const words = `${name}, tooth ${tooth + 1}`;
+    if (code % 8 < 3) return [`${words}: not on the flank that carries.`];
+    const { ends, pitch, sense, basePitch, rise } = this.contact(name);
+    const roll = (part) => ends[0] + (ends[1] - ends[0]) * part;
+    const z = (part) => gear.face_mm[0] + (gear.face_mm[1] - gear.face_mm[0]) * part;
+    const pressure = (x, y) => this.pressure((sense * (roll(y) - pitch) + z(x) * rise) / basePitch, z(x));
+    const [x, y] = [across / 255, along / 255];
+    const at = `${words}: roll length ${number(roll(y), 3)} mm, face ${number(z(x), 3)} mm`;
+    if (!this.curve) return [`${at}.`];
+    const pair = ((this.position + tooth + gear.teeth / 2) % gear.teeth) - gear.teeth / 2;
+    const map = flankMap({ pressure, top: this.top, across: x, up: y, words: `Pressure over the flank of the ${name}, tip above` });
+    return [`${at}: ${number(pressure(x, y), 3)} MPa as the contact passes. ${this.share(pair)}`, map];
+  }
+
+  /** @param {number} place of a pair @param {number} z */
+  pressure(place, z) {
+    const { first_place: first, step, pressure_mpa: rows } = this.curve.passage;
+    const row = rows[Math.round((place - first) / step)];
+    const [low, high] = this.face;
+    const column = ((z - low) / (high - low)) * ((row?.length ?? 1) - 1);
+    const within = row?.length === 1 ? z >= low && z <= high : column > -0.5 && column < (row?.length ?? 0) - 0.5;
+    return row && within ? row[Math.round(column)] : 0;
+  }
+
+  /** What the pair of a tooth carries now. @param {number} place */
+  share(place) {
+    const { position, pair, load_share: shares, normal_force_n: force } = this.curve;
+    const turn = place - Math.floor(place);
+    const row = position.reduce((best, value, k) => (Math.abs(value - turn) < Math.abs(position[best] - turn) ? k : best), 0);
+    const share = shares[row][pair.indexOf(Math.floor(place))] ?? 0;
+    return share > 1e-4 ? `Its pair carries ${number(100 * share, 2)} % now, ${number(share * force, 3)} N.` : "Its pair carries nothing now.";
+  }
+}
+
+/** The rolling pair in a part of the page, with what it is steered by. */
+export class PairView {
+  /** @param {HTMLElement} target hidden where the browser has no WebGL2: the drawing stands for it */
+  constructor(target) {
+    target.hidden = !drawable();
+    if (target.hidden) return;
+    this.pair = new RollingPair();
+    this.stage = new Stage(target, this.pair);
+    this.words = make("p", { class: "view-words", role: "status" });
+    this.scale = make("span", { class: "view-scale", hidden: true });
+    this.pair.told = (words, map) => this.words.replaceChildren(...(map ? [map] : []), words);
+    const roll = make("button", { type: "button", class: "small", onclick: () => this.stage.roll(!this.stage.rolls) }, "");
+    const say = () => {
+      roll.textContent = this.stage.rolls ? "Stop" : "Roll";
+    };
+    this.stage.canvas.addEventListener("rolls", say);
+    say();
+    byId("roll").addEventListener("input", () => {
+      this.pair.position = Number(byId("roll").value);
+      this.stage.roll(false);
+    });
+    const choice = (text, checked, changed) => make("label", {}, make("input", { type: "checkbox", checked, "data-unkept": true, onchange: (event) => {
+      changed(event.target.checked);
+      this.stage.wake();
+    } }), ` ${text}`);
+    target.append(make("div", { class: "view-controls" }, roll,
+      choice(`bent × ${BENT}`, false, (on) => { this.pair.bent = on ? BENT : 0; }),
+      choice("see through the wheel", true, (on) => { this.pair.through = on; }),
+      this.scale), this.words);
+  }
+
+  /** @param {any} outline answer of /v1/cases/outline, of the pair as typed */
+  show(outline) {
+    if (!this.stage) return;
+    if (outlined(outline) === outlined(this.pair.outline)) return;
+    this.pair.show(this.stage.gl, outline);
+    const { pinion, wheel, internal } = outline;
+    this.stage.canvas.setAttribute("aria-label", `${pinion.teeth} teeth drive ${internal ? "a ring gear with " : ""}${wheel.teeth}, rolling in three dimensions. Drag or arrow keys turn the picture, wheel or + and − zoom, space stops and starts.`);
+    this.draw();
+    this.stage.frame();
+  }
+
+  /**
+   * Draw the pressure of a live answer on the gears that it is of.
+   * @param {Curve | null} curve @param {any} outline of the analyzed pair
+   */
+  press(curve, outline = null) {
+    if (!this.stage) return;
+    if (outline && outlined(outline) !== outlined(this.of)) this.pair.top = 0;
+    Object.assign(this, { curve, of: outline });
+    this.draw();
+  }
+
+  draw() {
+    const shown = this.curve && outlined(this.pair.outline) === outlined(this.of) ? this.curve : null;
+    if (shown !== this.pair.curve) this.pair.press(this.stage.gl, shown);
+    this.scale.hidden = !shown;
+    this.scale.textContent = `${this.pair.top} MPa`;
+    this.stage.canvas.dataset.pressed = String(shown ? most(shown.passage.pressure_mpa) : 0);
+    this.stage.wake();
+  }
+}
+
+/** Whether two outlines are of the same gears. @param {any} outline */
+const outlined = (outline) => outline && JSON.stringify([outline.pinion, outline.wheel]);

@@ -1,0 +1,139 @@
+// @ts-check
+/** The canvas of the three-dimensional views: one subject at a time, drawn when something moves and only then. */
+
+import { make } from "./elements.js";
+import { Camera } from "./view_camera.js";
+
+const SLOW = 40; // ms a frame, beyond which fewer pixels are drawn while it moves
+const LEAST = 0.5; // of the pixels across
+const QUICK = 20; // ms a frame, below which a still picture may be fine
+const FINE = 2; // pixels drawn a pixel shown where nothing moves: edges are smooth
+const CALM = matchMedia("(prefers-reduced-motion: reduce)");
+
+/**
+ * @typedef {object} Subject what is drawn
+ * @property {(gl: WebGL2RenderingContext) => void} begin make what it needs of a new context
+ * @property {(gl: WebGL2RenderingContext, frame: {view: Float32Array, back: number[], moving: boolean, picking: boolean}) => void} draw
+ * @property {(seconds: number) => void} advance
+ * @property {(texel: Uint8Array | null) => void} picked what is drawn at a place that was clicked; null: nothing
+ * @property {(camera: Camera) => void} frame
+ */
+
+/** @returns {boolean} whether this browser has WebGL2 */
+export function drawable() {
+  return Boolean(document.createElement("canvas").getContext("webgl2"));
+}
+
+export class Stage {
+  /** @param {HTMLElement} target @param {Subject} subject */
+  constructor(target, subject) {
+    this.subject = subject;
+    this.camera = new Camera();
+    this.canvas = /** @type {HTMLCanvasElement} */ (make("canvas", { class: "view", tabindex: "0", role: "img" }));
+    this.rolls = !CALM.matches;
+    this.moving = false;
+    this.seen = false;
+    this.part = 1;
+    target.append(this.canvas);
+    this.gl = /** @type {WebGL2RenderingContext} */ (this.canvas.getContext("webgl2", { antialias: false, powerPreference: "low-power" }));
+    this.canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
+    this.canvas.addEventListener("webglcontextrestored", () => this.begin());
+    this.canvas.addEventListener("keydown", (event) => this.key(event));
+    this.camera.follow(this.canvas, { moved: () => this.moved(), clicked: (x, y) => this.pick(x, y) });
+    new ResizeObserver(() => this.wake()).observe(this.canvas);
+    new IntersectionObserver(([entry]) => {
+      this.seen = entry.isIntersecting;
+      this.wake();
+    }).observe(this.canvas);
+    document.addEventListener("visibilitychange", () => this.wake());
+    this.begin();
+  }
+
+  begin() {
+    this.subject.begin(this.gl);
+    this.wake();
+  }
+
+  /** Look at the whole subject. */
+  frame() {
+    this.subject.frame(this.camera);
+    this.wake();
+  }
+
+  /** @param {boolean} now whether it rolls */
+  roll(now) {
+    this.rolls = now;
+    this.canvas.dispatchEvent(new Event("rolls"));
+    this.wake();
+  }
+
+  /** @param {KeyboardEvent} event */
+  key(event) {
+    if (event.key === " ") this.roll(!this.rolls);
+    else if (event.ctrlKey || event.metaKey || event.altKey || !this.camera.press(event.key)) return;
+    else this.moved();
+    event.preventDefault();
+  }
+
+  moved() {
+    this.moving = true;
+    clearTimeout(this.rest);
+    this.rest = setTimeout(() => {
+      this.moving = false;
+      this.wake();
+    }, 200);
+    this.wake();
+  }
+
+  /** Draw once more, and go on while it rolls. */
+  wake() {
+    if (this.asked || document.hidden || !this.seen) return;
+    this.asked = requestAnimationFrame((now) => this.turn(now));
+  }
+
+  turn(now) {
+    this.asked = 0;
+    const passed = this.last ? now - this.last : 0;
+    this.last = this.rolls ? now : 0;
+    if (this.rolls) this.subject.advance(Math.min(passed, 100) / 1000);
+    this.adapt(passed);
+    this.paint(false);
+    this.canvas.dataset.frames = String(Number(this.canvas.dataset.frames ?? 0) + 1);
+    if (this.rolls) this.wake();
+  }
+
+  /** Fewer pixels where a frame takes long, all of them where nothing moves. @param {number} passed ms */
+  adapt(passed) {
+    if (passed > 0 && passed < 1000) this.took = 0.8 * (this.took ?? passed) + 0.2 * passed;
+    if (!this.rolls && !this.moving) this.part = 1;
+    else if (this.took > SLOW) this.part = Math.max(LEAST, 0.97 * this.part);
+    else if (this.took < 0.5 * SLOW) this.part = Math.min(1, 1.01 * this.part);
+  }
+
+  /** @param {boolean} picking */
+  paint(picking) {
+    const { gl, canvas, camera } = this;
+    const still = !this.rolls && !this.moving && !picking;
+    const scale = still ? Math.max(devicePixelRatio, this.took < QUICK ? FINE : 1) : Math.min(devicePixelRatio, 2) * (picking ? 1 : Math.round(8 * this.part) / 8);
+    const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((size) => Math.max(1, Math.round(scale * size)));
+    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+    gl.viewport(0, 0, width, height);
+    gl.clearColor(0, 0, 0, 0);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.LEQUAL);
+    this.subject.draw(gl, { view: camera.matrix(width / height), back: camera.back, moving: this.moving || this.rolls, picking });
+  }
+
+  /** Say the subject what stands at a place of the canvas. */
+  pick(x, y) {
+    const { gl, canvas } = this;
+    const texel = new Uint8Array(4);
+    this.paint(true);
+    const scale = canvas.width / canvas.clientWidth;
+    gl.readPixels(Math.round(scale * x), canvas.height - 1 - Math.round(scale * y), 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, texel);
+    this.subject.picked(texel[0] ? texel : null);
+    this.paint(false);
+    this.wake();
+  }
+}

@@ -1,0 +1,126 @@
+"""The pair in three dimensions: drawn, turning, with live pressure, asleep; a drawing without WebGL."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from io import BytesIO
+
+import numpy as np
+import pytest
+from page_visit import PATIENCE, Visit, moved, shown
+from PIL import Image
+from playwright.sync_api import Browser, Page, Playwright, expect
+from running_service import until
+
+FLAGS = ("--headless", "--no-sandbox", "--disable-background-networking", "--disable-sync", "--no-first-run")
+SOFTWARE = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+CANVAS = "canvas.view"
+
+
+@pytest.fixture(scope="module")
+def drawing_browser(playwright: Playwright, browser_path: str) -> Iterator[Browser]:
+    """The browser of the other tests, with WebGL by software."""
+    started = playwright.chromium.launch(executable_path=browser_path, args=[*FLAGS, *SOFTWARE])
+    yield started
+    started.close()
+
+
+@pytest.fixture(scope="module")
+def view(drawing_browser: Browser, address: str, analyzed: str) -> Visit:
+    seen = shown(drawing_browser, address, analyzed)
+    seen.page.locator(CANVAS).scroll_into_view_if_needed()
+    expect(seen.page.locator(f"{CANVAS}[data-pressed]:not([data-pressed='0'])")).to_have_count(1)
+    if seen.page.get_by_role("button", name="Stop", exact=True).count():
+        seen.page.get_by_role("button", name="Stop", exact=True).click()
+    return seen
+
+
+def picture(page: Page) -> np.ndarray:
+    """Return what the canvas shows when nothing moves (height, width, 3)."""
+    rest(page)
+    content = page.locator(CANVAS).screenshot()
+    return np.asarray(Image.open(BytesIO(content)).convert("RGB")).astype(int)
+
+
+def frames(page: Page) -> int:
+    return int(page.locator(CANVAS).get_attribute("data-frames") or 0)
+
+
+def rest(page: Page) -> None:
+    """Wait until no more frames are drawn."""
+    seen = [-1]
+
+    def still() -> bool:
+        seen.append(frames(page))
+        page.wait_for_timeout(300)
+        return frames(page) == seen[-1]
+
+    until(still)
+
+
+def different(first: np.ndarray, second: np.ndarray) -> float:
+    """Return the part of the points that differ."""
+    return float(np.mean(np.abs(first - second).max(axis=-1) > 12))
+
+
+@pytest.mark.law
+def test_the_pair_is_drawn_turns_by_keyboard_and_sleeps(view: Visit) -> None:
+    page, canvas = view.page, view.page.locator(CANVAS)
+    before = picture(page)
+    assert len(np.unique(before.reshape(-1, 3), axis=0)) > 50
+    canvas.focus()
+    for _ in range(4):
+        canvas.press("ArrowRight")
+    after = picture(page)
+    assert different(before, after) > 0.05
+    canvas.press("Home")
+    assert different(before, picture(page)) < 0.002
+    count = frames(page)
+    canvas.press(" ")
+    until(lambda: frames(page) > count + 2)
+    canvas.press(" ")
+    assert different(before, picture(page)) > 0.002  # it has rolled on
+    assert view.complaints == []
+
+
+@pytest.mark.law
+def test_pressure_follows_a_slider(view: Visit) -> None:
+    page = view.page
+    before = picture(page)
+    pressed = float(page.locator(CANVAS).get_attribute("data-pressed") or 0)
+    for _ in range(6):
+        moved(page, "#live-torque_n_m", "PageUp")
+    until(lambda: float(page.locator(CANVAS).get_attribute("data-pressed") or 0) > 1.1 * pressed)
+    assert different(before, picture(page)) > 0.0005
+
+
+@pytest.mark.law
+def test_a_tooth_that_is_clicked_says_its_place_and_its_load(view: Visit) -> None:
+    page = view.page
+    box = page.locator(CANVAS).bounding_box()
+    assert box is not None
+    said = page.locator("#view [role=status]")
+    texts = []
+    for part in np.linspace(0.3, 0.8, 12):
+        page.mouse.click(box["x"] + part * box["width"], box["y"] + 0.62 * box["height"])
+        texts.append(said.inner_text())
+    assert any("tooth" in text for text in texts)
+
+
+def test_a_browser_without_webgl_shows_the_drawing(browser: Browser, address: str, analyzed: str) -> None:
+    seen = shown(browser, address, analyzed)
+    expect(seen.page.locator("#view")).to_be_hidden()
+    expect(seen.page.locator("#mesh-drawing path").first).to_be_visible()
+    assert seen.complaints == []
+    seen.page.close()
+
+
+def test_nothing_rolls_by_itself_for_who_wants_less_motion(drawing_browser: Browser, address: str) -> None:
+    context = drawing_browser.new_context(reduced_motion="reduce")
+    page = context.new_page()
+    page.goto(f"{address}/#pair")
+    page.set_default_timeout(PATIENCE)
+    expect(page.get_by_role("button", name="Roll", exact=True)).to_be_visible()
+    rest(page)
+    assert frames(page) > 0
+    context.close()
