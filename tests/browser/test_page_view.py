@@ -7,7 +7,7 @@ from io import BytesIO
 
 import numpy as np
 import pytest
-from page_visit import PATIENCE, Visit, moved, shown
+from page_visit import PATIENCE, Visit, found_inaccessible, moved, shown
 from PIL import Image
 from playwright.sync_api import Browser, Page, Playwright, expect
 from running_service import until
@@ -105,6 +105,7 @@ def test_a_tooth_that_is_clicked_says_its_place_and_its_load(view: Visit) -> Non
         page.mouse.click(box["x"] + part * box["width"], box["y"] + 0.62 * box["height"])
         texts.append(said.inner_text())
     assert any("tooth" in text for text in texts)
+    assert found_inaccessible(page, "#view") == {}
 
 
 def test_a_browser_without_webgl_shows_the_drawing(browser: Browser, address: str, analyzed: str) -> None:
@@ -115,10 +116,12 @@ def test_a_browser_without_webgl_shows_the_drawing(browser: Browser, address: st
     seen.page.close()
 
 
-def test_nothing_rolls_by_itself_for_who_wants_less_motion(drawing_browser: Browser, address: str) -> None:
+def test_nothing_rolls_by_itself_for_who_wants_less_motion(
+    drawing_browser: Browser, address: str, analyzed: str
+) -> None:
     context = drawing_browser.new_context(reduced_motion="reduce")
     page = context.new_page()
-    page.goto(f"{address}/#pair")
+    page.goto(f"{address}/#database={analyzed}")
     page.set_default_timeout(PATIENCE)
     expect(page.get_by_role("button", name="Roll", exact=True)).to_be_visible()
     rest(page)

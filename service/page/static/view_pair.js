@@ -70,7 +70,7 @@ class RollingPair {
   frame(camera) {
     const { pinion, path_of_contact: { points_mm: { C } } } = this.outline;
     const [low, high] = pinion.face_mm;
-    camera.look([C[0], C[1], 0.5 * (low + high)], Math.max(1.3 * pinion.radius_mm.tip, 0.7 * (high - low)), 0.95, 0.3);
+    camera.look([C[0], C[1], 0.5 * (low + high)], Math.max(1.1 * pinion.radius_mm.tip, 0.7 * (high - low)), 0.95, 0.3);
   }
 
   advance(seconds) {
