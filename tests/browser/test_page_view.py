@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from io import BytesIO
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from running_service import until
 FLAGS = ("--headless", "--no-sandbox", "--disable-background-networking", "--disable-sync", "--no-first-run")
 SOFTWARE = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 CANVAS = "canvas.view"
+UNIT = Path(__file__).parents[2] / "examples" / "two_stage" / "two_stage.rexs"
 
 
 @pytest.fixture(scope="module")
@@ -106,6 +109,23 @@ def test_a_tooth_that_is_clicked_says_its_place_and_its_load(view: Visit) -> Non
         texts.append(said.inner_text())
     assert any("tooth" in text for text in texts)
     assert found_inaccessible(page, "#view") == {}
+
+
+@pytest.mark.law
+def test_a_unit_turns_when_its_file_opens_and_a_mesh_that_is_clicked_opens_its_pair(view: Visit) -> None:
+    page = view.page
+    page.locator("#import-file").set_input_files(UNIT)
+    said = page.locator("#view [role=status]")
+    expect(said).to_contain_text("click a mesh")
+    assert len(np.unique(picture(page).reshape(-1, 3), axis=0)) > 50
+    box = page.locator(CANVAS).bounding_box()
+    assert box is not None
+    for part in np.linspace(0.3, 0.7, 12):
+        page.mouse.click(box["x"] + part * box["width"], box["y"] + 0.5 * box["height"])
+        if "click a mesh" not in said.inner_text():
+            break
+    expect(page.locator("#f-pair-pinion-teeth")).to_have_value(re.compile("^(25|21)$"))
+    assert view.complaints == []
 
 
 def test_a_browser_without_webgl_shows_the_drawing(browser: Browser, address: str, analyzed: str) -> None:

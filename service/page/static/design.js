@@ -8,7 +8,7 @@ import { Drawing } from "./drawing.js";
 import { byId, make } from "./elements.js";
 import { CaseForm } from "./form.js";
 import { noPlan, showPlan } from "./plan.js";
-import { PairView } from "./view_pair.js";
+import { View } from "./view.js";
 
 const SETTLED = 350; // milliseconds without an edit after which the case is planned and drawn
 const EMPTY = { name: "empty", title: "Empty fields, to type a pair", note: "", case: {} };
@@ -28,7 +28,7 @@ export class Design {
     this.watchers = [];
     this.stands = false; // whether the form holds what the address says, or what was typed since
     this.drawing = new Drawing();
-    this.view = new PairView(byId("view"));
+    this.view = new View(byId("view"));
     this.form = new CaseForm(schema, effects, () => this.edited());
     this.offer();
   }

@@ -53,6 +53,7 @@ export class OpenedUnit {
       )),
     );
     this.place.hidden = false;
+    this.design.view.unit(unit.scene, (mesh) => this.design.goTo(mesh.case, `${name}, ${mesh.name}`));
   }
 
   async saveScene(scene) {

@@ -1,18 +1,16 @@
 // @ts-check
 /** The pair as it rolls: teeth from the outline, pressure and bending from the live answer. */
 
-import { byId, make, number } from "./elements.js";
+import { number } from "./elements.js";
 import { flankMap } from "./view_flank.js";
-import { drawable, Stage } from "./view_stage.js";
 import { freed, held, program, tables } from "./view_gl.js";
 import { BENT as BENDING, FLANK, PICK, STEEL, TOOTH } from "./view_shaders.js";
 import { toothMesh } from "./view_teeth.js";
 
 const SPEED = 0.4; // base pitches a second
-const BENT = 200; // times
 const COLORS = { pinion: [0.58, 0.70, 0.82], wheel: [0.82, 0.66, 0.52] };
 const SEEN_THROUGH = 0.35; // opacity of the wheel
-const GEARS = ["pinion", "wheel"];
+export const GEARS = ["pinion", "wheel"];
 const LINE = 0.05; // half width of a contact line as drawn, base pitches
 const STEPS = [1, 1.2, 1.6, 2, 2.5, 3, 4, 5, 7.5, 10]; // of the ends of a scale
 
@@ -20,7 +18,7 @@ const STEPS = [1, 1.2, 1.6, 2, 2.5, 3, 4, 5, 7.5, 10]; // of the ends of a scale
 /** @typedef {{position: number[], period: number, pair: number[], load_share: number[][], normal_force_n: number, passage: Passage}} Curve */
 
 const radians = (degrees) => (degrees * Math.PI) / 180;
-const most = (rows) => rows.reduce((top, row) => Math.max(top, ...row), 0);
+export const most = (rows) => rows.reduce((top, row) => Math.max(top, ...row), 0);
 
 /** The end of a scale that holds a value. @param {number} value */
 function scaleOf(value) {
@@ -28,8 +26,14 @@ function scaleOf(value) {
   return size * (STEPS.find((step) => step * size >= value) ?? 10);
 }
 
+/** By whether teeth bend and by what is drawn. @param {WebGL2RenderingContext} gl */
+export function programsOf(gl) {
+  const made = (define) => Object.fromEntries(Object.entries({ STEEL, FLANK, PICK }).map(([name, source]) => [name, program(gl, define + TOOTH, source)]));
+  return { straight: made(""), bent: made(BENDING) };
+}
+
 /** The rolling pair, drawn by a stage. @implements {import("./view_stage.js").Subject} */
-class RollingPair {
+export class RollingPair {
   constructor() {
     this.outline = null;
     /** @type {Curve | null} */
@@ -43,9 +47,8 @@ class RollingPair {
   }
 
   /** @param {WebGL2RenderingContext} gl */
-  begin(gl) {
-    const made = (define) => Object.fromEntries(Object.entries({ STEEL, FLANK, PICK }).map(([name, source]) => [name, program(gl, define + TOOTH, source)]));
-    this.programs = { straight: made(""), bent: made(BENDING) };
+  begin(gl, programs = programsOf(gl)) {
+    this.programs = programs;
     this.texture = gl.createTexture();
     this.meshes = null;
     this.press(gl, this.curve);
@@ -107,7 +110,7 @@ class RollingPair {
   }
 
   /** Parts of a gear: FLANK or SMOOTH, its flanks that carry; STEEL, all else; PICK, both. */
-  gear(gl, name, parts, { view, back, moving }, opacity) {
+  gear(gl, name, parts, { view, back, moving, code = 1 }, opacity) {
     const programs = this.programs[this.bent && this.curve ? "bent" : "straight"];
     const { teeth } = this.outline[name];
     const { array, count, marked } = this.meshes[moving ? `${name} moving` : name];
@@ -120,7 +123,7 @@ class RollingPair {
       gl.useProgram(used);
       gl.uniformMatrix4fv(at.view, false, view);
       gl.uniform3fv(at.back, back);
-      gl.uniform1f(at.gear, 1 + GEARS.indexOf(name));
+      gl.uniform1f(at.gear, code + GEARS.indexOf(name));
       gl.uniform4f(at.color, ...COLORS[name], opacity);
       this.place(gl, at, name);
       gl.drawElementsInstanced(gl.TRIANGLES, length, gl.UNSIGNED_INT, 4 * from, teeth);
@@ -225,69 +228,3 @@ class RollingPair {
     return share > 1e-4 ? `Its pair carries ${number(100 * share, 2)} % now, ${number(share * force, 3)} N.` : "Its pair carries nothing now.";
   }
 }
-
-/** The rolling pair in a part of the page, with what it is steered by. */
-export class PairView {
-  /** @param {HTMLElement} target hidden where the browser has no WebGL2: the drawing stands for it */
-  constructor(target) {
-    target.hidden = !drawable();
-    if (target.hidden) return;
-    this.pair = new RollingPair();
-    this.stage = new Stage(target, this.pair);
-    this.words = make("p", { class: "view-words", role: "status" });
-    this.scale = make("span", { class: "view-scale", hidden: true });
-    this.pair.told = (words, map) => this.words.replaceChildren(...(map ? [map] : []), words);
-    const roll = make("button", { type: "button", class: "small", onclick: () => this.stage.roll(!this.stage.rolls) }, "");
-    const say = () => {
-      roll.textContent = this.stage.rolls ? "Stop" : "Roll";
-    };
-    this.stage.canvas.addEventListener("rolls", say);
-    say();
-    byId("roll").addEventListener("input", () => {
-      this.pair.position = Number(byId("roll").value);
-      this.stage.roll(false);
-    });
-    const choice = (text, checked, changed) => make("label", {}, make("input", { type: "checkbox", checked, "data-unkept": true, onchange: (event) => {
-      changed(event.target.checked);
-      this.stage.wake();
-    } }), ` ${text}`);
-    target.append(make("div", { class: "view-controls" }, roll,
-      choice(`bent × ${BENT}`, false, (on) => { this.pair.bent = on ? BENT : 0; }),
-      choice("see through the wheel", true, (on) => { this.pair.through = on; }),
-      this.scale), this.words);
-  }
-
-  /** @param {any} outline answer of /v1/cases/outline, of the pair as typed */
-  show(outline) {
-    if (!this.stage) return;
-    if (outlined(outline) === outlined(this.pair.outline)) return;
-    this.pair.show(this.stage.gl, outline);
-    const { pinion, wheel, internal } = outline;
-    this.stage.canvas.setAttribute("aria-label", `${pinion.teeth} teeth drive ${internal ? "a ring gear with " : ""}${wheel.teeth}, rolling in three dimensions. Drag or arrow keys turn the picture, wheel or + and − zoom, space stops and starts.`);
-    this.draw();
-    this.stage.frame();
-  }
-
-  /**
-   * Draw the pressure of a live answer on the gears that it is of.
-   * @param {Curve | null} curve @param {any} outline of the analyzed pair
-   */
-  press(curve, outline = null) {
-    if (!this.stage) return;
-    if (outline && outlined(outline) !== outlined(this.of)) this.pair.top = 0;
-    Object.assign(this, { curve, of: outline });
-    this.draw();
-  }
-
-  draw() {
-    const shown = this.curve && outlined(this.pair.outline) === outlined(this.of) ? this.curve : null;
-    if (shown !== this.pair.curve) this.pair.press(this.stage.gl, shown);
-    this.scale.hidden = !shown;
-    this.scale.textContent = `${this.pair.top} MPa`;
-    this.stage.canvas.dataset.pressed = String(shown ? most(shown.passage.pressure_mpa) : 0);
-    this.stage.wake();
-  }
-}
-
-/** Whether two outlines are of the same gears. @param {any} outline */
-const outlined = (outline) => outline && JSON.stringify([outline.pinion, outline.wheel]);

@@ -13,6 +13,7 @@ const CALM = matchMedia("(prefers-reduced-motion: reduce)");
 /**
  * @typedef {object} Subject what is drawn
  * @property {(gl: WebGL2RenderingContext) => void} begin make what it needs of a new context
+ * @property {(gl: WebGL2RenderingContext) => void} [end] let go of it
  * @property {(gl: WebGL2RenderingContext, frame: {view: Float32Array, back: number[], moving: boolean, picking: boolean}) => void} draw
  * @property {(seconds: number) => void} advance
  * @property {(texel: Uint8Array | null) => void} picked what is drawn at a place that was clicked; null: nothing

@@ -1,0 +1,164 @@
+// @ts-check
+/** A gear unit as its scene has it: shafts and bearings as bodies of revolution, gears with their teeth, all in motion. */
+
+import { post } from "./api.js";
+import { freed, held, Meshing } from "./view_gl.js";
+import { GEARS, programsOf, RollingPair } from "./view_pair.js";
+
+const SIDES = 32; // of a body of revolution
+const SPEED = 0.5; // base pitches a second of the first mesh
+const COLORS = { shaft: [0.62, 0.64, 0.67], bearing: [0.42, 0.46, 0.52] };
+const BUSHING = 1.7; // outside over shaft diameter where a scene has no catalog
+const WIDTH = 0.55; // of a bearing over its height twice
+
+/** @typedef {{name: string, origin_mm: number[], length_mm: number, diameter_mm?: number, sections?: {length_mm: number, outer_diameter_mm: number}[]}} Shaft */
+
+/** A ring about z. @param {Meshing} made @param {number} inner radius @param {number} outer */
+function ring(made, inner, outer, low, high) {
+  const turn = (k) => [Math.cos((2 * Math.PI * k) / SIDES), Math.sin((2 * Math.PI * k) / SIDES)];
+  const line = (radius, z, normal) => Array.from({ length: SIDES + 1 }, (_, k) => {
+    const [x, y] = turn(k);
+    return made.vertex([radius * x, radius * y, z], normal ?? [x, y, 0]);
+  });
+  const strips = [[line(outer, low), line(outer, high)]];
+  for (const [z, up] of [[low, -1], [high, 1]]) strips.push([line(inner, z, [0, 0, up]), line(outer, z, [0, 0, up])]);
+  for (const [a, b] of strips) for (let k = 1; k <= SIDES; k += 1) made.quad(a[k - 1], b[k - 1], a[k], b[k]);
+}
+
+/** @param {Shaft} shaft */
+const sectionsOf = (shaft) => shaft.sections ?? [{ length_mm: shaft.length_mm, outer_diameter_mm: shaft.diameter_mm ?? shaft.length_mm / 8 }];
+
+/** The diameter of a shaft at a place along it. @param {Shaft} shaft */
+function diameterAt(shaft, place) {
+  let end = 0;
+  const section = sectionsOf(shaft).find(({ length_mm: length }) => (end += length) >= place - 1e-9);
+  return (section ?? sectionsOf(shaft).at(-1)).outer_diameter_mm;
+}
+
+/** @param {Shaft} shaft */
+function shaftMesh(shaft) {
+  const made = new Meshing();
+  let low = 0;
+  for (const { length_mm: length, outer_diameter_mm: diameter } of sectionsOf(shaft)) {
+    ring(made, 0, diameter / 2, low, low + length);
+    low += length;
+  }
+  return made.mesh;
+}
+
+/** @param {any} bearing @param {Shaft} shaft */
+function bearingMesh({ position_mm: place, catalog }, shaft) {
+  const inner = diameterAt(shaft, place) / 2;
+  const outer = catalog ? catalog.outside_diameter_mm / 2 : BUSHING * inner;
+  const half = WIDTH * (outer - inner);
+  const made = new Meshing();
+  ring(made, inner, outer, place - half, place + half);
+  return made.mesh;
+}
+
+/** By columns: turned about z, then moved. @param {number} angle @param {number[]} to */
+function placement(angle, [x, y, z]) {
+  const [c, s] = [Math.cos(angle), Math.sin(angle)];
+  return [c, s, 0, 0, -s, c, 0, 0, 0, 0, 1, 0, x, y, z, 1];
+}
+
+/** @param {Float32Array} a @param {number[]} b both by columns */
+const product = (a, b) => Float32Array.from({ length: 16 }, (_, k) => {
+  const [column, row] = [Math.floor(k / 4), k % 4];
+  return [0, 1, 2, 3].reduce((sum, i) => sum + a[4 * i + row] * b[4 * column + i], 0);
+});
+
+/** @implements {import("./view_stage.js").Subject} */
+export class Gearbox {
+  /**
+   * @param {any} scene
+   * @param {{mesh: any, outline: any}[]} stages in the order of the power
+   * @param {(mesh: any) => void} open what is done with a mesh that is clicked
+   */
+  constructor(scene, stages, open) {
+    Object.assign(this, { scene, open });
+    this.position = 0;
+    this.shafts = new Map(scene.shafts.map((shaft) => [shaft.name, shaft]));
+    const gears = new Map(scene.gears.map((gear) => [gear.name, gear]));
+    /** @type {Map<string, number>} turns of shafts in rad a base pitch of the first mesh, counter-clockwise */
+    this.turns = new Map();
+    this.stages = stages.map(({ mesh, outline }) => this.stage(mesh, outline, gears.get(mesh.driver), gears.get(mesh.driven)));
+  }
+
+  stage(mesh, outline, driver, driven) {
+    const [one, other] = [driver, driven].map(({ shaft }) => this.shafts.get(shaft));
+    const [x, y] = [0, 1].map((k) => other.origin_mm[k] - one.origin_mm[k]);
+    const angle = Math.atan2(y, x) + (outline.internal ? 1 : -1) * (Math.PI / 2);
+    const to = [one.origin_mm[0], one.origin_mm[1], one.origin_mm[2] + driver.position_mm];
+    const step = (-2 * Math.PI) / outline.pinion.teeth; // of the pinion, a base pitch
+    const turned = this.turns.get(one.name) ?? step;
+    this.turns.set(one.name, turned);
+    this.turns.set(other.name, (turned / step) * outline.wheel.turn * ((2 * Math.PI) / outline.wheel.teeth));
+    const pair = new RollingPair();
+    pair.outline = outline;
+    return { mesh, pair, place: placement(angle, to), ratio: turned / step };
+  }
+
+  begin(gl) {
+    this.programs = programsOf(gl);
+    for (const { pair } of this.stages) pair.begin(gl, this.programs);
+    const bodies = this.scene.shafts.map((shaft) => ({ shaft, mesh: held(gl, shaftMesh(shaft)), color: COLORS.shaft }));
+    const bearings = [...(this.scene.rolling_bearings ?? []), ...(this.scene.bushings ?? [])].filter(({ shaft }) => this.shafts.has(shaft));
+    for (const bearing of bearings) {
+      const shaft = this.shafts.get(bearing.shaft);
+      bodies.push({ shaft, mesh: held(gl, bearingMesh(bearing, shaft)), color: COLORS.bearing });
+    }
+    this.bodies = bodies;
+  }
+
+  /** Let go of what it holds. */
+  end(gl) {
+    freed(gl, [...this.bodies.map(({ mesh }) => mesh), ...this.stages.flatMap(({ pair }) => Object.values(pair.meshes ?? {}))]);
+  }
+
+  frame(camera) {
+    const corners = this.scene.shafts.flatMap(({ origin_mm: [x, y, z], length_mm: length }) => [[x, y, z], [x, y, z + length]]);
+    const reach = Math.max(...this.stages.map(({ pair }) => pair.outline.wheel.radius_mm.tip));
+    const [low, high] = [Math.min, Math.max].map((end) => [0, 1, 2].map((k) => end(...corners.map((corner) => corner[k]))));
+    const center = /** @type {[number, number, number]} */ (low.map((value, k) => (value + high[k]) / 2));
+    camera.look(center, Math.hypot(...high.map((value, k) => (value - low[k]) / 2)) + 0.5 * reach, 0.8, 0.35);
+  }
+
+  advance(seconds) {
+    this.position += SPEED * seconds;
+  }
+
+  draw(gl, frame) {
+    gl.enable(gl.CULL_FACE);
+    const { program, at } = this.programs.straight.STEEL;
+    gl.useProgram(program);
+    gl.uniform3fv(at.back, frame.back);
+    for (const { shaft, mesh, color } of frame.picking ? [] : this.bodies) {
+      gl.uniformMatrix4fv(at.view, false, product(frame.view, placement(0, shaft.origin_mm)));
+      gl.uniform4f(at.turning, (this.turns.get(shaft.name) ?? 0) * this.position, 0, 0, 1);
+      gl.uniform4f(at.center, 0, 0, 0, 0);
+      gl.uniform4f(at.bend, 0, 0, 0, 1);
+      gl.uniform4f(at.color, ...color, 1);
+      gl.bindVertexArray(mesh.array);
+      gl.drawElements(gl.TRIANGLES, mesh.count, gl.UNSIGNED_INT, 0);
+    }
+    this.stages.forEach(({ pair, place, ratio }, k) => {
+      pair.position = ratio * this.position;
+      pair.meshes ??= pair.made(gl);
+      const own = { ...frame, view: product(frame.view, place), code: 8 * k + 1 };
+      for (const name of GEARS) pair.gear(gl, name, frame.picking ? ["PICK"] : ["SMOOTH", "STEEL"], own, 1);
+    });
+  }
+
+  /** @param {Uint8Array | null} texel */
+  picked(texel) {
+    if (texel) this.open(this.stages[Math.floor((texel[0] - 1) / 8)].mesh);
+  }
+}
+
+/** The unit of a scene, with the outlines of its meshes. @param {any} scene @param {(mesh: any) => void} open */
+export async function gearboxOf(scene, open) {
+  const meshes = scene.meshes.filter((mesh) => mesh.case);
+  const outlines = await Promise.all(meshes.map((mesh) => post("/v1/cases/outline", { inputs: { case: mesh.case } })));
+  return new Gearbox(scene, meshes.map((mesh, k) => ({ mesh, outline: outlines[k] })), open);
+}
