@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
+from bounds import engineering
 from fe_contact.analysis.request.request import Checked
 from fe_contact.errors import increasing
 from fe_contact.geometry import ParallelAxes
@@ -19,6 +21,7 @@ from fe_contact.microgeometry.confirmation import (
     Misalignments,
     rising,
 )
+from fe_contact.microgeometry.design_problem import SLACK
 from fe_contact.microgeometry.objective import NO_LIMITS, Limits, Objective, WeightedMean
 from fe_contact.microgeometry.scatter import NO_SCATTER, Scatter, ScatterNodes
 from fe_contact.microgeometry.search import Search, SearchRun
@@ -139,6 +142,38 @@ class Outcome(StrEnum):
     LIMITS_EXCEEDED = "limits_exceeded"  # no design was found that keeps the limits
 
 
+class _Confirmed(Protocol):
+    """A design with its errors."""
+
+    @property
+    def objective(self) -> Estimate: ...
+    @property
+    def violation(self) -> float: ...
+
+
+def gain_of(start: _Confirmed, optimum: _Confirmed) -> Estimate:
+    """Return the reduction of the objective; the errors are added, although both designs have one mesh."""
+    before, after = start.objective, optimum.objective
+    return Estimate(before.value - after.value, before.error + after.error, before.unit)
+
+
+def outcome_of(start: _Confirmed, optimum: _Confirmed) -> Outcome:
+    """Return what came of a search: ties within the errors are ties."""
+    gain = gain_of(start, optimum)
+    if optimum.violation > SLACK:
+        return Outcome.LIMITS_EXCEEDED
+    if gain.value > gain.error:
+        return Outcome.IMPROVED
+    if start.violation > SLACK:
+        return Outcome.LIMITS_KEPT
+    return Outcome.WITHIN_ERROR if gain.value > 0.0 else Outcome.NOT_IMPROVED
+
+
+def excess(optimum: _Confirmed) -> str:
+    """Return by how much a design exceeds the limits, in words."""
+    return f"{engineering(100.0 * optimum.violation, 2)} % of them, or of the load on tip edges"
+
+
 @dataclass(frozen=True)
 class Perturbation:
     """The change by a small step of one variable from the optimum.
@@ -210,8 +245,7 @@ class Optimization:
     @property
     def gain(self) -> Estimate:
         """Reduction of the objective, m; the errors are added, although both designs have one mesh."""
-        start, optimum = self.start.objective, self.optimum.objective
-        return Estimate(start.value - optimum.value, start.error + optimum.error, "m")
+        return gain_of(self.start, self.optimum)
 
     @property
     def rising(self) -> IntArray:

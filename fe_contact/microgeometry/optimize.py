@@ -17,7 +17,15 @@ from fe_contact.errors import SolveError
 from fe_contact.microgeometry.confirmation import ConfirmedDesign, DesignStudy, confirm, design_study, rising
 from fe_contact.microgeometry.design_problem import SLACK, Cancelled, DesignProblem, SearchProblem
 from fe_contact.microgeometry.evaluator import Evaluator
-from fe_contact.microgeometry.optimization import Optimization, OptimizationRequest, Outcome, Perturbation
+from fe_contact.microgeometry.optimization import (
+    Optimization,
+    OptimizationRequest,
+    Outcome,
+    Perturbation,
+    excess,
+    gain_of,
+    outcome_of,
+)
 from fe_contact.microgeometry.scatter import MISALIGNMENT, Scatter
 from fe_contact.microgeometry.search import (
     Cancel,
@@ -237,26 +245,21 @@ AT_BOUND = 1e-3
 
 
 def _conclusion(choice: _Choice, request: OptimizationRequest) -> tuple[Outcome, str]:
-    start, optimum, ended = choice.start, choice.optimum, _ended(choice, request)
-    gain = start.objective.value - optimum.objective.value
-    error = start.objective.error + optimum.objective.error
-    if optimum.violation > SLACK:
-        over = f"{engineering(100.0 * optimum.violation, 2)} % of them, or of the load on tip edges"
-        return (
-            Outcome.LIMITS_EXCEEDED,
-            f"the best design exceeds the limits by {over}{_worse(choice)}; {ended}",
-        )
-    moved = "falls" if gain >= 0.0 else "rises"
+    outcome, ended = outcome_of(choice.start, choice.optimum), _ended(choice, request)
+    if outcome is Outcome.LIMITS_EXCEEDED:
+        over = f"{excess(choice.optimum)}{_worse(choice)}"
+        return outcome, f"the best design exceeds the limits by {over}; {ended}"
+    gain = gain_of(choice.start, choice.optimum)
+    moved = "falls" if gain.value >= 0.0 else "rises"
     change = (
-        f"expected peak-to-peak {moved} by {1e6 * abs(gain):.3g} um, errors {engineering(1e6 * error, 2)} um"
-        f"{_worse(choice)}"
+        f"expected peak-to-peak {moved} by {1e6 * abs(gain.value):.3g} um, errors "
+        f"{engineering(1e6 * gain.error, 2)} um{_worse(choice)}"
     )
-    if gain > error:
-        return Outcome.IMPROVED, f"{change}; {ended}"
-    if start.violation > SLACK:
-        return Outcome.LIMITS_KEPT, f"the limits are kept, which the start exceeds; {change}; {ended}"
-    outcome = Outcome.WITHIN_ERROR if gain > 0.0 else Outcome.NOT_IMPROVED
-    return outcome, f"{change}; {_why_not(choice, request, error)}{ended}"
+    if outcome is Outcome.IMPROVED:
+        return outcome, f"{change}; {ended}"
+    if outcome is Outcome.LIMITS_KEPT:
+        return outcome, f"the limits are kept, which the start exceeds; {change}; {ended}"
+    return outcome, f"{change}; {_why_not(choice, request, gain.error)}{ended}"
 
 
 def _worse(choice: _Choice) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 
 from bounds import engineering
 from bounds.types import Json
-from fe_contact.microgeometry.optimization import Outcome
+from fe_contact.microgeometry.optimization import Outcome, excess, gain_of, outcome_of
 from fe_contact.microgeometry.search import SearchRun
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.types import Estimate, FloatArray
@@ -105,8 +105,7 @@ class HeardOptimization:
     @property
     def gain(self) -> Estimate:
         """By how much the level falls, dB; the errors are added, although both designs have one mesh."""
-        start, optimum = self.start.objective, self.optimum.objective
-        return Estimate(start.value - optimum.value, start.error + optimum.error, "dB")
+        return gain_of(self.start, self.optimum)
 
     @property
     def evaluations(self) -> int:
@@ -116,18 +115,13 @@ class HeardOptimization:
     @property
     def outcome(self) -> Outcome:
         """What came of it: ties within the errors are ties."""
-        if self.optimum.violation > 0.0:
-            return Outcome.LIMITS_EXCEEDED
-        if self.gain.value > self.gain.error:
-            return Outcome.IMPROVED
-        if self.start.violation > 0.0:
-            return Outcome.LIMITS_KEPT
-        return Outcome.WITHIN_ERROR if self.gain.value > 0.0 else Outcome.NOT_IMPROVED
+        return outcome_of(self.start, self.optimum)
 
     @property
     def reason(self) -> str:
         """The outcome in a sentence."""
         gain, start, optimum = self.gain, self.start.objective, self.optimum.objective
+        over = excess(self.optimum)
         levels = (
             f"{start.value:.1f} to {optimum.value:.1f} {self.unit}, errors {engineering(gain.error, 2)} dB"
         )
@@ -136,13 +130,9 @@ class HeardOptimization:
             Outcome.WITHIN_ERROR: f"A tie: the optimum cannot be told from the start, {levels}",
             Outcome.NOT_IMPROVED: f"No quieter flanks were found: {levels}",
             Outcome.LIMITS_KEPT: f"The limits are kept, which the start exceeds: {levels}",
-            Outcome.LIMITS_EXCEEDED: f"The best design exceeds the limits by {self._exceeded}: {levels}",
+            Outcome.LIMITS_EXCEEDED: f"The best design exceeds the limits by {over}: {levels}",
         }
         return words[self.outcome]
-
-    @property
-    def _exceeded(self) -> str:
-        return f"{engineering(100.0 * self.optimum.violation, 2)} % of them, or of the load on tip edges"
 
     def ended(self) -> str:
         """Return how the search ended, and how many of its starts agree, in a sentence."""
