@@ -5,6 +5,7 @@ import { byId, dataTable, figures, folded, make, number } from "./elements.js";
 import { SHOWN_HARMONICS, harmonicsFigure, sharingFigure, steFigure } from "./live_figures.js";
 import { LiveFlanks } from "./live_flanks.js";
 import { mainFigures, numbersOf, sourcesOf } from "./live_numbers.js";
+import { LiveSound } from "./live_sound.js";
 import { figureBlock, plot } from "./plots.js";
 import { Reference } from "./reference.js";
 import { Sliders } from "./sliders.js";
@@ -14,7 +15,7 @@ const STYLES = {
   kept: { name: "reference", color: "#B34C00", width: 2, dash: "dot" },
   now: { name: "now", color: "#0072B2", width: 2.4, dash: "solid" },
 };
-const PLACES = { ste: "live-ripple", harmonics: "live-orders", sharing: "live-load", flanks: "live-flank" };
+const PLACES = { ste: "live-ripple", harmonics: "live-orders", sharing: "live-load", flanks: "live-flank", sound: "live-sound" };
 const AWAY = 2; // seconds after which a service that does not answer is asked again
 
 export class Live {
@@ -207,6 +208,7 @@ export class Live {
     this.numbers = folded("Numbers");
     this.blocks.ste.block.append(this.numbers);
     this.flanks = new LiveFlanks();
+    this.sound = new LiveSound();
     for (const [name, { block: shown }] of Object.entries(this.blocks)) byId(PLACES[name]).replaceChildren(shown);
     byId(PLACES.flanks).replaceChildren(...this.flanks.blocks);
   }
@@ -216,6 +218,10 @@ export class Live {
     const curves = Object.entries({ before, kept, now }).filter(([, curve]) => curve);
     const shown = curves.map(([style, curve]) => ({ ...STYLES[style], curve }));
     figures(byId("live-figures"), mainFigures(now, kept ?? before));
+    this.sound.show(shown.map(({ name, curve }) => {
+      const { case: content } = curve === kept ? this.kept.known : this.known;
+      return { name, teeth: content.pair.pinion.teeth, harmonics: curve.harmonics_um.filter(Number.isFinite) };
+    }));
     await Promise.all([
       plot(this.blocks.ste.node, steFigure(shown)),
       plot(this.blocks.harmonics.node, harmonicsFigure(shown)),

@@ -1,0 +1,56 @@
+"""Live curves as sounds: twice the ripple is twice as loud, and a sweep ends where it should."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from page_visit import Visit
+from playwright.sync_api import Page, expect
+
+RENDERED = """async ({ voices, sweep }) => {
+  const { sounded, strength } = await import("/page/live_sound.js");
+  const full = Math.max(...voices.map((voice) => strength(voice, sweep)));
+  return Promise.all(voices.map(async (voice) => {
+    const context = new OfflineAudioContext(1, 48000 * sweep.seconds, 48000);
+    sounded(context, voice, sweep, full);
+    return [...(await context.startRendering()).getChannelData(0)];
+  }));
+}"""
+SWEEP = {"from": 1200, "to": 2400, "seconds": 1}
+
+
+def rendered(page: Page, *harmonics: list[float]) -> np.ndarray:
+    """Return the samples of voices with 20 teeth (voices, samples)."""
+    voices: list[dict[str, Any]] = [
+        {"name": str(k), "teeth": 20, "harmonics": h} for k, h in enumerate(harmonics)
+    ]
+    return np.array(page.evaluate(RENDERED, {"voices": voices, "sweep": SWEEP}))
+
+
+@pytest.mark.law
+def test_levels_of_live_sounds_are_in_the_ratio_of_what_excites_them(visit: Visit) -> None:
+    single, double, second = rendered(visit.page, [0.1], [0.2], [0.0, 0.1])
+    level = np.sqrt(np.mean(np.square([single, double, second]), axis=1))
+    assert level[1] / level[0] == pytest.approx(2.0, rel=1e-3)
+    assert level[2] / level[0] == pytest.approx(2.0, rel=0.02)  # twice the frequency: twice the velocity
+    assert 0.4 < np.abs(double).max() <= 0.501
+
+
+@pytest.mark.law
+def test_a_live_sound_sweeps_over_the_mesh_frequencies(visit: Visit) -> None:
+    (samples,) = rendered(visit.page, [0.1])
+    edges = np.flatnonzero((samples[:-1] < 0.0) & (samples[1:] >= 0.0)) / 48000.0
+    frequency, at = 1.0 / np.diff(edges), edges[:-1]
+    for moment, rpm in ((0.25, 1500), (0.75, 2100)):
+        assert np.interp(moment, at, frequency) == pytest.approx(20 * rpm / 60, rel=0.02)
+
+
+def test_the_sound_tab_plays_what_is_shown(visit: Visit) -> None:
+    visit.page.get_by_role("tab", name="Sound", exact=True).click()
+    for name in ("Play as analyzed", "Play now"):
+        button = visit.page.get_by_role("button", name=name, exact=True)
+        expect(button).to_be_visible()
+        button.click()
+    assert visit.complaints == []
