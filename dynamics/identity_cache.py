@@ -21,9 +21,13 @@ def _itself(data: Any) -> tuple[Any, ...]:
 
 def _key(part: Any) -> Any:
     """Return what tells a part from others: of tuples their parts, of names their letters, else identity."""
-    if type(part) is tuple:
-        return tuple(map(_key, part))
-    return part if isinstance(part, str) else id(part)
+    kind = type(part)
+    if kind is tuple:
+        return tuple([_key(each) if type(each) in _BY_VALUE else id(each) for each in part])
+    return part if kind is str else id(part)
+
+
+_BY_VALUE = (tuple, str)
 
 
 class _Identity:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from dynamics.integrators.state_sink import BLOCK, StateSink
 from dynamics.integrators.static import StaticSolution
 from dynamics.integrators.tableaus import EXPLICIT_EMBEDDED_ORDER, IMPLICIT_EMBEDDED_ORDER
 from dynamics.integrators.workspace import Count, Power, Workspace, geometric_steps
-from dynamics.kernels.by_address import by_address, by_value
+from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled
 from dynamics.kernels.local_state import LocalState
 from dynamics.motion.observation import local_state, observe_laws
@@ -92,7 +92,7 @@ def _sample_figures(system: System, ring: SampleRing, points: int, samples: int)
     """Read the figures off a ring after `points` of the inner grid and `samples` of the output."""
     rows, stored = ring.local.force.size, system.scene.outputs.bearing_forces
     supports = system.bearing_stiffness.shape[:2] if stored else (0, 3)
-    largest, rms = ring.peaks.largest, np.sqrt(ring.peaks.square / max(points, 1))
+    largest, rms = ring.peaks.largest.copy(), np.sqrt(ring.peaks.square / max(points, 1))
     driving = system.driving_rows
     coast = np.zeros((2, driving.size))
     for element, mesh in enumerate(system.flanks.coast, start=driving.size):
@@ -331,19 +331,21 @@ def _advance_to(march: March, stop: float, sink: StateSink) -> RunStatus:
 def ending(march: March, sink: StateSink, status: RunStatus, taken: TimeTaken) -> Ending:
     """Return the status of the march; the samples that the filter still holds go into `sink`.
 
-    They are filtered as if the motion went on turned about its last point. The march itself stays as it
-    is, and can go on.
+    They are filtered as if the motion went on turned about its last point. The march itself is then as it
+    was, and can go on.
     """
-    work, ring = march.work, _copied(march.ring)
-    end, before = float(work.time[0]), int(work.counts[Count.OUTPUT])
-    counted = work._replace(counts=work.counts.copy())
-    due = int(counted.counts[Count.POINT] - 1) // march.sampler.factor + 1
-    samples = min(due, march.samples)
+    work, ring, passed = march.work, march.ring, march.compiled
+    end, before, points = float(work.time[0]), *(int(work.counts[at]) for at in (Count.OUTPUT, Count.POINT))
+    samples = min((points - 1) // march.sampler.factor + 1, march.samples)
     room = sink.room(before, samples - before)
-    counted.counts[Count.FIRST_ROW] = before
-    held = by_address(counted), march.compiled.sampler, by_address(ring)
+    kept = [(part, part.copy()) for part in (work.counts, ring.point, ring.removed, ring.folded)]
+    work.counts[Count.FIRST_ROW] = before
+    held = passed.work, passed.sampler, passed.ring
     continue_past_the_end(*held, march.sampler.taps.size // 2, by_address(room))
     sink.keep(before, samples - before)
+    figures = _sample_figures(march.system, ring, points, samples)
+    for part, values in kept:
+        part[...] = values
     final = _audited_energy(march.system, march.control, end, work)
     done = work.work.copy()
     done[Power.POSITION] += final[2] - march.initial[2]
@@ -357,15 +359,8 @@ def ending(march: March, sink: StateSink, status: RunStatus, taken: TimeTaken) -
         work.counts,
         _step_range(work),
         taken,
-        _sample_figures(march.system, ring, int(work.counts[Count.POINT]), samples),
+        figures,
     )
-
-
-def _copied(arrays: Any) -> Any:
-    """Return a named tuple of arrays, and of such tuples, with arrays of its own."""
-    own = by_value(arrays)
-    parts = (_copied(part) if isinstance(part, tuple) else np.array(part) for part in own)
-    return type(own)(*parts)
 
 
 def _control(system: System, integration: Integration) -> Control:

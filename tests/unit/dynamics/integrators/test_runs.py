@@ -13,7 +13,8 @@ from dynamics.assembly.assemble import assemble
 from dynamics.errors import SolveError
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.integrators.advance import advance
-from dynamics.integrators.march import start_march
+from dynamics.integrators.march import ending, start_march
+from dynamics.integrators.state_sink import MemorySink
 from dynamics.integrators.workspace import Count
 from dynamics.kernels.by_address import by_address
 from dynamics.loads import AngleLaw, TimeLaw
@@ -22,6 +23,7 @@ from dynamics.meshes.technique import PlainTable
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
 from dynamics.types import RunStatus
+from model_studies.stage_clock import TimeTaken
 
 # Outcomes of runs: complete, or ended early with a status and what was computed.
 
@@ -96,6 +98,25 @@ def test_cutting_a_run_into_chunks_changes_no_bit(speed):
     assert whole[-1] == parts[-1] > 100
     for a, b in zip(whole[:-1], parts[:-1], strict=True):
         np.testing.assert_array_equal(a, b)
+
+
+def test_a_march_goes_on_as_if_its_end_had_not_been_taken_before():
+    system = assemble(gear_pair_scene(speed=TimeLaw.constant(90.0), duration=0.02))
+    start = static_equilibrium(system)
+
+    def run(stops):
+        march = start_march(system, start, Integration(tolerance=1e-9))
+        sink, ends = MemorySink(march.samples, march.widths), []
+        for stop in stops:
+            advance(*march.compiled, stop, by_address(sink.states(0, march.samples)))
+            ends.append(ending(march, sink, RunStatus.COMPLETED, TimeTaken()))
+        return *(vars(end.figures) for end in ends), sink.all._asdict()
+
+    (short, _), (whole, states), (early, late, cut) = run([1e-4]), run([0.02]), run([1e-4, 0.02])
+    for alone, taken in ((short, early), (whole, late), (states, cut)):
+        for name, values in alone.items():
+            np.testing.assert_array_equal(taken[name], values, err_msg=name)
+    assert np.max(early["bearing_peak"]) < np.max(late["bearing_peak"])
 
 
 def test_a_run_of_no_duration_is_the_equilibrium():
