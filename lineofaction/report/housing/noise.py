@@ -226,10 +226,10 @@ def _uncertainty_tables(facts: Json) -> Iterator[Table]:
 
 def _band_table(band: Json) -> Table:
     loudest = sorted(band["orders"], key=lambda row: -row["largest"]["level_db_a"])[:SHOWN_ORDERS]
-    levels = [("all orders", band["largest_total"])]
-    levels += [(f"order {row['order']:.4g}", row["largest"]) for row in loudest]
+    levels = [("largest of all orders", band["largest_total"]), ("mean power", band["mean_total"])]
+    levels += [(f"largest of order {row['order']:.4g}", row["largest"]) for row in loudest]
     columns = {
-        "largest over the speeds": lambda row: row[0],
+        "over the speeds": lambda row: row[0],
         "dB(A)": lambda row: f"{row[1]['level_db_a']:.1f}",
         "from": lambda row: f"{row[1]['low_db_a']:.1f}",
         "to": lambda row: f"{row[1]['high_db_a']:.1f}",
@@ -332,15 +332,22 @@ def _where(point: LoudPoint) -> str:
     return f"order {point.order:.4g} at {number(point.speed / RPM, 4)} rpm, {number(point.frequency, 4)} Hz"
 
 
+def _ends(level: Json) -> str:
+    return f"{level['low_db_a']:.1f} to {level['high_db_a']:.1f}"
+
+
 def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
     total, points = sound.orders.total_weighted_level, loudest(sound, 1)
     at = int(total.argmax())
     where = f"at {number(float(sound.speed[at]) / RPM, 4)} rpm, all orders"
     if (band := sound.facts["band"]) is not None:
-        total_band = band["largest_total"]
-        where += f"; {total_band['low_db_a']:.1f} to {total_band['high_db_a']:.1f} over the ranges of guesses"
+        where += f"; {_ends(band['largest_total'])} over the ranges of guesses"
         where += "".join(f"; {words}" for words in _narrowest(sound.facts))
     shown = [Headline("sound power level", f"{total[at]:.1f} dB(A)", where)]
+    if band is not None and sound.speed.size > 1:
+        mean = band["mean_total"]
+        level = f"{mean['level_db_a']:.1f} dB(A)"
+        shown.append(Headline("mean over the speeds", level, f"of the power, all orders; {_ends(mean)}"))
     shown += [
         Headline("loudest order", f"{point.weighted_level:.1f} dB(A)", words)
         for point, words in zip(points, _sentences(sound), strict=True)
