@@ -45,6 +45,10 @@ from lineofaction.report.response.excitations import excitation_figures, excitat
 
 LINES, SHOWN = 160, 6
 """Cells of the map in frequency; lines of orders and bearings."""
+SHOWN_ORDERS, SHOWN_CAUSES = 6, 3
+LEAST_NARROWED = 0.1
+"""dB."""
+_MODEL_HEAD = ("model", "level, dB", "stated error, dB", "CPU s", "CPU s predicted", "GB predicted")
 
 
 def _sound_map(sound: RadiatedSound) -> Figure:
@@ -214,9 +218,6 @@ def _above(level: FloatArray, floor: float) -> FloatArray:
     return np.where(level < floor, np.nan, level)
 
 
-SHOWN_ORDERS, SHOWN_CAUSES = 6, 3
-
-
 def _uncertainty_tables(facts: Json) -> Iterator[Table]:
     if facts["band"] is not None:
         yield _band_table(facts["band"])
@@ -267,10 +268,6 @@ def _narrowest(facts: Json) -> Iterator[str]:
             width = level["width_db"]
             yield f"{NARROWER[name]}: of {width:.1f} dB of the band {left:.1f} are left"
             return
-
-
-LEAST_NARROWED = 0.1
-"""dB."""
 
 
 def _cost_table(rows: list[Json]) -> Table:
@@ -359,9 +356,6 @@ def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
         first = f"from {number(parting[0], 4)} rpm on"
         shown.append(Headline("flanks part at", f"{parting.size} of {sound.speed.size} speeds", first))
     return tuple(shown)
-
-
-_MODEL_HEAD = ("model", "level, dB", "stated error, dB", "CPU s", "CPU s predicted", "GB predicted")
 
 
 def _model_tables(sound: RadiatedSound) -> Iterator[Table]:
