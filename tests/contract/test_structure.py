@@ -14,7 +14,7 @@ BUDGETS = {
     ("fe_contact",): (40_387, 726),
     ("dynamics",): (42_917, 826),
     ("lineofaction.gearbox",): (25_692, 511),
-    ("lineofaction.report",): (11_397, 211),
+    ("lineofaction.report",): (11_391, 211),
     ("service",): (14_796, 339),
     ("lineofaction.client",): (2_712, 53),
     ("lineofaction.cli",): (4_983, 71),
