@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeVar
@@ -315,12 +316,15 @@ DRAWING_WIDTH, TALLEST = 3.3, 2.0
 """Width of a panel over its usual height, and the height of the tallest drawing over that."""
 
 
-def panel_height(panel: Panel) -> float:
-    """Return the height of a panel over the usual one; a drawing is as tall as it needs to fill the width."""
+def panel_height(panel: Panel, beside: int = 1) -> float:
+    """Return the height of a panel over the usual one; a drawing is as tall as it needs to fill the width.
+
+    `beside` panels share the width.
+    """
     if not panel.equal:
         return 1.0
     across, along = (_extent(panel, axis) for axis in ("x", "y"))
-    return min(max(DRAWING_WIDTH * along / max(across, 1e-12), 1.0), TALLEST)
+    return min(max(DRAWING_WIDTH / beside * along / max(across, 1e-12), 1.0), TALLEST)
 
 
 def _extent(panel: Panel, axis: Literal["x", "y"]) -> float:
@@ -345,6 +349,43 @@ def legend_names(panels: Sequence[Panel]) -> list[str]:
             if name not in notes
         )
     )
+
+
+_SLIM = 1.5  # height of a drawing over the usual one from which on half the width does
+_SHORT = 12  # characters of a label at a line beside which a panel of half the width stands
+
+
+def panel_rows(panels: Sequence[Panel], across: int) -> list[list[int]]:
+    """Return panels by rows of at most `across`; maps, wide drawings and long labels stand alone."""
+    rows: list[list[int]] = []
+    beside = False
+    for index, panel in enumerate(panels):
+        labels = max((len(row) for line in panel.lines for row in line.label.split("\n")), default=0)
+        slim = panel_height(panel) > _SLIM if panel.equal else panel.shade is None
+        narrow = slim and labels <= _SHORT
+        if narrow and beside and len(rows[-1]) < across:
+            rows[-1].append(index)
+        else:
+            rows.append([index])
+        beside = narrow
+    return rows
+
+
+_MOST_WHOLE = 30  # an axis of whole numbers up to here has no ticks between them
+
+
+def counts(panel: Panel, name: Literal["x", "y"]) -> bool:
+    """Whether an axis has ticks at whole numbers alone: it is of orders, or its values are few and whole."""
+    axis: Axis = getattr(panel, name)
+    if axis.scale == "log" or axis.names:
+        return False
+    if re.search(r"\borders?\b", axis.label):
+        return True
+    values = [getattr(line, name) for line in panel.lines]
+    if name == "y" or not values:
+        return False
+    x = np.concatenate(values)
+    return bool(np.all(x == np.round(x)) and np.ptp(x) <= _MOST_WHOLE)
 
 
 def repeats_below(panels: Sequence[Panel], index: int) -> bool:

@@ -233,7 +233,7 @@ def test_passes_are_listed_where_there_are_several() -> None:
 def test_what_is_missed_between_loads_says_where_a_value_is_wanted() -> None:
     beyond = {"axis": "misalignment", "used": 2.0, "between": [0.0, 3e-5]}
     (_, line) = _tolerance_lines({"tolerance": KEPT | {"between_nodes": [beyond]}})
-    assert line == "between the misalignments 0 and 30 um interpolation uses 2 of it: add a value there"
+    assert line == "between the misalignments 0 and 30 µm interpolation uses 2 of it: add a value there"
 
 
 def test_errors_that_were_not_estimated_are_no_warning() -> None:
