@@ -253,10 +253,17 @@ def _csv(study: Study, result: Any) -> str:
     return csv_text(series.head, series.rows)
 
 
+_MOST_SAID = 2
+"""First lines of a study among which a main result may stand already."""
+
+
 def _show(study: Study, result: Any, targets: list[Path], remote_seconds: float) -> None:
     """Print the main results, tables and lines, and what all of it cost: tables, workers, other children."""
     shown = presentation_of(study)
-    print_headlines(shown.page(result).headlines)
-    print_parts(shown.text(result))
+    parts = list(shown.text(result))
+    said = [part for part in parts[:_MOST_SAID] if isinstance(part, str)]
+    headlines = shown.page(result).headlines
+    print_headlines([line for line in headlines if not any(line.value in words for words in said)])
+    print_parts(parts)
     console().print(f"cost {engineering(cpu_seconds() + remote_seconds, 3)} CPU s")
     print_written(targets)
