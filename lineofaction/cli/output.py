@@ -57,7 +57,7 @@ def table(
     """Return a table of right-aligned numbers; columns of `words` are aligned left."""
     grid = Table(title=title or None, box=None, pad_edge=False, title_justify="left")
     for column in columns:
-        grid.add_column(column, justify="left" if column in words else "right")
+        grid.add_column(column, justify="left" if column in words else "right", overflow="fold")
     for row in rows:
         grid.add_row(*row)
     return grid

@@ -372,20 +372,21 @@ def panel_rows(panels: Sequence[Panel], across: int) -> list[list[int]]:
 
 
 _MOST_WHOLE = 30  # an axis of whole numbers up to here has no ticks between them
+_FEW_ORDERS = 4.0  # an axis of fewer orders, with fractions of them, has ticks between
 
 
 def counts(panel: Panel, name: Literal["x", "y"]) -> bool:
-    """Whether an axis has ticks at whole numbers alone: it is of orders, or its values are few and whole."""
+    """Whether an axis has ticks at whole numbers alone: of many orders, or of few values that are whole."""
     axis: Axis = getattr(panel, name)
     if axis.scale == "log" or axis.names:
         return False
+    shown = [getattr(line, name) for line in panel.lines]
+    shown += [bars.x for bars in panel.bars if name == "x"]
+    values = np.concatenate(shown) if shown else np.array(axis.limits or (0.0, _MOST_WHOLE + 1.0))
+    span, whole = float(np.nanmax(values) - np.nanmin(values)), bool(np.all(values == np.round(values)))
     if re.search(r"\borders?\b", axis.label):
-        return True
-    values = [getattr(line, name) for line in panel.lines]
-    if name == "y" or not values:
-        return False
-    x = np.concatenate(values)
-    return bool(np.all(x == np.round(x)) and np.ptp(x) <= _MOST_WHOLE)
+        return whole or span > _FEW_ORDERS
+    return name == "x" and bool(panel.lines) and whole and span <= _MOST_WHOLE
 
 
 def repeats_below(panels: Sequence[Panel], index: int) -> bool:

@@ -255,7 +255,7 @@ def test_results_stand_before_effects_accuracy_input_and_receipts(
 def test_effects_of_contact_and_run_stand_in_one_table(database: SteDatabase, run: RunResult) -> None:
     (section,) = [s for s in page_of(Inputs(database, run)).sections if s.part is Part.EFFECTS]
     (table,) = section.tables
-    assert [row[:2] for row in table.rows] == [("corner_contact", "contact"), ("lateral", "input")]
+    assert [row[:2] for row in table.rows] == [("corner contact", "contact"), ("lateral", "input")]
     captions = [folded.caption for folded in section.folded]
     assert captions[0] == "1 effect below 0.1 %" and captions[-1] == "Not in the model"
 
