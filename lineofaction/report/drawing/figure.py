@@ -382,7 +382,7 @@ def counts(panel: Panel, name: Literal["x", "y"]) -> bool:
         return False
     shown = [getattr(line, name) for line in panel.lines]
     shown += [bars.x for bars in panel.bars if name == "x"]
-    values = np.concatenate(shown) if shown else np.array(axis.limits or (0.0, _MOST_WHOLE + 1.0))
+    values = np.concatenate(shown) if any(map(np.size, shown)) else np.array(axis.limits or (0.0, np.inf))
     span, whole = float(np.nanmax(values) - np.nanmin(values)), bool(np.all(values == np.round(values)))
     if re.search(r"\borders?\b", axis.label):
         return whole or span > _FEW_ORDERS

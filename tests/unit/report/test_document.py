@@ -166,6 +166,8 @@ def test_orders_have_whole_ticks() -> None:
     spectrum = Panel(Axis("mesh order"), Axis("µm"), (), bars=(bars,))
     assert counts(spectrum, "x") and not counts(spectrum, "y") and not counts(curve(), "x")
     assert plotly_figure(figure(spectrum))["layout"]["xaxis"]["dtick"] == 2
+    empty = Panel(Axis("mesh order"), Axis("µm"))
+    assert plotly_figure(figure(empty))["layout"]["xaxis"]["dtick"] == 1
     sheet = panel_sheet((spectrum,))
     sheet.draw_without_rendering()
     ticks = sheet.axes[0].get_xticks()
