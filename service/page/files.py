@@ -17,6 +17,7 @@ _TYPES = {
     ".css": "text/css; charset=utf-8",
     ".js": "text/javascript; charset=utf-8",
     ".svg": "image/svg+xml",
+    ".json": "application/json",
 }
 PLOTLY = "plotly.min.js"
 _FROM_PACKAGES = {
@@ -85,7 +86,7 @@ _OFFERED = (
         "Every tooth of the pinion has its own place: 20 base pitches.",
     ),
 )
-"""The first is computed when the page opens with an empty address."""
+"""The first is shown when the page opens with an empty address, with the result in `first.json`."""
 
 
 class Example(NamedTuple):

@@ -329,27 +329,27 @@ def test_a_job_that_failed_says_so_beside_its_design(browser: Browser, address: 
         expect(page.locator("#f-pair-normal_module_mm")).to_have_value("1")
 
 
-def test_four_openings_file_one_job(browser: Browser, address: str) -> None:
-    def jobs() -> list[str]:
-        with LineOfActionClient(address) as client:
-            return [job.id for job in client.jobs(process="analyze")]
+def test_openings_file_no_job(browser: Browser, address: str) -> None:
+    with LineOfActionClient(address) as client:
+        before = [job.id for job in client.jobs(process="analyze")]
+        for _ in range(2):
+            with other_browser(browser, address) as page:
+                expect(page.locator("#live-ripple .plot")).to_have_attribute("data-drawn", "yes")
+        assert [job.id for job in client.jobs(process="analyze")] == before
 
-    before = len(jobs())
-    contexts = [browser.new_context() for _ in range(4)]
-    pages = [context.new_page() for context in contexts]
-    for page in pages:
-        page.goto(address)
-    for page in pages:
-        expect(page).to_have_url(re.compile("#database=[0-9a-f]{64}$"))
-    for context in contexts:
-        context.close()
-    after = len(jobs())
-    assert after - before <= 1
-    with other_browser(browser, address) as page:
-        expect(page).to_have_url(re.compile("#database=[0-9a-f]{64}$"))
-        expect(page.locator("#live-ripple .plot")).to_have_attribute("data-drawn", "yes")
-        assert page.locator(".design-note").count() == 0
-    assert len(jobs()) == after
+
+def test_a_design_that_nobody_computed_is_sent_by_its_address(visit: Visit, browser: Browser) -> None:
+    page = visit.page
+    type_relief(page)
+    tab(page, "Load")
+    expect(page).to_have_url(re.compile("#database=.*&tab=load&case=|#database=.*&case=.*&tab=load"))
+    with other_browser(browser, page.url) as other:
+        expect(other.locator("#f-pair-pinion-tip_relief_um")).to_have_value("7")
+        expect(other.locator("#results-design")).to_contain_text(EDITED)
+        expect(other.locator("#load")).to_be_visible()
+        shows_the_same(other, page)
+    control(page, "#f-pair-pinion-tip_relief_um").fill("")
+    expect(page).not_to_have_url(re.compile("case="))
 
 
 def test_the_same_design_analyzed_again_is_the_same_job(visit: Visit) -> None:

@@ -2,10 +2,10 @@
 /** The address is the state. Its fragment names what is shown (`#database=HASH&frontier=JOB`), the entry of the browser's
  * history behind it holds what was typed. Reload, back, forward and a new tab show what they say, and nothing else decides. */
 
-const HASH = /^[0-9a-f]{64}$/;
-const JOB = /^[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}$/;
-const VIEWS = new Set(["tab"]); // how it is looked at
-const WORD = /^[a-z]+$/;
+export const HASH = /^[0-9a-f]{64}$/;
+export const JOB = /^[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}$/;
+const DESIGN = /^[\w-]+$/; // typed (see packed.js), a job or a result
+const VIEWS = { tab: /^[a-z]+$/, case: DESIGN, on: /^[abc]$/, a: DESIGN, b: DESIGN, c: DESIGN };
 const LEFT = "left";
 
 /**
@@ -48,7 +48,7 @@ export class Address {
   /** @param {string} part */
   readPart(part) {
     const [name, value] = part.split("=");
-    if (VIEWS.has(name) && WORD.test(value ?? "")) {
+    if (VIEWS[name]?.test(value ?? "")) {
       this.views.set(name, value);
       return;
     }
@@ -62,7 +62,7 @@ export class Address {
     return this.names.get(name) ?? null;
   }
 
-  /** Say how it is looked at; null: as usual. @param {string} name @param {string | null} value */
+  /** Say which tab or design is looked at; null: the usual one. @param {string} name @param {string | null} value */
   look(name, value) {
     if ((this.views.get(name) ?? null) === value) return;
     if (value) this.views.set(name, value);
@@ -98,7 +98,26 @@ export class Address {
   open(name, value) {
     this.keep(this.typed());
     this.names = new Map([[name, value]]);
+    this.views.delete("case");
     this.kept = { reference: this.kept.reference };
+    this.faults = [];
+    history.pushState(this.kept, "", this.text);
+  }
+
+  /**
+   * Go on to an entry that shows other things of the same address.
+   * @param {Record<string, string>} names all of them
+   * @param {Record<string, string | null>} views those that change; null: as usual
+   * @param {Kept} [kept] what is kept with it; left out: the same
+   */
+  turn(names, views, kept = this.kept) {
+    this.keep(this.typed());
+    this.names = new Map(Object.entries(names));
+    for (const [name, value] of Object.entries(views)) {
+      this.views.delete(name);
+      if (value) this.views.set(name, value);
+    }
+    this.kept = kept;
     this.faults = [];
     history.pushState(this.kept, "", this.text);
   }
@@ -141,11 +160,11 @@ export class Address {
 
   /** Whether it says nothing at all. */
   get empty() {
-    return !this.names.size && !this.section && !this.faults.length;
+    return !this.names.size && !this.section && !this.faults.length && !this.views.has("case");
   }
 
   get text() {
-    if (this.faults.length || (this.section && !this.names.size)) return location.href;
+    if (this.faults.length || (this.section && !this.names.size && !this.views.size)) return location.href;
     const fragment = [...this.names, ...this.views].map((pair) => pair.join("=")).join("&");
     return `${location.pathname}${location.search}${fragment ? `#${fragment}` : ""}`;
   }

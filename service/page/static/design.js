@@ -26,6 +26,7 @@ export class Design {
     this.caller = caller;
     this.examples = [...examples, EMPTY];
     this.watchers = [];
+    this.settled = () => {}; // called when nobody has typed for a moment
     this.stands = false; // whether the form holds what the address says, or what was typed since
     this.drawing = new Drawing();
     this.view = new View(byId("view"));
@@ -90,6 +91,7 @@ export class Design {
     this.address.push({});
     const replaced = differences(this.fields, this.case, content).filter(({ field }) => field.path[0] !== "pair");
     this.show(content, { example, note, replaced: settingsReplaced(replaced) });
+    this.settled();
     this.address.keep(this.address.typed());
     for (const { field } of replaced) field.entry.classList.add("replaced");
   }
@@ -133,7 +135,10 @@ export class Design {
     if (byId("example").value || !this.stands) this.from({ note: "", ...this.address.kept.origin, example: "" });
     this.changed();
     clearTimeout(this.timer);
-    this.timer = setTimeout(() => this.look(), SETTLED);
+    this.timer = setTimeout(() => {
+      this.settled();
+      this.look();
+    }, SETTLED);
   }
 
   /** Draw and plan what the form holds, and give up what an earlier look asked for; refusals go to their fields. */

@@ -14,8 +14,12 @@ const STYLES = {
   before: { name: "as analyzed", color: "#767676", width: 1.8, dash: "dash" },
   kept: { name: "reference", color: "#B34C00", width: 2, dash: "dot" },
   now: { name: "now", color: "#0072B2", width: 2.4, dash: "solid" },
+  a: { name: "A", color: "#0072B2", width: 2.4, dash: "solid" },
+  b: { name: "B", color: "#D55E00", width: 2.4, dash: "solid" },
+  c: { name: "C", color: "#009E73", width: 2.4, dash: "solid" },
 };
 const PLACES = { ste: "live-ripple", harmonics: "live-orders", sharing: "live-load", flanks: "live-flank", sound: "live-sound" };
+const NOTHING = { harmonics_um: [], flanks: {} }; // to compare with
 const AWAY = 2; // seconds after which a service that does not answer is asked again
 
 export class Live {
@@ -26,8 +30,9 @@ export class Live {
    * @param {string} page.caller by whom curves are asked for
    * @param {{take: (flanks: object) => void, inThreeDimensions: () => void}} actions
    */
-  constructor({ address, design, caller }, actions) {
-    Object.assign(this, { address, design, caller, actions });
+  constructor({ address, design, variants, caller }, actions) {
+    Object.assign(this, { address, design, variants, caller, actions });
+    this.others = [];
     this.waiting = null;
     this.busy = false;
     this.kept = null;
@@ -52,8 +57,24 @@ export class Live {
     }
   }
 
+  /** Show a curve that came with the program. @param {object} content its case @param {any} curve */
+  async still(content, curve) {
+    this.plots();
+    figures(byId("live-figures"), mainFigures(curve, NOTHING));
+    const shown = [{ ...STYLES.now, curve }];
+    this.describe(shown);
+    await Promise.all([
+      plot(this.blocks.ste.node, { ...steFigure(shown), still: true }),
+      plot(this.blocks.harmonics.node, harmonicsFigure(shown)),
+      plot(this.blocks.sharing.node, sharingFigure(curve)),
+      this.flanks.draw(shown),
+      post("/v1/cases/outline", { inputs: { case: content } }).then((outline) => this.design.view.press(curve, outline)),
+    ]);
+  }
+
   /** The sliders and the reference stand where the address left them: draw that. */
-  restored() {
+  async restored() {
+    this.others = await this.variants.others();
     const { reference } = this.address.kept;
     const same = JSON.stringify(reference) === JSON.stringify(this.kept && { known: this.kept.known, question: this.kept.question });
     if (!same) this.kept = reference ? new Reference(reference.known, reference.question) : null;
@@ -143,12 +164,17 @@ export class Live {
     try {
       const begin = performance.now();
       await this.baseline(waiting.torque_n_m, key);
+      const others = [];
+      for (const { name, reference } of this.others) {
+        const curve = await reference.at(waiting.torque_n_m[0], `${this.caller}-${name}`);
+        if (curve) others.push({ ...STYLES[name], curve, known: reference.known });
+      }
       const kept = await this.kept?.at(waiting.torque_n_m[0], `${this.caller}-kept`) ?? null;
       const found = await post(`/v1/databases/${key}/ste`, { ...waiting, flanks: true, passage: true, caller: this.caller });
       const round = performance.now() - begin;
       if (key !== this.known?.key) return;
       this.roll(found.curves[0]);
-      await this.draw(found.curves[0], kept);
+      await this.draw(found.curves[0], kept, others);
       this.timed(round, performance.now() - begin, found);
       this.sayKept();
       byId("live-errors").hidden = true;
@@ -213,13 +239,14 @@ export class Live {
     byId(PLACES.flanks).replaceChildren(...this.flanks.blocks);
   }
 
-  async draw(now, kept) {
+  async draw(now, kept, others) {
     const { before } = this;
-    const curves = Object.entries({ before, kept, now }).filter(([, curve]) => curve);
-    const shown = curves.map(([style, curve]) => ({ ...STYLES[style], curve }));
-    figures(byId("live-figures"), mainFigures(now, kept ?? before));
-    this.sound.show(shown.map(({ name, curve }) => {
-      const { case: content } = curve === kept ? this.kept.known : this.known;
+    const curves = Object.entries({ before, kept }).filter(([, curve]) => curve);
+    const own = { ...STYLES[others.length ? this.variants.on : "now"], curve: now };
+    const shown = [...curves.map(([style, curve]) => ({ ...STYLES[style], curve })), ...others, own];
+    figures(byId("live-figures"), mainFigures(now, kept ?? others[0]?.curve ?? before));
+    this.sound.show(shown.map(({ name, curve, known }) => {
+      const { case: content } = known ?? (curve === kept ? this.kept.known : this.known);
       return { name, teeth: content.pair.pinion.teeth, harmonics: curve.harmonics_um.filter(Number.isFinite) };
     }));
     await Promise.all([
@@ -228,11 +255,12 @@ export class Live {
       plot(this.blocks.sharing.node, sharingFigure(now)),
       this.flanks.draw(shown),
     ]);
-    this.numbers.replaceChildren(make("summary", {}, "Numbers"), dataTable(numbersOf(shown)), dataTable(sourcesOf(now)));
     this.describe(shown);
   }
 
   describe(shown) {
+    const numbers = [dataTable(numbersOf(shown)), dataTable(sourcesOf(shown.at(-1).curve))];
+    this.numbers.replaceChildren(make("summary", {}, "Numbers"), ...numbers);
     const ripple = shown.map(({ name, curve }) => `${name} ${number(curve.peak_to_peak_um, 3)} µm`).reverse().join(", ");
     const now = shown.at(-1).curve;
     this.blocks.ste.node.setAttribute(

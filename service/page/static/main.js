@@ -10,17 +10,19 @@ import { typedIn } from "./controls.js";
 import { Design } from "./design.js";
 import { Dynamics } from "./dynamics.js";
 import { byId } from "./elements.js";
-import { referenceOf, submitted } from "./job.js";
+import { referenceOf } from "./job.js";
 import { Jobs } from "./jobs.js";
 import { Live } from "./live.js";
 import { clearNotice, sayMissing } from "./notice.js";
 import { caseOf, ordersOf, pairOf } from "./orders.js";
+import { pack, unpack } from "./packed.js";
 import { showReport } from "./report.js";
 import { Results } from "./results.js";
 import { SceneEditor } from "./scene_editor.js";
 import { Slot } from "./slot.js";
 import { showResult, showStudies, studiesOf } from "./studies.js";
 import { Tabs, reveal } from "./tabs.js";
+import { Variants } from "./variants.js";
 
 const STARTS = ["/v1/examples", "/v1/processes/analyze", "/v1/effects", "/v1/processes", "/v1/"];
 const PLACES = ["analyze", "simulate", "modes", "scene", "job"]; // beside the studies
@@ -62,6 +64,7 @@ class Page {
     showStudies(studies, { design: this.design, slot, show });
     const dynamics = new Dynamics({ slot, show });
     this.scenes = new SceneEditor({ slot, show, design: this.design });
+    this.variants = new Variants(this, () => this.render());
     const live = new Live(this, { take, inThreeDimensions: () => this.inThreeDimensions() });
     this.results = new Results(this, live, [dynamics, this.scenes]);
     const button = byId("analyze");
@@ -73,6 +76,7 @@ class Page {
       (target, reference, signal) => (reference.kind === "database" ? this.tabled("job", reference) : show(target, reference, signal)));
     this.jobs = new Jobs((job) => this.reopen(job), (first, second) => this.compare(first, second));
     this.jobs.refresh();
+    this.design.settled = () => this.carry();
   }
 
   slot(name, parts, show) {
@@ -85,6 +89,7 @@ class Page {
   async render() {
     const turn = (this.turn = (this.turn ?? 0) + 1);
     const { kept, faults, empty } = this.address;
+    this.variants.offer();
     this.more = false; // what was typed last belongs to the entry that is left
     clearNotice();
     for (const fault of faults) sayMissing(`“${fault}”: the page has no such address.`);
@@ -94,6 +99,7 @@ class Page {
     const orders = kept.fields ? [] : await ordersOf(this.address.names);
     const pair = await pairOf(orders);
     if (turn !== this.turn) return;
+    this.base = pair;
     if (!kept.fields) this.beginWith(pair, orders);
     this.fill(orders.filter(({ name }) => !(name in OF_RESULT)));
     for (const [name, slot] of this.slots) slot.follow(this.address.get(name));
@@ -104,18 +110,27 @@ class Page {
     await this.results.show(this.address.get("database"));
     if (turn !== this.turn) return;
     this.fill(orders.filter(({ name }) => name in OF_RESULT)); // showing a result resets them
-    if (empty && !kept.fields) this.first();
+    if (empty) this.first();
   }
 
   /** Begin with the pair of the address; with none, if it names any other thing; else with the first example. */
   beginWith(pair, orders) {
-    const { names, faults } = this.address;
-    if (pair) this.design.show(pair, { example: "", note: "The pair of this address." });
+    const { names, faults, views } = this.address;
+    const carried = unpack(views.get("case") ?? "");
+    if (carried) this.design.show(carried, { example: "", note: "The pair of this address." });
+    else if (pair) this.design.show(pair, { example: "", note: "The pair of this address." });
     else if (!names.size && !faults.length) this.design.begin();
     else {
       this.design.empty();
       if (!orders.length) sayMissing("The fields of the gear pair are left empty.");
     }
+  }
+
+  /** Let the address carry the design where it is not that of its result, its job or the first example. */
+  carry() {
+    const base = this.results.note.content ?? this.base ?? (this.address.empty ? this.design.example.case : null);
+    const own = base === null || this.design.differences(base).length > 0;
+    this.address.look("case", own ? pack(this.design.case) : null);
   }
 
   /** Show what jobs were submitted with where such jobs are submitted. @param {import("./orders.js").Order[]} orders */
@@ -127,9 +142,8 @@ class Page {
     }
   }
 
-  /** Analyze the pair that a page without an address begins with: there is a result with nothing to press. */
+  /** The pair that a page without an address begins with: there is a result with nothing to press. */
   async first() {
-    const inputs = { case: this.design.case };
     const { hash } = this.design.example;
     const stored = await caseOf(hash);
     if (!this.address.empty) return;
@@ -138,16 +152,7 @@ class Page {
       await this.results.show(hash);
       return;
     }
-    const { jobID } = await submitted(byId("analyze-job"), "analyze", inputs).catch((problem) => this.notFirst(problem));
-    if (!jobID || !this.address.empty) return;
-    this.address.replace({ analyze: jobID });
-    this.analysis.follow(jobID);
-  }
-
-  notFirst(problem) {
-    if (!(problem instanceof Problem)) throw problem;
-    this.analysis.refused(problem);
-    return {};
+    await this.results.still();
   }
 
   /** Keep what is typed with the entry of the history that it is typed in: at once, and no more often than browsers allow. */
@@ -179,10 +184,11 @@ class Page {
   /** A job has ended with a table: that is what the address names in its place from now on. */
   async tabled(name, { hash }) {
     this.address.settle(name, "database", hash);
-    this.tabs.select(this.tabs.shown === "jobs" ? USUAL_TAB : this.tabs.shown);
+    if (this.tabs.shown === "jobs") this.tabs.select(USUAL_TAB);
     this.address.replace(OF_RESULT);
     for (const other of [name, ...Object.keys(OF_RESULT)]) this.slots.get(other).follow(null);
     await this.results.show(hash);
+    this.carry();
   }
 
   notAnalyzed(problem) {

@@ -2,6 +2,7 @@
 
 import { patiently } from "./api.js";
 import { csv, dataTable, folded, make, save } from "./elements.js";
+import { lines } from "./lines.js";
 import { plotly } from "./plotly.js";
 
 const DARK = window.matchMedia("(prefers-color-scheme: dark)");
@@ -86,7 +87,7 @@ async function swept() {
   for (const old of [...shown.keys()].filter((node) => !node.isConnected && node.dataset.drawn)) {
     shown.delete(old);
     sizes.unobserve(old);
-    (await plotly()).purge(old);
+    if (old.data) (await plotly()).purge(old);
   }
 }
 
@@ -117,7 +118,11 @@ async function draw(node, figure) {
   if (figure.layout.height) node.style.height = `${figure.layout.height}px`; // others take the height of their place
   node.dataset.size = `${node.clientWidth} ${node.clientHeight}`;
   const { data, layout } = fitted(themed(figure), node.clientWidth || 800);
-  await (await patiently(plotly)).react(node, data, layout, CONFIG);
+  if (figure.still) lines(node, { data, layout });
+  else {
+    node.querySelector(":scope > .lines")?.remove();
+    await (await patiently(plotly)).react(node, data, layout, CONFIG);
+  }
   node.dataset.drawn = "yes";
 }
 
@@ -128,7 +133,7 @@ for (const query of [DARK, NARROW]) {
 }
 
 async function savePng(node, name) {
-  const { data, layout } = node;
+  const { data, layout } = themed(shown.get(node));
   const paper = DARK.matches ? "#14181d" : "#ffffff";
   const size = { width: Math.max(node.clientWidth, 900), height: layout.height || node.clientHeight };
   const url = await (await plotly()).toImage({ data, layout: { ...layout, paper_bgcolor: paper } }, { format: "png", scale: 2, ...size });

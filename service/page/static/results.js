@@ -42,7 +42,7 @@ export class Results {
     if (this.shown === null || this.shown !== this.address.get("database")) return;
     const { ofResult } = this.address.kept;
     if (ofResult?.key === this.shown) retype(ofResult.fields, ...OWN.map(byId));
-    this.live.restored();
+    await this.live.restored();
   }
 
   /** @param {string | null} key */
@@ -92,6 +92,16 @@ export class Results {
     this.unreport();
     const report = await showReport(byId("results-body"), result, { making: true, signal, place, alarms: byId("results-alarms") });
     if (report) byId("dock-words").textContent = `${report.title}, ${report.lead}.`;
+  }
+
+  /** Show what the first example gave when the program was made: nothing is computed. */
+  async still() {
+    const { title, curve, case: content } = await patiently(() => get("/page/first.json"));
+    if (this.key) return;
+    byId("results-none").hidden = true;
+    byId("dock-words").textContent = `${title}. It came with the program; Analyze computes it here and frees the sliders.`;
+    this.note.of(content);
+    await this.live.still(content, curve);
   }
 
   unreport() {

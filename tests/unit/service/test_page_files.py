@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import re
 import tomllib
@@ -38,6 +39,11 @@ def client(tmp_path: Path) -> Iterator[TestClient]:
 @pytest.mark.parametrize("name", CASES)
 def test_every_example_can_be_computed(name: str) -> None:
     assert check_case(CASES[name]).transverse_contact_ratio > 1.0
+
+
+def test_the_result_of_the_first_example_is_of_the_case_as_it_is_now() -> None:
+    known = json.loads((STATIC / "first.json").read_text(encoding="utf-8"))
+    assert known["case"] == case_json(next(iter(CASES.values())))
 
 
 def test_examples_that_fake_the_folder_too_are_the_same() -> None:
