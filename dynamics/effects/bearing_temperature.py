@@ -68,9 +68,9 @@ def _plays(rows: Sequence[WarmBearing]) -> Iterator[str]:
         if row.drawn.row.contact_angle == 0.0:
             before, after = (1e6 * part.row.clearance for part in (row.drawn, row.warm))
             along = 1e6 * (row_law(row.warm).shift - row_law(row.drawn).shift)
-            words = f'clearance of "{row.drawn.name}" {before:.4g} to {after:.4g} um'
+            words = f'clearance of "{row.drawn.name}" {before:.4g} to {after:.4g} µm'
             words += ", a preload" if after < 0.0 else ""
-            yield words + (f", rings {along:+.4g} um apart along z" if along else "")
+            yield words + (f", rings {along:+.4g} µm apart along z" if along else "")
 
 
 def _pair(rows: Sequence[WarmBearing]) -> Iterator[str]:
@@ -84,7 +84,7 @@ def _pair(rows: Sequence[WarmBearing]) -> Iterator[str]:
 
 def _state(pair: Sequence[RollingBearing]) -> str:
     play, force = axial_state(pair)
-    return f"preload {engineering(force, 4)} N" if play <= UNLOADED else f"play {1e6 * play:.4g} um"
+    return f"preload {engineering(force, 4)} N" if play <= UNLOADED else f"play {1e6 * play:.4g} µm"
 
 
 def axial_state(bearings: Sequence[RollingBearing]) -> tuple[float, float]:

@@ -33,7 +33,7 @@ class ElementPassing(RotorEffect):
             return Verdict(False, False, "no rolling bearing by its geometry", 0.0)
         size = max(row_law(part).passing_motion(mechanism.bearing_duty[part.name]) for part in own)
         tolerance = mechanism.scene.tolerance
-        moved = f"elements that pass move the shaft by {1e6 * size:.3g} um"
+        moved = f"elements that pass move the shaft by {1e6 * size:.3g} µm"
         if tolerance is None:
             return Verdict(False, True, f"{moved}; averaged, as no tolerance is stated", size)
         yielding = float(np.min(rotor.flanks.nominal_force / rotor.flanks.mean_stiffness))

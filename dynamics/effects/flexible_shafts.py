@@ -201,9 +201,9 @@ def _influence(
         share = max(share, here / pressed if pressed > 0.0 else 0.0)
     tilted = tilted if tilted > ROUNDING * away else 0.0
     reason = (
-        f"the nominal force bends and twists the shaft by {1e6 * away:.3g} um along the line of "
+        f"the nominal force bends and twists the shaft by {1e6 * away:.3g} µm along the line of "
         f"action, {100.0 * share:.3g} % of the mesh deflection, and misaligns the gear by "
-        f"{1e6 * tilted:.3g} um over the face"
+        f"{1e6 * tilted:.3g} µm over the face"
     )
     return _Bending(share > SHARE, True, reason, away, elastic)
 

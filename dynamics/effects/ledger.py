@@ -90,7 +90,7 @@ class _LedgerEntry:
         """The price of a choice against the scene, in words; empty where there is none."""
         if self.on == self.verdict.on:
             return ""
-        neglected = f"{1e6 * self.influence:.3g} um of static displacement neglected"
+        neglected = f"{1e6 * self.influence:.3g} µm of static displacement neglected"
         return self.decided.cost if self.on else neglected
 
     def to_json(self) -> Json:

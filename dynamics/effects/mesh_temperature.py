@@ -60,12 +60,12 @@ def _mean_error(mesh: LoadedMesh, point: FloatArray) -> float:
 def _words(mesh: LoadedMesh, change: WarmMesh) -> str:
     """Say what changes, and which of it the scene cannot follow."""
     table, coast = mesh.mesh.table, mesh.mesh.coast
-    parts = [f"center distance {1e6 * change.apart:+.4g} um against the gears"]
+    parts = [f"center distance {1e6 * change.apart:+.4g} µm against the gears"]
     if np.size(table.center_distance_change) == 1:
         parts.append("the table has one center distance only")
-    parts.append(f"backlash {1e6 * change.backlash:+.4g} um" if coast else "no coast flank given")
+    parts.append(f"backlash {1e6 * change.backlash:+.4g} µm" if coast else "no coast flank given")
     if change.misalignment:
-        parts.append(f"misalignment {1e6 * change.misalignment:+.4g} um")
+        parts.append(f"misalignment {1e6 * change.misalignment:+.4g} µm")
         if np.size(table.misalignment) == 1:
             parts.append("the table has one misalignment only")
     return "; ".join(parts)

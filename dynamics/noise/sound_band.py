@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import islice
 from typing import TypeVar
 
 import numpy as np
@@ -209,8 +210,12 @@ class SoundBand:
     largest_total : LevelBand
         Of all orders together, the largest over the speeds, wherever it is; above it `speed_steps`, what a
         peak between the speeds may have.
+    mean_total : LevelBand
+        Of all orders together, the mean of the power over the speeds: what a run-up of constant acceleration
+        radiates. Narrower, as a resonance that moves is counted once wherever it is, and one of twice the
+        damping has half the power, not a quarter. `speed_steps` is what every other speed misses.
     largest : tuple of LevelBand
-        The same of each order.
+        Of each order as `largest_total`.
     loudest_speed : (H,) array
         Where each order is largest with the nominal values, rad/s.
     there : tuple of LevelBand
@@ -222,6 +227,7 @@ class SoundBand:
     speed: FloatArray
     order: FloatArray
     largest_total: LevelBand
+    mean_total: LevelBand
     largest: tuple[LevelBand, ...]
     loudest_speed: FloatArray
     there: tuple[LevelBand, ...]
@@ -229,14 +235,18 @@ class SoundBand:
 
     @property
     def _bands(self) -> list[LevelBand]:
-        return [self.largest_total, *self.largest, *self.there, *self.total]
+        return [self.largest_total, self.mean_total, *self.largest, *self.there, *self.total]
 
     def _of_bands(self, bands: Sequence[LevelBand]) -> SoundBand:
-        ends = np.cumsum([1, self.order.size, self.order.size])
-        (whole,), largest, there, total = (
-            tuple(bands[first:end]) for first, end in zip([0, *ends], [*ends, len(bands)], strict=True)
+        rows, orders = iter(bands), self.order.size
+        return replace(
+            self,
+            largest_total=next(rows),
+            mean_total=next(rows),
+            largest=tuple(islice(rows, orders)),
+            there=tuple(islice(rows, orders)),
+            total=tuple(rows),
         )
-        return replace(self, largest_total=whole, largest=largest, there=there, total=total)
 
     def with_power_error(
         self, name: str, power: OrderPower, below: FloatArray, above: FloatArray
@@ -345,10 +355,32 @@ def _band(
         difference = _levels(order, loudest, *powers(other)) - levels({})
         for index, missed in enumerate(np.abs(difference).tolist()):
             bands[index] = bands[index].with_error(name, missed, missed)
-    peaks = np.array([nominal.weighted_power.sum(axis=0), *nominal.weighted_power])
-    for index, row in enumerate(peaks):
-        bands[index] = bands[index].with_error("speed_steps", 0.0, _missed_between(speed, row))
-    return SoundBand(speed, order, bands[0], (), speed[loudest], (), ())._of_bands(bands)
+    band = SoundBand(speed, order, bands[0], bands[1], (), speed[loudest], (), ())._of_bands(bands)
+    total = nominal.weighted_power.sum(axis=0)
+    missed = _missed_by_steps(speed, total)
+    peaks = zip(band.largest, nominal.weighted_power, strict=True)
+    return replace(
+        band,
+        largest_total=_with_peak(band.largest_total, speed, total),
+        mean_total=band.mean_total.with_error("speed_steps", missed, missed),
+        largest=tuple(_with_peak(level, speed, power) for level, power in peaks),
+    )
+
+
+def _with_peak(band: LevelBand, speed: FloatArray, power: FloatArray) -> LevelBand:
+    return band.with_error("speed_steps", 0.0, _missed_between(speed, power))
+
+
+def mean_power(speed: FloatArray, power: FloatArray) -> float:
+    """Return the mean of a power (S,) over the speeds, W, by trapezoids between them."""
+    return float(np.trapezoid(power, speed) / (speed[-1] - speed[0]) if power.size > 1 else power[0])
+
+
+def _missed_by_steps(speed: FloatArray, power: FloatArray) -> float:
+    """Return how far the mean of every other speed and the last lies off that of all, dB."""
+    kept = np.unique([*range(0, power.size, 2), power.size - 1])
+    coarse, fine = sound_power_level([mean_power(speed[kept], power[kept]), mean_power(speed, power)])
+    return float(abs(coarse - fine))
 
 
 def _missed_between(speed: FloatArray, power: FloatArray) -> float:
@@ -378,10 +410,11 @@ def largest_level(speed: FloatArray, power: OrderPower) -> float:
 
 
 def _levels(order: FloatArray, loudest: IntArray, own: FloatArray, power: OrderPower) -> FloatArray:
-    """Return the levels that have bands, dB(A): largest total, orders' largest, orders there, totals."""
+    """Return the levels that have bands, dB(A): largest and mean total, orders' largest and there, totals."""
     weighted = np.zeros((order.size, power.power.shape[1]))
     kept = np.isin(own, order)
     weighted[np.searchsorted(order, own[kept])] = power.weighted_power[kept]
     total = weighted.sum(axis=0)
     there = weighted[np.arange(order.size), loudest]
-    return sound_power_level(np.concatenate([[total.max()], weighted.max(axis=1), there, total]))
+    whole = [total.max(), mean_power(power.frequency[0], total)]
+    return sound_power_level(np.concatenate([whole, weighted.max(axis=1), there, total]))

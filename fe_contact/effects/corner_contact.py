@@ -38,9 +38,9 @@ class CornerContact(Effect):
         sharp = all(gear.tip_form_radius == gear.tip_radius for gear in (pair.pinion, pair.wheel))
         missing = "tip relief" if sharp else "relief, rounding or chamfer of the tips"
         reason = (
-            f"{missing} leaves {1e6 * relief:.1f} um, over twice the bending of {1e6 * deflection:.1f} um"
+            f"{missing} leaves {1e6 * relief:.1f} µm, over twice the bending of {1e6 * deflection:.1f} µm"
             if clear
-            else f"deflections up to {1e6 * deflection:.1f} um close the gap at the tip edges"
+            else f"deflections up to {1e6 * deflection:.1f} µm close the gap at the tip edges"
         )
         return Verdict(not clear, reason)
 

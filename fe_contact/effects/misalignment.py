@@ -60,7 +60,7 @@ class Misalignment(Effect):
         largest = float(np.abs(scene.misalignment).max())
         if largest == 0.0:
             return Verdict(False, "the gears are aligned", neutral=True)
-        return Verdict(True, f"misalignment up to {1e6 * largest:.4g} um over the face")
+        return Verdict(True, f"misalignment up to {1e6 * largest:.4g} µm over the face")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Add the gap of the scene's one value."""

@@ -66,7 +66,7 @@ class PitchError(Effect):
         if not erring:
             return Verdict(False, "no tooth has a pitch deviation", neutral=True)
         figures = ", ".join(
-            f"{name} f_p {1e6 * error.single:.3g} um, F_p {1e6 * error.total:.3g} um"
+            f"{name} f_p {1e6 * error.single:.3g} µm, F_p {1e6 * error.total:.3g} µm"
             for name, error in erring
         )
         return Verdict(True, f"{figures}, over {_period(scene)} base pitches")

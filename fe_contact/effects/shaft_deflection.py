@@ -129,7 +129,7 @@ class ShaftDeflection(Effect):
         carried = [name for name, shaft in zip(("pinion", "wheel"), scene.pair.shafts, strict=True) if shaft]
         if not carried:
             return Verdict(False, "the gears are on rigid shafts", neutral=True)
-        skew = f"{1e6 * _skew(scene):.3g} um of misalignment at the largest load"
+        skew = f"{1e6 * _skew(scene):.3g} µm of misalignment at the largest load"
         return Verdict(True, f"{' and '.join(carried)} on a flexible shaft: {skew}")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:

@@ -361,7 +361,9 @@ def _first_order(nominal: Evaluator, names: tuple[str, ...], deviation: FloatArr
     Nothing is removed below zero by a deviation.
     """
     design = linearized(nominal, {}, names, NO_LIMITS)
-    least = np.array([least_deviation(figure(nominal.contact.pair, name), name) for name in names])
+    pair = nominal.contact.pair
+    designed = [0.0 if name == MISALIGNMENT else figure(pair, name) for name in names]
+    least = np.array([least_deviation(*each) for each in zip(designed, names, strict=True)])
     held = np.maximum(deviation, least)
     curves = (
         design.evaluation.ste[0, :, k] + held @ design.curves[0, :, k].T for k in range(nominal.load.size)

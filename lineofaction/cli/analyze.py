@@ -20,8 +20,9 @@ from lineofaction.cli.output import (
     check_netcdf_output,
     console,
     output_of,
+    print_headlines,
     print_json,
-    print_result,
+    print_written,
     progress_bar,
     table,
 )
@@ -47,7 +48,7 @@ from model_studies.workers import InProcess, Workers
 
 _AXES = {
     "force": ("loads", 1.0, "N"),
-    "misalignment": ("misalignments", UM, "um"),
+    "misalignment": ("misalignments", UM, "µm"),
     "center_distance_change": ("center distance changes", MM, "mm"),
 }
 
@@ -129,8 +130,9 @@ def run_analyze(
         print_json(summary)
     else:
         shown = in_own_model(database)
+        print_headlines(static_headlines(shown))
         _show(summary_json(shown))
-        print_result(static_headlines(shown), [output])
+        print_written([output])
     if database.n_failed:
         raise JobFailed(f"{database.failure_message()}. The table in {output} holds NaN there.")
 
@@ -217,7 +219,7 @@ def _held_out(axes: dict[str, Any]) -> str:
     words = []
     for name, measured in axes.items():
         errors = [error for row in measured["error_m"] for error in row]
-        worst = "unknown" if None in errors else f"{engineering(max(errors) / UM, 2)} um"
+        worst = "unknown" if None in errors else f"{engineering(max(errors) / UM, 2)} µm"
         words.append(f"{name.replace('_', ' ')} {worst}")
     return ", ".join(words)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -12,7 +13,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+from rich.progress import (
+    BarColumn,
+    Progress,
+    TaskID,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 from rich.table import Table
 
 from lineofaction.cli.guard import warnings_so_far
@@ -21,6 +29,7 @@ from lineofaction.gearbox.problems import BadInput
 from model_studies.progress import silent, stage_name
 
 if TYPE_CHECKING:
+    from lineofaction.report.drawing.figure import Table as Shown
     from lineofaction.report.drawing.page import Headline
 
 Report = Callable[[str, float], None]
@@ -37,7 +46,9 @@ def print_json(facts: dict[str, Any]) -> None:
 def console() -> Console:
     """Return the console of standard output: text stays as it is; piped, it is as wide as its tables need."""
     plain: Any = {"markup": False, "emoji": False, "highlight": False}
-    return Console(**plain) if sys.stdout.isatty() else Console(width=200, no_color=True, **plain)
+    if sys.stdout.isatty():
+        return Console(**plain)
+    return Console(width=int(os.environ.get("COLUMNS") or 200), no_color=True, **plain)
 
 
 def table(
@@ -46,21 +57,38 @@ def table(
     """Return a table of right-aligned numbers; columns of `words` are aligned left."""
     grid = Table(title=title or None, box=None, pad_edge=False, title_justify="left")
     for column in columns:
-        grid.add_column(column, justify="left" if column in words else "right")
+        grid.add_column(column, justify="left" if column in words else "right", overflow="fold")
     for row in rows:
         grid.add_row(*row)
     return grid
 
 
-def print_result(headlines: Sequence[Headline], files: Sequence[Path]) -> None:
-    """End a verb with its main results, a line each and two at most, and the files that were written."""
+def print_headlines(headlines: Sequence[Headline]) -> None:
+    """Begin with the main results, a line each and two at most."""
     out = console()
     for headline in headlines[:_MOST_HEADLINES]:
         band = headline.remark if headline.remark.startswith("±") else f"({headline.remark})"
         line = f"{headline.name}: {headline.value} {band}".removesuffix(" ()")
         out.print(line, soft_wrap=True)
+
+
+def print_parts(parts: Iterable[Shown | str]) -> None:
+    """Print tables, their columns of words to the left, and lines."""
+    from lineofaction.report.drawing.page import numeric_columns  # noqa: PLC0415 (start-up time)
+
+    out = console()
+    for part in parts:
+        if isinstance(part, str):
+            out.print(part, soft_wrap=True)
+        else:
+            words = [name for name, right in zip(part.head, numeric_columns(part), strict=True) if not right]
+            out.print(table(part.head, part.rows, part.caption, words))
+
+
+def print_written(files: Sequence[Path]) -> None:
+    """End a verb with the files that were written."""
     if files:
-        out.print(f"written to {', '.join(map(str, files))}", soft_wrap=True)
+        console().print(f"written to {', '.join(map(str, files))}", soft_wrap=True)
 
 
 def csv_text(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -77,7 +105,8 @@ def progress_bar() -> Iterator[Report]:
         yield silent
         return
     columns = (TextColumn("{task.description:<14}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"))
-    with Progress(*columns, TimeElapsedColumn(), console=Console(stderr=True)) as bars:
+    clocks = (TimeElapsedColumn(), TimeRemainingColumn(), TextColumn("left"))
+    with Progress(*columns, *clocks, console=Console(stderr=True)) as bars:
         tasks: dict[str, TaskID] = {}
 
         def report(stage: str, fraction: float) -> None:

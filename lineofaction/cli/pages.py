@@ -22,7 +22,7 @@ from lineofaction.cli.subjects import assessed_case
 from lineofaction.gearbox.convert.case import CheckedCase, case_at
 from lineofaction.gearbox.input_file import InputFile, number_list
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.project import file_of, results_in
+from lineofaction.gearbox.project import about, file_of, results_in
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.result_files import stamped
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
@@ -51,6 +51,7 @@ from lineofaction.report.pair import (
 )
 from lineofaction.report.run.view import RunView
 from lineofaction.report.ste.curves import aligned, headline_load
+from lineofaction.report.title_block import about_of, titled
 
 if TYPE_CHECKING:
     from fe_contact.analysis.flanks.load_distribution import LoadDistribution
@@ -100,25 +101,37 @@ def _summary(pair: ParallelAxes) -> tuple[str, str]:
     facts = PairFacts.of(pair)
     transverse, overlap = pair.active_contact_ratio, pair.overlap_ratio
     ratios = f"contact ratio {transverse:.3f} + {overlap:.3f} = {transverse + overlap:.3f}"
-    backlash = f"circumferential backlash {number(pair.circumferential_backlash / UM, 3)} um"
+    backlash = f"circumferential backlash {number(pair.circumferential_backlash / UM, 3)} µm"
     return f"{pair_title(facts)}: {pair_lead(facts)}", f"{ratios}; {backlash}"
 
 
 # ``loa report``.
 
 
+@dataclass(frozen=True)
+class ReportOptions:
+    """How ``loa report`` writes: the folder of the pictures, what it is about, pictures in place of plots."""
+
+    images: Path | None
+    about: Path | None
+    still: bool
+
+
 def run_report(
     named: Sequence[Path],
     page: Path | None,
-    images: Path | None,
+    options: ReportOptions,
     view: RunView,
     *,
     flank: bool,
     as_json: bool,
 ) -> None:
     """Write the page; draw the pictures and compute the flank results if requested."""
+    projects = [name for name in named if name.is_dir()]
+    block = options.about or next(filter(None, map(about, projects)), None)
+    told = None if block is None else about_of(block)
     files = [file for name in named for file in (results_in(name) if name.is_dir() else [name])]
-    output = page or next((name for name in named if name.is_dir()), Path()) / "report.html"
+    output = page or next(iter(projects), Path()) / "report.html"
     for file in files:
         if not file.is_file():
             raise BadInput.of("file", str(file), "a file of results", "Check the path.")
@@ -132,10 +145,13 @@ def run_report(
         flanks = page_beside(STUDIES["flank"], found, read.database)
         read = replace(read, pages={**read.pages, "flanks": flanks})
         spent = found.metadata.receipt["cpu_seconds"]
-    written = write_whole(page_of(read), output, images)
+    whole = titled(page_of(read), told)
+    written = write_whole(whole, output, options.images, still_only=options.still)
     if as_json:
         print_json({"file": str(output), "written": [str(path) for path in written]})
         return
+    for words in (*whole.alarms, *(whole.block.verdicts if whole.block else ())):
+        console().print(words, soft_wrap=True)
     if flank:
         console().print(f"flank results {engineering(spent, 3)} CPU s")
     for path in written:

@@ -18,7 +18,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from host.extras import MissingExtra
 from lineofaction.cli.guard import warn
-from lineofaction.cli.output import check_writable, console, print_json, print_result, table
+from lineofaction.cli.output import check_writable, console, print_headlines, print_json, print_written, table
 from lineofaction.client import JobState, LineOfActionClient, Result, Watch
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput, ResultNotReady
@@ -206,7 +206,8 @@ def _show_result(key: str, kind: str, file: Path | None) -> None:
         from lineofaction.report import document  # noqa: PLC0415 (start-up time)
 
         headlines = document.headlines_of(document.read_inputs([file]))
-    print_result(headlines, [file])
+    print_headlines(headlines)
+    print_written([file])
 
 
 def _tell(line: str) -> None:

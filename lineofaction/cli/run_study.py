@@ -7,6 +7,7 @@ import shutil
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,10 +22,11 @@ from lineofaction.cli.output import (
     check_writable,
     console,
     csv_text,
+    print_headlines,
     print_json,
-    print_result,
+    print_parts,
+    print_written,
     progress_bar,
-    table,
 )
 from lineofaction.cli.subjects import assessed_scene, tabled_scene
 from lineofaction.gearbox.convert.case import CheckedCase
@@ -36,6 +38,7 @@ from lineofaction.gearbox.result_files import stamp
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
 from lineofaction.gearbox.schemas.model import BoundaryModel, item_type, spelling_of
 from lineofaction.gearbox.schemas.reading import located
+from lineofaction.gearbox.schemas.report import ReportInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.study import Study
@@ -43,6 +46,7 @@ from lineofaction.gearbox.tabled_scene import open_executor
 from lineofaction.report.document import read_run, write_whole
 from lineofaction.report.document import write as write_result
 from lineofaction.report.presentation import presentation_of
+from lineofaction.report.title_block import titled
 from model_studies.workers import Remembering, Workers
 from model_studies.workers.remembering import content_digest
 from service.version import solver_version
@@ -108,7 +112,9 @@ def run_study(study: Study, options: Json) -> None:
     if study.several:
         result = study.run.joined(dict(zip(_names(study, files), results, strict=True)))
     warn(study.run.warnings(result) or ())
-    _tell(study, subjects[0][0], result, targets, options, remote_seconds)
+    asked = read[0][0]
+    about = (asked.case if isinstance(asked, CheckedCase) else asked).report
+    _tell(study, (subjects[0][0], about), result, targets, options, remote_seconds)
     if interrupted:
         raise KeyboardInterrupt("interrupted. The result above is the best so far.")
     if failure := study.run.failure(result):
@@ -116,11 +122,17 @@ def run_study(study: Study, options: Json) -> None:
 
 
 def _tell(
-    study: Study, subject: Any, result: Any, targets: list[Path], options: Json, remote_seconds: float
+    study: Study,
+    subject: tuple[Any, ReportInput | None],
+    result: Any,
+    targets: list[Path],
+    options: Json,
+    remote_seconds: float,
 ) -> None:
+    """Write and print; the subject comes with its title block."""
     for target in targets:
         target.parent.mkdir(exist_ok=True)
-        _writers(study, subject)[target.suffix](result, target)
+        _writers(study, *subject)[target.suffix](result, target)
         stamp(target, warnings_so_far())
     if options["json"]:
         names = [str(target) for target in targets]
@@ -189,40 +201,46 @@ def _targets(study: Study, output: Path | None, project: Path | None) -> list[Pa
     if output is None:
         return []
     if study.folder:
-        return _output_files(output, study.folder, study.endings)
-    if output.suffix not in study.endings:
-        raise BadInput.of("output", str(output), f"a file ending in one of {', '.join(study.endings)}")
+        return _output_files(output, study)
+    if output.suffix not in study.accepted:
+        raise BadInput.of("output", str(output), f"a file ending in one of {', '.join(study.accepted)}")
     check_writable(output)
     return [output]
 
 
-def _output_files(output: Path, stem: str, endings: Sequence[str]) -> list[Path]:
-    """Return the files to write: one by its ending, or `stem` with all endings in a folder, made if missing.
+def _output_files(output: Path, study: Study) -> list[Path]:
+    """Return the files to write: one by its ending, or one of each in a folder, made if missing.
 
     Raises `BadInput`: neither, or not writable.
     """
-    bound = f"a folder, or a file ending in one of {', '.join(endings)}"
+    bound = f"a folder, or a file ending in one of {', '.join(study.accepted)}"
     if output.suffix and not output.is_dir():
-        if output.suffix not in endings:
+        if output.suffix not in study.accepted:
             raise BadInput.of("output", str(output), bound)
         check_writable(output)
         return [output]
     if output.is_file():
         raise BadInput.of("output", str(output), bound)
     check_writable(output / "x" if output.is_dir() else output)
-    return [output / f"{stem}{ending}" for ending in endings]
+    return [output / f"{study.folder}{ending}" for ending in study.endings]
 
 
-def _writers(study: Study, subject: Any) -> dict[str, Writer]:
+def _writers(study: Study, subject: Any, about: ReportInput | None) -> dict[str, Writer]:
     """Return what writes a result, by the ending of the file; `subject` is what was studied."""
     run, page = study.run, presentation_of(study)
+
+    def write_page(result: Any, file: Path) -> None:
+        records = {f"{study.name}.json": run.figures(result)}
+        whole = titled(replace(page.page(result), records=records), about)
+        write_whole(whole, file, warnings=messages())
+
     further = {
         ending: lambda result, file, write=write: write(result, subject, file)
         for ending, write in run.writers.items()
     }
     return {
         **dict.fromkeys((".nc", ".json", ".png"), write_result),
-        ".html": lambda result, file: write_whole(page.page(result), file, warnings=messages()),
+        **dict.fromkeys((".html", ".pdf"), write_page),
         ".csv": lambda result, file: file.write_text(_csv(study, result), encoding="utf-8"),
         **further,
     }
@@ -235,13 +253,17 @@ def _csv(study: Study, result: Any) -> str:
     return csv_text(series.head, series.rows)
 
 
+_MOST_SAID = 2
+"""First lines of a study among which a main result may stand already."""
+
+
 def _show(study: Study, result: Any, targets: list[Path], remote_seconds: float) -> None:
-    """Print tables and lines for people, and what all of it cost: tables, workers and other children too."""
-    out = console()
-    for part in presentation_of(study).text(result):
-        if isinstance(part, str):
-            out.print(part, soft_wrap=True)
-        else:
-            out.print(table(part.head, part.rows, part.caption))
-    out.print(f"cost {engineering(cpu_seconds() + remote_seconds, 3)} CPU s")
-    print_result(presentation_of(study).page(result).headlines, targets)
+    """Print the main results, tables and lines, and what all of it cost: tables, workers, other children."""
+    shown = presentation_of(study)
+    parts = list(shown.text(result))
+    said = [part for part in parts[:_MOST_SAID] if isinstance(part, str)]
+    headlines = shown.page(result).headlines
+    print_headlines([line for line in headlines if not any(line.value in words for words in said)])
+    print_parts(parts)
+    console().print(f"cost {engineering(cpu_seconds() + remote_seconds, 3)} CPU s")
+    print_written(targets)

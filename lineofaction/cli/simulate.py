@@ -15,12 +15,14 @@ from lineofaction.cli.output import (
     check_netcdf_output,
     console,
     output_of,
+    print_headlines,
     print_json,
-    print_result,
+    print_parts,
+    print_written,
     progress_bar,
 )
 from lineofaction.cli.subjects import assessed_scene, tabled_scene
-from lineofaction.gearbox.convert.effects import model_lines
+from lineofaction.gearbox.convert.effects import run_lines
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.result_files import run_json, stamp, stamp_complaint
@@ -29,6 +31,7 @@ from lineofaction.gearbox.studies.excitations import facts_of_scene
 from lineofaction.gearbox.tabled_scene import open_executor
 from lineofaction.report.drawing.figure import number
 from lineofaction.report.drawing.page import Headline
+from lineofaction.report.presentation import effect_text
 
 # The main figures of a run: how far its forces swing.
 
@@ -96,8 +99,8 @@ def _run(scene: Scene, output: Path, report: Report, *, resume: bool) -> None:
 def _show(facts: dict[str, Any]) -> None:
     out = console()
     attributes, sizes = facts["attributes"], facts["dimensions"]
-    for line in model_lines(attributes):
-        out.print(line, soft_wrap=True)
     status = str(attributes["status"]).lower().replace("_", " ")
     out.print(f"run {status}: {sizes['time']} samples")
-    print_result(_run_headlines(attributes["receipt"].get("peaks", {})), [Path(str(facts["file"]))])
+    print_headlines(_run_headlines(attributes["receipt"].get("peaks", {})))
+    print_parts((*effect_text(attributes.get("effect_ledger", {})), *run_lines(attributes)))
+    print_written([Path(str(facts["file"]))])

@@ -56,6 +56,7 @@ class LiveOptions(TypedDict, total=False):
     wheel: Mapping[str, Any]
     derivatives: bool
     flanks: bool
+    passage: bool
     condense: bool
     caller: str | None
 

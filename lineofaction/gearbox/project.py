@@ -66,6 +66,18 @@ def results_in(project: Path) -> list[Path]:
     return [*sorted(project.glob(f"*{SUFFIX}")), *sorted(project.glob(f"*/*{SUFFIX}"))]
 
 
+def about(project: Path) -> Path | None:
+    """Return the file in a folder with the table ``[report]``: ``report.toml``, the scene, or the only one.
+
+    Raises `BadInput`: several of other names have one.
+    """
+    found = [path for path, table in _tables(project) if "report" in table]
+    chosen = [path for name in ("report", "scene") for path in found if path.stem == name] or found
+    if len(chosen) > 1 and chosen == found and not {"report", "scene"} & {path.stem for path in found}:
+        raise BadInput.of("--about", str(project), "a folder of one [report]", f"Name one: {_listed(found)}.")
+    return chosen[0] if chosen else None
+
+
 @dataclass(frozen=True)
 class ResultState:
     """A result of a folder.

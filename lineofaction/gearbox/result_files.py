@@ -41,6 +41,12 @@ def stamped(file: Path) -> list[Json]:
         return list(json.loads(content.attrs.get(WARNINGS, "[]")))
 
 
+def making_of(file: Path) -> Json:
+    """Return what a result's netCDF file says of its making: case or scene, receipt, effects, versions."""
+    with opened_netcdf(file) as content:
+        return {name: _plain(value) for name, value in content.attrs.items()}
+
+
 # The figures of a stored file, as JSON, by the kind of the result.
 
 

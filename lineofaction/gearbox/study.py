@@ -145,6 +145,11 @@ class Study:
         return (".nc", ".json", ".png", ".html", *self.further)
 
     @property
+    def accepted(self) -> tuple[str, ...]:
+        """Endings of a file that is named: a page is printed on request alone."""
+        return (*self.endings, ".pdf")
+
+    @property
     def inputs(self) -> type[BoundaryModel]:
         """Model of what is varied."""
         inputs: type[BoundaryModel] = self._part("", "Inputs")

@@ -19,10 +19,11 @@ from host.directories import whole_file
 from lineofaction.gearbox.convert.complaint import marks_of_case
 from lineofaction.gearbox.problems import BadInput, DamagedFile
 from lineofaction.gearbox.registry import STUDIES
-from lineofaction.gearbox.result_files import COMPLAINT, stamped
+from lineofaction.gearbox.result_files import COMPLAINT, making_of, stamped
 from lineofaction.gearbox.study import Study
+from lineofaction.report.drawing.attaching import attached
 from lineofaction.report.drawing.figure import Figure, Table
-from lineofaction.report.drawing.image import png
+from lineofaction.report.drawing.image import png, still
 from lineofaction.report.drawing.interactive import plotly_figure
 from lineofaction.report.drawing.marks import Marks, marked_sections, of_run
 from lineofaction.report.drawing.page import Headline, Page, Section, html, sound_json
@@ -77,7 +78,8 @@ class Inputs:
     """The results that were read; at least one of them.
 
     `pages` are those of studies, by the kind of their results; `warnings` are those of all files, in words;
-    `view` is what of the run is shown, `marks` what its scene complains of.
+    `view` is what of the run is shown, `marks` what its scene complains of; `records` are what the files say
+    of their making, by name.
     """
 
     database: SteDatabase | None = None
@@ -86,6 +88,7 @@ class Inputs:
     warnings: tuple[str, ...] = ()
     view: RunView = field(default_factory=RunView)
     marks: Marks | None = None
+    records: Mapping[str, Json] = field(default_factory=dict)
 
     @property
     def only_page(self) -> Page | None:
@@ -117,7 +120,8 @@ def read_inputs(files: Sequence[Path]) -> Inputs:
     )
     pages = {study.kind: _study_page(study, file, database) for study, file in studies}
     marks = json.loads(file_attributes(by_kind["run"][1]).get(COMPLAINT, "null")) if "run" in read else None
-    return Inputs(**read, pages=pages, warnings=warnings, marks=marks)
+    records = {file.name: making_of(file) for file in files}
+    return Inputs(**read, pages=pages, warnings=warnings, marks=marks, records=records)
 
 
 def read_result(file: Path) -> SteDatabase | RunResult:
@@ -180,7 +184,7 @@ def page_of(read: Inputs) -> Page:
     page = _page_of(read)
     alarms = (*(f"Warning: {text}" for text in read.warnings), *page.alarms)
     sections = sorted(one_effects_section(page.sections), key=lambda section: section.part)
-    return replace(page, alarms=alarms, sections=tuple(sections))
+    return replace(page, alarms=alarms, sections=tuple(sections), records=read.records)
 
 
 def _page_of(read: Inputs) -> Page:
@@ -248,8 +252,11 @@ def nominal_force(read: Inputs) -> float | None:
 def _title(read: Inputs) -> str:
     if read.database is not None:
         return pair_title(read.database.facts)
-    titles = [page.title for page in read.pages.values()] or ["Dynamics of geared shafts"]
-    return titles[0] if len(titles) == 1 else "Studies of gear pairs"
+    if not read.pages:
+        return "Dynamics of geared shafts"
+    subjects = {study.takes.subject for study in STUDIES.values() if study.kind in read.pages}
+    titles = dict.fromkeys(page.title for page in read.pages.values())
+    return next(iter(titles)) if len(titles) == 1 else f"Studies of a {' and a '.join(sorted(subjects))}"
 
 
 def stored_figures(inputs: Json) -> Json:
@@ -316,7 +323,7 @@ def write_report(inputs: Path | Sequence[Path], output: Path, images: Path | Non
     inputs : Path or sequence of Path
         STE databases, runs and results of studies, at most one of each kind; the file says which it is.
     output : Path
-        The page; as PDF by its ending, without what is folded, case and receipt.
+        The page; as PDF by its ending, without what is folded; case and receipt are a file in it.
     images : Path, optional
         Folder for the PNG files, made if missing; left out: none are written.
 
@@ -330,23 +337,40 @@ def write_report(inputs: Path | Sequence[Path], output: Path, images: Path | Non
 
 
 def write_whole(
-    page: Page, output: Path, images: Path | None = None, warnings: Sequence[str] = ()
+    page: Page,
+    output: Path,
+    images: Path | None = None,
+    warnings: Sequence[str] = (),
+    *,
+    still_only: bool = False,
 ) -> list[Path]:
-    """Write a page from its caller, under what is implausible; parameters as for `write_report`."""
+    """Write a page from its caller, under what is implausible; parameters as for `write_report`.
+
+    `still_only`: its plots are pictures alone.
+    """
     page = replace(page, alarms=(*(f"Warning: {text}" for text in warnings), *page.alarms))
-    drawn = {figure.key: png(figure) for section in page.sections for figure in section.figures}
-    text = html(page, drawn)
-    content = pdf(text, output) if output.suffix == ".pdf" else text.encode("utf-8")
+    figures = [figure for section in page.sections for figure in section.figures]
+    printed = output.suffix == ".pdf"
+    text = html(page, {figure.key: still(figure) for figure in figures}, still=printed or still_only)
+    content = _printed(page, text, output) if printed else text.encode("utf-8")
     with whole_file(output) as draft:
         draft.write_bytes(content)
     written = [output]
     if images is not None:
         images.mkdir(parents=True, exist_ok=True)
-        for key, image in drawn.items():
-            with whole_file(images / f"{key}.png") as draft:
-                draft.write_bytes(image)
-            written.append(images / f"{key}.png")
+        for figure in figures:
+            with whole_file(images / f"{figure.key}.png") as draft:
+                draft.write_bytes(png(figure))
+            written.append(images / f"{figure.key}.png")
     return written
+
+
+def _printed(page: Page, text: str, output: Path) -> bytes:
+    """Print a page; what its results were made from and with is a file in it."""
+    content = pdf(text, output)
+    if not page.records:
+        return content
+    return attached(content, "receipts.json", json.dumps(page.records, indent=1).encode("utf-8"))
 
 
 def facts(result: Any) -> dict[str, Any]:

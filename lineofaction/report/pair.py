@@ -244,6 +244,7 @@ def _finding(name: str, gear: Toothing) -> str:
 
 _UNITS: Mapping[str, float] = {"": 1.0, "mm": MM, "um": UM, "deg": DEGREE}
 _DECIMALS = {"": 4, "mm": 4, "um": 1, "deg": 4}
+_SYMBOLS = {"um": "µm", "deg": "°"}
 
 
 @dataclass(frozen=True)
@@ -270,7 +271,12 @@ class Entry:
 
     def row(self, pair: ParallelAxes) -> tuple[str, ...]:
         """Return the line as words."""
-        return (self.words, self.symbol, *(_text(value, self.unit) for value in self.values(pair)), self.unit)
+        return (
+            self.words,
+            self.symbol,
+            *(_text(value, self.unit) for value in self.values(pair)),
+            _SYMBOLS.get(self.unit, self.unit),
+        )
 
 
 def _both(of: Callable[[Toothing], float]) -> Callable[[ParallelAxes], Sequence[float]]:

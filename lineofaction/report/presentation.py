@@ -11,7 +11,7 @@ from pkgutil import iter_modules
 from typing import Any
 
 from fe_contact.ste import SteDatabase
-from lineofaction.gearbox.convert.effects import model_lines, run_lines
+from lineofaction.gearbox.convert.effects import run_lines, scene_table
 from lineofaction.gearbox.loading import LOADING
 from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.units import boundary_ledger
@@ -86,7 +86,17 @@ def model_text(facts: Mapping[str, Any]) -> Iterator[Table | str]:
     yield from cost_tables(facts)
     if facts["effect_ledger"] is None:
         return
-    yield from model_lines({**facts, "effect_ledger": boundary_ledger(facts["effect_ledger"])})
+    yield from effect_text(boundary_ledger(facts["effect_ledger"]))
+    yield from run_lines(facts)
+
+
+def effect_text(ledger: Mapping[str, Any]) -> Iterator[Table | str]:
+    """Yield the decisions on the effects of a scene as a table, and a line on those that change nothing."""
+    columns, rows, trifles = scene_table(ledger)
+    if rows:
+        yield Table("Effects: change without each", tuple(columns), tuple(map(tuple, rows)))
+    if trifles:
+        yield trifles
 
 
 def dynamics_page(

@@ -25,7 +25,7 @@ from fe_contact.analysis.studies import ablation
 from fe_contact.analysis.studies.ablation import Figures
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.case import CheckedCase
-from lineofaction.gearbox.convert.effects import model_lines
+from lineofaction.gearbox.convert.effects import scene_table
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.studied import OverOrders
 from lineofaction.gearbox.studies.ablate import Inputs
@@ -34,10 +34,11 @@ from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.housings import sized_response
 from lineofaction.gearbox.units import boundary_ledger
 from lineofaction.report.document import page_of, read_inputs, stored_figures
+from lineofaction.report.drawing.figure import Table
 from lineofaction.report.drawing.page import html
 from lineofaction.report.drawing.tables import ledger_section
 from lineofaction.report.effects.ablate import PAGE
-from lineofaction.report.presentation import model_text
+from lineofaction.report.presentation import effect_text
 from service.live.work import live_plan
 
 pytestmark = pytest.mark.usefixtures("coarse_sectors")
@@ -118,7 +119,7 @@ def terminal_changes(text: str) -> dict[str, list[str]]:
 def table_words(tables: list[Json]) -> dict[str, str]:
     (table,) = [one for one in tables if one["caption"] == "Effects"]
     column = table["head"].index("without it")
-    return {row[0]: row[column] for row in table["rows"]}
+    return {row[0].replace(" ", "_"): row[column] for row in table["rows"]}
 
 
 @pytest.mark.law
@@ -205,14 +206,10 @@ def test_outputs_of_a_run_tell_one_number(sound: bool, monkeypatch: pytest.Monke
     scene = replace(scene, quantity=FirstBearing() if sound else None)
     run = simulate(scene)
     ledger, levels = boundary_ledger(run.effect_ledger), run.receipt["error"]["left_out_effects"]["effects"]
-    lines = dict(
-        re.findall(
-            r"^effect (\w+): .*\n +without it (.*?); ",
-            "\n".join(model_lines({"effect_ledger": ledger})),
-            re.M,
-        )
-    )
-    shown = {row[0]: row[3] for table in ledger_section(ledger).tables for row in table.rows}
+    lines = {row[0].replace(" ", "_"): row[2] for row in scene_table(ledger)[1]}
+    section = ledger_section(ledger)
+    rows_shown = [row for table in (*section.tables, *section.folded) for row in table.rows if len(row) == 5]
+    shown = {row[0].replace(" ", "_"): row[3] for row in rows_shown}
     ablation = ablate_scene(replace(scene, outputs=Outputs(energy_audit=False, receipt="minimal")))
     rows = {row[0]: row[2] for row in next(PAGE.text(ablation)).rows}
     document = {entry["name"]: entry for entry in RUN.figures(ablation)["effects"]}
@@ -222,7 +219,7 @@ def test_outputs_of_a_run_tell_one_number(sound: bool, monkeypatch: pytest.Monke
         level = LevelChange(**size["level"])
         assert level.unit == ("dB(A)" if sound else "dB")
         assert size["words"].startswith(f"{level.words}, ")
-        assert shown[name] == lines.get(name, size["words"]) == size["words"]
+        assert shown[name] == lines.get(name, level.words) == level.words
         assert rows[name] == level.words
         assert document[name]["level"] == size["level"]
         assert levels.get(name, level.decibels) == level.decibels
@@ -239,10 +236,16 @@ def test_a_response_tells_the_number_of_a_run_at_its_speed(monkeypatch: pytest.M
     response, _ = sized_response(scene, inputs, Means(Path(), lambda *_: None))
     sizes = response.facts["effect_ledger"]["influences"]
     assert set(sizes) == set(run)
-    text = "\n".join(words for words in model_text(response.facts) if isinstance(words, str))
+    (table,) = [
+        part
+        for part in effect_text(boundary_ledger(response.facts["effect_ledger"]))
+        if isinstance(part, Table)
+    ]
+    lines = {row[0].replace(" ", "_"): row[2] for row in table.rows}
     for name, size in sizes.items():
         assert size["level"]["decibels"] == pytest.approx(run[name]["level"]["decibels"], abs=0.05)
-        assert f"without it {size['words']}" in text or abs(size["level"]["relative"]) < 1e-3
+        words = LevelChange(**size["level"]).words
+        assert lines.get(name) == words or abs(size["level"]["relative"]) < 1e-3
 
 
 class FirstBearing:

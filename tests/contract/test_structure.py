@@ -11,18 +11,18 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (40_387, 726),
-    ("dynamics",): (42_884, 825),
-    ("lineofaction.gearbox",): (25_691, 511),
-    ("lineofaction.report",): (11_390, 211),
+    ("fe_contact",): (40_389, 726),
+    ("dynamics",): (42_917, 826),
+    ("lineofaction.gearbox",): (25_800, 517),
+    ("lineofaction.report",): (11_687, 221),
     ("service",): (14_797, 339),
-    ("lineofaction.client",): (2_712, 53),
-    ("lineofaction.cli",): (4_983, 71),
+    ("lineofaction.client",): (2_713, 53),
+    ("lineofaction.cli",): (5_064, 74),
     ("lineofaction.hardcases",): (3_844, 35),
     ("bounds", "host", "model_studies"): (4_443, 153),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 804
+MOST_FILES = 807
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""

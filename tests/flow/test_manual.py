@@ -28,7 +28,8 @@ def folder() -> Iterator[Path]:
 # Ten seconds and more, but for the tutorials and for pages whose files others read.
 LONG = {
     *("complaint", "deflect", "from-rexs-to-dba", "hear-a-gearbox", "planetary-stage"),
-    *("quiet-flanks-by-search", "ripple-map", "tolerances", "vibration", "whine-at-1400-hz"),
+    *("quiet-flanks-by-search", "ripple-map", "service-for-the-team", "tolerance-study", "tolerances"),
+    *("vibration", "whine-at-1400-hz"),
 }
 PAGES = [
     pytest.param(page, id=page.stem, marks=[pytest.mark.nightly] * (page.stem in LONG))

@@ -67,10 +67,10 @@ class Influence:
     def words(self) -> str:
         """Both changes in um and %."""
         ripple = self.relative_peak_to_peak
-        share = f"of less than {_UM * RIPPLE_FLOOR:g} um" if ripple is None else f"{signed(100 * ripple)} %"
+        share = f"of less than {_UM * RIPPLE_FLOOR:g} µm" if ripple is None else f"{signed(100 * ripple)} %"
         return (
-            f"mean {signed(_UM * self.mean)} um ({signed(100 * self.relative_mean)} %), "
-            f"peak-to-peak {signed(_UM * self.peak_to_peak)} um ({share})"
+            f"mean {signed(_UM * self.mean)} µm ({signed(100 * self.relative_mean)} %), "
+            f"peak-to-peak {signed(_UM * self.peak_to_peak)} µm ({share})"
         )
 
     def to_json(self) -> Json:

@@ -428,6 +428,13 @@ def _report(
         Path | None, to_file("Page to write, .html or .pdf; default: report.html, here or in the folder.")
     ] = None,
     images: Annotated[Path | None, typer.Option(help="Folder to write the plots to as PNG.")] = None,
+    about: Annotated[
+        Path | None,
+        typer.Option(help="File with a table [report]: the title block.", show_default="of the folder"),
+    ] = None,
+    still: Annotated[
+        bool, typer.Option("--still", help="Pictures in place of plots to work with: a tenth of the bytes.")
+    ] = False,
     flank: Annotated[
         bool,
         typer.Option("--flank", help="Compute the flank results at the load of the page."),
@@ -435,8 +442,9 @@ def _report(
     view: _ViewOptions,
     json: AsJson = False,
 ) -> None:
-    """Write one HTML page with the plots of a database, flank results, studies or a run."""
-    pages.run_report(files, output, images, view.view, flank=flank, as_json=json)
+    """Write one page or PDF with the plots of a database, flank results, studies or a run."""
+    options = pages.ReportOptions(images, about, still)
+    pages.run_report(files, output, options, view.view, flank=flank, as_json=json)
 
 
 @verbs.command(

@@ -94,7 +94,7 @@ def _parameters(study: Study) -> Iterator[Parameter]:
         yield from (_option(name, field) for name, field in study.inputs.model_fields.items())
     place = "Folder, or a file" if study.folder else "File to write,"
     names = ("-o", "--output", *study.aliases)
-    target = typer.Option(*names, help=f"{place} ending in one of {', '.join(study.endings)}.")
+    target = typer.Option(*names, help=f"{place} ending in one of {', '.join(study.accepted)}.")
     yield keyword("output", Annotated[Path | None, target], None)
     yield keyword("workers", TaskWorkers, 1)
     yield keyword("scheduler", Scheduler, None)

@@ -144,7 +144,7 @@ def draft_line(table: SteDatabase, refining: str) -> str:
     """Return mean and peak-to-peak with their errors at the highest load, and what is refined."""
     curve = in_own_model(table).curve(force=float(table.force[-1]), allow_failed=True)
     mean, ripple = _figure(curve.mean), _figure(curve.peak_to_peak)
-    return f"draft: mean {mean} um, p-p {ripple} um at {curve.torque:.6g} N m (refining {refining})"
+    return f"draft: mean {mean} µm, p-p {ripple} µm at {curve.torque:.6g} N m (refining {refining})"
 
 
 def _figure(estimate: Estimate) -> str:

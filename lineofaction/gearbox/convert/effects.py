@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterable, Iterator, Mapping, Sized
+from typing import Any, NamedTuple
 
 from bounds import engineering
 from model_studies.ablation import TRIFLE
@@ -21,7 +21,7 @@ def by_size(ledger: Iterable[Entry]) -> tuple[list[Entry], list[Entry]]:
     return [entry for entry in entries if entry not in trifles], trifles
 
 
-def trifles_title(trifles: Sequence[object]) -> str:
+def trifles_title(trifles: Sized) -> str:
     """Say how many effects are folded away, and below which size."""
     effects = "effect" if len(trifles) == 1 else "effects"
     return f"{len(trifles)} {effects} below {100 * TRIFLE:g} %"
@@ -38,7 +38,7 @@ def influence_place(ledger: Iterable[Entry]) -> str:
     for entry in ledger:
         if influence := entry.get("influence"):
             skew, torque = influence["misalignment_um"], influence["torque_n_m"]
-            return f"at {torque:.7g} N m, misalignment {skew:.7g} um"
+            return f"at {torque:.7g} N m, misalignment {skew:.7g} µm"
     return ""
 
 
@@ -102,15 +102,6 @@ LEAST = 1e-3  # um, of the static displacement of an effect whose influence is n
 _RELATIVE = ("relative_mean", "relative_peak_to_peak", "relative_bearing_force")
 
 
-def model_lines(attributes: Json) -> Iterator[str]:
-    """Yield the effects of a run or a study of a scene, what it was repeated for, and what does not hold.
-
-    `attributes` hold `effect_ledger`, those of a run `receipt` too.
-    """
-    yield from _effect_lines(attributes.get("effect_ledger", {}))
-    yield from run_lines(attributes)
-
-
 def effect_size(ledger: Json, effect: str) -> str:
     """Return what a scene loses without an effect in all its parts, in words: the one size that is shown.
 
@@ -121,36 +112,53 @@ def effect_size(ledger: Json, effect: str) -> str:
     if estimate is not None:
         return str(estimate["words"])
     largest = max(entry["influence_um"] for entry in ledger["entries"] if entry["effect"] == effect)
-    return f"{engineering(largest, 3)} um along the line of action at rest" if largest >= LEAST else ""
+    return f"{engineering(largest, 3)} µm along the line of action at rest" if largest >= LEAST else ""
 
 
-def _effect_lines(ledger: Json) -> Iterator[str]:
-    """Yield the decision about every effect, part by part where they differ, its size and its price.
+class SceneEffect(NamedTuple):
+    """A decision about an effect and the parts that share it.
 
-    `ledger` is that of a run or a study. Effects that are off and change next to nothing share the last line.
+    The first decision about an effect has its name, and its size and freedoms in all parts.
     """
+
+    name: str
+    on: bool
+    size: str
+    freedoms: str
+    parts: str
+    reason: str
+    possible: bool
+
+
+def scene_effects(ledger: Json) -> tuple[list[SceneEffect], list[SceneEffect]]:
+    """Return the decisions on the effects of a scene, and apart those on what changes next to nothing."""
     estimates, effects = ledger.get("influences", {}), dict[str, list[Json]]()
     for entry in ledger.get("entries", ()):
         effects.setdefault(entry["effect"], []).append(entry)
-    trifles = []
+    shown, trifles = list[SceneEffect](), list[SceneEffect]()
     for name, entries in effects.items():
         size, estimate = effect_size(ledger, name), estimates.get(name)
-        if _is_trifle(entries, size, estimate):
-            if any(entry.get("possible", True) for entry in entries):
-                trifles.append(name)
-            continue
-        yield from _decisions(name, entries)
-        freedoms = ""
-        if estimate:
-            added = estimate["freedoms"]
-            freedoms = f"; {added:+d} freedoms with it" if added else "; no freedoms with it"
-        if size:
-            yield f"       without it {size}{freedoms}"
-        for price in dict.fromkeys(entry.get("price") for entry in entries if entry["on"]):
-            if price:
-                yield f"       price of the choice: {price}"
-    if trifles:
-        yield f"{trifles_title(trifles)}: {', '.join(trifles)}"
+        freedoms = f"{estimate['freedoms']:+d}" if estimate else ""
+        listed = trifles if _is_trifle(entries, size, estimate) else shown
+        if estimate and estimate.get("level"):
+            size = size.partition(", ")[0]
+        listed += _decisions((name.replace("_", " "), size or "nothing", freedoms), entries)
+    return shown, trifles
+
+
+def scene_table(ledger: Json) -> tuple[list[str], list[list[str]], str]:
+    """Return columns and a row for each decision on an effect of a scene, and what is said of the trifles.
+
+    Where a level is estimated, it alone is the size.
+    """
+    shown, trifles = scene_effects(ledger)
+    columns = ["effect", "on", "without it", "freedoms", "where and why"]
+    rows = [
+        [one.name, "yes" if one.on else "no", one.size, one.freedoms, f"{one.parts}: {one.reason}"]
+        for one in shown
+    ]
+    names = [one.name for one in trifles if one.name and one.possible]
+    return columns, rows, f"{trifles_title(names)}: {', '.join(names)}" if names else ""
 
 
 def _is_trifle(entries: list[Json], size: str, estimate: Json | None) -> bool:
@@ -163,11 +171,18 @@ def _is_trifle(entries: list[Json], size: str, estimate: Json | None) -> bool:
     return not size
 
 
-def _decisions(name: str, entries: list[Json]) -> Iterator[str]:
-    """Yield a line for each decision and reason, with the parts that share it."""
+def _decisions(effect: tuple[str, str, str], entries: list[Json]) -> Iterator[SceneEffect]:
+    """Yield each decision with its reason and price, and the parts that share it.
+
+    `effect` are its name, size and freedoms.
+    """
     shared: dict[tuple[bool, str], list[Json]] = {}
     for entry in entries:
-        shared.setdefault((entry["on"], entry["reason"]), []).append(entry)
+        price = f"; price: {entry['price']}" if entry["on"] and entry.get("price") else ""
+        shared.setdefault((entry["on"], f"{entry['reason']}{price}"), []).append(entry)
+    possible = any(entry.get("possible", True) for entry in entries)
     for (on, reason), same in shared.items():
+        name, size, freedoms = effect
         parts = ", ".join(entry["part"] for entry in same)
-        yield f"effect {name}: {'on' if on else 'off'} ({parts}); {reason}"
+        yield SceneEffect(name, on, size, freedoms, parts, reason, possible)
+        effect = ("", "", "")

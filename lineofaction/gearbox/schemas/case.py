@@ -26,6 +26,7 @@ from lineofaction.gearbox.schemas.model import (
     refuse_unsorted,
     stated,
 )
+from lineofaction.gearbox.schemas.report import ReportInput
 
 # The driven gear of the case file: an external gear, or a ring gear with the pinion inside it.
 
@@ -304,6 +305,9 @@ class Case(BoundaryModel):
         default={},
         description="Switches of optional physics; left out = auto",
         examples=[{"corner_contact": "auto"}],
+    )
+    report: ReportInput | None = Field(
+        default=None, exclude=True, description="Title block of reports; no result depends on it"
     )
 
     @model_validator(mode="after")

@@ -31,6 +31,7 @@ from lineofaction.gearbox.schemas.loads import (
 )
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.model import Acceleration, BoundaryModel, Listed, refuse
+from lineofaction.gearbox.schemas.report import ReportInput
 
 
 @with_fields(declared_in(Outputs))
@@ -126,6 +127,9 @@ class SceneInput(BoundaryModel):
     )
     effects: dict[EffectName, Switch] = Field(
         default={}, description="Switches of optional physics; left out = auto"
+    )
+    report: ReportInput | None = Field(
+        default=None, exclude=True, description="Title block of reports; no result depends on it"
     )
 
     @property

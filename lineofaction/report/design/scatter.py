@@ -25,7 +25,7 @@ def _scatter_figure(study: ToleranceStudy) -> Figure:
     return Figure(
         key="scatter",
         title="Peak-to-peak transmission error within tolerances",
-        caption=f"{count} pairs sampled within their tolerances. Above: part of all up to a ripple. "
+        caption=f"{count} pairs sampled within their tolerances. First: part of all up to a ripple. "
         f"Lower: quantiles with bounds of {100 * study.confidence:g} % confidence (dotted), and the "
         "pair as designed (dashed).",
         alternative=f"At the highest torque {part} of all pairs stay below {size} µm; as designed "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeVar
@@ -315,12 +316,15 @@ DRAWING_WIDTH, TALLEST = 3.3, 2.0
 """Width of a panel over its usual height, and the height of the tallest drawing over that."""
 
 
-def panel_height(panel: Panel) -> float:
-    """Return the height of a panel over the usual one; a drawing is as tall as it needs to fill the width."""
+def panel_height(panel: Panel, beside: int = 1) -> float:
+    """Return the height of a panel over the usual one; a drawing is as tall as it needs to fill the width.
+
+    `beside` panels share the width.
+    """
     if not panel.equal:
         return 1.0
     across, along = (_extent(panel, axis) for axis in ("x", "y"))
-    return min(max(DRAWING_WIDTH * along / max(across, 1e-12), 1.0), TALLEST)
+    return min(max(DRAWING_WIDTH / beside * along / max(across, 1e-12), 1.0), TALLEST)
 
 
 def _extent(panel: Panel, axis: Literal["x", "y"]) -> float:
@@ -345,6 +349,44 @@ def legend_names(panels: Sequence[Panel]) -> list[str]:
             if name not in notes
         )
     )
+
+
+_SLIM = 1.5  # height of a drawing over the usual one from which on half the width does
+_SHORT = 12  # characters of a label at a line beside which a panel of half the width stands
+
+
+def panel_rows(panels: Sequence[Panel], across: int) -> list[list[int]]:
+    """Return panels by rows of at most `across`; maps, wide drawings and long labels stand alone."""
+    rows: list[list[int]] = []
+    beside = False
+    for index, panel in enumerate(panels):
+        labels = max((len(row) for line in panel.lines for row in line.label.split("\n")), default=0)
+        slim = panel_height(panel) > _SLIM if panel.equal else panel.shade is None
+        narrow = slim and labels <= _SHORT
+        if narrow and beside and len(rows[-1]) < across:
+            rows[-1].append(index)
+        else:
+            rows.append([index])
+        beside = narrow
+    return rows
+
+
+_MOST_WHOLE = 30  # an axis of whole numbers up to here has no ticks between them
+_FEW_ORDERS = 4.0  # an axis of fewer orders, with fractions of them, has ticks between
+
+
+def counts(panel: Panel, name: Literal["x", "y"]) -> bool:
+    """Whether an axis has ticks at whole numbers alone: of many orders, or of few values that are whole."""
+    axis: Axis = getattr(panel, name)
+    if axis.scale == "log" or axis.names:
+        return False
+    shown = [getattr(line, name) for line in panel.lines]
+    shown += [bars.x for bars in panel.bars if name == "x"]
+    values = np.concatenate(shown) if any(map(np.size, shown)) else np.array(axis.limits or (0.0, np.inf))
+    span, whole = float(np.nanmax(values) - np.nanmin(values)), bool(np.all(values == np.round(values)))
+    if re.search(r"\borders?\b", axis.label):
+        return whole or span > _FEW_ORDERS
+    return name == "x" and bool(panel.lines) and whole and span <= _MOST_WHOLE
 
 
 def repeats_below(panels: Sequence[Panel], index: int) -> bool:

@@ -7,6 +7,7 @@ import re
 from collections.abc import Sequence
 from functools import cache
 from io import BytesIO
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from matplotlib.ticker import (
     NullLocator,
     ScalarFormatter,
 )
+from PIL import Image
 
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
@@ -36,8 +38,10 @@ from lineofaction.report.drawing.figure import (
     Panel,
     Reference,
     Strokes,
+    counts,
     legend_names,
     panel_height,
+    panel_rows,
     repeats_below,
 )
 from lineofaction.report.drawing.placing import line_labels, rewritten, vertical_limits
@@ -106,19 +110,27 @@ def _strokes(ax: Axes, shade: Strokes) -> Any:
 _WIDTH, _PANEL_HEIGHT, _DPI = 9.0, 2.7, 150
 _LEGEND_CHARACTERS, _HANDLE_CHARACTERS = 120, 9  # of the legend's type: across the sheet, beside a name
 _NOTE_ROW = 10  # points
+_HALF_LABEL, _HIGH_LABEL = 46, 32  # characters of a row below and beside a panel of half the width
 _LONGEST_WORD = 26  # characters; longer ones would leave panels no width
 _LABEL_ROW = 0.075  # of a row of a label at a line, in parts of the panel's height
 _LEADER = 0.02  # of the panel's width, from the end of a line to its label
 _NARROW = 100.0  # largest over smallest value of a logarithmic axis with plain numbers
 _DECADE = (1.0, 10.0)  # of a logarithmic axis that has nothing to show
-_MOST_WHOLE = 30  # an axis of whole numbers up to here has no ticks between them
 _BOX = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.0}  # under a text on colors
 _DASH = {"solid": "-", "dash": "--", "dot": ":"}
 
 
-def png(figure: Figure) -> bytes:
-    """Draw `figure` and return the PNG file's bytes."""
-    return _image(figure, "png", {"Title": figure.title, "Description": figure.alternative})
+def png(figure: Figure, across: int = 1) -> bytes:
+    """Draw `figure`, narrow panels `across` beside each other, and return the PNG file's bytes."""
+    return _image(figure, "png", {"Title": figure.title, "Description": figure.alternative}, across)
+
+
+def still(figure: Figure) -> bytes:
+    """Draw `figure` as a PNG file for a page: panels side by side, few colors, a third of the bytes."""
+    buffer = BytesIO()
+    drawn = Image.open(BytesIO(png(figure, across=2))).convert("RGB")
+    drawn.quantize(256, dither=Image.Dither.NONE).save(buffer, "png", optimize=True)
+    return buffer.getvalue()
 
 
 def svg(figure: Figure) -> bytes:
@@ -126,8 +138,8 @@ def svg(figure: Figure) -> bytes:
     return _image(figure, "svg", {"Title": figure.title, "Description": figure.alternative, "Date": None})
 
 
-def _image(figure: Figure, form: str, metadata: dict[str, str | None]) -> bytes:
-    sheet = panel_sheet(rewritten(figure.content, _drawable))
+def _image(figure: Figure, form: str, metadata: dict[str, str | None], across: int = 1) -> bytes:
+    sheet = panel_sheet(rewritten(figure.content, _drawable), across)
     sheet.suptitle(
         _drawable(figure.title), x=0.01, ha="left", fontsize=12, fontweight="bold", color=palette.INK
     )
@@ -154,11 +166,18 @@ def _glyphs() -> frozenset[int]:
     return frozenset(get_font(findfont(FontProperties())).get_charmap())
 
 
-def panel_sheet(panels: tuple[Panel, ...]) -> Sheet:
-    """Stack panels; curves of one name share one entry in the legend on top."""
-    heights = [panel_height(panel) for panel in panels]
+def panel_sheet(panels: tuple[Panel, ...], across: int = 1) -> Sheet:
+    """Draw panels in rows of at most `across`; curves of one name share one entry in the legend below."""
+    rows = panel_rows(panels, across)
+    heights = [max(panel_height(panels[index], len(row)) for index in row) for row in rows]
     sheet = Sheet(figsize=(_WIDTH, _PANEL_HEIGHT * sum(heights) + 1.2), layout="constrained")
-    axes: list[Axes] = list(sheet.subplots(len(panels), 1, squeeze=False, height_ratios=heights)[:, 0])
+    grid = sheet.add_gridspec(len(rows), across, height_ratios=heights)
+    axes: list[Axes] = [
+        sheet.add_subplot(grid[row, :] if len(beside) == 1 else grid[row, column])
+        for row, beside in enumerate(rows)
+        for column in range(len(beside))
+    ]
+    alone = {row[0] for row in rows if len(row) == 1}
     handles: dict[str, Any] = {}
     names = legend_names(panels)
     for index, (panel, ax) in enumerate(zip(panels, axes, strict=True)):
@@ -170,7 +189,9 @@ def panel_sheet(panels: tuple[Panel, ...]) -> Sheet:
             if name in names:
                 handles.setdefault(name, handle)
         _finish(ax, panel)
-        if repeats_below(panels, index):
+        if index not in alone:
+            ax.set(xlabel=fill(panel.x.label, _HALF_LABEL), ylabel=fill(panel.y.label, _HIGH_LABEL))
+        if repeats_below(panels, index) and {index, index + 1} <= alone:
             ax.set_xlabel("")
     if len(handles) > 1:
         sheet.legend(
@@ -234,9 +255,9 @@ def _finish(ax: Axes, panel: Panel) -> None:
     if any(line.label for line in panel.lines):
         ax.set_ylim(vertical_limits(panel))
         _label_lines(ax, panel)
-    x = np.concatenate([line.x for line in panel.lines]) if panel.lines else np.array([0.5])
-    if np.all(x == np.round(x)) and np.ptp(x) <= _MOST_WHOLE:
-        ax.xaxis.set_major_locator(MaxNLocator(integer=True))
+    for drawn, whole in ((ax.xaxis, counts(panel, "x")), (ax.yaxis, counts(panel, "y"))):
+        if whole:
+            drawn.set_major_locator(MaxNLocator(integer=True))
     for reference in panel.references:
         _refer(ax, reference, boxed=panel.shade is not None)
     for note in panel.notes:

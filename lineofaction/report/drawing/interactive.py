@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from html import escape
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from lineofaction.report.drawing.figure import (
     Panel,
     Reference,
     Strokes,
+    counts,
     legend_names,
     number,
     numbers,
@@ -156,13 +157,13 @@ def plotly_figure(figure: Figure) -> Json:
         top = inner - (sum(heights[:index]) + sum(gaps[:index]))
         domain = [round((top - heights[index]) / inner, 6), round(top / inner, 6)]
         frame = {"domain": domain, "anchor": "x" + suffix}
-        layout["xaxis" + suffix] = _axis(panel.x) | {"anchor": "y" + suffix}
+        layout["xaxis" + suffix] = _axis(panel.x) | _whole(panel, "x") | {"anchor": "y" + suffix}
         if repeats_below(panels, index):
             layout["xaxis" + suffix] |= {"title": {"text": ""}}
         upright = panel.y
         if any(line.label for line in panel.lines):  # with limits, so that the places of labels are known
             upright = replace(panel.y, limits=vertical_limits(panel))
-        layout["yaxis" + suffix] = _axis(upright) | frame
+        layout["yaxis" + suffix] = _axis(upright) | _whole(panel, "y") | frame
         if panel.equal:
             layout["xaxis" + suffix] |= {"scaleanchor": "y" + suffix, "constrain": "domain"}
         layout["annotations"] += _panel_title(panel, suffix) + _notes(panel, suffix)
@@ -250,6 +251,20 @@ def _axis(axis: Axis) -> Json:
     if axis.limits:
         made["range"] = [float(v) for v in (np.log10(axis.limits) if axis.scale == "log" else axis.limits)]
     return made
+
+
+_MOST_TICKS = 10
+
+
+def _whole(panel: Panel, name: Literal["x", "y"]) -> Json:
+    """Return the ticks of an axis of orders or of few whole numbers: at whole numbers."""
+    if not counts(panel, name):
+        return {}
+    shown: list[Any] = [*panel.lines, *([] if panel.shade is None else [panel.shade])]
+    shown += panel.bars if name == "x" else ()
+    values = [np.asarray(getattr(panel, name).limits or ())] + [getattr(one, name) for one in shown]
+    ends = np.concatenate([*(value.ravel() for value in values), np.zeros(1)])  # of an empty plot too
+    return {"tick0": 0, "dtick": max(math.ceil(float(np.nanmax(ends) - np.nanmin(ends)) / _MOST_TICKS), 1)}
 
 
 def _line(line: Line, suffix: str, show: bool) -> Json:

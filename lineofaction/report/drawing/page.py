@@ -5,8 +5,8 @@ from __future__ import annotations
 import base64
 import json
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from enum import IntEnum
 from html import escape
 from importlib.resources import files
@@ -18,8 +18,10 @@ from lineofaction.report.drawing.interactive import plotly_figure
 Json = dict[str, Any]
 SCRIPT, STYLE_SHEET = "player.js", "player.css"
 """The page of the service has the same."""
-_ROWS_OF_A_PAGE, _TALL = 40, 1.3
-"""In print: the most rows of a table that is not cut; height over width of a picture that gets a page."""
+_ROWS_OF_A_PAGE = 40
+"""In print, the most rows of a table that is not cut."""
+_HALF_OF_A_PAGE = 56
+"""Characters across a table beside which another one fits."""
 # In this page players stand in the document: the script joins them to their plot once that is drawn.
 _JOINED = """
 for (const group of document.querySelectorAll(".player")) {
@@ -97,42 +99,73 @@ class Headline:
 
 
 @dataclass(frozen=True)
+class TitleBlock:
+    """What a report is about, by name; `verdicts` on what is required; `corner` stands on every page."""
+
+    rows: tuple[tuple[str, str], ...]
+    verdicts: tuple[str, ...] = ()
+    corner: str = ""
+
+
+@dataclass(frozen=True)
 class Page:
-    """All of a report; `alarms` are what the reader must know before any number."""
+    """All of a report; `alarms` are what the reader must know before any number.
+
+    `records` are what its results were made from and with, by the names of their files.
+    """
 
     title: str
     lead: str
     headlines: tuple[Headline, ...]
     sections: tuple[Section, ...]
     alarms: tuple[str, ...] = ()
+    block: TitleBlock | None = None
+    records: Mapping[str, Any] = field(default_factory=dict)
 
 
-def html(page: Page, images: dict[str, bytes]) -> str:
-    """Write `page`; `images` are the PNG bytes of every figure by its key."""
-    body = "\n".join(_section(section, index, images) for index, section in enumerate(page.sections, start=1))
-    heard = any(figure.sound for section in page.sections for figure in section.figures)
-    title = re.sub(r"[^\w .,:;()/+-]", " ", page.title)
-    style = (
-        f'\n@page {{ @top-left {{ content: "{title}"; }} }}\n'
-        + _text("page.css")
-        + (_text(STYLE_SHEET) if heard else "")
+def html(page: Page, images: dict[str, bytes], *, still: bool = False) -> str:
+    """Write `page`; `images` are the PNG bytes of every figure by its key; `still`: they alone are shown."""
+    body = "\n".join(
+        _section(section, index, images, still=still) for index, section in enumerate(page.sections, start=1)
     )
+    heard = any(figure.sound for section in page.sections for figure in section.figures)
+    style = _margins(page) + _text("page.css") + (_text(STYLE_SHEET) if heard else "")
+    library = "" if still else f"<script>{_text('package_data/plotly.min.js', 'plotly')}</script>\n"
+    drawn = "" if still else f"<script>\n{_text('page.js')}</script>"
+    shown = "<style>.still { display: block; }</style>"
+    seen = shown if still else f"<noscript>{shown}<style>.plot {{ display: none; }}</style></noscript>"
     return "\n".join(
         [
             '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
             f'<title>{escape(page.title)}</title>\n<link rel="icon" href="data:,">\n<style>{style}</style>',
-            "<noscript><style>.plot { display: none; } .still { display: block; }</style></noscript>",
-            f"<script>{_text('package_data/plotly.min.js', 'plotly')}</script>\n</head>\n<body>",
+            f"{seen}\n{library}</head>\n<body>",
             '<a class="skip" href="#main">Skip to the results</a>',
             _header(page),
             f'<main id="main">\n{body}\n</main>',
             "<footer>Written by lineofaction. This page needs no network.</footer>",
-            "<script>\n" + _text("page.js") + "</script>",
+            drawn,
             f'<script type="module">{_text(SCRIPT)}{_JOINED}</script>' if heard else "",
             "</body>\n</html>\n",
         ]
     )
+
+
+def _margins(page: Page) -> str:
+    """Return what stands on every printed page beside its number."""
+    corner = page.block.corner if page.block else ""
+    words = {"top-left": page.title, "top-right": corner, "bottom-left": "lineofaction"}
+    plain = {place: re.sub(r"[^\w .,:;()/+-]", " ", text) for place, text in words.items()}
+    boxes = " ".join(f'@{place} {{ content: "{text}"; }}' for place, text in plain.items())
+    return f"\n@page {{ {boxes} }}\n"
+
+
+def _block(block: TitleBlock | None) -> str:
+    if block is None:
+        return ""
+    rows = "".join(f"<div><dt>{escape(name)}</dt><dd>{escape(text)}</dd></div>" for name, text in block.rows)
+    verdicts = "".join(f'<p class="verdict"><strong>{escape(words)}</strong></p>' for words in block.verdicts)
+    return f'<dl class="block">{rows}</dl>\n{verdicts}'
 
 
 def _header(page: Page) -> str:
@@ -147,15 +180,16 @@ def _header(page: Page) -> str:
         f'<li><a href="#part-{i}">{escape(section.title)}</a></li>'
         for i, section in enumerate(page.sections, start=1)
     )
+    lead = f'<p class="lead">{escape(page.lead)}</p>\n{_block(page.block)}'
     return (
-        f'<header>\n<h1>{escape(page.title)}</h1>\n<p class="lead">{escape(page.lead)}</p>\n{alarms}'
+        f"<header>\n<h1>{escape(page.title)}</h1>\n{lead}{alarms}"
         f'<dl class="headline">{results}</dl>\n<nav aria-label="Contents"><ol>{entries}</ol></nav>\n</header>'
     )
 
 
-def _section(section: Section, index: int, images: dict[str, bytes]) -> str:
+def _section(section: Section, index: int, images: dict[str, bytes], *, still: bool) -> str:
     text = f"<p>{escape(section.text)}</p>" if section.text else ""
-    figures = "\n".join(_figure(figure, images[figure.key]) for figure in section.figures)
+    figures = "\n".join(_figure(figure, images[figure.key], still=still) for figure in section.figures)
     tables = "\n".join([*map(_table, section.tables), *map(_folded, section.folded)])
     title = escape(section.title)
     aside = section.part is Part.RECEIPT or not (section.figures or section.tables)
@@ -164,20 +198,18 @@ def _section(section: Section, index: int, images: dict[str, bytes]) -> str:
     return f"{head}\n{text}{figures}{tables}</section>"
 
 
-def _figure(figure: Figure, image: bytes) -> str:
+def _figure(figure: Figure, image: bytes, *, still: bool) -> str:
     """One plot with its caption, its still image and its numbers."""
-    still = base64.b64encode(image).decode("ascii")
-    width, height = (int.from_bytes(image[at : at + 4], "big") for at in (16, 20))  # of a PNG
-    tall = " tall" if height > _TALL * width else ""
     alternative = escape(f"{figure.title}. {figure.alternative}", quote=True)
     numbers = _folded(figure.table, "Numbers") if figure.table else ""
+    plot = f'<div class="plot" role="img" aria-label="{alternative}" data-figure="{figure.key}-data"></div>'
+    data = f'<script type="application/json" id="{figure.key}-data">{_embedded(figure)}</script>\n'
+    encoded = base64.b64encode(image).decode("ascii")
     return (
-        f'<figure id="{figure.key}">\n<h3>{escape(figure.title)}</h3>\n'
-        f'<div class="plot" role="img" aria-label="{alternative}" data-figure="{figure.key}-data"></div>'
-        f'<img class="still{tall}" alt="{alternative}" src="data:image/png;base64,{still}">\n'
+        f'<figure id="{figure.key}">\n<h3>{escape(figure.title)}</h3>\n{"" if still else plot}'
+        f'<img class="still" alt="{alternative}" src="data:image/png;base64,{encoded}">\n'
         f"<figcaption><strong>{escape(figure.alternative)}</strong> {escape(figure.caption)}</figcaption>\n"
-        f"{_player(figure)}{numbers}"
-        f'<script type="application/json" id="{figure.key}-data">{_embedded(figure)}</script>\n</figure>'
+        f"{_player(figure)}{numbers}{'' if still else data}</figure>"
     )
 
 
@@ -193,15 +225,15 @@ def _folded(table: Table, name: str = "") -> str:
 
 def _table(table: Table) -> str:
     """Write a table; its first column names the row, columns of numbers stand to the right."""
-    columns = list(zip(*table.rows, strict=True)) or [("text",)] * len(table.head)
-    numeric = [all(map(_is_number, column)) for column in columns]
-    marks = [' class="n"' if right else "" for right in numeric]
+    marks = [' class="n"' if right else "" for right in numeric_columns(table)]
     head = "".join(
         f'<th scope="col"{m}>{escape(cell)}</th>' for m, cell in zip(marks, table.head, strict=True)
     )
     rows = "".join(_row(row, marks) for row in table.rows)
     name = escape(table.caption, quote=True)
     short = " short" if len(table.rows) <= _ROWS_OF_A_PAGE else ""
+    width = sum(max(map(len, column)) for column in zip(table.head, *table.rows, strict=True))
+    short += " narrow" if short and width <= _HALF_OF_A_PAGE else ""
     return (
         f'<div class="scroll{short}" tabindex="0" role="region" aria-label="{name}">'
         f"<table>\n<caption>{escape(table.caption)}</caption>\n<thead><tr>{head}</tr></thead>\n"
@@ -214,6 +246,12 @@ def _row(row: Sequence[str], marks: Sequence[str]) -> str:
     return f'<tr><th scope="row"{marks[0]}>{escape(row[0])}</th>{cells}</tr>'
 
 
+def numeric_columns(table: Table) -> list[bool]:
+    """Return of each column whether it holds numbers alone, which stand to the right."""
+    columns = list(zip(*table.rows, strict=True)) or [("text",)] * len(table.head)
+    return [all(map(_is_number, column)) for column in columns]
+
+
 def _is_number(text: str) -> bool:
     """Whether a cell holds a number, alone or with unit or error; empty cells count for either."""
-    return re.fullmatch(r"|[-+]?[\d.]+(e[-+]?\d+)?( (N m|µm|%|± .*))?", text) is not None
+    return re.fullmatch(r"|-|(< )?[-+]?[\d.]+(e[-+]?\d+)?( (N m|µm|%|± .*))?", text) is not None

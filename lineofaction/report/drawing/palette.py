@@ -16,6 +16,7 @@ BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = (
     "#56B4E9",
 )
 CATEGORIES = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
+HARMONICS = (*CATEGORIES, "#59636E", "#8F3F00")
 INK, MUTED, GRID = "#1B1F24", "#59636E", "#DDE1E6"
 
 # cividis at 0, 0.1 ... 1.0
@@ -31,6 +32,11 @@ _DARKEST, _LIGHTEST = 0.0, 0.82  # lighter than this vanishes on white paper
 def category(index: int) -> str:
     """Return the color of the index-th category; after six they repeat."""
     return CATEGORIES[index % len(CATEGORIES)]
+
+
+def harmonic(order: int) -> str:
+    """Return the color of a harmonic by its number from 1 on; after eight they repeat."""
+    return HARMONICS[(order - 1) % len(HARMONICS)]
 
 
 def tooth_pair(pair: int) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from lineofaction.gearbox.convert.effects import effect_size
+from lineofaction.gearbox.convert.effects import scene_effects, trifles_title
 from lineofaction.report.drawing.figure import Table, number
 from lineofaction.report.drawing.page import Part, Section
 
@@ -77,9 +77,11 @@ EffectRow = tuple[str, str, bool, str, str]
 
 
 def effect_table(caption: str, rows: Iterable[EffectRow]) -> Table:
-    """Tabulate effects."""
+    """Tabulate effects, by their names in words."""
     head = ("effect", "in", "simulated", "without it", "because")
-    cells = (((name, place, "yes" if on else "no", *words)) for name, place, on, *words in rows)
+    cells = (
+        (name.replace("_", " "), place, "yes" if on else "no", *words) for name, place, on, *words in rows
+    )
     return Table(caption, head, tuple(cells))
 
 
@@ -89,32 +91,35 @@ def effects_section(text: str, rows: Iterable[EffectRow], folded: tuple[Table, .
 
 
 def one_effects_section(sections: Sequence[Section]) -> tuple[Section, ...]:
-    """Return sections with those of effects as one: their rows in one table, in the order of the sections."""
+    """Return sections with those of effects as one: their rows in one table, in the order of the sections.
+
+    A decision that several state has one row: its last size that is more than a displacement at rest.
+    """
     effects = [section for section in sections if section.part is Part.EFFECTS]
     others = tuple(section for section in sections if section.part is not Part.EFFECTS)
     if len(effects) < 2:
         return tuple(sections)
-    rows = tuple(row for section in effects for table in section.tables for row in table.rows)
+    rows: dict[tuple[str, ...], tuple[str, ...]] = {}
+    for row in (row for section in effects for table in section.tables for row in table.rows):
+        *decision, size, reason = row
+        known = rows.get((*decision, reason))
+        if known is None or not (size == "nothing" or size.endswith("at rest")):
+            rows[*decision, reason] = row
     text = " ".join(section.text for section in effects if section.text)
-    table = replace(effects[0].tables[0], rows=rows)
-    folded = tuple(table for section in effects for table in section.folded)
+    table = replace(effects[0].tables[0], rows=tuple(rows.values()))
+    folded = tuple(dict.fromkeys(table for section in effects for table in section.folded))
     return (*others, replace(effects[0], text=text, tables=(table,), folded=folded))
 
 
 def ledger_section(ledger: Mapping[str, Any]) -> Section:
     """Tabulate what was simulated and what the model leaves out, by the effect ledger of a scene."""
-    rows = [
-        (
-            entry["effect"],
-            entry["part"],
-            entry["on"],
-            effect_size(ledger, entry["effect"]) or "nothing",
-            entry["reason"],
-        )
-        for entry in ledger.get("entries", ())
-    ]
-    left_out = ledger.get("left_out", {})
-    return effects_section("", rows, (facts("Not in the model", left_out),))
+    rows, trifles = (
+        [(one.name, one.parts, one.on, one.size, one.reason) for one in effects]
+        for effects in scene_effects(ledger)
+    )
+    small = effect_table(trifles_title({row[0] for row in trifles} - {""}), trifles)
+    left_out = facts("Not in the model", ledger.get("left_out", {}))
+    return effects_section("", rows, (*((small,) if trifles else ()), left_out))
 
 
 Json = dict[str, Any]

@@ -289,8 +289,8 @@ def _line_load_caption(flanks: LoadDistribution, *, with_gap: bool) -> str:
     caption = "Force of all pairs per unit of face width."
     if with_gap:
         caption = (
-            f"Above: {caption[0].lower()}{caption[1:]} Below: remaining gap between the loaded flanks of the "
-            "pair with the largest load; 0 in contact."
+            f"First: {caption[0].lower()}{caption[1:]} Second: remaining gap between the loaded flanks of "
+            "the pair with the largest load; 0 in contact."
         )
     else:
         caption += " The flanks of the pair with the largest load touch wherever they can: no gap."
@@ -307,9 +307,9 @@ def load_centroid_figure(flanks: LoadDistribution) -> Figure:
     return Figure(
         key="load_centroid",
         title="Load centroid and face load factor",
-        caption="Above: distance of the load's centroid from the pinion's mid-face. Below: largest over mean "
-        "load per unit of face width at each position; the line is that of the load averaged over all of "
-        "them, K_Hbeta of ISO 6336-1 for this alignment and without manufacturing errors.",
+        caption="First: distance of the load's centroid from the pinion's mid-face. Second: largest over "
+        "mean load per unit of face width at each position; the line is that of the load averaged over all "
+        "of them, K_Hbeta of ISO 6336-1 for this alignment and without manufacturing errors.",
         alternative=f"The centroid lies {number(centroid.min(), 3)} to "
         f"{number(centroid.max(), 3)} mm from mid-face; K_Hbeta is {k}.",
         content=(
@@ -415,7 +415,7 @@ def _text(flanks: LoadDistribution) -> Iterator[str]:
     scene, receipt = flanks.scene, flanks.metadata.receipt
     yield (
         f"torque {scene.torque:.6g} N m, normal force {scene.normal_force:.6g} N, "
-        f"misalignment {scene.misalignment / UM:.4g} um"
+        f"misalignment {scene.misalignment / UM:.4g} µm"
     )
     yield (
         f"largest pressure {1e-6 * flanks.clear_pressure.max():.4g} MPa{edge_words(flanks.edge_pressure)}, "

@@ -103,7 +103,7 @@ def _headline(gear: str, peak: Json) -> Headline:
 def _point(stresses: Json) -> str:
     return (
         f"torque {stresses['torque_n_m']:.6g} N m, normal force {stresses['normal_force_n']:.6g} N, "
-        f"misalignment {stresses['misalignment_um']:.4g} um"
+        f"misalignment {stresses['misalignment_um']:.4g} µm"
     )
 
 

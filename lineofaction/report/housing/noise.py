@@ -45,6 +45,10 @@ from lineofaction.report.response.excitations import excitation_figures, excitat
 
 LINES, SHOWN = 160, 6
 """Cells of the map in frequency; lines of orders and bearings."""
+SHOWN_ORDERS, SHOWN_CAUSES = 6, 3
+LEAST_NARROWED = 0.1
+"""dB."""
+_MODEL_HEAD = ("model", "level, dB", "stated error, dB", "CPU s", "CPU s predicted", "GB predicted")
 
 
 def _sound_map(sound: RadiatedSound) -> Figure:
@@ -214,9 +218,6 @@ def _above(level: FloatArray, floor: float) -> FloatArray:
     return np.where(level < floor, np.nan, level)
 
 
-SHOWN_ORDERS, SHOWN_CAUSES = 6, 3
-
-
 def _uncertainty_tables(facts: Json) -> Iterator[Table]:
     if facts["band"] is not None:
         yield _band_table(facts["band"])
@@ -226,10 +227,10 @@ def _uncertainty_tables(facts: Json) -> Iterator[Table]:
 
 def _band_table(band: Json) -> Table:
     loudest = sorted(band["orders"], key=lambda row: -row["largest"]["level_db_a"])[:SHOWN_ORDERS]
-    levels = [("all orders", band["largest_total"])]
-    levels += [(f"order {row['order']:.4g}", row["largest"]) for row in loudest]
+    levels = [("largest of all orders", band["largest_total"]), ("mean power", band["mean_total"])]
+    levels += [(f"largest of order {row['order']:.4g}", row["largest"]) for row in loudest]
     columns = {
-        "largest over the speeds": lambda row: row[0],
+        "over the speeds": lambda row: row[0],
         "dB(A)": lambda row: f"{row[1]['level_db_a']:.1f}",
         "from": lambda row: f"{row[1]['low_db_a']:.1f}",
         "to": lambda row: f"{row[1]['high_db_a']:.1f}",
@@ -267,10 +268,6 @@ def _narrowest(facts: Json) -> Iterator[str]:
             width = level["width_db"]
             yield f"{NARROWER[name]}: of {width:.1f} dB of the band {left:.1f} are left"
             return
-
-
-LEAST_NARROWED = 0.1
-"""dB."""
 
 
 def _cost_table(rows: list[Json]) -> Table:
@@ -332,15 +329,22 @@ def _where(point: LoudPoint) -> str:
     return f"order {point.order:.4g} at {number(point.speed / RPM, 4)} rpm, {number(point.frequency, 4)} Hz"
 
 
+def _ends(level: Json) -> str:
+    return f"{level['low_db_a']:.1f} to {level['high_db_a']:.1f}"
+
+
 def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
     total, points = sound.orders.total_weighted_level, loudest(sound, 1)
     at = int(total.argmax())
     where = f"at {number(float(sound.speed[at]) / RPM, 4)} rpm, all orders"
     if (band := sound.facts["band"]) is not None:
-        total_band = band["largest_total"]
-        where += f"; {total_band['low_db_a']:.1f} to {total_band['high_db_a']:.1f} over the ranges of guesses"
+        where += f"; {_ends(band['largest_total'])} over the ranges of guesses"
         where += "".join(f"; {words}" for words in _narrowest(sound.facts))
     shown = [Headline("sound power level", f"{total[at]:.1f} dB(A)", where)]
+    if band is not None and sound.speed.size > 1:
+        mean = band["mean_total"]
+        level = f"{mean['level_db_a']:.1f} dB(A)"
+        shown.append(Headline("mean over the speeds", level, f"of the power, all orders; {_ends(mean)}"))
     shown += [
         Headline("loudest order", f"{point.weighted_level:.1f} dB(A)", words)
         for point, words in zip(points, _sentences(sound), strict=True)
@@ -352,9 +356,6 @@ def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
         first = f"from {number(parting[0], 4)} rpm on"
         shown.append(Headline("flanks part at", f"{parting.size} of {sound.speed.size} speeds", first))
     return tuple(shown)
-
-
-_MODEL_HEAD = ("model", "level, dB", "stated error, dB", "CPU s", "CPU s predicted", "GB predicted")
 
 
 def _model_tables(sound: RadiatedSound) -> Iterator[Table]:

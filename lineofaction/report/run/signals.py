@@ -41,7 +41,7 @@ from lineofaction.report.run.view import (
 )
 
 AXES = "Components in the fixed frame; of a planet bearing in its carrier's."
-DETAIL = "Below: less the mean of the window."
+DETAIL = "Second: less the mean of the window."
 
 
 def signal_over_time(run: RunResult, signal: Signal) -> Figure:

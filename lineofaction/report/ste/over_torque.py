@@ -74,7 +74,7 @@ def _harmonics(across: Axis, torque: FloatArray, values: FloatArray, known: Bool
     """Draw the harmonics (n, H), each labeled by its number; solid lines where they are known."""
     lines: list[Line] = []
     for order in range(values.shape[1]):
-        name, color = f"{order + 1}", palette.ordered(order, values.shape[1])
+        name, color = f"{order + 1}", palette.harmonic(order + 1)
         lines.append(Line(name, torque, values[:, order], color, "dot", 1.2, label=name))
         sure = np.where(known[:, order], values[:, order], np.nan)
         if known[:, order].any():
@@ -199,8 +199,8 @@ def face_load(database: SteDatabase) -> Figure:
     return Figure(
         key="face_load",
         title="Load along the face",
-        caption="Above: distance of the load's centroid from the pinion's mid-face. Below: the largest Hertz "
-        f"pressure anywhere on the flanks{waves}; at a tip edge the true pressure is singular.",
+        caption="First: distance of the load's centroid from the pinion's mid-face. Second: the largest "
+        f"Hertz pressure anywhere on the flanks{waves}; at a tip edge the true pressure is singular.",
         alternative=f"At {label} the load acts from {number(np.nanmin(centroid), 3)} to "
         f"{number(np.nanmax(centroid), 3)} mm from mid-face; the largest pressure is "
         f"{number(np.nanmax(pressure), 3)} MPa.",
@@ -242,7 +242,7 @@ def flanks_over_torque(database: SteDatabase) -> Figure:
         if len(panels) == 1
         else "Flank pressure and load centroid over torque",
         caption="The largest Hertz pressure of the mesh cycle at every stored load"
-        + ("; below, how far the load's centroid is from the pinion's mid-face." if len(panels) > 1 else "."),
+        + ("; then how far the load's centroid is from the pinion's mid-face." if len(panels) > 1 else "."),
         alternative=_flanks_words(database, loads, pressure),
         content=panels,
         table=_flanks_table(database, loads, pressure, ends),

@@ -24,7 +24,7 @@ def test_held_out_errors_are_named_by_axis() -> None:
         "center_distance_change": {"at": [1e-4, 3e-4], "error_m": [[1e-7, 3.4e-7], [None, 1e-9]]},
     }
     text = _cost(receipt() | {"held_out": measured})
-    assert "between the nodes: force 0.02 um, center distance change unknown" in text
+    assert "between the nodes: force 0.02 µm, center distance change unknown" in text
 
 
 def test_contacts_that_outgrew_their_patch_are_counted() -> None:

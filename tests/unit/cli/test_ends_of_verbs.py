@@ -1,4 +1,4 @@
-"""Every verb ends with its result: main figures with their errors, then the files."""
+"""Every verb begins with its result, main figures with their errors, and ends with the files."""
 
 from __future__ import annotations
 
@@ -21,15 +21,16 @@ VERBS = LOA.list_commands(Context(LOA))
 COARSE = ("--level", "draft", "--set", "accuracy.positions=16")
 
 
-def last_lines(*arguments: object, count: int = 3) -> list[str]:
+def ends(*arguments: object, first: int = 2) -> tuple[list[str], str]:
     done = loa(*arguments)
     assert done.exit_code == 0, done.output
-    return done.stdout.strip().splitlines()[-count:]
+    lines = done.stdout.strip().splitlines()
+    return lines[:first], lines[-1]
 
 
-def test_a_table_ends_with_mean_and_ripple_and_its_file(tmp_path: Path) -> None:
+def test_a_table_begins_with_mean_and_ripple_and_ends_with_its_file(tmp_path: Path) -> None:
     file = tmp_path / "ste.nc"
-    mean, ripple, written = last_lines("analyze", SPUR, "-o", file, "--torque", 100, *COARSE)
+    (mean, ripple), written = ends("analyze", SPUR, "-o", file, "--torque", 100, *COARSE)
     end = r" STE at 100 N m: [\d.]+ µm ± [\d.]+ µm; gears of this width "
     assert re.fullmatch(rf"mean{end}\+2\.8 %", mean)
     assert re.fullmatch(rf"peak-to-peak{end}\+3\.3 %", ripple)
@@ -48,7 +49,7 @@ def test_a_fetched_result_ends_with_its_figures(tmp_path: Path, monkeypatch: pyt
     stored, file, key = tmp_path / "stored.nc", tmp_path / "fetched.nc", "ab" * 32
     small_table().to_netcdf(stored)
     monkeypatch.setattr(LineOfActionClient, "fetch_result", lambda *_: (stored, "database"))
-    *results, written = last_lines("fetch", key, "-o", file, count=4)
+    results, written = ends("fetch", key, "-o", file, first=3)
     assert results[0] == f"database {key}"
     assert [line.partition(" STE at ")[0] for line in results[1:]] == ["mean", "peak-to-peak"]
     assert written == f"written to {file}"

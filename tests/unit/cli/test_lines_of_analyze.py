@@ -195,7 +195,7 @@ def test_json_holds_the_warning_and_the_passes(tmp_path: Path) -> None:
 
 def test_the_draft_is_one_line_at_the_highest_load(draft: SteDatabase) -> None:
     line = draft_line(draft, "slices 15 -> 23")
-    found = re.fullmatch(r"draft: mean (.+) \+- .+ um, p-p (.+) \+- .+ um at 5 N m \(refining (.+)\)", line)
+    found = re.fullmatch(r"draft: mean (.+) \+- .+ µm, p-p (.+) \+- .+ µm at 5 N m \(refining (.+)\)", line)
     assert found is not None
     assert float(found[1]) == pytest.approx(1e6 * draft.mean(torque=5.0).value, rel=1e-3)
     assert float(found[2]) == pytest.approx(1e6 * draft.peak_to_peak(torque=5.0).value, rel=1e-3)
@@ -233,7 +233,7 @@ def test_passes_are_listed_where_there_are_several() -> None:
 def test_what_is_missed_between_loads_says_where_a_value_is_wanted() -> None:
     beyond = {"axis": "misalignment", "used": 2.0, "between": [0.0, 3e-5]}
     (_, line) = _tolerance_lines({"tolerance": KEPT | {"between_nodes": [beyond]}})
-    assert line == "between the misalignments 0 and 30 um interpolation uses 2 of it: add a value there"
+    assert line == "between the misalignments 0 and 30 µm interpolation uses 2 of it: add a value there"
 
 
 def test_errors_that_were_not_estimated_are_no_warning() -> None:

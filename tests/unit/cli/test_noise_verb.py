@@ -206,6 +206,8 @@ def test_levels_have_a_band_unless_it_is_left_out(scene: Path) -> None:
     total, orders = answer["band"]["largest_total"], answer["band"]["orders"]
     assert total["level_db_a"] == pytest.approx(max(answer["total_level_db_a"]), abs=1e-6)
     assert total["low_db_a"] < total["level_db_a"] < total["high_db_a"]
+    mean = answer["band"]["mean_total"]
+    assert mean["low_db_a"] < mean["level_db_a"] < min(mean["high_db_a"], total["level_db_a"])
     assert [row["order"] for row in orders] == answer["order"]
     assert (answer["band"]["damping_source"], answer["band"]["damping_range"]) == ("range stated", [0.5, 1.5])
     assert total["width_db"] == pytest.approx(total["high_db_a"] - total["low_db_a"])

@@ -14,7 +14,7 @@ from dynamics.simulation import simulate
 from dynamics.types import RunStatus
 from lineofaction.cli.guard import until_interrupted
 from lineofaction.cli.simulate import _run, _run_headlines
-from lineofaction.gearbox.convert.effects import _effect_lines
+from lineofaction.gearbox.convert.effects import scene_table
 from lineofaction.gearbox.units import boundary_ledger
 
 SCENE = gear_pair_scene(duration=0.02)
@@ -58,17 +58,19 @@ def test_a_run_says_which_effects_are_on_and_what_the_others_change():
         {"effect": "lateral", "part": "input", "on": True, "influence_m": 1.33e-5, "reason": "pushed aside"},
     ]
     entries.append(entries[-1] | {"part": "output", "influence_m": 2e-6})
+    entries.append(entries[-1] | {"part": "idler", "reason": "left alone"})
     names = ("relative_mean", "relative_peak_to_peak", "relative_bearing_force")
     small = dict.fromkeys(names, 2e-4) | {"words": "0.02 % of all", "freedoms": 4}
     large = small | {"words": "17 % of all", "relative_mean": -0.17}
     ledger = {"entries": entries, "influences": {"tilt": small, "lateral": large}}
-    assert list(_effect_lines(boundary_ledger(ledger))) == [
-        "effect flexible_shafts: off (input); switched off",
-        "       without it 2 um along the line of action at rest",
-        "effect lateral: on (input, output); pushed aside",
-        "       without it 17 % of all; +4 freedoms with it",
-        "1 effect below 0.1 %: tilt",
+    columns, rows, trifles = scene_table(boundary_ledger(ledger))
+    assert columns == ["effect", "on", "without it", "freedoms", "where and why"]
+    assert rows == [
+        ["flexible shafts", "no", "2 µm along the line of action at rest", "", "input: switched off"],
+        ["lateral", "yes", "17 % of all", "+4", "input, output: pushed aside"],
+        ["", "yes", "", "", "idler: left alone"],
     ]
+    assert trifles == "1 effect below 0.1 %: tilt"
 
 
 def test_a_run_ends_with_its_largest_forces():

@@ -26,7 +26,7 @@ from lineofaction.gearbox.studies.optimize import Inputs
 from lineofaction.gearbox.studies.optimize.heard_problem import HeardMerit, HeardProblem, Powers
 from lineofaction.gearbox.studies.optimize.heard_search import heard_problem, misalignments
 from lineofaction.gearbox.studies.optimize.result import HeardOptimization
-from lineofaction.gearbox.studies.optimize.run import request_of
+from lineofaction.gearbox.studies.optimize.run import RUN, request_of
 from lineofaction.gearbox.workbench import tabled
 from model_studies.workers import InProcess
 
@@ -304,3 +304,14 @@ def test_a_limit_of_ripple_is_rows_of_the_merit_with_their_slopes() -> None:
     for name, slope in zip(own.names, row, strict=True):
         above, below = (ripple(DESIGN | {name: DESIGN[name] + side * step}) for side in (1.0, -1.0))
         assert slope == pytest.approx((above - below) / (2.0 * step), abs=2e-3)
+
+
+def test_a_search_that_is_cancelled_tells_its_best_without_the_pairs() -> None:
+    own = RUN.compute(
+        tabled(scene()),
+        Inputs.model_validate(inputs()),
+        Means(cache_home(), lambda _stage, _part: None, cancel=lambda: True),
+    )
+    assert isinstance(own, HeardOptimization)
+    assert own.pairs.shape == (2, 0) and not own.within_tolerances()
+    assert own.optimum.objective.value == own.start.objective.value and "interrupted" in own.ended()

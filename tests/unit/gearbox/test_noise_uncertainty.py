@@ -143,7 +143,7 @@ def test_bands_go_to_json(subject: TabledScene, model: SoundModel, tmp_path: Pat
     known = {"damping_source": GUESSED.source, "damping_range": GUESSED.factors}
     told = json.loads(json.dumps(figures_of(SoundBandFigures, band, **known), allow_nan=False))
     assert len(told["total_low_db_a"]) == SPEED.size
-    for level in (told["largest_total"], *(row["largest"] for row in told["orders"])):
+    for level in (told["largest_total"], told["mean_total"], *(row["largest"] for row in told["orders"])):
         assert level["low_db_a"] <= level["level_db_a"] <= level["high_db_a"]
         assert set(level["above_db"]) >= {"housing_damping", "jointly", "mode_number"}
         assert "mount_stiffness" not in level["above_db"]

@@ -154,7 +154,7 @@ def test_the_audit_and_the_step_error_are_told(run: RunResult) -> None:
     assert accuracy["step error, nm rms (step control)"] == "1.00"
     assert ("residual", "0") in tables["Energy audit, J"].rows
     (row,) = tables["Effects"].rows
-    assert row == ("lateral", "input", "yes", "1 um along the line of action at rest", "r")
+    assert row == ("lateral", "input", "yes", "1 µm along the line of action at rest", "r")
     assert dynamic_headlines(run)[0].remark == "nominal 2660 N"
 
 

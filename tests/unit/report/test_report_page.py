@@ -165,11 +165,11 @@ def test_the_case_is_told_in_full(database: SteDatabase) -> None:
 def test_the_ledger_says_what_is_simulated_and_why(database: SteDatabase) -> None:
     section = contact_effects(boundary_ledger(database.metadata.effect_ledger))
     (table,), (trifles, decisions) = section.tables, section.folded
-    assert section.text.endswith("estimated change without each, at 400 N m, misalignment 0 um.")
+    assert section.text.endswith("estimated change without each, at 400 N m, misalignment 0 µm.")
     assert table.head == ("effect", "in", "simulated", "without it", "because")
     assert decisions.head == ("effect", "cost", "decision", "price of the choice", "checked")
-    words = "mean +0.2 um (+2 %), peak-to-peak -0.05 um (-5 %)"
-    assert table.rows == (("corner_contact", "contact", "yes", words, "tips touch"),)
+    words = "mean +0.2 µm (+2 %), peak-to-peak -0.05 µm (-5 %)"
+    assert table.rows == (("corner contact", "contact", "yes", words, "tips touch"),)
     assert [row[0] for row in decisions.rows] == ["corner_contact", "misalignment"]
     assert trifles.caption == "1 effect below 0.1 %"
     assert [row[0] for row in trifles.rows] == ["misalignment"]
@@ -255,7 +255,7 @@ def test_results_stand_before_effects_accuracy_input_and_receipts(
 def test_effects_of_contact_and_run_stand_in_one_table(database: SteDatabase, run: RunResult) -> None:
     (section,) = [s for s in page_of(Inputs(database, run)).sections if s.part is Part.EFFECTS]
     (table,) = section.tables
-    assert [row[:2] for row in table.rows] == [("corner_contact", "contact"), ("lateral", "input")]
+    assert [row[:2] for row in table.rows] == [("corner contact", "contact"), ("lateral", "input")]
     captions = [folded.caption for folded in section.folded]
     assert captions[0] == "1 effect below 0.1 %" and captions[-1] == "Not in the model"
 

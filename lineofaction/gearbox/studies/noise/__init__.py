@@ -114,7 +114,7 @@ def _by_order(band: Any) -> list[dict[str, Any]]:
 
 
 class SoundBandFigures(Part):
-    """Bands of levels: the largest total, orders, and the total by speed."""
+    """Bands of levels: the largest total, its mean over the speeds, orders, and the total by speed."""
 
     class OrderBand(Part):
         """Bands of an order: of its largest level over the speeds, and of that at its loudest speed."""
@@ -127,6 +127,7 @@ class SoundBandFigures(Part):
     damping_source: str
     damping_range: tuple[float, float]
     largest_total: LevelBandFigures
+    mean_total: LevelBandFigures
     orders: Annotated[list[OrderBand], Source(_by_order)]
     total_low_db_a: Annotated[list[float], Source(lambda band: [level.low for level in band.total])]
     total_high_db_a: Annotated[list[float], Source(lambda band: [level.high for level in band.total])]

@@ -120,13 +120,14 @@ def heard_optimum(
         if not math.isfinite(problem.scale):
             raise SolveError("the contact of the start design cannot be solved at every position and load")
         means.report(f"search; about {engineering(expected, 2)} CPU s", 0.0)
-        runs = search_all(problem, request.search, request.own, run, means.cancel or never)
+        cancel = means.cancel or never
+        runs = search_all(problem, request.search, request.own, run, cancel)
     best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
     designs = own, problem.values(runs[best].place)
     with clock.stage("confirmation"):
         before, after = (_confirmed(replace(heard, problem=problem), values) for values in designs)
     with clock.stage("pairs"):
-        rough = None if sample is None else sample.at(request.search.exploration)
+        rough = None if sample is None or cancel() else sample.at(request.search.exploration)
         pairs = [np.zeros(0) if rough is None else rough.levels(values, means.workers) for values in designs]
     run.progress("confirmation", 1.0)
     quantity = quantity_of(subject, question)

@@ -119,7 +119,7 @@ def test_a_quieter_line_that_may_be_louder_widens_the_band_of_the_largest() -> N
     power = 1e-12 * 10.0 ** (np.array([[80.0, 20.0], [20.0, 77.0]]) / 10.0)
     nothing = LevelBand(80.0, {}, {})
     band = SoundBand(
-        speed, np.array([1.0, 2.0]), nothing, (nothing,) * 2, speed, (nothing,) * 2, (nothing,) * 2
+        speed, np.array([1.0, 2.0]), nothing, nothing, (nothing,) * 2, speed, (nothing,) * 2, (nothing,) * 2
     )
     off = np.array([[0.0, 0.0], [0.0, 6.0]])
     made = band.with_power_error("radiation_model", OrderPower(hertz, power), off, off)
@@ -129,7 +129,7 @@ def test_a_quieter_line_that_may_be_louder_widens_the_band_of_the_largest() -> N
     even = band.with_power_error(
         "radiation_model", OrderPower(hertz, power), 0.0 * off + 2.0, 0.0 * off + 1.0
     )
-    for each in (even.largest_total, *even.largest, *even.there, *even.total):
+    for each in (even.largest_total, even.mean_total, *even.largest, *even.there, *even.total):
         assert (each.below["radiation_model"], each.above["radiation_model"]) == pytest.approx((2.0, 1.0))
 
 

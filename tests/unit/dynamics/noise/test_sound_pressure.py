@@ -40,7 +40,13 @@ from dynamics.noise import (
 )
 from dynamics.noise.housing_recordings import sound_paths
 from dynamics.noise.sensitivities import Sensitivity, _ranked
-from dynamics.noise.sound_band import USUAL_RANGES, _missed_between, largest_level
+from dynamics.noise.sound_band import (
+    USUAL_RANGES,
+    _missed_between,
+    _missed_by_steps,
+    largest_level,
+    mean_power,
+)
 from dynamics.vibration import seat_forces
 
 # Sound pressure at a microphone: closed forms, its sound power, superposition, distance, delay.
@@ -266,8 +272,7 @@ def test_damping_of_a_resonance_costs_a_decibel_for_an_eighth():
 
 
 SPEED = np.geomspace(60.0, 300.0, 24)
-MESH_ERROR = Range(0.945, 1.0, 1.0)
-"""Of the meshed housing, by its frequencies on a mesh 1.5 times as coarse: 8 % higher."""
+FINER = np.unique([*np.linspace(0.9, 1.1, 401), *np.linspace(0.99, 1.01, 401)])
 NONE = {name: Range(1.0, 1.0, 1.0) for name in GUESSES}
 
 
@@ -277,7 +282,7 @@ def model():
 
 
 def bands_of(band):
-    return (band.largest_total, *band.largest, *band.there, *band.total)
+    return (band.largest_total, band.mean_total, *band.largest, *band.there, *band.total)
 
 
 def test_without_ranges_only_modes_and_speeds_are_uncertain(model):
@@ -296,7 +301,7 @@ def test_a_wider_range_never_narrows_the_band(model):
         usual = USUAL_RANGES["housing_damping"]
         span = Range(1.0 + width * (usual.low - 1.0), 1.0, 1.0 + width * (usual.high - 1.0))
         band = sound_band(model, SPEED, 3, NONE | {"housing_damping": span}, cases=16)
-        now = [(each.low, each.high) for each in (band.largest_total, *band.largest)]
+        now = [(each.low, each.high) for each in (band.largest_total, band.mean_total, *band.largest)]
         for (low, high), (former_low, former_high) in zip(now, before, strict=False):
             assert low <= former_low
             assert high >= former_high
@@ -320,18 +325,34 @@ def test_a_resonance_that_only_the_housing_damps_falls_by_the_ratio():
     assert band.above["housing_damping"] == pytest.approx(band.high - band.nominal, abs=0.1)
 
 
+def test_a_mean_over_speeds_is_that_of_a_steady_run_up_whatever_the_steps():
+    """Of a resonance in closed form, with finer steps about it; coarse steps state what they miss."""
+    for damping in (0.004, 0.008):
+        exact = 2.0 * math.atan(0.1 / damping) / damping / 0.2
+        for speed in (np.linspace(0.9, 1.1, 401), FINER, *(np.linspace(0.9, 1.1, n) for n in (21, 41))):
+            power = 1.0 / ((speed - 1.0) ** 2 + damping**2)
+            missed = abs(10.0 * math.log10(mean_power(speed, power) / exact))
+            assert missed <= max(_missed_by_steps(speed, power), 1e-3)
+    assert mean_power(speed[:1], power[:1]) == power[0]
+    assert _missed_by_steps(speed[:1], power[:1]) == 0.0
+
+
 @pytest.mark.law
 @pytest.mark.parametrize(
-    ("speeds", "mounts", "cases"), [(24, 1, 20), pytest.param(135, 20, 200, marks=pytest.mark.nightly)]
+    ("speeds", "castings", "cases"), [(24, 2, 32), pytest.param(135, 16, 256, marks=pytest.mark.nightly)]
 )
-def test_the_band_holds_nine_of_ten_blind_variations(speeds, mounts, cases):
-    """A finer mesh, more modes, other mounts, dampings and bearings: none of them made the band."""
+def test_the_band_holds_nine_of_ten_blind_variations(speeds, castings, cases):
+    """A finer mesh, more modes, other walls, mounts, dampings and bearings: none of them made the band.
+
+    That of the mean power over the speeds is at most 8 dB wide, though damping and bearings are guesses.
+    """
     model = sound_model(reduced_housing(meshed(MESH)))
     speed = np.geomspace(60.0, 300.0, speeds)
-    band = sound_band(model, speed, 4, USUAL_RANGES | {"housing_frequency": MESH_ERROR})
-    shares = covered(band, blind_levels(band, speed, FINE, mounts, cases))
-    for share in (shares.largest_total, shares.largest, shares.there, shares.total):
+    band = sound_band(model, speed, 4)
+    shares = covered(band, blind_levels(band, speed, FINE, castings, cases))
+    for share in (shares.largest_total, shares.mean_total, shares.largest, shares.there, shares.total):
         assert np.mean(share) >= 0.9
+    assert band.mean_total.width <= 8.0
 
 
 def test_a_peak_between_speeds_is_seen_by_its_flanks():

@@ -136,4 +136,4 @@ def test_every_entry_of_the_ledger_is_complete() -> None:
     lateral = next(one for one in entries if one["effect"] == "lateral")
     assert not lateral["on"]
     assert lateral["called_for"]
-    assert lateral["price"] == f"{1e6 * lateral['influence_m']:.3g} um of static displacement neglected"
+    assert lateral["price"] == f"{1e6 * lateral['influence_m']:.3g} µm of static displacement neglected"

@@ -236,7 +236,7 @@ def test_the_verdict_gives_the_figures_of_the_standard_and_periods_multiply():
     pair = GearPair(gear(Z1, one_tooth(Z1, 3, 5e-6)), gear(Z2))
     verdict = PitchError().called_for(ContactScene(pair, np.array([100.0]), EFFECTS))
     assert verdict.on
-    assert "pinion f_p 5 um, F_p 5 um" in verdict.reason
+    assert "pinion f_p 5 µm, F_p 5 µm" in verdict.reason
     assert verdict.reason.endswith("over 20 base pitches")
     plain = GearPair(gear(Z1), gear(Z2))
     assert not PitchError().called_for(ContactScene(plain, np.array([100.0]), EFFECTS)).on

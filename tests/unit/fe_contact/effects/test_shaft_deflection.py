@@ -206,7 +206,7 @@ def test_a_shaft_calls_for_its_deflection_and_for_three_dimensions():
     verdict = ShaftDeflection().called_for(scene(SHAFT, None))
     force = 100.0 / scene(SHAFT, None).pair.pinion.base_radius
     skew = 1e6 * force * seat().coupling * 24e-3
-    assert verdict.reason == f"pinion on a flexible shaft: {skew:.3g} um of misalignment at the largest load"
+    assert verdict.reason == f"pinion on a flexible shaft: {skew:.3g} µm of misalignment at the largest load"
     model, ledger = compose(scene(SHAFT, None), {})
     assert model.across_face
     assert len(model.compliances) == 1

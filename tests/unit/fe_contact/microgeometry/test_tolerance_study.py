@@ -195,6 +195,17 @@ def test_a_misaligned_pair_is_computed_over_the_face() -> None:
     assert found.held == {"torque": 200.0, "center_distance_change": 0.0}
 
 
+def test_pairs_are_sampled_with_their_misalignment_on_either_side() -> None:
+    narrow = replace(
+        PAIR, pinion=replace(PAIR.pinion, face_width=8e-3), wheel=replace(PAIR.wheel, face_width=8e-3)
+    )
+    tolerances = Tolerances(20e-6, {"pinion.helix_slope": 1e-6})
+    found = scatter(narrow, [200.0], tolerances, Sampling(4, 3, positions=8), AnalysisOptions(level="draft"))
+    at = found.names.index("misalignment")
+    assert found.deviation[:, at].min() < 0.0 < found.deviation[:, at].max()
+    assert np.all(np.isfinite(found.first_order)) and np.all(found.peak_to_peak > 0.0)
+
+
 @pytest.mark.parametrize(
     ("axes", "name"),
     [

@@ -1,0 +1,53 @@
+"""A file inside a PDF file: appended as an incremental update (ISO 32000-1, 7.5.6 and 7.11.4)."""
+
+from __future__ import annotations
+
+import re
+import zlib
+
+
+def attached(pdf: bytes, name: str, content: bytes) -> bytes:
+    """Return a PDF file with one more file in it.
+
+    Parameters
+    ----------
+    pdf : bytes
+        With a table of references at its end, no stream of them, and a catalog without names.
+    name : str
+        Of the file, in ASCII without brackets.
+
+    Raises
+    ------
+    ValueError
+        The PDF file is built otherwise.
+    """
+    last, size, root = _end(pdf)
+    catalogs = re.findall(rb"\n%d 0 obj\n<<(.*?)>>\nendobj" % root, pdf, re.S)
+    if not catalogs or b"/Names" in catalogs[-1]:
+        raise ValueError("the PDF file has names already, or no catalog")
+    packed, label = zlib.compress(content, 9), f"({name})".encode("ascii")
+    stream, file = size, size + 1
+    objects = {
+        root: b"<<%b\n/Names <</EmbeddedFiles <</Names [%b %d 0 R]>>>>\n/AF [%d 0 R]>>"
+        % (catalogs[-1], label, file, file),
+        stream: b"<</Type /EmbeddedFile\n/Subtype /application#2Fjson\n/Filter /FlateDecode\n"
+        b"/Params <</Size %d>>\n/Length %d>> stream\n%b\nendstream" % (len(content), len(packed), packed),
+        file: b"<</Type /Filespec\n/F %b\n/UF %b\n/AFRelationship /Data\n/EF <</F %d 0 R>>>>"
+        % (label, label, stream),
+    }
+    whole, table = pdf, b"xref\n"
+    for number, body in objects.items():
+        table += b"%d 1\n%010d 00000 n \n" % (number, len(whole))
+        whole += b"%d 0 obj\n%b\nendobj\n" % (number, body)
+    trailer = b"trailer\n<</Size %d\n/Root %d 0 R\n/Prev %d>>\n" % (size + 2, root, last)
+    return whole + table + trailer + b"startxref\n%d\n%%%%EOF\n" % len(whole)
+
+
+def _end(pdf: bytes) -> tuple[int, int, int]:
+    """Return where the last table of references is, the number of objects, and that of the catalog."""
+    trailer = pdf[pdf.rfind(b"trailer") :]
+    found = [re.search(rb"%b\s+(\d+)" % name, trailer) for name in (b"startxref", b"/Size", b"/Root")]
+    if not all(found):
+        raise ValueError("the PDF file has no trailer")
+    last, size, root = (int(one[1]) for one in found if one)
+    return last, size, root

@@ -1,0 +1,76 @@
+"""The title block of a report: what it is about, and whether its figures reach what is required of them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from datetime import date
+from pathlib import Path
+
+from fe_contact.solver_version import software_versions
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.reading import read_table, validated
+from lineofaction.gearbox.schemas.report import ReportInput, Requirement
+from lineofaction.report.drawing.page import Headline, Page, TitleBlock
+
+_NUMBER = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
+_VALUE, _BAND = re.compile(rf"({_NUMBER}) ?(.*)"), re.compile(rf"± ({_NUMBER})")
+
+
+def about_of(file: Path) -> ReportInput:
+    """Return the table ``[report]`` of a file; raises `BadInput`: it has none, or one that is not so."""
+    table = read_table(file)
+    if "report" not in table:
+        raise BadInput.of("--about", str(file), "a TOML file with a table [report]")
+    return validated(ReportInput, table["report"])
+
+
+def titled(page: Page, about: ReportInput | None) -> Page:
+    """Return a page under its title block; as it is without one.
+
+    A requirement of no main result is an alarm.
+    """
+    if about is None:
+        return page
+    named = {name: getattr(about, name) for name in ("project", "number", "revision", "author")}
+    rows = {("drawing" if name == "number" else name): text for name, text in named.items() if text}
+    rows |= {
+        "date": date.today().isoformat(),
+        "made with": f"lineofaction {software_versions()['lineofaction']}",
+    }
+    requirements = [one for words in about.requirements if (one := Requirement.of(words)) is not None]
+    verdicts = tuple(words for one in requirements for words in _verdicts(one, page.headlines))
+    unmet = tuple(
+        f"Required, but no main result of this report: {one.words}"
+        for one in requirements
+        if not _meant(one, page.headlines)
+    )
+    corner = " ".join(text for text in (about.number, about.revision) if text)
+    block = TitleBlock(tuple(rows.items()), verdicts, corner)
+    return replace(page, title=about.title or page.title, alarms=(*unmet, *page.alarms), block=block)
+
+
+def _meant(required: Requirement, headlines: Sequence[Headline]) -> list[tuple[Headline, float]]:
+    """Return the main results that a requirement names, in its unit."""
+    values = ((one, _VALUE.match(one.value)) for one in headlines)
+    return [
+        (one, float(value[1]))
+        for one, value in values
+        if one.name.lower().startswith(required.figure.lower()) and value and value[2] == required.unit
+    ]
+
+
+def _verdicts(required: Requirement, headlines: Sequence[Headline]) -> list[str]:
+    """Return a sentence for each result: met, not met, or open where its error leaves it so."""
+    words = []
+    for one, value in _meant(required, headlines):
+        band = _BAND.match(one.remark)
+        error = float(band[1]) if band else 0.0
+        inside = required.limit - value if required.most else value - required.limit
+        verdict = "Open within the error" if abs(inside) < error else "Met" if inside >= 0.0 else "Not met"
+        stated = f" ± {band[1]}" if band else ""
+        limit = f"{'at most' if required.most else 'at least'} {required.limit:g} {required.unit}".rstrip()
+        result = f"{one.value.removesuffix(required.unit).strip()}{stated} {required.unit}".rstrip()
+        words.append(f"{verdict}: {one.name} is {result}; required is {limit}.")
+    return words

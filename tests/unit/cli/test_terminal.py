@@ -1,0 +1,65 @@
+"""At 80 and at 120 columns a verb answers in its first lines, and nothing is cut."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from command_line import loa
+from small_table import small_table
+from spur_case import spur_case
+
+COLUMNS = (80, 120)
+FIRST = 14
+SCENE = Path(__file__).parents[3] / "examples" / "palermo_scene.toml"
+ANSWERS: dict[str, tuple[tuple[str, ...], str]] = {
+    "help": (("--help",), "Usage: loa"),
+    "geometry": (("geometry", "CASE"), "number of teeth"),
+    "plan": (("plan", "CASE"), r"draft: [\d.]+ CPU s, [\d.]+ GiB"),
+    "ste": (("ste", "TABLE", "--torque", "1"), r"peak to peak +[\d.]+ ± [\d.]+ µm"),
+    "ste --table": (("ste", "TABLE", "--torque", "1", "--table"), "position"),
+    "report": (("report", "TABLE", "--still", "-o", "PAGE"), "written to"),
+    "compare": (("compare", "TABLE", "OTHER", "-o", "PAGE"), "peak to peak at"),
+    "status": (("status", "FOLDER"), "missing"),
+    "new": (("new", "--spur", "-o", "NEW"), "A spur pair"),
+    "complaint": (("complaint", "SCENE", "--order", "20", "--speed-rpm", "600"), "complaint: harmonic 1"),
+}
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    folder = tmp_path_factory.mktemp("terminal")
+    project = folder / "unit"
+    project.mkdir()
+    (project / "case.toml").write_text(spur_case(torques=[100.0]))
+    table = small_table()
+    table.to_netcdf(folder / "ste.nc")
+    table.to_netcdf(folder / "other.nc")
+    names = {"CASE": project / "case.toml", "TABLE": folder / "ste.nc", "OTHER": folder / "other.nc"}
+    return names | {
+        "PAGE": folder / "page.html",
+        "FOLDER": project,
+        "SCENE": SCENE,
+        "NEW": folder / "new.toml",
+    }
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("columns", COLUMNS)
+@pytest.mark.parametrize("verb", ANSWERS)
+def test_the_answer_stands_first_and_nothing_is_cut(
+    verb: str, columns: int, files: dict[str, Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", str(columns))
+    files["NEW"].unlink(missing_ok=True)
+    arguments, answer = ANSWERS[verb]
+    done = loa(*(files.get(word, word) for word in arguments))
+    assert done.exit_code == 0, done.output
+    lines = done.stdout.splitlines()
+    assert re.search(answer, "\n".join(lines[:FIRST])), done.stdout
+    assert "…" not in done.stdout and "..." not in done.stdout.replace("[OPTIONS] COMMAND [ARGS]...", "")
+    assert not re.search(r"\d um\b", done.stdout)
+    sentences = ("warning (", *(str(path) for path in files.values()))  # which a terminal wraps
+    long = [line for line in lines if len(line) > columns and not any(each in line for each in sentences)]
+    assert long == []

@@ -1,0 +1,211 @@
+"""A document says what it is about and whether it suffices, is small, and holds its receipts."""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+import zlib
+from dataclasses import replace
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import loa
+from PIL import Image
+from spur_case import spur_case
+
+from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.project import about
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.report import ReportInput
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.attaching import attached
+from lineofaction.report.drawing.figure import Axis, Bars, Figure, Line, Panel, counts, panel_rows
+from lineofaction.report.drawing.image import panel_sheet, png, still
+from lineofaction.report.drawing.interactive import plotly_figure
+from lineofaction.report.drawing.page import Headline, Page, html
+from lineofaction.report.ste.over_torque import ripple_over_torque
+from lineofaction.report.title_block import about_of, titled
+
+RESULTS = (
+    Headline("mean STE at 120 N m", "16.65 µm", "± 0.088 µm"),
+    Headline("peak-to-peak STE at 120 N m", "0.436 µm", "± 0.020 µm; gears of this width +2 %"),
+    Headline("largest pressure at 120 N m", "1366 MPa", "no error is stated for it"),
+)
+PAGE = Page("Gear pair 23/67", "A pair.", RESULTS, ())
+ABOUT = {"title": "First stage", "project": "EV", "number": "25-061", "revision": "B", "author": "A. Smith"}
+
+
+def verdicts(*requirements: str) -> tuple[str, ...]:
+    block = titled(PAGE, ReportInput(requirements=list(requirements))).block
+    assert block is not None
+    return block.verdicts
+
+
+@pytest.mark.law
+@pytest.mark.parametrize(
+    ("requirement", "verdict"),
+    [
+        ("peak-to-peak STE at most 0.5 µm", "Met: "),
+        ("peak-to-peak STE at most 0.457 um", "Met: "),
+        ("peak-to-peak STE at most 0.44 µm", "Open within the error: "),
+        ("peak-to-peak STE at most 0.43 µm", "Open within the error: "),
+        ("peak-to-peak STE at most 0.4 µm", "Not met: "),
+        ("Largest pressure at 120 N m at most 1366 MPa", "Met: "),
+        ("largest pressure at least 1400 MPa", "Not met: "),
+    ],
+)
+def test_a_limit_is_met_only_by_more_than_the_error(requirement: str, verdict: str) -> None:
+    (said,) = verdicts(requirement)
+    assert said.startswith(verdict)
+
+
+def test_a_verdict_is_one_sentence_with_value_error_and_limit() -> None:
+    (said,) = verdicts("peak-to-peak STE at most 0.5 µm")
+    assert said == "Met: peak-to-peak STE at 120 N m is 0.436 ± 0.020 µm; required is at most 0.5 µm."
+
+
+def test_a_requirement_of_nothing_shown_is_an_alarm() -> None:
+    page = titled(PAGE, ReportInput(requirements=["sound power at most 80 dB(A)", "mean STE at most 1 mm"]))
+    assert [text.rpartition(": ")[2] for text in page.alarms] == [
+        "sound power at most 80 dB(A)",
+        "mean STE at most 1 mm",
+    ]
+
+
+def test_the_title_block_stands_on_the_first_page_and_its_number_on_all() -> None:
+    text = html(titled(PAGE, ReportInput(**ABOUT)), {}, still=True)
+    for name, value in {"project": "EV", "drawing": "25-061", "revision": "B", "author": "A. Smith"}.items():
+        assert f"<dt>{name}</dt><dd>{value}</dd>" in text
+    assert "<h1>First stage</h1>" in text
+    assert '@top-right { content: "25-061 B"; }' in text
+    assert 'content: "page " counter(page) " of " counter(pages)' in text
+
+
+def test_what_a_limit_is_must_be_said() -> None:
+    with pytest.raises(ValueError, match="FIGURE at most NUMBER UNIT"):
+        ReportInput(requirements=["quiet"])
+
+
+def test_a_title_block_changes_no_result() -> None:
+    table = tomllib.loads(spur_case(torques=[10.0]))
+    titled_case, plain = (Case.model_validate(content) for content in (table | {"report": ABOUT}, table))
+    assert titled_case.report is not None and titled_case.report.project == "EV"
+    assert titled_case.model_dump_json() == plain.model_dump_json()
+
+
+def test_a_folder_has_one_title_block(tmp_path: Path) -> None:
+    for name in ("one", "two"):
+        (tmp_path / f"{name}.toml").write_text(f'[report]\nauthor = "{name}"\n')
+    with pytest.raises(BadInput, match="a folder of one"):
+        about(tmp_path)
+    (tmp_path / "report.toml").write_text('[report]\nauthor = "third"\n')
+    file = about(tmp_path)
+    assert file is not None and about_of(file).author == "third"
+    (tmp_path / "none.toml").write_text("a = 1\n")
+    with pytest.raises(BadInput, match="a table"):
+        about_of(tmp_path / "none.toml")
+
+
+def test_a_report_without_interaction_is_small_and_says_its_verdict(
+    tmp_path: Path, database: SteDatabase
+) -> None:
+    database.to_netcdf(tmp_path / "ste.nc")
+    (tmp_path / "report.toml").write_text('[report]\nrequirements = ["peak-to-peak STE at most 90 µm"]\n')
+    done = loa("report", tmp_path, "--still")
+    assert done.exit_code == 0, done.output
+    assert done.stdout.splitlines()[-2].startswith("Met: peak-to-peak STE")
+    page = tmp_path / "report.html"
+    assert page.stat().st_size < 600_000
+    text = page.read_text("utf-8")
+    assert "Plotly" not in text and 'class="plot"' not in text
+    assert len(re.findall(r'<img class="still"', text)) == len(re.findall("<figure", text)) > 5
+
+
+def figure(*panels: Panel) -> Figure:
+    return Figure("key", "Title", "", "", panels)
+
+
+def curve(label: str = "") -> Panel:
+    x = np.linspace(0.0, 2.5, 9)
+    line = Line("curve", x, x, palette.BLUE, label=label)
+    return Panel(Axis("position"), Axis("STE, µm"), (line,))
+
+
+def drawing(height: float) -> Panel:
+    line = Line("outline", np.array([0.0, 1.0]), np.array([0.0, height]), palette.BLUE)
+    return Panel(Axis("mm"), Axis("mm"), (line,), equal=True)
+
+
+@pytest.mark.law
+def test_narrow_panels_stand_side_by_side() -> None:
+    wide, short = curve("120 N m: mean 5.59 µm"), curve("120 N m")
+    assert panel_rows((curve(), short, curve()), 2) == [[0, 1], [2]]
+    assert panel_rows((curve(), wide, curve(), curve()), 2) == [[0], [1], [2, 3]]
+    assert panel_rows((drawing(1.3), drawing(1.3)), 2) == [[0, 1]]
+    assert panel_rows((drawing(0.3), curve()), 2) == [[0], [1]]
+    assert panel_rows((curve(), curve()), 1) == [[0], [1]]
+    left, right = panel_sheet((curve(), curve()), 2).axes
+    assert left.get_position().x1 < right.get_position().x0
+
+
+def test_a_still_picture_has_the_size_of_its_sheet_in_a_third_of_the_bytes() -> None:
+    drawn = figure(curve(), curve())
+    small, whole = still(drawn), png(drawn, across=2)
+    assert Image.open(BytesIO(small)).size == Image.open(BytesIO(whole)).size
+    assert len(small) < 0.45 * len(whole)
+
+
+@pytest.mark.law
+def test_orders_have_whole_ticks() -> None:
+    order = np.arange(1.0, 21.0)
+    bars = Bars("lines", order, order, 0.0, 0.8, palette.BLUE)
+    spectrum = Panel(Axis("mesh order"), Axis("µm"), (), bars=(bars,))
+    assert counts(spectrum, "x") and not counts(spectrum, "y") and not counts(curve(), "x")
+    assert plotly_figure(figure(spectrum))["layout"]["xaxis"]["dtick"] == 2
+    empty = Panel(Axis("mesh order"), Axis("µm"))
+    assert plotly_figure(figure(empty))["layout"]["xaxis"]["dtick"] == 1
+    sheet = panel_sheet((spectrum,))
+    sheet.draw_without_rendering()
+    ticks = sheet.axes[0].get_xticks()
+    assert np.array_equal(ticks, np.round(ticks))
+
+
+@pytest.mark.law
+def test_the_first_harmonics_are_told_apart_by_eye(database: SteDatabase) -> None:
+    colors = {line.name: line.color for line in ripple_over_torque(database).content[1].lines}
+    parts = [[int(colors[f"{k}"][at : at + 2], 16) for at in (1, 3, 5)] for k in range(1, 9)]
+    apart = [np.abs(np.subtract(a, b)).sum() for i, a in enumerate(parts) for b in parts[:i]]
+    assert min(apart) > 60
+    assert all(max(part) > 80 for part in parts)  # none is near black
+
+
+SIMPLE = (
+    b"%PDF-1.4\n1 0 obj\n<</Type /Catalog\n/Pages 2 0 R>>\nendobj\n2 0 obj\n<</Type /Pages\n/Count 0>>\n"
+    b"endobj\nxref\n0 3\n0000000000 65535 f \n0000000009 00000 n \n0000000058 00000 n \n"
+    b"trailer\n<</Size 3\n/Root 1 0 R>>\nstartxref\n101\n%%EOF\n"
+)
+
+
+@pytest.mark.law
+def test_a_file_in_a_pdf_is_found_by_its_table_and_comes_back_as_it_was() -> None:
+    content = json.dumps({"case": "µm"}).encode()
+    whole = attached(SIMPLE, "receipts.json", content)
+    assert whole.startswith(SIMPLE)
+    start = int(whole[whole.rindex(b"startxref") :].split()[1])
+    table = whole[start:]
+    assert table.startswith(b"xref\n") and b"/Prev 101" in table
+    for number, offset in re.findall(rb"(\d+) 1\n(\d{10}) 00000 n \n", table):
+        assert whole[int(offset) :].startswith(number + b" 0 obj\n")
+    stream = whole[whole.index(b"/EmbeddedFile\n") :].partition(b"stream\n")[2].partition(b"\nendstream")[0]
+    assert zlib.decompress(stream) == content
+    with pytest.raises(ValueError, match="names already"):
+        attached(whole, "again.json", content)
+
+
+def test_a_page_is_as_it_is_without_a_title_block() -> None:
+    assert titled(PAGE, None) is PAGE
+    assert "drawing</dt>" not in html(replace(PAGE, lead=""), {}, still=True)

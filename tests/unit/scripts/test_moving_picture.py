@@ -1,0 +1,49 @@
+"""The moving picture of the README moves, is small, and is drawn by its script."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import moving_picture
+import numpy as np
+import pytest
+from PIL import Image
+from PIL.GifImagePlugin import GifImageFile
+
+from lineofaction.report.drawing.figure import Axis, Line, Panel
+
+ROOT = Path(__file__).parents[3]
+PICTURE = ROOT / "docs" / "images" / "relief.gif"
+
+
+def test_the_readme_shows_a_picture_that_moves_in_less_than_a_megabyte() -> None:
+    assert "docs/images/relief.gif" in (ROOT / "README.md").read_text("utf-8")
+    assert PICTURE.stat().st_size < 1_000_000
+    with Image.open(PICTURE) as shown:
+        assert isinstance(shown, GifImageFile)
+        assert shown.n_frames == 2 * len(moving_picture.RELIEFS) - 2
+        assert shown.info["loop"] == 0
+
+
+@pytest.mark.law
+def test_frames_run_there_and_back_and_rest_at_the_ends(tmp_path: Path) -> None:
+    x = np.array([0.0, 1.0])
+    axes = Axis("x"), Axis("y", limits=(0.0, 3.0))
+    panels = [Panel(*axes, (Line("a", x, k * x, "#0072B2"),)) for k in range(3)]
+    drawn = [moving_picture.frame((panel,)) for panel in panels]
+    moving_picture.moving(drawn, tmp_path / "moving.gif")
+    with Image.open(tmp_path / "moving.gif") as shown:
+        assert isinstance(shown, GifImageFile)
+        seen = []
+        for index in range(shown.n_frames):
+            shown.seek(index)
+            seen.append((np.asarray(shown.convert("RGB")).tobytes(), shown.info["duration"]))
+    assert len(seen) == 4 and seen[1][0] == seen[3][0] != seen[2][0]
+    assert [duration for _, duration in seen] == [900, 160, 900, 160]
+
+
+def test_both_gears_are_relieved_and_the_case_is_left_alone() -> None:
+    case = {"pair": {"pinion": {"tip_relief_um": 1.0}, "wheel": {}}}
+    changed = moving_picture.relieved(case, 4.0)
+    assert [changed["pair"][gear]["tip_relief_um"] for gear in ("pinion", "wheel")] == [4.0, 4.0]
+    assert case == {"pair": {"pinion": {"tip_relief_um": 1.0}, "wheel": {}}}
