@@ -263,7 +263,7 @@ def _show(study: Study, result: Any, targets: list[Path], remote_seconds: float)
     parts = list(shown.text(result))
     said = [part for part in parts[:_MOST_SAID] if isinstance(part, str)]
     headlines = shown.page(result).headlines
-    print_headlines([line for line in headlines if not any(line.value in words for words in said)])
+    print_headlines([line for line in headlines if line.value not in said])
     print_parts(parts)
     console().print(f"cost {engineering(cpu_seconds() + remote_seconds, 3)} CPU s")
     print_written(targets)

@@ -106,7 +106,7 @@ def _answer(database: SteDatabase, file: Path, curve: dict[str, Any]) -> Iterato
     decimals = max(1 - math.floor(math.log10(min(errors))), 0) if errors else _DECIMALS
     largest = max((amplitude for _, amplitude, _ in known), default=1.0)
     yield _figure(*figures[0], decimals)
-    yield f"{_figure(*figures[1], decimals)}   {_sparkline(curve['ste_um'])}  two periods"
+    yield f"{_figure(*figures[1], decimals)}  {_sparkline(curve['ste_um'])}  two periods"
     for line in known:
         level, bar = 20.0 * math.log10(line[1]), "█" * round(_BAR * line[1] / largest)
         yield f"{_figure(*line, decimals)}   {level:6.1f} dB re 1 µm  {bar}".rstrip()

@@ -382,8 +382,9 @@ def counts(panel: Panel, name: Literal["x", "y"]) -> bool:
         return False
     shown = [getattr(line, name) for line in panel.lines]
     shown += [bars.x for bars in panel.bars if name == "x"]
-    values = np.concatenate(shown) if any(map(np.size, shown)) else np.array(axis.limits or (0.0, np.inf))
-    span, whole = float(np.nanmax(values) - np.nanmin(values)), bool(np.all(values == np.round(values)))
+    values = np.concatenate([np.ravel(each) for each in shown]) if shown else np.empty(0)
+    values = values[np.isfinite(values)]
+    span, whole = float(np.ptp(values)) if values.size else 0.0, bool(np.all(values == np.round(values)))
     if re.search(r"\borders?\b", axis.label):
         return whole or span > _FEW_ORDERS
     return name == "x" and bool(panel.lines) and whole and span <= _MOST_WHOLE

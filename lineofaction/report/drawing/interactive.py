@@ -264,7 +264,8 @@ def _whole(panel: Panel, name: Literal["x", "y"]) -> Json:
     shown += panel.bars if name == "x" else ()
     values = [np.asarray(getattr(panel, name).limits or ())] + [getattr(one, name) for one in shown]
     ends = np.concatenate([*(value.ravel() for value in values), np.zeros(1)])  # of an empty plot too
-    return {"tick0": 0, "dtick": max(math.ceil(float(np.nanmax(ends) - np.nanmin(ends)) / _MOST_TICKS), 1)}
+    span = float(np.ptp(ends[np.isfinite(ends)]))
+    return {"tick0": 0, "dtick": max(math.ceil(span / _MOST_TICKS), 1)}
 
 
 def _line(line: Line, suffix: str, show: bool) -> Json:
