@@ -14,7 +14,7 @@ BUDGETS = {
     ("fe_contact",): (40_389, 726),
     ("dynamics",): (42_917, 826),
     ("lineofaction.gearbox",): (25_800, 517),
-    ("lineofaction.report",): (11_687, 221),
+    ("lineofaction.report",): (11_689, 221),
     ("service",): (14_797, 339),
     ("lineofaction.client",): (2_713, 53),
     ("lineofaction.cli",): (5_064, 74),
