@@ -129,7 +129,7 @@ def still(figure: Figure) -> bytes:
     """Draw `figure` as a PNG file for a page: panels side by side, few colors, a third of the bytes."""
     buffer = BytesIO()
     drawn = Image.open(BytesIO(png(figure, across=2))).convert("RGB")
-    drawn.quantize(256, dither=Image.Dither.NONE).save(buffer, "png", optimize=True)
+    drawn.quantize(96, dither=Image.Dither.NONE).save(buffer, "png", optimize=True)
     return buffer.getvalue()
 
 
