@@ -6,7 +6,16 @@ import math
 from dataclasses import replace
 
 from benchmarks.pair_cases import M, PairCase, face_cases, plane_cases
-from fe_contact import BoreSeat, FlankModification, GearBlank, GearPair, PitchDeviation, Shaft
+from fe_contact import (
+    BoreSeat,
+    FlankModification,
+    GearBlank,
+    GearPair,
+    PitchDeviation,
+    RunOut,
+    Shaft,
+    Wave,
+)
 from fe_contact.geometry import ParallelAxes
 
 LOADS = (0.3, 1.0)
@@ -38,6 +47,8 @@ def _further(named: dict[str, PairCase]) -> list[PairCase]:
     made: dict[str, tuple[ParallelAxes, dict[str, object]]] = {
         "spur 20/20, eccentric pinion": (_with(spur, pitch_deviation=eccentric), {}),
         "spur 20/20, one tooth early": (_with(spur, pitch_deviation=early), {}),
+        "spur 20/20, run-out of 16 um": (_with(spur, run_out=RunOut(eccentricity=8e-6)), {}),
+        "spur 20/20, 11 waves of 1 um": (_with(spur, waves=(Wave(11, 1e-6),)), {}),
         "spur 20/20, relief of 20 um": (_with(spur, modification=tips), {}),
         "spur 20/20, relief of 0.3 um": (_with(spur, modification=faint), {}),
         "spur 18/18, pinion on a shaft": (_with(small, shaft=shaft), even),

@@ -94,7 +94,9 @@ def _from_si(case: Json) -> ParallelAxes | None:
 
 
 def _fields(content: Json) -> Json:
-    parts = {name: _parts(kind, content[name]) for name, kind in _PARTS.items() if content.get(name)}
+    parts = {
+        name: _parts(kind, content[name]) for name, kind in _PARTS.items() if content.get(name) is not None
+    }
     return content | parts
 
 

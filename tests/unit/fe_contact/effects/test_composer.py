@@ -12,7 +12,7 @@ from fe_contact.contact.model import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, Effect, Verdict, compose
 from fe_contact.effects.effect import across_face
 from fe_contact.errors import InputError
-from fe_contact.geometry import FlankModification, Gear, GearPair, PitchDeviation, Shaft
+from fe_contact.geometry import FlankModification, Gear, GearPair, PitchDeviation, RunOut, Shaft, Wave
 
 NAMES = [effect.name for effect in EFFECTS]
 EVERYTHING_ON = dict.fromkeys(NAMES, "on")
@@ -126,12 +126,21 @@ FULL = Gear(
     40e-3,
     pitch_deviation=PitchDeviation((0.0, *19 * (3e-6,))),
     modification=FlankModification(tip_relief=20e-6, tip_relief_length=2e-3, helix_crowning=5e-6),
+    run_out=RunOut(eccentricity=5e-6),
+    waves=(Wave(11, 2e-7),),
 )
 SHAFT = Shaft(length=0.2, diameter=0.04, position=0.06)
 FULL_SCENE = ContactScene(
     GearPair(FULL, FULL, 80e-3, shafts=(SHAFT, SHAFT)), np.array([50.0, 100.0]), EFFECTS, np.array([10e-6])
 )
-OWN = ("profile_modification", "lead_modification", "misalignment", "pitch_error", "shaft_deflection")
+OWN = (
+    "profile_modification",
+    "lead_modification",
+    "misalignment",
+    "pitch_error",
+    "tooth_deviations",
+    "shaft_deflection",
+)
 
 
 def test_these_have_something_of_their_own_in_the_scene():

@@ -120,14 +120,14 @@ def test_a_misalignment_axis_shortens_the_longest_period():
 def test_the_assessed_pitches_span_the_differences_between_neighbors():
     error = np.where(np.arange(20) == 7, 9e-6, 0.0) + np.where(np.arange(20) > 12, 1e-6, 0.0)
     scene = ContactScene(GearPair(gear(20, error), gear(23)), np.array([100.0]), EFFECTS)
-    windows = _assessed_windows(compose(scene, {})[0], 3)
+    windows = _assessed_windows(scene.pair, compose(scene, {})[0], 3)
     assert all(np.array_equal(np.diff(window), [1, 1]) for window in windows)
     smooth, _, rough = (int(window[1]) for window in windows)
     assert smooth not in (0, 6, 7, 8, 12, 13, 19)
     assert rough in (6, 7, 8)
-    assert len(_assessed_windows(compose(scene, {})[0], 100)) == 20
+    assert len(_assessed_windows(scene.pair, compose(scene, {})[0], 100)) == 20
     plain = replace(scene, pair=GearPair(gear(20), gear(23)))
-    assert [window.tolist() for window in _assessed_windows(compose(plain, {})[0], 3)] == [[0]]
+    assert [window.tolist() for window in _assessed_windows(plain.pair, compose(plain, {})[0], 3)] == [[0]]
 
 
 def steps(position):
