@@ -259,11 +259,6 @@ class Toothing:
         return math.lcm(self.pitch_deviation.period, turning)
 
     @property
-    def undeviating(self) -> bool:
-        """Whether no tooth deviates from its position or from the others."""
-        return self.pitch_deviation.neutral and self.period == 1
-
-    @property
     def turning_back(self) -> Self:
         """The gear with its teeth in the order in which they mesh the other way round."""
         return replace(

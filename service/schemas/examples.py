@@ -334,6 +334,8 @@ def _outline(height_mm: float, turn: float) -> Json:
         "angle_deg": 0.0,
         "centre_mm": [0.0, height_mm],
         "turn": turn,
+        "face_mm": [-12.5, 12.5],
+        "twist_deg_per_mm": 0.0,
     }
 
 

@@ -96,7 +96,7 @@ def loaded(pair: GearPair, load: np.ndarray) -> Loaded:
 
 def pitches_of(pair: GearPair) -> int | None:
     gears = (pair.pinion, pair.wheel)
-    return None if all(gear.pitch_deviation.neutral for gear in gears) else 1
+    return None if all(gear.period == 1 for gear in gears) else 1
 
 
 materials = st.builds(Material, st.floats(2e9, 300e9), st.floats(0.0, 0.49))

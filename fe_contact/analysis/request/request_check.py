@@ -204,8 +204,9 @@ def _composed(request: Request) -> tuple[ContactModel, tuple[LedgerEntry, ...]]:
 
 def _refuse_idle_pitches(request: Request) -> None:
     gears = (request.pair.pinion, request.pair.wheel)
-    if request.pitches is not None and all(gear.undeviating for gear in gears):
+    if request.pitches is not None and all(gear.period == 1 for gear in gears):
         bound = "left out where all teeth are alike"
+
         raise InputError("pitches", request.pitches, bound, "State deviations of a gear.")
 
 

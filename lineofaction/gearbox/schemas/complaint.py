@@ -61,7 +61,6 @@ class ComplaintFields(BoundaryModel):
         min_length=1,
         max_length=64,
         description="Shaft of speed_rpm and order; left out: the first driven one",
-        examples=["input"],
     )
     tolerance_percent: float | None = Field(
         default=None,

@@ -341,7 +341,7 @@ def _pitch_error_beyond_deflection() -> Sequence[Measured]:
     case = posed(_with_pitch(tuple(teeth)), pitches=20, bodies=plain.contact)
     problem, solution = case.solve(position, case.plan.load, np.repeat(np.arange(20), 48))
     shift = _STEP * np.cos(plain.pair.pinion.transverse_pressure_angle)
-    every = posed(_with_pitch((_STEP,) * 20), pitches=1, bodies=plain.contact)
+    every = posed(_with_pitch((_STEP,) * 20), bodies=plain.contact)
     shifted = every.ste(position) - alone.deflection + shift
     meeting = np.repeat(np.arange(20), 48)[:, None] - problem.candidates.pair
     carried = np.tile(alone.force[:, 0] > 0.0, (20, 1))

@@ -57,7 +57,7 @@ export class LiveSound {
     const speed = (id, label, value) => [make("label", { for: id }, label), make("input", { id, type: "number", min: 1, max: 100000, step: "any", value, "data-unkept": true })];
     this.buttons = make("span", { class: "buttons" });
     byId("live-sound").replaceChildren(
-      make("div", { class: "row" }, ...speed("sound-from", "Run-up from, rpm", 1000), ...speed("sound-to", "to, rpm", 6000), this.buttons),
+      make("div", { class: "row" }, ...speed("sound-from", "Run-up from, rpm", 1000), ...speed("sound-to", "Run-up to, rpm", 6000), this.buttons),
       make("p", { class: "hint" }, "Harmonics of the transmission error as velocities at the mesh frequency, all curves at one scale: what the mesh excites, before shafts and housing change it. While one plays it follows the sliders."),
     );
   }

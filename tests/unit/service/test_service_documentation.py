@@ -34,7 +34,7 @@ def test_every_field_of_case_and_scene_is_documented() -> None:
     tables = {"pair", "pinion", "wheel", "load", "errors", "accuracy", "effects", "run", "shafts", "gears"}
     tables |= {"discs", "bushings", "rolling_bearings", "meshes", "drives", "loads", "outputs", "integration"}
     tables |= {"free_rotations", "housings", "planets", "planet_bearings", "couplings", "speed_torques"}
-    tables |= {"forces", "unbalances", "temperatures", "complaint"}
+    tables |= {"forces", "unbalances", "temperatures", "complaint", "report"}
     fields = {name for model in models() for name in model.model_fields} - tables
     assert fields - documented == set()
     for table in tables:
