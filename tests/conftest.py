@@ -26,6 +26,7 @@ SERVICES = ("flow", "browser", "api")
 
 RecordFigure = Callable[..., None]
 
+os.environ.pop("COLUMNS", None)  # workers of tests have it; a terminal that is piped has not
 gc.disable()  # until all is collected: next to nothing of that is garbage
 
 __all__ = ["coarse_sectors", "condensed_bodies", "condensed_once"]

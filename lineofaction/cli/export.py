@@ -122,7 +122,7 @@ def _show_deformed(pairs: tuple[DeformedPair, ...], written: list[Path]) -> None
     out = console()
     out.print(table(columns, rows))
     for path in written:
-        out.print(f"written to {path}")
+        out.print(f"written to {path}", soft_wrap=True)
 
 
 # ``loa export RUN.nc``: a run for other programs.
@@ -150,7 +150,7 @@ def _export_run(
         return
     if "functions" in facts:
         console().print(f"{facts['functions']} functions of dataset 58")
-    console().print(f"written to {output}")
+    console().print(f"written to {output}", soft_wrap=True)
 
 
 # ``loa export STE.nc -o MESH.fmu``.
@@ -232,7 +232,7 @@ def _show_fmu(facts: dict[str, Any]) -> None:
     out.print(
         f"damping {facts['damping_n_s_per_m']:.4g} N s/m, in full from {facts['damping_reach_n']:.4g} N on"
     )
-    out.print(f"written to {facts['file']}")
+    out.print(f"written to {facts['file']}", soft_wrap=True)
 
 
 # ``loa export STE.nc | DEFLECTION.nc --rexs UNIT.rexs -o OUT.rexs``.
@@ -267,7 +267,7 @@ def _export_rexs(file: Path, rexs: Path, output: Path, point: Point, *, as_json:
         console().print(line, soft_wrap=True)
     if facts.get("left_out"):
         console().print(f"left out, no component of their own: {', '.join(facts['left_out'])}")
-    console().print(f"written to {output}")
+    console().print(f"written to {output}", soft_wrap=True)
 
 
 def _lines(calculated: dict[str, list[str]]) -> list[str]:

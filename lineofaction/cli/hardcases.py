@@ -65,4 +65,4 @@ def _show(outcomes: Sequence[Outcome], output: Path | None) -> None:
     summary = f"{passed} of {len(outcomes)} scenes passed in {seconds:.1f} s ({busy:.1f} s of CPU time)"
     out.print(summary)
     if output is not None:
-        out.print(f"written to {output}")
+        out.print(f"written to {output}", soft_wrap=True)

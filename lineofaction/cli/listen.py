@@ -203,7 +203,7 @@ def run_listen(
         return
     _show(sounds, scale, remark)
     for path in paths:
-        console().print(f"written to {path}")
+        console().print(f"written to {path}", soft_wrap=True)
 
 
 def _outputs(files: Sequence[Path], output: Path) -> list[Path]:

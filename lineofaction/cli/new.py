@@ -365,7 +365,7 @@ def run_new(kinds: Mapping[str, bool], wanted: PairWishes, output: Path | None) 
     out = console()
     out.print(text.partition("\n")[0].removeprefix("# "))
     out.print(f"next: loa {verb} {output}" + (" -o run.nc" if verb == "simulate" else ""))
-    out.print(f"written to {output}")
+    out.print(f"written to {output}", soft_wrap=True)
 
 
 def _new_text(kind: str, wanted: PairWishes) -> str:

@@ -48,7 +48,10 @@ def console() -> Console:
     plain: Any = {"markup": False, "emoji": False, "highlight": False}
     if sys.stdout.isatty():
         return Console(**plain)
-    return Console(width=int(os.environ.get("COLUMNS") or 200), no_color=True, **plain)
+    columns = os.environ.get("COLUMNS", "")
+    return Console(
+        width=int(columns) if columns.isdecimal() and int(columns) else 200, no_color=True, **plain
+    )
 
 
 def table(

@@ -94,7 +94,7 @@ def _show_sheet(pair: ParallelAxes, output: Path | None) -> None:
     for line in _summary(pair):
         out.print(line)
     if output is not None:
-        out.print(f"written to {output}")
+        out.print(f"written to {output}", soft_wrap=True)
 
 
 def _summary(pair: ParallelAxes) -> tuple[str, str]:
@@ -155,7 +155,7 @@ def run_report(
     if flank:
         console().print(f"flank results {engineering(spent, 3)} CPU s")
     for path in written:
-        console().print(f"written to {path}")
+        console().print(f"written to {path}", soft_wrap=True)
 
 
 def _flanks(read: Inputs, report: Report) -> LoadDistribution:
@@ -249,4 +249,4 @@ def run_compare(
         return
     for line in page.headlines:
         console().print(f"{line.name}: {line.value}: {line.remark}")
-    console().print(f"written to {output}")
+    console().print(f"written to {output}", soft_wrap=True)

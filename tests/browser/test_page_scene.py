@@ -61,7 +61,7 @@ def test_the_scene_of_the_pair_is_edited_and_computed_over_speed(visit: Visit, a
 def test_a_run_and_every_study_of_a_scene_are_offered(visit: Visit) -> None:
     offered = visit.page.get_by_label("Compute", exact=True).locator("option")
     names = offered.evaluate_all("options => options.map((option) => option.value)")
-    assert sorted(names) == sorted(["simulate", *studies_of("scene")])
+    assert sorted(names) == sorted(["simulate", "complaint", *studies_of("scene")])
 
 
 def test_the_last_run_is_heard_at_a_microphone(visit: Visit, tmp_path: Path) -> None:
