@@ -153,7 +153,7 @@ def verb_of_study(reading: Reading) -> None:
         return
     result = read_stored(study, reading.result.path)
     further = {*study.run.writers, *([] if presentation_of(study).series else [".csv"])}
-    for ending, write in _writers(study, None).items():
+    for ending, write in _writers(study, None, None).items():
         if ending not in further:
             write(result, reading.folder / f"result{ending}")
     _show(study, result, [], 0.0)
