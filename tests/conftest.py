@@ -17,7 +17,7 @@ from drawn_cases import leave_to_the_night
 from hypothesis import settings
 from quick_tests import is_quick
 from suite_records import SuiteRecords
-from suite_selection import add_options, heed_named_files, select
+from suite_selection import add_options, heed_named_files, left_to_the_night, select
 
 TESTS = Path(__file__).parent
 FIGURES = TESTS.parent / "out" / "validation"
@@ -58,6 +58,15 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--quick", action="store_true", help=what)
     parser.addoption("--record", action="store_true", help="renew tests/records by this run")
     add_options(parser)
+
+
+def pytest_report_header(config: pytest.Config) -> list[str]:
+    """Name the changed files of slow tests that are left to the night."""
+    if config.getoption("all") or config.getoption("day"):
+        return []
+    return [
+        f"left to the night, beyond the budget of the day: {name}" for name in sorted(left_to_the_night())
+    ]
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -17,6 +17,7 @@ import hashlib
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from functools import cache
+from itertools import accumulate
 from pathlib import Path
 
 import pytest
@@ -31,6 +32,8 @@ SLOW = 1.0
 LONG = 3.0
 """CPU seconds from which on a law, too, runs only when what it rests on changed; a fixture that costs as much
 counts for each test of the file that shares it."""
+BUDGET = 350.0
+"""CPU seconds of slow tests of files that a run of the day takes because what they rest on changed."""
 IMPORTED = (TESTS / "fakes", ROOT / "scripts")
 """Folders whose modules tests import by their names."""
 VERSIONS = ROOT / "requirements-dev.lock"
@@ -78,9 +81,28 @@ def _of_the_day(items: Sequence[pytest.Item], passed: dict[str, str] | None) -> 
         cost = chains[item.path] if item.get_closest_marker("chain") else own[item.nodeid]
         if cost <= (LONG if item.get_closest_marker("law") else SLOW):
             return True
-        return passed is not None and passed.get(name_of(item.path)) != digest(item.path)
+        name = name_of(item.path)
+        if passed is None or name in left_to_the_night():
+            return False
+        return passed.get(name) != digest(item.path)
 
     return [item for item in items if stays(item)]
+
+
+@cache
+def left_to_the_night() -> frozenset[str]:
+    """Return changed files of slow tests beyond `BUDGET`; those that cost least go first."""
+    costs = defaultdict[str, float](float)
+    for test, seconds in read_costs().items():
+        costs[test.partition("::")[0]] += seconds if seconds > SLOW else 0.0
+    changed = [name for name, was in read_passed().items() if _changed(name, was)]
+    changed.sort(key=lambda name: (costs[name], name))
+    spent = accumulate(costs[name] for name in changed)
+    return frozenset(name for name, seconds in zip(changed, spent, strict=True) if seconds > BUDGET)
+
+
+def _changed(name: str, rested_on: str) -> bool:
+    return (ROOT / name).exists() and digest(ROOT / name) != rested_on
 
 
 def _shared(item: pytest.Item, costs: dict[str, float]) -> float:

@@ -203,3 +203,12 @@ def test_a_test_of_the_public_names_rests_on_all_houses(tmp_path: Path, line: st
     test = tmp_path / "test_public.py"
     test.write_text(line)
     assert rests_on(test)[1] == set(suite_selection.structure.HOUSES)
+
+
+def test_a_day_takes_changed_files_up_to_its_budget_those_that_cost_least_first(monkeypatch):
+    files = ["tests/conftest.py", "tests/api/test_traces.py", "tests/flow/test_main_job.py"]
+    dear, half = 2.0 * suite_selection.BUDGET, 0.5 * suite_selection.BUDGET
+    costs = dict(zip((f"{name}::test" for name in files), (dear, half, 0.4 * dear), strict=True))
+    monkeypatch.setattr(suite_selection, "read_costs", lambda: costs)
+    monkeypatch.setattr(suite_selection, "read_passed", lambda: dict.fromkeys(files, "another"))
+    assert suite_selection.left_to_the_night.__wrapped__() == {files[0], files[2]}
