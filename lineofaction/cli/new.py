@@ -364,7 +364,8 @@ def run_new(kinds: Mapping[str, bool], wanted: PairWishes, output: Path | None) 
     verb = "simulate" if "[[shafts]]" in text else "geometry"
     out = console()
     out.print(text.partition("\n")[0].removeprefix("# "))
-    out.print(f"next: loa {verb} {output}" + (" -o run.nc" if verb == "simulate" else ""))
+    ending = " -o run.nc" if verb == "simulate" else ""
+    out.print(f"next: loa {verb} {output}{ending}", soft_wrap=True)
     out.print(f"written to {output}", soft_wrap=True)
 
 

@@ -92,7 +92,7 @@ def _show_sheet(pair: ParallelAxes, output: Path | None) -> None:
         out.print(table(part.head, part.rows, part.caption, words=_WORDS))
         out.print()
     for line in _summary(pair):
-        out.print(line)
+        out.print(line, soft_wrap=True)
     if output is not None:
         out.print(f"written to {output}", soft_wrap=True)
 
@@ -248,5 +248,5 @@ def run_compare(
         print_json({"file": str(output), "differences": found})
         return
     for line in page.headlines:
-        console().print(f"{line.name}: {line.value}: {line.remark}")
+        console().print(f"{line.name}: {line.value}: {line.remark}", soft_wrap=True)
     console().print(f"written to {output}", soft_wrap=True)

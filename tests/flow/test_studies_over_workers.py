@@ -29,6 +29,7 @@ WHOLE = {
     "root-stress-case": "as flank",
     "frontier-case": "its fidelities are timed against each other, one after the other in one warm process",
     "frontier-scene": "as that of a case",
+    "complaint-case": "kinematics of teeth and speeds alone",
     "complaint-scene": "kinematics and one linear response are a second's work",
     "modes-scene": "a linear study is a second's work at any number of speeds",
     "response-scene": "as modes",
