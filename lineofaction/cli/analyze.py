@@ -253,8 +253,7 @@ def _show_plan(plan: RunPlan) -> None:
     positions = plan.plan.positions or f"about {cost.positions}, placed where the curve bends"
     size = f"{engineering(cost.cpu_seconds, 2)} CPU s, {engineering(cost.memory_bytes / 2**30, 2)} GiB"
     out.print(f"{_mesh(plan.chosen, plan.chosen)}: {size}; nothing is computed yet")
-    chosen = f"mesh {plan.choice.option.name}: {plan.choice.reason}"
-    out.print(f"model {model}; positions {positions}; {chosen}", soft_wrap=True)
+    out.print(f"model {model}; positions {positions}; mesh {plan.choice.option.name}: {plan.choice.reason}")
     if plan.conflict or not plan.choice.met:
         out.print(plan.conflict or f"cannot be had: {plan.choice.reason}")
     if bias := plan.chosen.error.bias:

@@ -98,10 +98,7 @@ def test_a_sound_without_an_effect_is_off_by_what_the_ledger_says(scene: Path) -
         assert 0.5 < level["decibels"] / change < 2.0, name
 
 
-def test_the_table_and_the_page_say_the_same(
-    scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("COLUMNS", "200")  # no cell is folded
+def test_the_table_and_the_page_say_the_same(scene: Path, tmp_path: Path) -> None:
     files = {ending: tmp_path / f"noise.{ending}" for ending in ("nc", "html")}
     for file in files.values():
         result = loa("noise", scene, *SPEEDS, "-o", file)
@@ -171,11 +168,10 @@ def test_equivalent_radiated_power_is_louder_where_the_housing_is_small(scene: P
 
 
 def test_boundary_elements_check_the_loudest_point_that_the_mesh_resolves(
-    scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    scene: Path, tmp_path: Path
 ) -> None:
     """It is louder at 1900 Hz, above the 1618 Hz that the mesh resolves."""
     pytest.importorskip("ngsolve", reason="boundary elements need the extra boundary-elements")
-    monkeypatch.setenv("COLUMNS", "200")  # no cell is folded
     speeds = ("--speed-rpm", "1600,1750,1900,5700", "--orders", 4, "--no-band")
     report = tmp_path / "noise.html"
     result = loa("noise", scene, *speeds, "-o", report)

@@ -28,10 +28,7 @@ def scene(tmp_path: Path) -> Path:
 # ``loa modes``.
 
 
-def test_modes_cross_the_orders_of_the_mesh_at_critical_speeds(
-    scene: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("COLUMNS", "200")  # no cell is folded
+def test_modes_cross_the_orders_of_the_mesh_at_critical_speeds(scene: Path) -> None:
     answer = printed("modes", scene, "--speed-rpm", "0:9000:1500", "--orders", 3)
     assert answer["at_rest"][-1]["kind"] == "torsional-lateral on mesh"
     assert answer["speed_rpm"] == pytest.approx([0, 1500, 3000, 4500, 6000, 7500, 9000])
