@@ -27,6 +27,7 @@ from fe_contact.analysis.request.request import Checked, Request
 from fe_contact.analysis.request.solved_run import SolvedRun
 from fe_contact.compliance.remote_condensation import condense_remotely, condensing
 from fe_contact.contact import ContactModel, ContactProblem, ContactSolution, at_edges, contact_pressure
+from fe_contact.contact.model import MeetingTeeth
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import Run
 from fe_contact.planning.cost_model import Prediction, expected_tries
@@ -188,9 +189,7 @@ def _assessed_windows(pair: ParallelAxes, model: ContactModel, most: int) -> tup
     if model.period == 1:
         return (np.zeros(1, dtype=np.int64),)
     meeting = np.arange(model.period)[:, None] + np.arange(-1, 2)
-    at_pitch_point = np.array(pair.path_of_contact.pitch_point)
-    at = meeting, at_pitch_point, pair.mating_roll_length(at_pitch_point), 0.0
-    spread = np.ptp(sum(term(pair, *at) for term in model.tooth_gaps), axis=1)
+    spread = np.ptp(model.gap_of_teeth(MeetingTeeth.at_pitch_point(pair, meeting)), axis=1)
     order = np.argsort(spread, kind="stable")
     chosen = np.unique(np.linspace(0, order.size - 1, min(most, order.size)).astype(int))
     return tuple(order[k] + np.arange(-1, 2) for k in chosen)

@@ -12,7 +12,7 @@ import numpy as np
 from fe_contact.compliance import FlankCompliance, FlankCompliance3D
 from fe_contact.contact.candidates import with_gaps
 from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, face_loads
-from fe_contact.contact.model import ContactModel
+from fe_contact.contact.model import ContactModel, MeetingTeeth
 from fe_contact.contact.patch import Patches, load_vector
 from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices
 from fe_contact.contact.touch import Touch, rolls_at
@@ -67,8 +67,8 @@ def in_pitches(
 
 _BESIDE = 1e-6
 """Way along the flank in m over which slope and curvature of the gaps of teeth are taken."""
-_FLATTEST = 0.2
-"""Of the curvature of plain flanks: flatter than that teeth count as if they were not curved themselves."""
+FLATTEST = 0.2
+"""Least curvature over that of plain flanks: a run in which waves bring it below states so."""
 
 
 def _of_teeth(
@@ -81,12 +81,12 @@ def _of_teeth(
     """
 
     def gap(way: float) -> FloatArray:
-        at = meeting, *rolls_at(pair, touch.s_1 + way, touch.s_2 - way), face
-        return np.asarray(sum(term(pair, *at) for term in model.tooth_gaps))
+        rolls = rolls_at(pair, touch.s_1 + way, touch.s_2 - way)
+        return model.gap_of_teeth(MeetingTeeth(pair, meeting, *rolls, face))
 
     here, above, below = gap(0.0), gap(_BESIDE), gap(-_BESIDE)
     slope, bend = (above - below) / (2.0 * _BESIDE), (above - 2.0 * here + below) / _BESIDE**2
-    curvature = np.maximum(touch.curvature + bend, _FLATTEST * touch.curvature)
+    curvature = np.maximum(touch.curvature + bend, FLATTEST * touch.curvature)
     way = np.where(touch.slope == 0.0, np.clip(-slope / curvature, touch.low, touch.high), 0.0)
     least = here + way * (slope + 0.5 * curvature * way)
     return replace(touch, gap=touch.gap + least, curvature=curvature)

@@ -74,31 +74,47 @@ class GapTerm(Protocol):
         """
 
 
+@dataclass(frozen=True)
+class MeetingTeeth:
+    """Pairs of teeth where they touch; arrays that broadcast.
+
+    Attributes
+    ----------
+    meeting : ndarray of int
+        Which pair since position 0. Meeting 0 is pair 0 at position 0; meeting k touches at the pitch point
+        at position k, with the k-th next teeth of both gears.
+    roll_1, roll_2 : ndarray
+        Roll lengths of the two flanks, m.
+    face : ndarray
+        Distance from the pinion's mid-face, m.
+    """
+
+    pair: ParallelAxes
+    meeting: IntArray
+    roll_1: FloatArray
+    roll_2: FloatArray
+    face: FloatArray
+
+    @classmethod
+    def at_pitch_point(cls, pair: ParallelAxes, meeting: IntArray) -> MeetingTeeth:
+        """Return pairs that touch at the pitch point in mid-face."""
+        roll = np.array(pair.path_of_contact.pitch_point)
+        return cls(pair, meeting, roll, pair.mating_roll_length(roll), np.zeros(()))
+
+
 class ToothGap(Protocol):
     """A rigid gap that differs from tooth to tooth."""
 
     @property
     def period(self) -> int:
-        """Number of base pitches after which it repeats."""
+        """Number of base pitches after which it repeats, also below 0."""
 
     @property
     def largest(self) -> float:
         """Bound of the gap in m, of whichever tooth."""
 
-    def __call__(
-        self,
-        pair: ParallelAxes,
-        meeting: IntArray,
-        roll_1: FloatArray,
-        roll_2: FloatArray,
-        face: FloatArray | float,
-    ) -> FloatArray:
-        """Gap in m, > 0 where material is missing, of the `meeting`-th tooth pair since position 0.
-
-        Meeting 0 is pair 0 at position 0; meeting k touches at the pitch point at position k, with the k-th
-        next teeth of both gears. Values repeat with the period, also below 0. Taken at the touching roll
-        lengths of the two flanks and at `face`, the distance from the pinion's mid-face, in m; all broadcast.
-        """
+    def __call__(self, teeth: MeetingTeeth) -> FloatArray:
+        """Gap in m, > 0 where material is missing."""
 
 
 class ComplianceTerm(Protocol):
@@ -150,6 +166,10 @@ class ContactModel:
     def sloped(self) -> bool:
         """Whether flanks slope along their profiles, so that they press off the place of plain involutes."""
         return any(term.along_profile for term in self.gaps)
+
+    def gap_of_teeth(self, teeth: MeetingTeeth) -> FloatArray:
+        """Sum of the gaps that differ from tooth to tooth, m."""
+        return np.asarray(sum((term(teeth) for term in self.tooth_gaps), np.zeros(())))
 
     @property
     def period(self) -> int:

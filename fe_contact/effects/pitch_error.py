@@ -8,10 +8,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from fe_contact.contact.model import ContactModel
+from fe_contact.contact.model import ContactModel, MeetingTeeth
 from fe_contact.effects.effect import ContactScene, Effect, Verdict
-from fe_contact.geometry import ParallelAxes, PitchDeviation
-from fe_contact.types import FloatArray, IntArray
+from fe_contact.geometry import PitchDeviation
+from fe_contact.types import FloatArray
 
 
 @dataclass(frozen=True)
@@ -31,16 +31,9 @@ class _PitchGap:
         """Bound of the gap, m."""
         return max(self.pinion) + max(self.wheel)
 
-    def __call__(
-        self,
-        pair: ParallelAxes,
-        meeting: IntArray,
-        roll_1: FloatArray,
-        roll_2: FloatArray,
-        face: FloatArray | float,
-    ) -> FloatArray:
-        """Sum over both teeth of the `meeting`-th pair, m: the same all over a flank."""
-        count = np.asarray(meeting) % self.period
+    def __call__(self, teeth: MeetingTeeth) -> FloatArray:
+        """Sum over both teeth, m: the same all over a flank."""
+        count = teeth.meeting % self.period
         gears = (np.array(self.pinion), np.array(self.wheel))
         return np.asarray(sum(gap[count % gap.size] for gap in gears))
 

@@ -8,10 +8,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from fe_contact.contact.model import ContactModel
+from fe_contact.contact.model import ContactModel, MeetingTeeth
 from fe_contact.effects.effect import ContactScene, Effect, Verdict
 from fe_contact.geometry import NO_RUN_OUT, ParallelAxes, RunOut, Toothing, Wave, deviations_period
-from fe_contact.types import FloatArray, IntArray
+from fe_contact.types import FloatArray
 
 
 @dataclass(frozen=True)
@@ -37,25 +37,19 @@ class _TurningGap:
         waves = sum(wave.amplitude for wave in self.waves)
         return self.run_out.eccentricity + 0.5 * self.run_out.wobble + waves
 
-    def __call__(
-        self,
-        pair: ParallelAxes,
-        meeting: IntArray,
-        roll_1: FloatArray,
-        roll_2: FloatArray,
-        face: FloatArray | float,
-    ) -> FloatArray:
+    def __call__(self, teeth: MeetingTeeth) -> FloatArray:
         """Return the gap of pairs of teeth at touching points: that of the gear turned until they touch."""
+        pair = teeth.pair
         own = (pair.pinion, pair.wheel)[self.gear]
         lead = math.tan(pair.base_helix_angle) / own.base_radius  # the gear turns so far per m of face
         at_pitch_point = pair.path_of_contact.pitch_point
         if self.gear == 0:
-            rolled, along = roll_1 - at_pitch_point, np.asarray(face)
+            rolled, along = teeth.roll_1 - at_pitch_point, teeth.face
         else:
-            way = roll_2 - pair.mating_roll_length(at_pitch_point)
-            rolled, along = -own.sign * way, np.asarray(face) - pair.axial_offset
-        tooth = 2.0 * math.pi / own.teeth * (np.asarray(meeting) % self.period)
-        turn = tooth + rolled / own.base_radius + np.asarray(face) * lead
+            way = teeth.roll_2 - pair.mating_roll_length(at_pitch_point)
+            rolled, along = -own.sign * way, teeth.face - pair.axial_offset
+        tooth = 2.0 * math.pi / own.teeth * (teeth.meeting % self.period)
+        turn = tooth + rolled / own.base_radius + teeth.face * lead
         along = along / own.face_width
         excess = self.run_out.excess(turn, along)
         for wave in self.waves:
@@ -101,6 +95,21 @@ class ToothDeviations(Effect):
     def without(self, scene: ContactScene) -> ContactScene:
         """Return the scene of gears without them."""
         return scene.with_gears(lambda _: {"run_out": NO_RUN_OUT, "waves": ()})
+
+
+def sharpest_crest(pair: ParallelAxes) -> float:
+    """Return the curvature of the waves of both gears over that of the plain flanks, where that is largest.
+
+    At the ends of the path of contact, the crests of all waves together. At 1 a trough fits the mate.
+    """
+    path = pair.path_of_contact
+    roll_1 = np.array([path.start, path.end])
+    rolls = roll_1, pair.mating_roll_length(roll_1)
+    waves = (
+        sum(wave.amplitude * wave.order**2 for wave in gear.waves) / np.square(roll)
+        for gear, roll in zip((pair.pinion, pair.wheel), rolls, strict=True)
+    )
+    return float(np.max(sum(waves) / pair.relative_curvature(roll_1)))
 
 
 def _deviates(gear: Toothing) -> bool:

@@ -17,9 +17,11 @@ from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.analysis.request.solved_run import SolvedRun
 from fe_contact.analysis.tables import SolvedTable
 from fe_contact.contact import Candidates, ContactProblem, ContactSolution
+from fe_contact.contact.assembly import FLATTEST
 from fe_contact.effects.effect import across_face
 from fe_contact.effects.influence.estimate import estimate_influence
 from fe_contact.effects.misalignment import MisalignmentGap
+from fe_contact.effects.tooth_deviations import sharpest_crest
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.geometry.printed_data import backlash_rounding
@@ -134,6 +136,7 @@ def check_assumptions(run: SolvedTable) -> tuple[Assumption, ...]:
         *_plane(run),
         *_coast_flanks(run),
         *_printed_data(run),
+        *_crests(run),
         _load_patches(run),
         _support_loads(run),
     )
@@ -146,7 +149,7 @@ def check_one_place(run: SolvedRun) -> tuple[Assumption, ...]:
 
 def check_cheaply(run: SolvedRun) -> tuple[Assumption, ...]:
     """Check what needs nothing but the solution."""
-    return (*_plane(run), *_coast_flanks(run), *_printed_data(run), _load_patches(run))
+    return (*_plane(run), *_coast_flanks(run), *_printed_data(run), *_crests(run), _load_patches(run))
 
 
 def _allowed(run: SolvedRun) -> AllowedError:
@@ -238,6 +241,15 @@ def _closing(point: OperatingPoint) -> float:
     pair, gaps = point.contact.pair, point.model.gaps
     skew = sum(term.reach(pair) for term in gaps if isinstance(term, MisalignmentGap))
     return skew + sum(term.largest for term in point.model.tooth_gaps)
+
+
+def _crests(run: SolvedRun) -> Iterator[Assumption]:
+    """Waves leave flanks that touch in one place: their troughs are flatter than the mate is curved."""
+    point = run.places.places[0]
+    if point.model.tooth_gaps and (sharpest := sharpest_crest(point.contact.pair)):
+        reason = f"waves are at most {engineering(sharpest, 2)} times as curved as the flanks"
+        holds = sharpest <= 1.0 - FLATTEST
+        yield Assumption("", "flanks touch in one place", holds, float("nan"), reason)
 
 
 def _load_patches(run: SolvedRun) -> Assumption:

@@ -114,11 +114,8 @@ def heard_optimum(
         heard = heard_problem(subject, mesh, question, request, misalignment, means)
     with clock.stage("search"):
         own, sample = dict(zip(heard.problem.names, request.own, strict=True)), heard.sample
-        problem = heard.problem if question.quantile is None or sample is None else sample
+        problem = _scaled(heard.problem if question.quantile is None or sample is None else sample, own)
         expected = _expected_seconds(problem, own, request.search)
-        problem = replace(problem, scale=problem.evaluated(own)[0])
-        if not math.isfinite(problem.scale):
-            raise SolveError("the contact of the start design cannot be solved at every position and load")
         means.report(f"search; about {engineering(expected, 2)} CPU s", 0.0)
         cancel = means.cancel or never
         runs = search_all(problem, request.search, request.own, run, cancel)
@@ -153,6 +150,14 @@ def heard_optimum(
         clock.to_json()
         | {"evaluations": sum(each.evaluations for each in runs), "search_expected_cpu_seconds": expected},
     )
+
+
+def _scaled(problem: HeardProblem, start: dict[str, float]) -> HeardProblem:
+    """Return a problem that counts by the level of its start; raises `SolveError`: that has none."""
+    scaled = replace(problem, scale=problem.evaluated(start)[0])
+    if not math.isfinite(scaled.scale):
+        raise SolveError("the contact of the start design cannot be solved at every position and load")
+    return scaled
 
 
 def _expected_seconds(problem: HeardProblem, values: dict[str, float], search: Search) -> float:

@@ -10,7 +10,7 @@ from analysis_requests import table_request
 from fe_contact.analysis.pairs.pair_contact import operating_points, pair_contact
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact import ContactProblem, PatchRule, Slices, contact_candidates, in_pitches
-from fe_contact.contact.model import ContactModel
+from fe_contact.contact.model import ContactModel, MeetingTeeth
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.effects.pitch_error import PitchError, _PitchGap
 from fe_contact.geometry import Gear, GearPair, InternalGearPair, PitchDeviation, RingGear
@@ -19,7 +19,6 @@ from fe_contact.planning.plan import make_plan
 Z1, Z2 = 20, 23
 COSINE = math.cos(math.radians(20.0))
 POSITIONS = np.arange(16) / 16
-ANYWHERE = (np.zeros(1), np.zeros(1), 0.0)
 LIGHT, HEAVY = 1e-3, 300.0  # N m
 
 
@@ -87,7 +86,7 @@ def test_the_teeth_of_every_pair_by_turning_the_gears(position):
         # into mesh come teeth that stand counter-clockwise on the pinion, clockwise on the wheel
         expected = first[tooth_1] + second[-tooth_2 % Z2]
         (term,) = model.tooth_gaps
-        found = term(gears, np.array([pitch - pair]), *ANYWHERE)
+        found = term(MeetingTeeth.at_pitch_point(gears, np.array([pitch - pair])))
         assert found == pytest.approx([-expected * COSINE], rel=1e-12, abs=1e-20)
 
 
@@ -246,6 +245,6 @@ def test_the_verdict_gives_the_figures_of_the_standard_and_periods_multiply():
     pair = GearPair(gear(Z1, np.arange(Z1) * 1e-6), gear(Z2, np.arange(Z2) * 1e-5))
     (term,) = composed(pair, pitches=30).tooth_gaps
     assert composed(pair, pitches=30).period == 30
-    assert term(pair, np.array([29, 30, 31]), *ANYWHERE) == pytest.approx(
+    assert term(MeetingTeeth.at_pitch_point(pair, np.array([29, 30, 31]))) == pytest.approx(
         -COSINE * np.array([9e-6 + 6e-5, 0.0, 1e-6 + 1e-5]), abs=1e-18
     )

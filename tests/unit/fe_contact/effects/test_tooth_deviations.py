@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 from analysis_requests import table_request
 
+from fe_contact import analyze
 from fe_contact.analysis.pairs.pair_contact import operating_points, pair_contact
 from fe_contact.analysis.request.request_check import check_request
-from fe_contact.contact.model import ContactModel
+from fe_contact.contact.model import ContactModel, MeetingTeeth
 from fe_contact.effects import EFFECTS, ContactScene, compose
+from fe_contact.effects.tooth_deviations import sharpest_crest
 from fe_contact.geometry import Gear, GearPair, InternalGearPair, RingGear, RunOut, Wave
 from fe_contact.planning.plan import make_plan
 from fe_contact.ste.curve_quantities import Spectrum
@@ -43,8 +45,8 @@ def gaps(pair, position, face):
     meeting = np.rint(position)[:, None] + np.arange(-2, 3)
     roll = pair.path_of_contact.pitch_point + (position[:, None] - meeting) * pair.base_pitch
     roll_1 = roll[:, :, None] - face * math.tan(pair.base_helix_angle)
-    at = meeting[:, :, None].astype(int), roll_1, pair.mating_roll_length(roll_1), face
-    return sum(term(pair, *at) for term in model.tooth_gaps), model
+    rolls = roll_1, pair.mating_roll_length(roll_1)
+    return model.gap_of_teeth(MeetingTeeth(pair, meeting[:, :, None].astype(int), *rolls, face)), model
 
 
 POSITION = np.linspace(0.0, 67.0, 335, endpoint=False)
@@ -190,3 +192,15 @@ def test_a_wave_is_a_ghost_order_of_its_amplitude(solved, plain, order):
     assert 0.9 * AMPLITUDE < heavy[order] < AMPLITUDE
     for lines in (light, heavy):
         assert np.delete(lines, [0, order]).max() < 2e-2 * AMPLITUDE
+
+
+@pytest.mark.parametrize(("order", "holds"), [(11, True), (400, False)])
+def test_waves_more_curved_than_the_flanks_are_told(tmp_path, order, holds):
+    """The trough of such a wave touches at two places, which one touching point cannot hold."""
+    pair = pair_of("spur", PINION, waves=(Wave(order, AMPLITUDE),))
+    path = pair.path_of_contact
+    bend = AMPLITUDE * order**2 / path.start**2 / pair.relative_curvature(path.start)
+    assert sharpest_crest(pair) == pytest.approx(float(bend), rel=1e-12)
+    found = analyze(pair, torques=[100.0], level="draft", positions=16, cache=tmp_path).metadata.receipt
+    (entry,) = [each for each in found["assumptions"] if each["assumption"] == "flanks touch in one place"]
+    assert entry["holds"] is holds
