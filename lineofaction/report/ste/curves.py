@@ -362,8 +362,9 @@ def ste_spectrum(database: SteDatabase) -> Figure:
     load = middle_load(database)
     curve, label = load_curve(database, load), load_labels(database)[load]
     order, amplitude, error = _spectrum_of(curve)
+    names = [f"order {one:.4g}" for one in order] if curve.period == 1 else curve.spectrum.names
     chosen = np.sort(np.argsort(-amplitude, kind="stable")[:ORDERS])
-    rows = tuple((f"{order[k]:.4g}", um(amplitude[k], 3), um(error[k], 2)) for k in chosen)
+    rows = tuple((names[k].removeprefix("order "), um(amplitude[k], 3), um(error[k], 2)) for k in chosen)
     return Figure(
         key="ste_spectrum",
         title=f"Spectrum of the transmission error at {label}",
@@ -374,7 +375,7 @@ def ste_spectrum(database: SteDatabase) -> Figure:
             if database.period > 1
             else ""
         ),
-        alternative=_spectrum_words(label, order, amplitude, error),
+        alternative=_spectrum_words(label, names, amplitude, error),
         content=(_panel(order, amplitude, error),),
         table=Table("Orders of the transmission error", ("mesh order", "amplitude, µm", "error, µm"), rows),
     )
@@ -409,11 +410,11 @@ def _level(values: FloatArray) -> FloatArray:
     return np.where(np.isfinite(level), level, np.nan)
 
 
-def _spectrum_words(label: str, order: FloatArray, amplitude: FloatArray, error: FloatArray) -> str:
+def _spectrum_words(label: str, names: Sequence[str], amplitude: FloatArray, error: FloatArray) -> str:
     most = int(np.argmax(amplitude))
     size = f"{um(amplitude[most], 3)} µm"
-    text = f"At {label} order {order[most]:.4g} is the largest, {size}"
+    text = f"At {label} {names[most]} is the largest, {size}"
     if np.isnan(error).all():
         return f"{text}; the errors were not estimated."
     above = int(np.count_nonzero(amplitude > error))
-    return f"{text}; {above} of {order.size} orders exceed their error."
+    return f"{text}; {above} of {amplitude.size} orders exceed their error."
