@@ -18,11 +18,11 @@ ROOT = Path(__file__).parents[1]
 _IN_ORDER = """
     reference_errors static_table full_contact_cost full_contact_coverage full_contact_helical
     full_contact_over_face finite_width run_up long_phase other_engine corrected_plane dynamics_cost
-    step_cost study_cost bearing_rate solvers_3d housing_modes gear_case_sound housed_run predictions
+    step_cost study_cost solvers_3d housing_modes gear_case_sound housed_run predictions
     predicted_errors predicted_memory receipt_cost error_coverage live_coverage load_arm_coverage
     derivatives tolerance_kept influence_estimates quiet_helical dynamic_influence_estimates
-    neglected_effects page_redraw service_queries point_queries event_streams client_map cluster_rate
-    worker_cost shared_table divided_studies cold_start
+    neglected_effects page_redraw service_queries cluster_rate worker_cost shared_table
+    divided_studies cold_start
 """
 SUBJECTS = tuple(_IN_ORDER.split())
 """Modules here, in the order of the page."""

@@ -60,13 +60,6 @@ def cpu_seconds(pid: int) -> float:
     return (int(fields[11]) + int(fields[12])) / _TICK
 
 
-def family_cpu_seconds(pid: int) -> float:
-    """Return the CPU time of a process and of all that descend from it and live, s."""
-    tasks = Path(f"/proc/{pid}/task").iterdir()
-    children = [int(child) for task in tasks for child in (task / "children").read_text().split()]
-    return cpu_seconds(pid) + sum(map(family_cpu_seconds, children))
-
-
 def memory_mb(pid: int) -> float:
     """Return the resident memory of a process, MB."""
     status = Path(f"/proc/{pid}/status").read_text(encoding="ascii")

@@ -1,0 +1,20 @@
+"""The bill of materials of an image keeps to the schema of its format."""
+
+from __future__ import annotations
+
+import json
+from itertools import islice
+
+import pytest
+import sbom
+from cyclonedx.schema import SchemaVersion
+from cyclonedx.validation.json import JsonStrictValidator
+
+
+def test_it_lists_what_is_installed_in_its_format(monkeypatch: pytest.MonkeyPatch) -> None:
+    some = [*islice(sbom.python_packages(), 5), *islice(sbom.debian_packages(), 5)]
+    monkeypatch.setattr(sbom, "python_packages", lambda: iter(some))
+    monkeypatch.setattr(sbom, "debian_packages", lambda: iter(()))
+    bill = sbom.bill()
+    assert JsonStrictValidator(SchemaVersion.V1_6).validate_str(json.dumps(bill)) is None
+    assert {part["purl"] for part in some} <= {part["purl"] for part in bill["components"]}
