@@ -35,6 +35,7 @@ from bounds.declared import (
     required,
     written,
 )
+from bounds.order_names import order_name
 from bounds.plausibility import Check, Checklist, Finding, PlausibilityWarning, finding_of, warn_of
 from bounds.text import FieldName, Quantity, Reader, SiNote, Text, Words
 from bounds.unit import Unit, engineering, leftover
@@ -77,6 +78,7 @@ __all__ = [
     "integers",
     "leftover",
     "one_of",
+    "order_name",
     "required",
     "up_to",
     "warn_of",

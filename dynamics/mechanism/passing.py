@@ -115,6 +115,30 @@ def shaft_rates(scene: Scene, kinematics: Kinematics, shaft: str) -> dict[str, f
     return {part.name: float(turn) / unit for part, turn in zip(scene.shafts, turns, strict=True)}
 
 
+def turning_orders(scene: Scene, kinematics: Kinematics) -> dict[str, dict[str, float]]:
+    """Return by which orders a scene repeats: of each mesh frequency, and of one turn of each gear and shaft.
+
+    ``{"mesh": {name: order}, "shaft": {name: order}}``, what is at rest left out. Orders count by the first
+    mesh that turns, or by the leading shaft without one. The turns of a gear are those against its carrier.
+    """
+    law = proportional_speeds(scene)
+    rates, turns = np.abs(kinematics.float_mesh_rate @ law), np.abs(kinematics.float_ratio @ law)
+    meshes = {mesh.name: float(rate) for mesh, rate in zip(scene.meshes, rates, strict=True)}
+    gears = {
+        name: float(rate) / scene.gear(name).teeth
+        for mesh, rate in zip(scene.meshes, rates, strict=True)
+        for name in (mesh.driver, mesh.driven)
+    }
+    shafts = {part.name: float(turn) for part, turn in zip(scene.shafts, turns, strict=True)}
+    turning = gears | {name: turn for name, turn in shafts.items() if name not in gears}
+    least = SAME * float(np.max(turns))
+    unit = next((rate for rate in (*meshes.values(), *np.abs(law)) if rate > least), 1.0)
+    return {
+        kind: {name: rate / unit for name, rate in own.items() if rate > least}
+        for kind, own in (("mesh", meshes), ("shaft", turning))
+    }
+
+
 def _of_planets(scene: Scene, turns: FloatArray, rates: FloatArray, harmonics: int) -> Iterator[Excitation]:
     """Yield the sidebands next to the harmonics of meshes of equally spaced planets on a carrier that turns.
 

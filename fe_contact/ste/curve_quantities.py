@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from bounds import order_name
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import FloatArray
 
@@ -61,28 +62,10 @@ class Spectrum:
         "mesh 2", "pinion 11" (waves of that number: a ghost order), "mesh 1 - pinion 1"; "mesh 1.234" of what
         comes from both gears; of teeth with a common divisor the pinion's.
         """
-        shafts = tuple(zip(("pinion", "wheel"), self.teeth, strict=True))
-        return tuple(_named(float(order), shafts) for order in self.order)
-
-
-_SIDEBANDS = 3
-"""Orders of a shaft beside a mesh order that count as its sidebands: eccentricity, ovality, three lobes."""
-
-
-def _named(order: float, shafts: tuple[tuple[str, int], ...]) -> str:
-    mesh = round(order)
-    own = [(name, round(order * teeth), teeth) for name, teeth in shafts if _whole(order * teeth)]
-    if _whole(order) or not own:
-        return f"mesh {order:.4g}"
-    name, turns, teeth = own[0]
-    beside = turns - mesh * teeth
-    if mesh and abs(beside) <= _SIDEBANDS:
-        return f"mesh {mesh} {'-' if beside < 0 else '+'} {name} {abs(beside)}"
-    return f"{name} {turns}"
-
-
-def _whole(turns: float) -> bool:
-    return abs(turns - round(turns)) < 1e-6 * max(turns, 1.0)
+        shafts = {name: 1.0 / teeth for name, teeth in zip(("pinion", "wheel"), self.teeth, strict=True)}
+        return tuple(
+            order_name(order, {"mesh": 1.0}, shafts) or f"mesh {order:.4g}" for order in self.order.tolist()
+        )
 
 
 def even_positions(period: int) -> FloatArray:

@@ -11,18 +11,18 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (40_422, 728),
-    ("dynamics",): (42_917, 826),
-    ("lineofaction.gearbox",): (25_804, 517),
-    ("lineofaction.report",): (11_692, 221),
+    ("fe_contact",): (40_405, 728),
+    ("dynamics",): (42_941, 827),
+    ("lineofaction.gearbox",): (25_824, 518),
+    ("lineofaction.report",): (11_721, 225),
     ("service",): (14_799, 339),
     ("lineofaction.client",): (2_713, 53),
     ("lineofaction.cli",): (5_068, 74),
     ("lineofaction.hardcases",): (3_844, 35),
-    ("bounds", "host", "model_studies"): (4_443, 153),
+    ("bounds", "host", "model_studies"): (4_495, 154),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 807
+MOST_FILES = 809
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""

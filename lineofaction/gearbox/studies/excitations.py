@@ -8,10 +8,13 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from bounds.types import Json
+from bounds import order_name
+from bounds.types import FloatArray, Json
 from dynamics.assembly.assemble import System, assemble
 from dynamics.linearize import HarmonicResponse
 from dynamics.linearize.operating_speeds import mesh_frequencies
+from dynamics.mechanism.kinematics import solve_kinematics
+from dynamics.mechanism.passing import turning_orders
 from fe_contact.analysis.estimates.excitation_errors import excitation_errors
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.complaint import Complaint, complaint_of
@@ -97,9 +100,20 @@ def facts_of_scene(subject: TabledScene) -> Json:
     """Return what a result says of its scene.
 
     Its `reduction_cost`, the fields of the `WorkCost` of the reductions by housing: a file of modes may be
-    without them. Of a scene with one its `complaint`, as plots mark it.
+    without them. What is `turning`, by which orders are named. Of a scene with one its `complaint`, as plots
+    mark it.
     """
     costs = {name: asdict(body.cost) for name, body in subject.housings.items() if body.cost is not None}
+    known = {
+        "reduction_cost": costs,
+        "turning": turning_orders(subject.scene, solve_kinematics(subject.scene)),
+    }
     if subject.inputs.complaint is None:
-        return {"reduction_cost": costs}
-    return {"reduction_cost": costs, "complaint": complaint_at_loads(assemble(subject.scene), subject).marks}
+        return known
+    return known | {"complaint": complaint_at_loads(assemble(subject.scene), subject).marks}
+
+
+def order_names(order: FloatArray, facts: Json) -> list[str]:
+    """Return what each order of a result is (`bounds.order_name`); none of files without `turning`."""
+    turning = facts.get("turning")
+    return [] if turning is None else [order_name(each, **turning) for each in order.tolist()]

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from bounds import engineering
+from bounds import engineering, order_name
 from lineofaction.report.drawing.figure import (
     Axis,
     Figure,
@@ -48,6 +48,15 @@ def of_run(marks: Marks, mesh: str) -> Marks:
     return {**marks, "order": own.get("order", np.nan), "axes": axes}
 
 
+def order_words(order: float, facts: Mapping[str, Any]) -> str:
+    """Return an order with what it is where that is no harmonic of the first mesh: "0.5789 (pinion 11)"."""
+    text, turning = f"{order:.4g}", facts.get("turning")
+    if turning is None or np.isclose(order, round(order), rtol=1e-6):
+        return text
+    name = order_name(order, turning["mesh"], turning["shaft"])
+    return f"{text} ({name})" if name else text
+
+
 def shown_orders(order: FloatArray, sizes: FloatArray, count: int, facts: Mapping[str, Any]) -> list[int]:
     """Return the indices of `count` orders (H,), the largest by sizes (H,), one of them the complaint's."""
     own = np.flatnonzero(np.isclose(order, facts.get(NAME, {}).get("order", np.nan), rtol=1e-6))
@@ -85,8 +94,9 @@ def _marked_panel(panel: Panel, marks: Marks) -> Panel:
         for axis, direction, value in _values(panel, marks)
         if _reaches(panel, axis, direction, value)
     )
-    names = f"order {marks['order']:.4g}", f"{marks['order']:.4g}×"
-    lines = tuple(_bold(line) if line.name in names else line for line in panel.lines)
+    order = f"{marks['order']:.4g}"
+    names = f"order {order}", f"{order}×"
+    lines = tuple(_bold(line) if line.name.partition(" (")[0] in names else line for line in panel.lines)
     return replace(panel, references=(*panel.references, *own), lines=lines)
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from bounds.types import Json
 from lineofaction.report.drawing.figure import Table, number
+from lineofaction.report.drawing.marks import order_words
 from lineofaction.report.drawing.page import Headline
 
 
@@ -14,7 +15,7 @@ def pressure_headline(pressure: Json, facts: Json) -> Headline:
     asked_for = facts.get("complaint", {}).get("order", np.nan)
     own = [row for row in pressure["orders"] if np.isclose(row["order"], asked_for, rtol=1e-6)]
     row = own[0] if own else max(pressure["orders"], key=lambda row: row["level_db_a"])
-    words = f"order {row['order']:.4g} at {number(row['speed_rpm'], 4)} rpm"
+    words = f"order {order_words(row['order'], facts)} at {number(row['speed_rpm'], 4)} rpm"
     if row["low_db_a"] is not None:
         words += f"; {row['low_db_a']:.1f} to {row['high_db_a']:.1f}, the band of its sound power"
     return Headline(f"sound pressure level at {_point(pressure)}", f"{row['level_db_a']:.1f} dB(A)", words)
@@ -24,10 +25,10 @@ def _point(pressure: Json) -> str:
     return f"({', '.join(f'{value:g}' for value in pressure['microphone_mm'])}) mm"
 
 
-def pressure_table(pressure: Json) -> Table:
+def pressure_table(pressure: Json, facts: Json) -> Table:
     """List the orders, each where it is loudest."""
     columns = {
-        "order": lambda row: f"{row['order']:.4g}",
+        "order": lambda row: order_words(row["order"], facts),
         "dB(A)": lambda row: f"{row['level_db_a']:.1f}",
         "from": lambda row: "" if row["low_db_a"] is None else f"{row['low_db_a']:.1f}",
         "to": lambda row: "" if row["high_db_a"] is None else f"{row['high_db_a']:.1f}",

@@ -26,7 +26,7 @@ from lineofaction.report.drawing.figure import (
     shaded_levels,
     step_line,
 )
-from lineofaction.report.drawing.marks import shown_orders
+from lineofaction.report.drawing.marks import order_words, shown_orders
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.surface_view import surface_panels
 from lineofaction.report.drawing.tables import amount, gigabytes
@@ -40,14 +40,12 @@ from lineofaction.report.housing.forces import (
     total_line,
 )
 from lineofaction.report.housing.microphone import pressure_headline, pressure_table
+from lineofaction.report.housing.sound_bands import ends, narrowest, uncertainty_tables
 from lineofaction.report.presentation import Presentation, dynamics_page, model_text
 from lineofaction.report.response.excitations import excitation_figures, excitation_table
 
 LINES, SHOWN = 160, 6
 """Cells of the map in frequency; lines of orders and bearings."""
-SHOWN_ORDERS, SHOWN_CAUSES = 6, 3
-LEAST_NARROWED = 0.1
-"""dB."""
 _MODEL_HEAD = ("model", "level, dB", "stated error, dB", "CPU s", "CPU s predicted", "GB predicted")
 
 
@@ -89,7 +87,7 @@ def _level_over_speed(sound: RadiatedSound) -> Figure:
     level, total = orders.weighted_level, orders.total_weighted_level
     shown = shown_orders(sound.order, level.max(axis=1), SHOWN, sound.facts)
     floor = float(total.max()) - DEPTH
-    names = [f"order {sound.order[h]:.4g}" for h in shown]
+    names = [f"order {order_words(sound.order[h], sound.facts)}" for h in shown]
     lines = (
         Line("total", speed, _above(total, floor), palette.INK, width=2.2),
         *category_lines(speed, names, _above(level[shown], floor)),
@@ -183,7 +181,7 @@ def _panel_intensity(sound: RadiatedSound) -> Figure | None:
     least, largest = (number(end, 2) for end in (value.min(), value.max()))
     return Figure(
         key="sound_panels",
-        title=f"Sound intensity on the surface: {_where(points[0])}",
+        title=f"Sound intensity on the surface: {_where(points[0], sound.facts)}",
         caption="Active intensity normal to the hull that the radiation model takes: openings are covered, "
         "fine details rounded off. Negative: takes power that other panels radiate.",
         alternative=f"The intensity is between {least} and {largest} mW/m².",
@@ -205,7 +203,7 @@ def _levels_table(sound: RadiatedSound, level: FloatArray, total: FloatArray) ->
         sound.order, level.argmax(axis=1), level, sound.frequency.T, strict=True
     ):
         speed = number(float(sound.speed[at]) / RPM, 5)
-        rows.append((f"{order:.4g}", f"{row[at]:.1f}", speed, number(hertz[at], 5)))
+        rows.append((order_words(order, sound.facts), f"{row[at]:.1f}", speed, number(hertz[at], 5)))
     head = ("order", "dB(A)", "speed, rpm", "frequency, Hz")
     return Table("Largest level of each order", head, tuple(rows))
 
@@ -218,90 +216,9 @@ def _above(level: FloatArray, floor: float) -> FloatArray:
     return np.where(level < floor, np.nan, level)
 
 
-def _uncertainty_tables(facts: Json) -> Iterator[Table]:
-    if facts["band"] is not None:
-        yield _band_table(facts["band"])
-    if facts["sensitivities"]:
-        yield _cost_table(facts["sensitivities"])
-
-
-def _band_table(band: Json) -> Table:
-    loudest = sorted(band["orders"], key=lambda row: -row["largest"]["level_db_a"])[:SHOWN_ORDERS]
-    levels = [("largest of all orders", band["largest_total"]), ("mean power", band["mean_total"])]
-    levels += [(f"largest of order {row['order']:.4g}", row["largest"]) for row in loudest]
-    columns = {
-        "over the speeds": lambda row: row[0],
-        "dB(A)": lambda row: f"{row[1]['level_db_a']:.1f}",
-        "from": lambda row: f"{row[1]['low_db_a']:.1f}",
-        "to": lambda row: f"{row[1]['high_db_a']:.1f}",
-        "most by, dB": lambda row: ", ".join(_causes(row[1])),
-    }
-    return Table.of("Bands over the ranges of what is guessed", levels, columns)
-
-
-def _causes(level: Json) -> Iterator[str]:
-    below, above = level["below_db"], level["above_db"]
-    names = sorted(above, key=lambda name: -max(below[name], above[name]))
-    for name in names[:SHOWN_CAUSES]:
-        if max(below[name], above[name]) > 0.0:
-            yield f"{name.replace('_', ' ')} -{below[name]:.1f} +{above[name]:.1f}"
-
-
-NARROWER = {
-    "housing_damping": "state the damping of the housing (loss_factor, or measured modal_damping)",
-    "housing_frequency": "measure natural frequencies of the housing",
-    "mount_stiffness": "measure the stiffness of the mounts",
-    "bearing_stiffness": "narrow the stiffness of the bearings",
-    "mesh_damping": "narrow the damping of the meshes",
-    "mode_number": "keep more modes of the housing",
-    "speed_steps": "refine the speeds about the loudest",
-    "radiation_model": "correct more lines by boundary elements",
-}
-"""What a user does about a contribution to a band."""
-
-
-def _narrowest(facts: Json) -> Iterator[str]:
-    """Say what would narrow the band of the largest level most."""
-    level = (facts["band"] or {}).get("largest_total", {})
-    for name, left in level.get("widths_without_db", {}).items():
-        if name in NARROWER and level["width_db"] - left >= LEAST_NARROWED:
-            width = level["width_db"]
-            yield f"{NARROWER[name]}: of {width:.1f} dB of the band {left:.1f} are left"
-            return
-
-
-def _cost_table(rows: list[Json]) -> Table:
-    """List what steps change of the largest level, the largest change first."""
-    caption = "What 1 dB costs: largest level of all orders; factors are on what the scene states"
-    columns = {
-        "figure": lambda row: str(row["figure"]),
-        "value": lambda row: f"{number(row['value'], 4)}{_unit(row)}",
-        "step": lambda row: f"{number(row['step'], 3)}{_unit(row)}",
-        "change, dB": lambda row: f"{row['change_db']:+.2f}",
-        "two steps, dB": lambda row: f"{row['change_of_two_steps_db']:+.2f}",
-        "for -1 dB about": _needed,
-        "linear within": lambda row: (
-            "any" if row["linear_range"] is None else f"{number(row['linear_range'], 2)}{_unit(row)}"
-        ),
-    }
-    return Table.of(caption, rows, columns)
-
-
-def _unit(row: Json) -> str:
-    return f" {row['unit'].replace('um', 'µm')}" if row["unit"] else ""
-
-
-def _needed(row: Json) -> str:
-    if row["for_one_db_less"] is None:
-        return "nothing does"
-    return f"{row['for_one_db_less']:+.3g}{_unit(row)}" + (
-        "" if row["linear"] else " (beyond the linear range)"
-    )
-
-
 def _loudest_table(sound: RadiatedSound) -> Table:
     columns = {
-        "order": lambda point: f"{point.order:.4g}",
+        "order": lambda point: order_words(point.order, sound.facts),
         "speed, rpm": lambda point: number(point.speed / RPM, 5),
         "frequency, Hz": lambda point: number(point.frequency, 5),
         "dB(A)": lambda point: f"{point.weighted_level:.1f}" + ("" if point.in_contact else " (flanks part)"),
@@ -318,19 +235,16 @@ def _loudest_table(sound: RadiatedSound) -> Table:
 def _sentences(sound: RadiatedSound) -> tuple[str, ...]:
     """Say what radiates at the loudest point, and through what; nothing in silence."""
     return tuple(
-        f"{_where(point)}: {point.weighted_level:.1f} dB(A) through mode {point.mode} of "
+        f"{_where(point, sound.facts)}: {point.weighted_level:.1f} dB(A) through mode {point.mode} of "
         f"{point.mode_housing} ({number(point.natural_frequency, 4)} Hz); bearing {point.bearing} alone "
         f"{point.bearing_level:.1f} dB(A); {_main_region(sound)}"
         for point in loudest(sound, 1)
     )
 
 
-def _where(point: LoudPoint) -> str:
-    return f"order {point.order:.4g} at {number(point.speed / RPM, 4)} rpm, {number(point.frequency, 4)} Hz"
-
-
-def _ends(level: Json) -> str:
-    return f"{level['low_db_a']:.1f} to {level['high_db_a']:.1f}"
+def _where(point: LoudPoint, facts: Json) -> str:
+    speed, hertz = number(point.speed / RPM, 4), number(point.frequency, 4)
+    return f"order {order_words(point.order, facts)} at {speed} rpm, {hertz} Hz"
 
 
 def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
@@ -338,13 +252,13 @@ def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
     at = int(total.argmax())
     where = f"at {number(float(sound.speed[at]) / RPM, 4)} rpm, all orders"
     if (band := sound.facts["band"]) is not None:
-        where += f"; {_ends(band['largest_total'])} over the ranges of guesses"
-        where += "".join(f"; {words}" for words in _narrowest(sound.facts))
+        where += f"; {ends(band['largest_total'])} over the ranges of guesses"
+        where += "".join(f"; {words}" for words in narrowest(sound.facts))
     shown = [Headline("sound power level", f"{total[at]:.1f} dB(A)", where)]
     if band is not None and sound.speed.size > 1:
         mean = band["mean_total"]
         level = f"{mean['level_db_a']:.1f} dB(A)"
-        shown.append(Headline("mean over the speeds", level, f"of the power, all orders; {_ends(mean)}"))
+        shown.append(Headline("mean over the speeds", level, f"of the power, all orders; {ends(mean)}"))
     shown += [
         Headline("loudest order", f"{point.weighted_level:.1f} dB(A)", words)
         for point, words in zip(points, _sentences(sound), strict=True)
@@ -362,9 +276,10 @@ def _model_tables(sound: RadiatedSound) -> Iterator[Table]:
     for housing in sound.housing:
         compared = sound.facts["models"][housing]
         if compared.get("predicted"):
-            where = f"order {compared['order']:.4g}, {number(compared['speed'] / RPM, 4)} rpm"
+            order, speed = order_words(compared["order"], sound.facts), number(compared["speed"] / RPM, 4)
             rows = tuple(_model(name, compared) for name in compared["predicted"])
-            yield Table(f"Radiation models of {housing} at {where}", _MODEL_HEAD, rows)
+            title = f"Radiation models of {housing} at order {order}, {speed} rpm"
+            yield Table(title, _MODEL_HEAD, rows)
 
 
 def _model(name: str, compared: Json) -> tuple[str, ...]:
@@ -404,7 +319,7 @@ def _region_table(sound: RadiatedSound) -> Table:
         for region in regions
     ]
     columns = {
-        "order": lambda region: f"{region['point'].order:.4g}",
+        "order": lambda region: order_words(region["point"].order, sound.facts),
         "speed, rpm": lambda region: number(region["point"].speed / RPM, 5),
         "region": _place,
         "share, %": lambda region: f"{100.0 * region['share']:.1f}",
@@ -474,10 +389,10 @@ def _text(sound: RadiatedSound) -> Iterator[Table | str]:
         yield excites
     yield from (f"{what}: {words}" for what, words in _limits(sound))
     yield from _model_tables(sound)
-    yield from _uncertainty_tables(sound.facts)
-    yield from _narrowest(sound.facts)
+    yield from uncertainty_tables(sound.facts)
+    yield from narrowest(sound.facts)
     if (pressure := sound.facts.get("pressure")) is not None:
-        yield pressure_table(pressure)
+        yield pressure_table(pressure, sound.facts)
     left_out = sound.facts["sensitivities_left_out"]
     yield from (f"no sensitivity to {name}: {why}" for name, why in left_out.items())
     yield from model_text(sound.facts)
@@ -485,12 +400,12 @@ def _text(sound: RadiatedSound) -> Iterator[Table | str]:
 
 def _page(sound: RadiatedSound) -> Page:
     whole = dynamics_page("Sound power", _figures(sound), _headlines(sound), sound.facts)
-    tables = tuple(_uncertainty_tables(sound.facts))
+    tables = tuple(uncertainty_tables(sound.facts))
     if missing := sound.facts["sensitivities_left_out"]:
         tables += (Table("No sensitivity", ("to", "because"), tuple(missing.items())),)
     bands = (Section("Bands, and what 1 dB costs", tables=tables),) if tables else ()
     if (pressure := sound.facts.get("pressure")) is not None:
-        heard = Section("Sound pressure", tables=(pressure_table(pressure),))
+        heard = Section("Sound pressure", tables=(pressure_table(pressure, sound.facts),))
         bands = (heard, *bands)
     rests = Table("Radiation models, and what the levels do not hold", ("what", "how"), tuple(_limits(sound)))
     accuracy = Section("Accuracy of the levels", tables=(rests, *_model_tables(sound)), part=Part.ACCURACY)

@@ -25,7 +25,7 @@ from lineofaction.report.drawing.figure import (
     largest,
     number,
 )
-from lineofaction.report.drawing.marks import shown_orders
+from lineofaction.report.drawing.marks import order_words, shown_orders
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.surface_view import surface_panels
 from lineofaction.report.housing.forces import force_words, row_axis
@@ -43,7 +43,7 @@ _LARGEST_HEAD = (
 def _where(analysis: VibrationAnalysis) -> str:
     vibration, s, h = analysis.vibration, analysis.at_speed, analysis.at_order
     speed, hertz = number(float(vibration.speed[s]) / RPM, 4), number(vibration.frequency[s, h], 4)
-    return f"order {vibration.order[h]:.4g} at {speed} rpm, {hertz} Hz"
+    return f"order {order_words(vibration.order[h], analysis.facts)} at {speed} rpm, {hertz} Hz"
 
 
 def _largest_table(result: HousingVibrationResult) -> Table:
@@ -57,7 +57,8 @@ def _largest_table(result: HousingVibrationResult) -> Table:
         s, h = map(int, np.unravel_index(int(np.argmax(rms)), rms.shape))
         hertz = float(vibration.frequency[s, h])
         near = result.natural_frequency[int(np.argmin(np.abs(result.natural_frequency - hertz)))]
-        speed, order = number(float(vibration.speed[s]) / RPM, 5), f"{vibration.order[h]:.4g}"
+        speed = number(float(vibration.speed[s]) / RPM, 5)
+        order = order_words(vibration.order[h], result.analysis.facts)
         size = number(float(rms[s, h]) / MM_PER_S, 4), number(float(vibration_level(rms[s, h])), 4)
         valid = "yes" if vibration.valid[s, h] else "no"
         rows.append((name, order, speed, number(hertz, 5), number(near, 5), *size, valid))
@@ -137,7 +138,8 @@ def _velocity_panel(analysis: VibrationAnalysis, name: str, rms: FloatArray) -> 
     x, speed = row_axis(vibration.speed, analysis.facts)
     lines = []
     for k, h in enumerate(shown_orders(vibration.order, rms.max(axis=0), SHOWN_ORDERS, analysis.facts)):
-        valid, color, order = vibration.valid[:, h], palette.category(k), f"order {vibration.order[h]:.4g}"
+        valid, color = vibration.valid[:, h], palette.category(k)
+        order = f"order {order_words(vibration.order[h], analysis.facts)}"
         lines.append(Line(order, speed, np.where(valid, rms[:, h], np.nan), color, width=1.4))
         if not np.all(valid):
             onward = ~valid | np.append(~valid[1:], False)
@@ -259,7 +261,7 @@ def _words(result: HousingVibrationResult) -> str:
     beyond = vibration.order[~np.all(vibration.valid, axis=0)]
     text = f"Shown in detail: {_where(analysis)}."
     if beyond.size:
-        orders = ", ".join(f"{order:.4g}" for order in beyond[:SHOWN_ORDERS])
+        orders = ", ".join(order_words(order, analysis.facts) for order in beyond[:SHOWN_ORDERS])
         text += f" Orders {orders} reach above what the modes kept carry."
     return text
 
@@ -309,7 +311,7 @@ def _text(result: HousingVibrationResult) -> Iterator[Table | str]:
         yield excites
     beyond = vibration.order[~np.all(vibration.valid, axis=0)]
     if beyond.size:
-        orders = ", ".join(f"{order:.4g}" for order in beyond)
+        orders = ", ".join(order_words(order, analysis.facts) for order in beyond)
         limit = number(vibration.highest_valid_frequency, 4)
         yield f"orders {orders} go beyond {limit} Hz, 0.7 of the highest mode kept: keep more modes"
     yield from (f"{what}: {words}" for what, words in force_words(analysis.facts))

@@ -21,7 +21,7 @@ from lineofaction.report.drawing.figure import (
     category_lines,
     number,
 )
-from lineofaction.report.drawing.marks import shown_orders
+from lineofaction.report.drawing.marks import order_words, shown_orders
 from lineofaction.report.drawing.page import Headline
 from lineofaction.report.presentation import dynamics_presentation
 from lineofaction.report.response.excitations import excitation_figures, excitation_table
@@ -93,7 +93,7 @@ def _response_figure(response: ForcedResponse, mesh: int = 0) -> Figure:
     x, speed, quantities = _speed_axis(response), response.speed / RPM, _quantities(response, mesh)
     size = np.max(quantities[1 if response.mesh else 0][1], axis=0) if quantities else np.empty(0)
     shown = shown_orders(response.order[: size.size], size, SHOWN_ORDERS, response.facts)
-    names, panels = [f"order {response.order[h]:.4g}" for h in shown], []
+    names, panels = [f"order {order_words(response.order[h], response.facts)}" for h in shown], []
     for label, amplitude in quantities:
         panels.append(Panel(x, Axis(label), category_lines(speed, names, amplitude[:, shown].T)))
     if response.mesh:
@@ -144,7 +144,7 @@ def _peak_table(response: ForcedResponse) -> Table:
     ]
     columns = {
         "peak of": lambda peak: f"{peak.quantity.replace('_', ' ')}, {peak.name}",
-        "order": lambda peak: f"{peak.order:.4g}",
+        "order": lambda peak: order_words(peak.order, response.facts),
         "speed, rpm": lambda peak: number(peak.speed / RPM, 5),
         "frequency, Hz": lambda peak: number(peak.frequency, 5),
         "nearest mode, Hz": lambda peak: number(peak.natural_frequency, 5),
@@ -158,11 +158,8 @@ def _words(response: ForcedResponse) -> str:
     if not response.mesh:
         return " ".join(f"{part.name}: {part.value}, {part.remark}." for part in _headlines(response))
     size = np.abs(response.mesh_force)
-    mesh, s, h = np.unravel_index(int(np.argmax(size)), size.shape)
-    text = (
-        f"Largest mesh force: {number(size[mesh, s, h], 3)} N of order {response.order[h]:.4g} at "
-        f"{number(float(response.speed[s]) / RPM, 4)} rpm."
-    )
+    _, s, h = map(int, np.unravel_index(int(np.argmax(size)), size.shape))
+    text = f"Largest mesh force: {number(size.max(), 3)} N, {_at(response, s, h)}."
     parting = response.speed[~response.in_contact] / RPM
     if parting.size:
         first = number(parting[0], 4)
@@ -184,8 +181,12 @@ def _headlines(response: ForcedResponse) -> tuple[Headline, ...]:
 def _largest(what: str, names: Sequence[str], size: FloatArray, response: ForcedResponse) -> Headline:
     """Name the part of the largest amplitude (part, speed, order) with its order and speed."""
     part, s, h = map(int, np.unravel_index(int(np.argmax(size)), size.shape))
-    at = f"order {response.order[h]:.4g} at {number(float(response.speed[s]) / RPM, 4)} rpm"
-    return Headline(f"largest {what} {names[part]}", f"{number(size[part, s, h], 3)} N", at)
+    return Headline(f"largest {what} {names[part]}", f"{number(size[part, s, h], 3)} N", _at(response, s, h))
+
+
+def _at(response: ForcedResponse, speed: int, order: int) -> str:
+    words = order_words(response.order[order], response.facts)
+    return f"order {words} at {number(float(response.speed[speed]) / RPM, 4)} rpm"
 
 
 def _figures(response: ForcedResponse) -> tuple[Figure, ...]:

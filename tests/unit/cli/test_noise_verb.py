@@ -31,6 +31,7 @@ from lineofaction.report.drawing import surface_view
 from lineofaction.report.drawing.figure import HeatMap
 from lineofaction.report.housing import noise as page
 from lineofaction.report.housing.noise import DEPTH, _cells, _limits, _model_tables, row_axis
+from lineofaction.report.housing.sound_bands import NARROWER
 
 SWEEP = ("--speed-rpm", "300:6000:600", "--orders", 4)
 BANDS = (*SWEEP, "--no-boundary-elements")
@@ -229,8 +230,8 @@ def test_boundary_elements_narrow_the_band_and_the_largest_rest_is_named(scene: 
     assert exact["largest_total"]["below_db"]["radiation_model"] < 1.5
     widths = exact["largest_total"]["widths_without_db"]
     words = loa("noise", scene, *SWEEP).stdout
-    first = next(name for name in widths if name in page.NARROWER)
-    assert f"{page.NARROWER[first]}: of {exact['largest_total']['width_db']:.1f} dB" in words
+    first = next(name for name in widths if name in NARROWER)
+    assert f"{NARROWER[first]}: of {exact['largest_total']['width_db']:.1f} dB" in words
 
 
 def test_without_the_library_the_estimate_stands_and_the_result_says_so(

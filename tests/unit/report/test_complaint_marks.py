@@ -10,7 +10,7 @@ import numpy as np
 from fe_contact.ste import SteDatabase
 from lineofaction.report.document import Inputs, page_of
 from lineofaction.report.drawing.figure import Axis, Figure, HeatMap, Line, Panel
-from lineofaction.report.drawing.marks import marked, marks_of, of_run, shown_orders
+from lineofaction.report.drawing.marks import marked, marks_of, of_run, order_words, shown_orders
 
 MARKS: dict[str, Any] = {
     "axes": {"speed of input, rpm": 1200.0, "speed of output, rpm": 600.0, "frequency, Hz": 400.0},
@@ -120,3 +120,16 @@ def test_a_table_is_marked_where_its_case_is_heard(database: SteDatabase) -> Non
 
 def references_of(panel: Panel) -> list[str]:
     return [one.label for one in panel.references if one.label.startswith("complaint")]
+
+
+def test_an_order_between_those_of_the_mesh_is_named_and_found_by_its_number() -> None:
+    facts = {"turning": {"mesh": {"mesh": 1.0}, "shaft": {"pinion": 1.0 / 3.0}}}
+    named = order_words(2.0 / 3.0, facts)
+    assert named == "0.6667 (mesh 1 - pinion 1)"
+    assert [order_words(2.0, facts), order_words(0.7, facts), order_words(2.0 / 3.0, {})] == [
+        "2",
+        "0.7",
+        "0.6667",
+    ]
+    line = Line(f"order {named}", SPEED, SPEED, "#000", width=1.0)
+    assert drawn(Panel(Axis("time, s"), Axis("force, N"), (line,))).content[0].lines[0].width == 2.0

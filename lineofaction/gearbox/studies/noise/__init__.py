@@ -213,6 +213,7 @@ class NoiseFigures(Figures):
     leading_shaft: str
     speed_rpm: list[float]
     order: list[float]
+    order_name: list[str]
     frequency_hz: Annotated[list[list[float]], Source("orders.frequency")]
     level_db: Annotated[list[list[float]], Source("orders.level")]
     level_db_a: Annotated[list[list[float]], Source("orders.weighted_level")]

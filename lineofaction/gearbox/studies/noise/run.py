@@ -55,7 +55,7 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
-from lineofaction.gearbox.studies.excitations import facts_of_scene
+from lineofaction.gearbox.studies.excitations import facts_of_scene, order_names
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.housings import (
     bearing_forces,
@@ -147,6 +147,7 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
         center, bands = sound.orders.third_octaves()
         points = zip(loudest(sound), about["regions"], strict=True)
         return {
+            "order_name": order_names(sound.order, about),
             "third_octave_hz": center,
             "third_octave_db": sound_power_level(bands),
             "radiation_efficiency": sound.efficiency.T,

@@ -69,6 +69,7 @@ class ResponseFigures(Figures):
     leading_shaft: str
     speed_rpm: list[float]
     order: list[float]
+    order_name: list[str]
     meshes: dict[str, MeshResponse]
     bearings: dict[str, BearingResponse]
     excitations: Excitations

@@ -10,7 +10,7 @@ from bounds.types import Json
 from dynamics.linearize import ForcedResponse, peaks
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
-from lineofaction.gearbox.studies.excitations import with_facts_of_scene
+from lineofaction.gearbox.studies.excitations import order_names, with_facts_of_scene
 from lineofaction.gearbox.studies.figures import Row, rows
 from lineofaction.gearbox.studies.housings import response_of
 from lineofaction.gearbox.studies.response import Inputs, ResponseFigures
@@ -27,6 +27,7 @@ class _ResponseStudy(SceneStudy[Inputs, ResponseFigures, ForcedResponse]):
         force, power = response.bearing_force, response.power
         sinks = zip(power.sink, power.kind, power.loss, strict=True)
         return {
+            "order_name": order_names(response.order, response.facts),
             "meshes": {name: _mesh(row) for name, row in rows(response, response.mesh).items()},
             "bearings": {
                 name: {"force": np.sqrt(np.sum(np.abs(force[b, :3]) ** 2, axis=0)).T}

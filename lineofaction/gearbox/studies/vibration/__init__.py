@@ -78,6 +78,7 @@ class VibrationFigures(Figures):
     orders_beyond: list[float]
     speed_rpm: list[float]
     order: list[float]
+    order_name: list[str]
     points: dict[str, PointVelocity]
     surface_mm_per_s: list[list[float]] | None
     contributions: Contributions

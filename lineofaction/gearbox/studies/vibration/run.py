@@ -27,7 +27,7 @@ from lineofaction.gearbox.level_quantity import velocity_of
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
-from lineofaction.gearbox.studies.excitations import with_facts_of_scene
+from lineofaction.gearbox.studies.excitations import order_names, with_facts_of_scene
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.housings import bearing_forces
 from lineofaction.gearbox.studies.vibration import Inputs, VibrationFigures
@@ -120,6 +120,7 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, HousingVibrationResul
             VibrationFigures,
             vibration,
             analysis.facts,
+            order_name=order_names(vibration.order, analysis.facts),
             housing=analysis.housing,
             natural_frequency=result.natural_frequency,
             orders_beyond=vibration.order[~np.all(vibration.valid, axis=0)],

@@ -1,0 +1,100 @@
+"""Bands of sound levels over what is guessed, what narrows them, and what 1 dB costs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from bounds.types import Json
+from lineofaction.report.drawing.figure import Table, number
+from lineofaction.report.drawing.marks import order_words
+
+SHOWN_ORDERS, SHOWN_CAUSES = 6, 3
+LEAST_NARROWED = 0.1
+"""dB."""
+
+
+def uncertainty_tables(facts: Json) -> Iterator[Table]:
+    """Yield the table of bands and that of sensitivities, as far as they are known."""
+    if facts["band"] is not None:
+        yield _band_table(facts["band"], facts)
+    if facts["sensitivities"]:
+        yield _cost_table(facts["sensitivities"])
+
+
+def _band_table(band: Json, facts: Json) -> Table:
+    loudest = sorted(band["orders"], key=lambda row: -row["largest"]["level_db_a"])[:SHOWN_ORDERS]
+    levels = [("largest of all orders", band["largest_total"]), ("mean power", band["mean_total"])]
+    levels += [(f"largest of order {order_words(row['order'], facts)}", row["largest"]) for row in loudest]
+    columns = {
+        "over the speeds": lambda row: row[0],
+        "dB(A)": lambda row: f"{row[1]['level_db_a']:.1f}",
+        "from": lambda row: f"{row[1]['low_db_a']:.1f}",
+        "to": lambda row: f"{row[1]['high_db_a']:.1f}",
+        "most by, dB": lambda row: ", ".join(_causes(row[1])),
+    }
+    return Table.of("Bands over the ranges of what is guessed", levels, columns)
+
+
+def _causes(level: Json) -> Iterator[str]:
+    below, above = level["below_db"], level["above_db"]
+    names = sorted(above, key=lambda name: -max(below[name], above[name]))
+    for name in names[:SHOWN_CAUSES]:
+        if max(below[name], above[name]) > 0.0:
+            yield f"{name.replace('_', ' ')} -{below[name]:.1f} +{above[name]:.1f}"
+
+
+NARROWER = {
+    "housing_damping": "state the damping of the housing (loss_factor, or measured modal_damping)",
+    "housing_frequency": "measure natural frequencies of the housing",
+    "mount_stiffness": "measure the stiffness of the mounts",
+    "bearing_stiffness": "narrow the stiffness of the bearings",
+    "mesh_damping": "narrow the damping of the meshes",
+    "mode_number": "keep more modes of the housing",
+    "speed_steps": "refine the speeds about the loudest",
+    "radiation_model": "correct more lines by boundary elements",
+}
+"""What a user does about a contribution to a band."""
+
+
+def narrowest(facts: Json) -> Iterator[str]:
+    """Say what would narrow the band of the largest level most."""
+    level = (facts["band"] or {}).get("largest_total", {})
+    for name, left in level.get("widths_without_db", {}).items():
+        if name in NARROWER and level["width_db"] - left >= LEAST_NARROWED:
+            width = level["width_db"]
+            yield f"{NARROWER[name]}: of {width:.1f} dB of the band {left:.1f} are left"
+            return
+
+
+def _cost_table(rows: list[Json]) -> Table:
+    """List what steps change of the largest level, the largest change first."""
+    caption = "What 1 dB costs: largest level of all orders; factors are on what the scene states"
+    columns = {
+        "figure": lambda row: str(row["figure"]),
+        "value": lambda row: f"{number(row['value'], 4)}{_unit(row)}",
+        "step": lambda row: f"{number(row['step'], 3)}{_unit(row)}",
+        "change, dB": lambda row: f"{row['change_db']:+.2f}",
+        "two steps, dB": lambda row: f"{row['change_of_two_steps_db']:+.2f}",
+        "for -1 dB about": _needed,
+        "linear within": lambda row: (
+            "any" if row["linear_range"] is None else f"{number(row['linear_range'], 2)}{_unit(row)}"
+        ),
+    }
+    return Table.of(caption, rows, columns)
+
+
+def _unit(row: Json) -> str:
+    return f" {row['unit'].replace('um', 'µm')}" if row["unit"] else ""
+
+
+def _needed(row: Json) -> str:
+    if row["for_one_db_less"] is None:
+        return "nothing does"
+    return f"{row['for_one_db_less']:+.3g}{_unit(row)}" + (
+        "" if row["linear"] else " (beyond the linear range)"
+    )
+
+
+def ends(level: Json) -> str:
+    """Say from where to where a level lies."""
+    return f"{level['low_db_a']:.1f} to {level['high_db_a']:.1f}"
