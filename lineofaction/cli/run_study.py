@@ -261,9 +261,11 @@ def _show(study: Study, result: Any, targets: list[Path], remote_seconds: float)
     """Print the main results, tables and lines, and what all of it cost: tables, workers, other children."""
     shown = presentation_of(study)
     parts = list(shown.text(result))
-    said = [part for part in parts[:_MOST_SAID] if isinstance(part, str)]
+    said = {part for part in parts[:_MOST_SAID] if isinstance(part, str)}
     headlines = shown.page(result).headlines
-    print_headlines([line for line in headlines if line.value not in said])
+    print_headlines(
+        [line for line in headlines if said.isdisjoint((line.value, f"{line.name}: {line.value}"))]
+    )
     print_parts(parts)
     console().print(f"cost {engineering(cpu_seconds() + remote_seconds, 3)} CPU s")
     print_written(targets)

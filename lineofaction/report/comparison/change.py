@@ -13,6 +13,7 @@ from lineofaction.report.drawing.figure import Axis, Figure, FloatArray, Line, P
 from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.presentation import Presentation
 
+GETS_LOUDER = "gets louder"
 BAND = f"{100 * (HIGH - LOW):.0f} %"
 
 
@@ -98,21 +99,23 @@ def _influence_table(result: FlankChange) -> Table:
     return Table(caption, head, tuple(rows))
 
 
+def _loudest(result: FlankChange) -> str:
+    return next(result.louder(), "no order as designed")
+
+
 def _text(result: FlankChange) -> Iterator[Table | str]:
     yield result.verdict()
+    yield f"{GETS_LOUDER}: {_loudest(result)}"
     yield from filter(None, (result.required(),))
-    louder = list(result.louder())
-    yield f"Gets louder: {louder[0]}" if louder else "No order gets louder as designed."
     yield from result.partings()
     yield _levels_table(result)
     yield _influence_table(result)
 
 
 def _page(result: FlankChange) -> Page:
-    louder = next(result.louder(), "no order as designed")
     heads = (
         Headline("verdict", result.verdict(), result.required()),
-        Headline("gets louder", louder),
+        Headline(GETS_LOUDER, _loudest(result)),
     )
     section = Section(
         "What it brings", "", (_change_figure(result),), (_levels_table(result), _influence_table(result))

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from command_line import loa
 
-from lineofaction.cli import pages
+from lineofaction.cli import pages, run_study
 from lineofaction.gearbox.problems import EXIT_BAD_INPUT
+from lineofaction.gearbox.registry import STUDIES
+from lineofaction.gearbox.studies.change.result import ALL, DesignLevels, FlankChange
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 SPUR, SCENE = EXAMPLES / "palermo_spur_20_20.toml", EXAMPLES / "palermo_scene.toml"
@@ -50,3 +53,23 @@ def test_one_file_is_the_flanks_after_and_three_are_refused(monkeypatch: pytest.
 
 def test_speeds_are_required() -> None:
     assert "--speed-rpm 500:6000:100" in called()
+
+
+def levels(*nominal: float) -> DesignLevels:
+    own = np.array([nominal])
+    return DesignLevels(own, np.stack([own - 1.0, own + 1.0]), np.zeros(1), np.zeros((2, *own.shape)))
+
+
+@pytest.mark.parametrize("requirement", [None, 70.0])
+@pytest.mark.parametrize("second", [45.0, 60.0])
+def test_the_terminal_says_once_what_gets_louder(
+    capsys: pytest.CaptureFixture[str], second: float, requirement: float | None
+) -> None:
+    about = ("gears", "sound power", "dB(A)", "largest", (ALL, "1", "2"), np.array([80.0]), np.array([100.0]))
+    pairs = (("misalignment",), np.array([[-1e-6], [1e-6]]))
+    both = levels(70.0, 70.0, 50.0), levels(65.0, 64.0, second)
+    run_study._show(STUDIES["change"], FlankChange(*about, *pairs, *both, requirement, {}), [], 0.0)
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.startswith("gets louder: ") for line in lines].index(True) < 3
+    assert sum("louder: " in line for line in lines) == 1
+    assert sum(line.startswith("Quieter") for line in lines) == 1
