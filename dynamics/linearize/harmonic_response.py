@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import lru_cache
 
 import numpy as np
 
@@ -246,18 +247,33 @@ def bearing_forces(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexAr
 
 
 def extremes(amplitude: ComplexArray, order: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the least and the largest sum of all harmonics (m, S, H) over the period, (m, S) each."""
-    parts = [Fraction(value).limit_denominator(LARGEST_DENOMINATOR) for value in order.tolist()]
-    scale = math.lcm(*(part.denominator for part in parts))
-    multiples = [int(part * scale) for part in parts]
-    harmonic = np.array(multiples, dtype=np.int64) // max(math.gcd(*multiples), 1)
+    """Return the least and the largest sum of all harmonics (m, S, H) over the period, (m, S) each.
+
+    Over a period of more than `MOST_SAMPLES` orders in no proportion of small integers meet in all their
+    phases: the extremes of their sums are the sums of their extremes.
+    """
+    harmonic = _harmonics(tuple(order.tolist()))
     samples = 8 * int(harmonic[-1] + 1) if order.size else 1
+    own = harmonic % harmonic[:1] == 0
+    if samples > MOST_SAMPLES and not np.all(own):
+        parts = extremes(amplitude[..., own], order[own]), extremes(amplitude[..., ~own], order[~own])
+        return parts[0][0] + parts[1][0], parts[0][1] + parts[1][1]
     lines = np.zeros((*amplitude.shape[:2], samples // 2 + 1), dtype=complex)
     lines[..., harmonic] = amplitude * (samples / 2.0)
     wave = np.fft.irfft(lines, samples, axis=-1)
     return np.asarray(np.min(wave, axis=-1)), np.asarray(np.max(wave, axis=-1))
 
 
+@lru_cache(maxsize=64)
+def _harmonics(order: tuple[float, ...]) -> IntArray:
+    """Return the orders (H,) as multiples of the frequency of their sum."""
+    parts = [Fraction(value).limit_denominator(LARGEST_DENOMINATOR) for value in order]
+    scale = math.lcm(*(part.denominator for part in parts))
+    multiples = [int(part * scale) for part in parts]
+    return np.array(multiples, dtype=np.int64) // max(math.gcd(*multiples), 1)
+
+
+MOST_SAMPLES = 16_384
 MOST_UNKNOWNS = 150
 LEAST_ORDERS = 8
 
@@ -378,19 +394,34 @@ def _push(family: _Family, receptance: ComplexArray, made: ComplexArray) -> Comp
         Fourier coefficients 0 to H of the force by which the varying part of the stiffness presses, N.
     """
     speeds, count, meshes = made.shape
-    whole = np.concatenate([receptance[:, :0:-1].conj(), receptance], axis=1)
-    forcing = np.concatenate([made[:, ::-1].conj(), np.zeros((speeds, 1, meshes)), made], axis=1)
-    step = np.arange(2 * count + 1)
-    varying = family.stiffness[:, step[:, None] - step[None, :] + 2 * count]  # (f, 2 H + 1, 2 H + 1)
-    size = step.size * meshes
-    matrix = np.einsum("siab,bij->siajb", whole, varying).reshape(speeds, size, size)
+    pressed = _presses(family.stiffness, count)
+    size = (2 * count + 1) * meshes
+    matrix = _real_rows(np.einsum("siab,bij->siajb", receptance, pressed)).reshape(speeds, size, size)
     matrix += np.eye(size)
-    right = forcing.reshape(speeds, size, 1)
+    forcing = np.concatenate([np.zeros((speeds, 1, meshes)), made], axis=1)
+    right = _real_rows(forcing).reshape(speeds, size, 1)
     w = solved(matrix, right)
     rounded = np.finfo(float).eps * np.max(np.abs(matrix) @ np.abs(w), axis=(1, 2))
     if not np.all(rounded <= ROUNDED * np.max(np.abs(right), axis=(1, 2), initial=1e-300)):
         return None
-    return np.asarray(np.einsum("bij,sjb->sib", varying[:, count:], w.reshape(forcing.shape)))
+    return np.asarray(np.einsum("bij,sjb->sib", pressed, w.reshape(speeds, -1, meshes)))
+
+
+def _presses(stiffness: ComplexArray, count: int) -> ComplexArray:
+    """Return the force harmonics 0 to H (f, H + 1, 2 H + 1) by the real unknowns of what makes force.
+
+    They are Re w_0 to Re w_H and Im w_1 to Im w_H: w_-j is the conjugate of w_j.
+    """
+    row, column = np.arange(count + 1)[:, None], np.arange(count + 1)
+    less, more = (stiffness[:, row + way * column + 2 * count] for way in (-1, 1))
+    real = less + more
+    real[:, :, 0] = less[:, :, 0]
+    return np.concatenate([real, 1j * (less - more)[:, :, 1:]], axis=2)
+
+
+def _real_rows(harmonics: ComplexArray) -> FloatArray:
+    """Return the real parts 0 to H, then the imaginary parts 1 to H, of (S, H + 1, ...)."""
+    return np.concatenate([np.real(harmonics), np.imag(harmonics[:, 1:])], axis=1)
 
 
 def _at_rest(at: Excited, row: FloatArray) -> ComplexArray:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
@@ -133,6 +134,7 @@ def _modal_elimination(
 
 
 Terms = tuple[FloatArray, FloatArray]
+Values = TypeVar("Values", FloatArray, ComplexArray)
 
 EXCITATIONS = ("static_error", "blocked_force")
 BLOCK = 1_000_000  # entries of the matrices solved at once
@@ -407,12 +409,12 @@ def unbounded(linear: LinearSystem, omega: FloatArray | ComplexArray) -> SolveEr
     return SolveError(f"the vibration is unbounded: {words}. {advice}")
 
 
-def solved(matrix: ComplexArray, right: ComplexArray) -> ComplexArray:
+def solved(matrix: Values, right: Values) -> Values:
     """Solve for all of a stack; what nothing bounds is not a number, and the caller refuses it."""
     try:
-        return np.asarray(np.linalg.solve(matrix, right), dtype=complex)
+        return np.linalg.solve(matrix, right).astype(right.dtype, copy=False)
     except np.linalg.LinAlgError:
-        return np.full(right.shape, np.nan, dtype=complex)
+        return np.full_like(right, np.nan)
 
 
 def _dense(

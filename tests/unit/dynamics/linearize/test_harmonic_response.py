@@ -165,3 +165,15 @@ def test_extremes_of_orders_are_those_of_their_wave():
     wave = np.sum(np.real(amplitude[0, 0, :, None] * np.exp(order[:, None] * turns)), axis=0)
     found = extremes(amplitude, order)
     np.testing.assert_allclose(np.ravel(found), [wave.min(), wave.max()], rtol=0.02)
+
+
+def test_orders_of_a_long_common_period_meet_in_all_phases():
+    """Meshes of 693 and 3880 pitches a period: its extremes are within those of both waves, and near them."""
+    cycle, chance = np.arange(1.0, 13.0), np.random.default_rng(1)
+    order = np.sort(np.concatenate([cycle, 3880.0 / 693.0 * cycle]))
+    amplitude = (chance.normal(size=24) + 1j * chance.normal(size=24))[None, None]
+    turns = 2.0j * np.pi * chance.uniform(0.0, 693.0, 20_000)
+    wave = np.real(np.exp(turns[:, None] * order) @ amplitude[0, 0])
+    least, most = np.ravel(extremes(amplitude, order))
+    assert least <= wave.min() < 0.8 * least
+    assert 0.8 * most < wave.max() <= most
