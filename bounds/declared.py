@@ -94,6 +94,8 @@ class Declared:
     later : bool
         Whether the field came after results had been stored. At its default it is not written out, so that
         what says nothing of it keeps the address of its result.
+    most : int
+        Number of parts of a list, at most.
     with_unit : bool
         Whether a message has the unit behind the ends of the range.
     """
@@ -107,6 +109,7 @@ class Declared:
     written: str = ""
     part: type | None = None
     later: bool = False
+    most: int = 100
     with_unit: bool = False
 
     @cached_property

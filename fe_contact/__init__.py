@@ -31,6 +31,7 @@ if TYPE_CHECKING:
         RingGear,
         RunOut,
         Shaft,
+        ToothFlank,
         Wave,
     )
     from fe_contact.material import STEEL, Material
@@ -83,6 +84,7 @@ __all__ = [
     "TableAxes",
     "ToleranceStudy",
     "Tolerances",
+    "ToothFlank",
     "Wave",
     "ablate",
     "analyze",
@@ -109,7 +111,7 @@ _NAMES = {
     "fe_contact.analysis.studies.sensitivity": "Sensitivity study_sensitivity",
     "fe_contact.geometry": (
         "BoreSeat FlankGrid FlankModification Gear GearBlank GearPair InternalGearPair PitchDeviation "
-        "RingGear RunOut Shaft Wave"
+        "RingGear RunOut Shaft ToothFlank Wave"
     ),
     "fe_contact.material": "STEEL Material",
     "fe_contact.microgeometry.objective": "Limits",

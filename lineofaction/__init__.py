@@ -37,6 +37,7 @@ if TYPE_CHECKING:
         RunOut,
         SteDatabase,
         Tolerances,
+        ToothFlank,
         Wave,
     )
     from fe_contact.types import Estimate, Status
@@ -81,6 +82,7 @@ _HOME = {
     "SteDatabase": ("fe_contact", "SteDatabase"),
     "TimeLaw": ("dynamics.loads.time_law", "TimeLaw"),
     "Tolerances": ("fe_contact", "Tolerances"),
+    "ToothFlank": ("fe_contact", "ToothFlank"),
     "Unit": ("lineofaction.gearbox.from_rexs.opened", "OpenedUnit"),
     "Wave": ("fe_contact", "Wave"),
     "write": ("lineofaction.report.document", "write"),
@@ -118,6 +120,7 @@ __all__ = [
     "SteDatabase",
     "TimeLaw",
     "Tolerances",
+    "ToothFlank",
     "Unit",
     "Wave",
     "analyze",

@@ -1,4 +1,4 @@
-"""Tooth deviations: run-out, wobble and waves, which turn with either gear."""
+"""Tooth deviations: run-out, wobble, waves and flanks of single teeth, which turn with either gear."""
 
 from __future__ import annotations
 
@@ -10,7 +10,17 @@ import numpy as np
 
 from fe_contact.contact.model import ContactModel, MeetingTeeth
 from fe_contact.effects.effect import ContactScene, Effect, Verdict
-from fe_contact.geometry import NO_RUN_OUT, ParallelAxes, RunOut, Toothing, Wave, deviations_period
+from fe_contact.errors import InputError
+from fe_contact.geometry import (
+    NO_RUN_OUT,
+    ParallelAxes,
+    RunOut,
+    ToothFlank,
+    Toothing,
+    Wave,
+    deviations_period,
+    flanks_excess,
+)
 from fe_contact.types import FloatArray
 
 
@@ -29,13 +39,15 @@ class _TurningGap:
     gear: int
     run_out: RunOut
     waves: tuple[Wave, ...]
+    flanks: tuple[ToothFlank, ...]
     period: int
 
     @property
     def largest(self) -> float:
         """Bound of the gap, m."""
         waves = sum(wave.amplitude for wave in self.waves)
-        return self.run_out.eccentricity + 0.5 * self.run_out.wobble + waves
+        flanks = max((flank.largest for flank in self.flanks), default=0.0)
+        return self.run_out.eccentricity + 0.5 * self.run_out.wobble + waves + flanks
 
     def __call__(self, teeth: MeetingTeeth) -> FloatArray:
         """Return the gap of pairs of teeth at touching points: that of the gear turned until they touch."""
@@ -44,22 +56,24 @@ class _TurningGap:
         lead = math.tan(pair.base_helix_angle) / own.base_radius  # the gear turns so far per m of face
         at_pitch_point = pair.path_of_contact.pitch_point
         if self.gear == 0:
-            rolled, along = teeth.roll_1 - at_pitch_point, teeth.face
+            roll, rolled, face = teeth.roll_1, teeth.roll_1 - at_pitch_point, teeth.face
         else:
             way = teeth.roll_2 - pair.mating_roll_length(at_pitch_point)
-            rolled, along = -own.sign * way, teeth.face - pair.axial_offset
-        tooth = 2.0 * math.pi / own.teeth * (teeth.meeting % self.period)
-        turn = tooth + rolled / own.base_radius + teeth.face * lead
-        along = along / own.face_width
+            roll, rolled, face = teeth.roll_2, -own.sign * way, teeth.face - pair.axial_offset
+        tooth = teeth.meeting % self.period
+        turn = 2.0 * math.pi / own.teeth * tooth + rolled / own.base_radius + teeth.face * lead
+        along = face / own.face_width
         excess = self.run_out.excess(turn, along)
         for wave in self.waves:
             excess = excess + wave.excess(turn, along, lead * own.face_width)
+        if self.flanks:
+            excess = excess + flanks_excess(own, self.flanks, tooth % own.teeth, roll, face)
         return np.asarray(-excess)
 
 
 @dataclass(frozen=True)
 class ToothDeviations(Effect):
-    """Run-out, wobble and waves of both gears; the table then covers more than one base pitch."""
+    """Run-out, waves and flanks of single teeth of both gears; the table covers more than one base pitch."""
 
     name: ClassVar[str] = "tooth_deviations"
     needs: ClassVar[tuple[str, ...]] = ("position", "tooth numbers")
@@ -70,60 +84,84 @@ class ToothDeviations(Effect):
 
     def called_for(self, scene: ContactScene) -> Verdict:
         """On where either gear has any."""
-        figures = [f"{name} {_figures(gear)}" for name, gear in scene.gears.items() if _deviates(gear)]
+        figures = [f"{name} {_figures(gear)}" for name, gear in scene.gears.items() if gear.deviates]
         if not figures:
-            return Verdict(False, "no gear has run-out, wobble or waves", neutral=True)
+            return Verdict(False, "no gear has run-out, wobble, waves or teeth that differ", neutral=True)
         return Verdict(True, f"{'; '.join(figures)}, over {_period(scene)} base pitches")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Add the gap of each gear that has any."""
         gaps = tuple(
-            _TurningGap(index, gear.run_out, gear.waves, _period(scene))
+            _TurningGap(index, gear.run_out, gear.waves, gear.tooth_flanks, _period(scene))
             for index, gear in enumerate(scene.gears.values())
-            if _deviates(gear)
+            if gear.deviates
         )
         return replace(model, tooth_gaps=(*model.tooth_gaps, *gaps))
 
     def across_face(self, scene: ContactScene) -> str | None:
-        """Wobble, and waves whose crests are inclined to the contact lines."""
-        gears = scene.gears.values()
-        tilted = any(gear.run_out.wobble for gear in gears)
-        inclined = any(wave.amplitude and wave.face_waves for gear in gears for wave in gear.waves)
-        found = [words for words, there in (("wobble", tilted), ("waves across the face", inclined)) if there]
+        """Wobble, waves inclined to the contact lines, and flanks of teeth that vary along the face."""
+        found = dict.fromkeys(words for gear in scene.gears.values() for words in _across_face(gear).values())
         return " and ".join(found) or None
+
+    def refuse_plane(self, scene: ContactScene) -> None:
+        """Refuse what varies along the face."""
+        for name, gear in scene.gears.items():
+            for field, words in _across_face(gear).items():
+                raise InputError(f"{name}.{field}", words, "none for a plane model", "Use the 3-D model.")
 
     def without(self, scene: ContactScene) -> ContactScene:
         """Return the scene of gears without them."""
-        return scene.with_gears(lambda _: {"run_out": NO_RUN_OUT, "waves": ()})
+        return scene.with_gears(lambda _: {"run_out": NO_RUN_OUT, "waves": (), "tooth_flanks": ()})
 
 
 def sharpest_crest(pair: ParallelAxes) -> float:
-    """Return the curvature of the waves of both gears over that of the plain flanks, where that is largest.
+    """Return the largest curvature of waves and forms of both gears over that of the plain flanks.
 
-    At the ends of the path of contact, the crests of all waves together. At 1 a trough fits the mate.
+    At the ends of the path of contact, the crests of all of them together. At 1 a trough fits the mate.
     """
     path = pair.path_of_contact
     roll_1 = np.array([path.start, path.end])
     rolls = roll_1, pair.mating_roll_length(roll_1)
     waves = (
-        sum(wave.amplitude * wave.order**2 for wave in gear.waves) / np.square(roll)
+        (sum(wave.amplitude * wave.order**2 for wave in gear.waves) + _hollow(gear)) / np.square(roll)
         for gear, roll in zip((pair.pinion, pair.wheel), rolls, strict=True)
     )
     return float(np.max(sum(waves) / pair.relative_curvature(roll_1)))
 
 
-def _deviates(gear: Toothing) -> bool:
-    return not gear.run_out.neutral or any(wave.amplitude for wave in gear.waves)
+def _hollow(gear: Toothing) -> float:
+    """Return how hollow the form of a tooth is at most, as an amplitude times the square of its order."""
+    u_per_turn = 2.0 * gear.base_radius / (gear.tip_roll_length - gear.form_roll_length)
+    return max((flank.hollow for flank in gear.tooth_flanks), default=0.0) * u_per_turn**2
+
+
+def _across_face(gear: Toothing) -> dict[str, str]:
+    """Return the fields of what varies along the face of a gear, in words."""
+    inclined = any(wave.amplitude and wave.face_waves for wave in gear.waves)
+    flanks = any(flank.varies_along_face for flank in gear.tooth_flanks)
+    found = {
+        "run_out.wobble": ("wobble", bool(gear.run_out.wobble)),
+        "waves": ("waves across the face", inclined),
+        "tooth_flanks": ("helix deviations of teeth", flanks),
+    }
+    return {field: words for field, (words, there) in found.items() if there}
 
 
 def _figures(gear: Toothing) -> str:
     """Return the amounts of a gear in words."""
     amounts = (("eccentricity", gear.run_out.eccentricity), ("wobble", gear.run_out.wobble))
-    waves = (f"{wave.order} waves {1e6 * wave.amplitude:.3g} um" for wave in gear.waves if wave.amplitude)
-    return ", ".join([*(f"{name} {1e6 * amount:.3g} um" for name, amount in amounts if amount), *waves])
+    waves = [f"{wave.order} waves {1e6 * wave.amplitude:.3g} um" for wave in gear.waves if wave.amplitude]
+    flanks = [flank.largest for flank in gear.tooth_flanks if not flank.neutral]
+    teeth = [f"{len(flanks)} flanks of teeth up to {1e6 * max(flanks):.3g} um"] if flanks else []
+    return ", ".join(
+        [*(f"{name} {1e6 * amount:.3g} um" for name, amount in amounts if amount), *waves, *teeth]
+    )
 
 
 def _period(scene: ContactScene) -> int:
     """Return the pitches requested, or those after which both gears repeat together."""
-    periods = (deviations_period(gear.run_out, gear.waves, gear.teeth) for gear in scene.gears.values())
+    periods = (
+        deviations_period(gear.run_out, gear.waves, gear.tooth_flanks, gear.teeth)
+        for gear in scene.gears.values()
+    )
     return scene.pitches or math.lcm(*periods)

@@ -11,18 +11,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from bounds import Declared, Direction, Kind, Quantity, Text, declared
+from bounds import Declared, Direction, Kind, Quantity, Text, declared, inside
 from fe_contact.errors import InputError
+from fe_contact.flank.flank_grid import FlankGrid
 from fe_contact.flank.part import FlankPart, Polynomial, ReliefStart, Tooth, involute
 from fe_contact.flank.relief import ProfileRelief, Shape, amount, length, shape, slope
 from fe_contact.types import FloatArray
-
-if TYPE_CHECKING:
-    from fe_contact.flank.flank_grid import FlankGrid
 
 _FLANK = Direction.PROFILE | Direction.FACE
 
@@ -110,18 +108,20 @@ class _TriangularRootRelief(_CornerRelief):
     triangular_root_relief_shape: Shape = shape(_FLANK, "Triangular root relief over its length", later=True)
 
 
-_SURFACE = Declared(
+SURFACE = Declared(
     Kind.SURFACE,
     "",
     None,
-    "Free-form flank, removed besides the amounts",
+    "Free-form flank: material removed in addition to the amounts above",
+    FlankGrid((4e-3, 20e-3), (-12.5e-3, 12.5e-3), ((0.0, 0.0), (5e-6, 7e-6))),
     along=_FLANK,
+    part=FlankGrid,
 )
 
 
 @dataclass(frozen=True, kw_only=True)
 class _FreeForm(FlankPart):
-    flank_grid: FlankGrid | None = declared(None, _SURFACE)
+    flank_grid: FlankGrid | None = declared(None, SURFACE)
 
     @cached_property
     def varies(self) -> Direction:
@@ -133,11 +133,9 @@ class _FreeForm(FlankPart):
 
     def check_fits(self, gear: Tooth) -> None:
         """Raise `InputError` if the grid lies beside the flank."""
-        if self.flank_grid is None:
-            return
-        half = 0.5 * gear.face_width
-        _check_reach("roll_length", self.flank_grid.roll_length, *involute(gear))
-        _check_reach("face_position", self.flank_grid.face_position, -half, half)
+        if self.flank_grid is not None:
+            with inside("modification"):
+                check_reach(self.flank_grid, gear)
 
     def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
         """See `FlankPart.removed`."""
@@ -145,13 +143,16 @@ class _FreeForm(FlankPart):
         return self.flank_grid.material_removed(roll_length, face_position)
 
 
-def _check_reach(axis: str, nodes: tuple[float, ...], low: float, high: float) -> None:
-    """Refuse an axis of a grid that lies beside the flank: a wrong unit or origin."""
-    if nodes[-1] <= low or nodes[0] >= high:
-        ends = Quantity(low, "m", digits=6), " to ", Quantity(high, "m", digits=6)
-        bound = Text.of("a range that reaches into the flank, which spans ", *ends)
-        advice = "Is the unit or the origin another one?"
-        raise InputError(f"modification.flank_grid.{axis}", [nodes[0], nodes[-1]], bound, advice)
+def check_reach(grid: FlankGrid, gear: Tooth) -> None:
+    """Refuse a grid an axis of which lies beside the flank: a wrong unit or origin."""
+    half = 0.5 * gear.face_width
+    for axis, (low, high) in {"roll_length": involute(gear), "face_position": (-half, half)}.items():
+        nodes = getattr(grid, axis)
+        if nodes[-1] <= low or nodes[0] >= high:
+            ends = Quantity(low, "m", digits=6), " to ", Quantity(high, "m", digits=6)
+            bound = Text.of("a range that reaches into the flank, which spans ", *ends)
+            advice = "Is the unit or the origin another one?"
+            raise InputError(f"flank_grid.{axis}", [nodes[0], nodes[-1]], bound, advice)
 
 
 class OverFlank(

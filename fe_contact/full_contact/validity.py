@@ -61,7 +61,7 @@ def _of_gear(gear: Toothing) -> str | None:
         return "rim, web and hub: one section stands for the whole face"
     if gear.seat != CLAMPED:
         return "seat of the bore: it is rigid"
-    if not gear.pitch_deviation.neutral or gear.period > 1:
+    if not gear.pitch_deviation.neutral or gear.deviates:
         return "deviations of single teeth: all teeth are alike"
     if gear.tip_form_roll_length != gear.tip_roll_length:
         return "rounded or chamfered tips: those of its meshes are sharp"

@@ -12,6 +12,7 @@ from fe_contact.geometry.iso6336_stiffness import blank_factor, iso6336_stiffnes
 from fe_contact.geometry.parallel_axes import ParallelAxes, sliding_factor, specific_sliding
 from fe_contact.geometry.ring_gear import RingGear
 from fe_contact.geometry.tooth_deviations import NO_RUN_OUT, RunOut, Wave, deviations_period
+from fe_contact.geometry.tooth_flank import ToothFlank, flanks_excess
 from fe_contact.geometry.toothing import PitchDeviation, Toothing
 from fe_contact.geometry.web_compliance import web_compliance
 
@@ -34,6 +35,7 @@ __all__ = [
     "RunOut",
     "Shaft",
     "Side",
+    "ToothFlank",
     "ToothProfile",
     "Toothing",
     "Wave",
@@ -41,6 +43,7 @@ __all__ = [
     "corner_contact",
     "deviations_period",
     "edge_gap",
+    "flanks_excess",
     "iso6336_stiffness",
     "seat_compliance",
     "sliding_factor",

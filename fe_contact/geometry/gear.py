@@ -186,8 +186,7 @@ class Gear(Toothing):
         _refuse_misfit_seat(self)
         _refuse_undercut(self)
         _refuse_pointed_tooth(self)
-        self.modification.check_fits(self)
-        self.pitch_deviation.check_fits(self.teeth)
+        self._check_teeth()
 
     @cached_property
     def basic_rack(self) -> BasicRack:

@@ -344,8 +344,7 @@ class RingGear(Toothing):
         _refuse_tip_diameter(self, cutter)
         _refuse_cut_tips(self, cutter)
         _refuse_pointed_tooth(self)
-        self.modification.check_fits(self)
-        self.pitch_deviation.check_fits(self.teeth)
+        self._check_teeth()
 
     @cached_property
     def basic_rack(self) -> BasicRack:

@@ -10,6 +10,7 @@ import numpy as np
 
 from bounds import Declared, Kind, at_least, between, declared, described, integers, required
 from fe_contact.errors import InputError, declared_fields
+from fe_contact.geometry.tooth_flank import ToothFlank, flanks_period
 from fe_contact.types import FloatArray
 
 _UM = "um"
@@ -125,7 +126,10 @@ class Wave:
         return np.asarray(self.amplitude * np.cos(self.order * turn + inclined * along - self.phase))
 
 
-def deviations_period(run_out: RunOut, waves: Collection[Wave], teeth: int) -> int:
-    """Return the number of teeth after which run-out and waves repeat."""
+def deviations_period(
+    run_out: RunOut, waves: Collection[Wave], flanks: Collection[ToothFlank], teeth: int
+) -> int:
+    """Return the number of teeth after which run-out, waves and flanks of teeth repeat."""
     orders = [wave.order for wave in waves if wave.amplitude] + ([] if run_out.neutral else [1])
-    return teeth // math.gcd(teeth, *orders) if orders else 1
+    turning = teeth // math.gcd(teeth, *orders) if orders else 1
+    return math.lcm(turning, flanks_period(flanks, teeth))

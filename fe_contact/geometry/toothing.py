@@ -7,7 +7,7 @@ numbers and radii are positive and `sign` carries the standard's sign.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Self
@@ -21,6 +21,13 @@ from fe_contact.flank.involute import involute_function, roll_length_at_radius
 from fe_contact.flank.modification import UNMODIFIED, FlankModification
 from fe_contact.geometry.basic_rack import ADDENDUM, DEDENDUM, NORMAL_MODULE, PRESSURE_ANGLE, ROOT_RADIUS
 from fe_contact.geometry.tooth_deviations import NO_RUN_OUT, RunOut, Wave, deviations_period
+from fe_contact.geometry.tooth_flank import (
+    MOST_TEETH,
+    ToothFlank,
+    check_flanks,
+    repeats_after,
+    turned_back,
+)
 from fe_contact.material import STEEL, Material
 from fe_contact.types import FloatArray
 
@@ -34,6 +41,7 @@ if TYPE_CHECKING:
 
 LARGEST = 1e-3
 """m; larger deviations are micrometers given as meters."""
+_IN_M = SiNote("In m: 5 um is 5e-6.")
 
 
 @dataclass(frozen=True)
@@ -67,10 +75,29 @@ class PitchDeviation:
 
     def __post_init__(self) -> None:
         checked = (
-            within(f"pitch_deviation[{tooth}]", value, -LARGEST, LARGEST, SiNote("In m: 5 um is 5e-6."))
+            within(f"pitch_deviation[{tooth}]", value, -LARGEST, LARGEST, _IN_M)
             for tooth, value in enumerate(self.cumulative)
         )
         object.__setattr__(self, "cumulative", tuple(checked))
+
+    @classmethod
+    def of_single_pitches(cls, single: Sequence[float]) -> Self:
+        """Return the deviations of teeth from their individual single pitch deviations f_pi in m.
+
+        Entry i is that of the pitch from the tooth before to tooth i, the first from the last tooth on. Its
+        mean over the gear, which a full circle does not have, is taken out: F_pi counts from the last tooth.
+
+        Raises
+        ------
+        InputError
+            A deviation that is no number, or larger than 1 mm.
+        """
+        values = [
+            within(f"single_pitch_deviation[{tooth}]", value, -LARGEST, LARGEST, _IN_M)
+            for tooth, value in enumerate(single)
+        ]
+        deviations = np.array(values) - np.mean(values or [0.0])
+        return cls(tuple(np.cumsum(deviations).tolist()))
 
     @property
     def neutral(self) -> bool:
@@ -96,9 +123,7 @@ class PitchDeviation:
     @property
     def period(self) -> int:
         """Number of teeth after which the deviations repeat: 1 where all are equal."""
-        teeth, values = len(self.cumulative), self.cumulative
-        repeats = (n for n in range(1, teeth) if teeth % n == 0 and values == values[:n] * (teeth // n))
-        return next(repeats, max(teeth, 1))
+        return repeats_after(self.cumulative)
 
     @property
     def reversed(self) -> PitchDeviation:
@@ -155,6 +180,8 @@ _OF_AXIS = "Axis of the teeth off the axis of rotation; left out: they are one"
 _RUN_OUT = Declared(Kind.PART, "", None, _OF_AXIS, part=RunOut, later=True)
 _OF_FLANKS = "Waves on all loaded flanks, left by machining"
 _WAVES = Declared(Kind.PARTS, "", None, _OF_FLANKS, part=Wave, later=True)
+_OF_TEETH = "Deviations of the loaded flanks of single teeth; teeth without an entry are as designed"
+_TOOTH_FLANKS = Declared(Kind.PARTS, "", None, _OF_TEETH, part=ToothFlank, later=True, most=MOST_TEETH)
 
 MATING = ("normal_module", "normal_pressure_angle", "helix_angle")
 """Fields in which mating gears agree, but for the hand of external ones."""
@@ -187,6 +214,7 @@ class Toothing:
     pitch_deviation: PitchDeviation = NO_PITCH_DEVIATION
     run_out: RunOut = declared(NO_RUN_OUT, _RUN_OUT)
     waves: tuple[Wave, ...] = declared((), _WAVES)
+    tooth_flanks: tuple[ToothFlank, ...] = declared((), _TOOTH_FLANKS)
 
     sign: ClassVar[int] = 1  # of the tooth number in ISO 21771-1: +1 external, -1 internal
 
@@ -212,6 +240,12 @@ class Toothing:
         declared_fields(self)
         half, note = 0.5 * self.normal_module, SiNote("In m: 0.1 mm is 1e-4.")
         within("thickness_allowance", self.thickness_allowance, 0.0, half, note)
+
+    def _check_teeth(self) -> None:
+        """Check modifications and deviations against the teeth that they are of."""
+        self.modification.check_fits(self)
+        self.pitch_deviation.check_fits(self.teeth)
+        check_flanks(self, self.tooth_flanks, self.teeth)
 
     @cached_property
     def transverse_module(self) -> float:
@@ -255,8 +289,14 @@ class Toothing:
     @property
     def period(self) -> int:
         """Number of teeth after which its deviations repeat: 1 where all are alike."""
-        turning = deviations_period(self.run_out, self.waves, self.teeth)
+        turning = deviations_period(self.run_out, self.waves, self.tooth_flanks, self.teeth)
         return math.lcm(self.pitch_deviation.period, turning)
+
+    @property
+    def deviates(self) -> bool:
+        """Whether the axis of the teeth, waves or flanks of teeth differ from the designed gear."""
+        several = (wave.amplitude for wave in self.waves), (not flank.neutral for flank in self.tooth_flanks)
+        return not self.run_out.neutral or any(map(any, several))
 
     @property
     def turning_back(self) -> Self:
@@ -266,6 +306,7 @@ class Toothing:
             pitch_deviation=self.pitch_deviation.reversed,
             run_out=self.run_out.reversed,
             waves=tuple(wave.reversed for wave in self.waves),
+            tooth_flanks=turned_back(self.tooth_flanks, self.teeth),
         )
 
     def right_handed(self) -> Self:

@@ -13,6 +13,7 @@ from pydantic import ValidationError
 from bounds import Direction
 from fe_contact.geometry import (
     BoreSeat,
+    FlankGrid,
     FlankModification,
     Gear,
     GearBlank,
@@ -22,6 +23,7 @@ from fe_contact.geometry import (
     PitchDeviation,
     RingGear,
     RunOut,
+    ToothFlank,
     Toothing,
     Wave,
     sliding_factor,
@@ -59,6 +61,8 @@ _PARTS: dict[str, Callable[..., object]] = {
     "seat": BoreSeat,
     "run_out": RunOut,
     "waves": Wave,
+    "tooth_flanks": ToothFlank,
+    "flank_grid": FlankGrid,
 }
 
 
@@ -101,7 +105,9 @@ def _fields(content: Json) -> Json:
 
 
 def _parts(kind: Callable[..., object], content: Json | list[Json]) -> object:
-    return tuple(kind(**each) for each in content) if isinstance(content, list) else kind(**content)
+    if isinstance(content, list):
+        return tuple(_parts(kind, each) for each in content)
+    return kind(**_fields(content))
 
 
 def pair_title(facts: PairFacts) -> str:

@@ -15,7 +15,6 @@ from bounds.types import Json
 from fe_contact.allowed_error import AllowedError
 from fe_contact.errors import FeContactError
 from fe_contact.geometry import (
-    FlankGrid,
     FlankModification,
     Gear,
     GearPair,
@@ -79,14 +78,20 @@ def _gear(kind: type[Toothed], name: str, case: Case) -> Toothed:
     hand = -kind.sign if name == "wheel" else 1
     with inside(name):
         facts = in_si(kind, gear, case.pair)
-        grid = part_of(FlankGrid, gear.flank_grid, "flank_grid")
         own = {
             "helix_angle": hand * facts["helix_angle"] + 0.0,  # -0.0 becomes 0.0
-            "modification": FlankModification(**in_si(FlankModification, gear), flank_grid=grid),
+            "modification": FlankModification(**in_si(FlankModification, gear)),
             "material": Material(**in_si(Material, gear.material or case.material)),
-            "pitch_deviation": PitchDeviation(facts["pitch_deviation"]),
+            "pitch_deviation": _pitch_deviation(gear),
         }
         return kind(**facts | own)
+
+
+def _pitch_deviation(gear: ToothingInput) -> PitchDeviation:
+    """Return the deviations that a gear states as cumulative or as single ones."""
+    if gear.single_pitch_deviation_um:
+        return PitchDeviation.of_single_pitches([value * UM for value in gear.single_pitch_deviation_um])
+    return PitchDeviation(tuple(value * UM for value in gear.pitch_deviation_um))
 
 
 def table_axes(case: Case) -> TableAxes:

@@ -65,7 +65,7 @@ _CASE = {figure.name: f"pair.{figure.field}" for figure in (*SHARED, *figures(Ge
 
 
 def _with_parts(parts: Mapping[str, Declared]) -> Iterator[type]:
-    for kind in (fact.part for fact in parts.values() if fact.part is not None):
+    for kind in (fact.part for fact in parts.values() if fact.part is not None and figures(fact.part)):
         yield kind
         yield from _with_parts(parts_of(kind))
 
@@ -91,6 +91,7 @@ def _fields_of(*kinds: type) -> dict[str, str]:
 _LAST = _fields_of(*_ANYWHERE) | {
     # gear
     "pitch_deviation": "pitch_deviation_um",
+    "single_pitch_deviation": "single_pitch_deviation_um",
     "roll_length": "roll_length_mm",
     "face_position": "face_position_mm",
     "removed": "removed_um",

@@ -11,13 +11,13 @@ from typing import Annotated, Any, Literal, TypeVar, cast
 from pydantic import Field, create_model
 
 from bounds import Choice, Declared, Interval, Kind, Unit, declarations
+from fe_contact.flank.flank_grid import FlankGrid
+from lineofaction.gearbox.schemas import flank_grid
 from lineofaction.gearbox.schemas.model import BoundaryModel, Listed
 from lineofaction.gearbox.units import BY_SUFFIX, as_typed, suffix_of
 
 Fields = Mapping[str, tuple[Any, Any]]
 Model = TypeVar("Model", bound=BoundaryModel)
-
-_MOST_PARTS = 100
 
 
 @dataclass(frozen=True)
@@ -139,17 +139,22 @@ def parts_in(parts: Mapping[str, Declared]) -> Fields:
 
 
 def _part_field(fact: Declared, part: type) -> tuple[Any, Any]:
-    example = {own.field: own.own(own.what.example) for own in figures(part)}
+    example = _EXAMPLES.get(part) or {own.field: own.own(own.what.example) for own in figures(part)}
     several = fact.kind is Kind.PARTS
     field = Field(
         default=() if several else None,
-        max_length=_MOST_PARTS if several else None,
+        max_length=fact.most if several else None,
         description=fact.description,
         examples=[[example] if several else example],
         exclude_if=operator.not_ if fact.later else None,
     )
-    model, many = _model_of(part), cast("Any", Listed)
-    return (many[model] if several else model | None), field
+    model = _MODELS.get(part) or _model_of(part)
+    return (cast("Any", Listed)[model] if several else model | None), field
+
+
+_MODELS: Mapping[type, Any] = {FlankGrid: flank_grid.FlankGridInput}
+"""The models of parts whose fields are lists."""
+_EXAMPLES: Mapping[type, Any] = {FlankGrid: flank_grid.EXAMPLE}
 
 
 @cache

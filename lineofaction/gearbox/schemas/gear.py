@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from typing import Annotated, Self
 
 from pydantic import ConfigDict, Field, model_validator
@@ -20,6 +21,7 @@ from lineofaction.gearbox.schemas.declared import (
     parts_of,
     with_fields,
 )
+from lineofaction.gearbox.schemas.flank_grid import Deviation
 from lineofaction.gearbox.schemas.model import BoundaryModel, Listed, Spelling, at_most_one_of, refuse, stated
 
 
@@ -33,11 +35,7 @@ class GearShaftInput(BoundaryModel):
     """A round shaft on two bearings that carries a gear."""
 
 
-_Deviation = Annotated[float, Field(ge=-1000.0, le=1000.0)]
-_NODES = Field(min_length=2, max_length=500)
-GridAxis = Annotated[Listed[Annotated[float, Field(ge=-10_000.0, le=10_000.0)]], _NODES]
-GridRow = Annotated[Listed[_Deviation], _NODES]
-PitchDeviations = Annotated[Listed[_Deviation], Field(max_length=4000)]
+PitchDeviations = Annotated[Listed[Deviation], Field(max_length=4000)]
 
 
 SHARED = tuple(figure for figure in figures(Toothing) if figure.name in MATING)
@@ -61,38 +59,18 @@ class _ToothingFigures(BoundaryModel):
 class ToothingInput(_ToothingFigures):
     """Fields of all gears. Modifications: > 0 is material removed, normal to the involute, transverse."""
 
-    class FlankGridInput(BoundaryModel):
-        """A free-form flank as a grid: one row of removed material per roll length."""
-
-        roll_length_mm: GridAxis = Field(
-            description="Roll lengths of the rows in mm, increasing", examples=[[4.0, 10.0, 16.0]]
-        )
-        face_position_mm: GridAxis = Field(
-            description="Distances of the columns from mid-face in mm, increasing", examples=[[-12.5, 12.5]]
-        )
-        removed_um: Listed[GridRow] = Field(
-            min_length=2,
-            max_length=500,
-            description="Material removed in um, a row per roll length",
-            examples=[[[0.0, 2.0], [0.0, 0.0], [5.0, 7.0]]],
-        )
-
-    flank_grid: FlankGridInput | None = Field(
-        default=None,
-        description="Free-form flank: material removed in addition to the amounts above",
-        examples=[
-            {
-                "roll_length_mm": [4.0, 20.0],
-                "face_position_mm": [-12.5, 12.5],
-                "removed_um": [[0.0, 0.0], [5.0, 7.0]],
-            }
-        ],
-    )
     pitch_deviation_um: PitchDeviations = Field(
         default=(),
         description="Cumulative pitch deviation F_pi (ISO 1328-1) of the loaded flank of every tooth in um, "
         "in the order of meshing; > 0: towards the mate; left out: none",
         examples=[[0.0, 3.0, 1.0, -4.0, -2.0]],
+    )
+    single_pitch_deviation_um: PitchDeviations = Field(
+        default=(),
+        description="Single pitch deviation f_pi (ISO 1328-1) of the loaded flank of every tooth to the one "
+        "before it in um, in the order of meshing, instead of F_pi; its mean is taken out; left out: none",
+        examples=[[4.0, 3.0, -2.0, -5.0, 2.0]],
+        exclude_if=operator.not_,
     )
     shaft: GearShaftInput | None = Field(
         default=None,
@@ -107,10 +85,14 @@ class ToothingInput(_ToothingFigures):
 
     @model_validator(mode="after")
     def _a_deviation_per_tooth(self) -> Self:
-        count = len(self.pitch_deviation_um)
-        if count not in (0, self.teeth):
-            bound = f"a list of {self.teeth} values, one per tooth"
-            refuse("pitch_deviation_um", f"{count} values", bound, "In the order in which the teeth mesh.")
+        for field in ("pitch_deviation_um", "single_pitch_deviation_um"):
+            count = len(getattr(self, field))
+            if count not in (0, self.teeth):
+                bound = f"a list of {self.teeth} values, one per tooth"
+                refuse(field, f"{count} values", bound, "In the order in which the teeth mesh.")
+        if self.pitch_deviation_um and self.single_pitch_deviation_um:
+            bound = "left out when pitch_deviation_um is given"
+            refuse("single_pitch_deviation_um", "given", bound, "One follows from the other.")
         return self
 
 

@@ -109,6 +109,8 @@ def test_every_field_of_the_gear_schema_reaches_the_gear() -> None:
         "tip_diameter_mm": 87.0,
         "thickness_allowance_um": 100.0,
         "pitch_deviation_um": [1.0] * 20,
+        "single_pitch_deviation_um": [1.0, *19 * [0.0]],
+        "tooth_flanks": [{"tooth": 3, "profile_slope_um": 2.0}],
         "run_out": {"eccentricity_um": 5.0},
         "waves": [{"order": 11, "amplitude_um": 0.2}],
         "tip_rounding_mm": 0.2,
@@ -424,6 +426,21 @@ def test_run_out_and_waves_arrive_in_si() -> None:
     assert pair.wheel.run_out.neutral and pair.wheel.waves == ()
 
 
+def test_flanks_of_teeth_arrive_in_si() -> None:
+    flank = {"tooth": 3, "profile_slope_um": 2.0, "helix_form_um": -1.0, "helix_form_waves": 4}
+    teeth = {
+        "tooth_flanks": [flank | {"flank_grid": INLINE}],
+        "single_pitch_deviation_um": [1.0, *19 * [0.0]],
+    }
+    pinion = gear_pair(case(**teeth)).pinion
+    (found,) = pinion.tooth_flanks
+    assert (found.tooth, found.helix_form_waves) == (3, 4)
+    assert (found.profile_slope, found.helix_form) == pytest.approx((2e-6, -1e-6), rel=1e-15)
+    assert found.flank_grid is not None
+    assert found.flank_grid.removed[1] == pytest.approx((1e-6, 2e-6), rel=1e-15)
+    assert pinion.pitch_deviation.individual[:2] == pytest.approx((0.95e-6, -0.05e-6), rel=1e-12)
+
+
 @pytest.mark.parametrize(
     ("gear", "field"),
     [
@@ -434,6 +451,21 @@ def test_run_out_and_waves_arrive_in_si() -> None:
         ({"waves": [{"order": 1, "amplitude_um": float("nan")}]}, "pair.pinion.waves[0].amplitude_um"),
         ({"waves": [{"order": 1, "amplitude_um": 0.2}] * 101}, "pair.pinion.waves"),
         ({"run_out": {"eccentricity_um": -1.0}}, "pair.pinion.run_out.eccentricity_um"),
+        ({"tooth_flanks": [{"tooth": 21}]}, "pair.pinion.tooth_flanks[0].tooth"),
+        ({"tooth_flanks": [{"tooth": 0}]}, "pair.pinion.tooth_flanks[0].tooth"),
+        (
+            {"tooth_flanks": [{"tooth": 1, "helix_slope_um": 2000.0}]},
+            "pair.pinion.tooth_flanks[0].helix_slope_um",
+        ),
+        (
+            {"tooth_flanks": [{"tooth": 1, "flank_grid": INLINE | {"removed_um": [[0, 0], [1]]}}]},
+            "pair.pinion.tooth_flanks[0].flank_grid.removed_um[1]",
+        ),
+        ({"single_pitch_deviation_um": [1.0] * 19}, "pair.pinion.single_pitch_deviation_um"),
+        (
+            {"single_pitch_deviation_um": [1.0] * 20, "pitch_deviation_um": [1.0] * 20},
+            "pair.pinion.single_pitch_deviation_um",
+        ),
     ],
 )
 def test_bad_waves_are_refused_by_the_name_of_the_case(gear: dict[str, Any], field: str) -> None:

@@ -12,7 +12,16 @@ from fe_contact.contact.model import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, Effect, Verdict, compose
 from fe_contact.effects.effect import across_face
 from fe_contact.errors import InputError
-from fe_contact.geometry import FlankModification, Gear, GearPair, PitchDeviation, RunOut, Shaft, Wave
+from fe_contact.geometry import (
+    FlankModification,
+    Gear,
+    GearPair,
+    PitchDeviation,
+    RunOut,
+    Shaft,
+    ToothFlank,
+    Wave,
+)
 
 NAMES = [effect.name for effect in EFFECTS]
 EVERYTHING_ON = dict.fromkeys(NAMES, "on")
@@ -128,6 +137,7 @@ FULL = Gear(
     modification=FlankModification(tip_relief=20e-6, tip_relief_length=2e-3, helix_crowning=5e-6),
     run_out=RunOut(eccentricity=5e-6),
     waves=(Wave(11, 2e-7),),
+    tooth_flanks=(ToothFlank(3, profile_slope=2e-6),),
 )
 SHAFT = Shaft(length=0.2, diameter=0.04, position=0.06)
 FULL_SCENE = ContactScene(

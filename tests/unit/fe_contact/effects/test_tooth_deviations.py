@@ -1,8 +1,9 @@
-"""What turns with a gear: run-out, wobble and waves, against the closed forms of stiff teeth."""
+"""What turns with a gear: run-out, waves, flanks of teeth, against the closed forms of stiff teeth."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,7 +15,19 @@ from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact.model import ContactModel, MeetingTeeth
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.effects.tooth_deviations import sharpest_crest
-from fe_contact.geometry import Gear, GearPair, InternalGearPair, RingGear, RunOut, Wave
+from fe_contact.errors import InputError
+from fe_contact.geometry import (
+    FlankGrid,
+    FlankModification,
+    Gear,
+    GearPair,
+    InternalGearPair,
+    PitchDeviation,
+    RingGear,
+    RunOut,
+    ToothFlank,
+    Wave,
+)
 from fe_contact.planning.plan import make_plan
 from fe_contact.ste.curve_quantities import Spectrum
 
@@ -126,8 +139,115 @@ def test_a_gear_that_turns_back_shows_the_same_flanks_the_other_way():
     assert np.abs(turned[:, ::-1] - found).max() < 1e-6 * AMPLITUDE
 
 
+GRID = FlankGrid((3e-3, 9e-3, 40e-3), (-10e-3, 10e-3), ((2e-6, 0.0), (0.0, 1e-6), (3e-6, 5e-6)))
+
+FINE = FlankGrid(*(np.linspace(1e-4, 9e-3, 120),) * 2, np.zeros((120, 120)))
+
+
+def of_teeth(pair, index, own, face=FACE, position=POSITION):
+    """Roll lengths and faces on one gear where all teeth touch, and the number of the tooth from 0."""
+    meeting = np.rint(position)[:, None] + np.arange(-2, 3)
+    roll = pair.path_of_contact.pitch_point + (position[:, None] - meeting) * pair.base_pitch
+    roll_1 = roll[:, :, None] - face * math.tan(pair.base_helix_angle)
+    rolls = roll_1, pair.mating_roll_length(roll_1)
+    return *np.broadcast_arrays(rolls[index], face), meeting[:, :, None].astype(int) % own.teeth
+
+
+@pytest.mark.parametrize("kind", ["spur", "helical", "internal"])
+@pytest.mark.parametrize("index", [PINION, WHEEL])
+@pytest.mark.parametrize(
+    "deviation", [{"profile_slope": 3e-6}, {"helix_slope": -2e-6}, {"flank_grid": GRID}], ids=" ".join
+)
+def test_teeth_that_deviate_alike_are_a_modification(kind, index, deviation):
+    """Where all teeth have it, the deviation removes what the modification of that name does."""
+    own = {"flank_grid": GRID} if "flank_grid" in deviation else {k: -v for k, v in deviation.items()}
+    flanks = tuple(ToothFlank(tooth, **deviation) for tooth in range(1, TEETH[index] + 1))
+    pair = pair_of(kind, index, tooth_flanks=flanks)
+    gear = (pair.pinion, pair.wheel)[index]
+    found, model = gaps(pair, POSITION, FACE)
+    roll, face, _ = of_teeth(pair, index, gear)
+    assert model.period == 1
+    designed = FlankModification(**own).material_removed(gear, roll, face)
+    assert np.abs(found - designed).max() < 1e-6 * 1e-6
+
+
+@pytest.mark.parametrize("index", [PINION, WHEEL])
+def test_a_tooth_deviates_alone(index):
+    """Slopes and forms of one tooth, in u and v from -1 to 1, and nothing on the others."""
+    flank = ToothFlank(5, 3e-6, -1e-6, 0, 2e-6, 4e-6, 3)
+    pair = pair_of("helical", index, tooth_flanks=(flank,))
+    gear = (pair.pinion, pair.wheel)[index]
+    found, model = gaps(pair, POSITION, FACE)
+    roll, face, tooth = of_teeth(pair, index, gear)
+    form, tip = gear.form_roll_length, gear.tip_roll_length
+    u = np.clip((roll - 0.5 * (form + tip)) / (0.5 * (tip - form)), -1.0, 1.0)
+    v = face / 15e-3
+    excess = 1.5e-6 * u - 1e-6 * (1 / 3 - u**2) + 1e-6 * v + 2e-6 * np.cos(3 * math.pi * v)
+    assert model.period == TEETH[index]
+    assert np.abs(found + np.where(tooth == 4, excess, 0.0)).max() < 1e-6 * 1e-6
+
+
+@pytest.mark.parametrize("waves", [0, 1, 4])
+def test_a_form_deviation_has_its_height_and_leaves_slope_and_place(waves):
+    """What an inspection splits off a profile comes back: the mean line of a form is zero."""
+    pair = pair_of("spur", PINION, tooth_flanks=(ToothFlank(1, profile_form=2e-6, profile_form_waves=waves),))
+    ends = pair.pinion.form_roll_length, pair.pinion.tip_roll_length
+    roll = np.linspace(*ends, 20001)
+    model, _ = compose(ContactScene(pair, np.array([100.0]), EFFECTS), {})
+    shape = model.gap_of_teeth(
+        MeetingTeeth(pair, np.array(0), roll, pair.mating_roll_length(roll), np.zeros(1))
+    )
+    slope, mean = np.polyfit(np.linspace(-1.0, 1.0, roll.size), shape, 1)
+    assert np.ptp(shape) == pytest.approx(2e-6, rel=1e-6)
+    assert abs(slope) < 1e-9 * 1e-3 and abs(mean) < 1e-9 * 1e-1
+
+
+def test_single_pitches_add_up_and_close_the_circle():
+    """The mean is taken out; the differences of the sum are the deviations that went in."""
+    single = np.random.default_rng(4).normal(0.0, 3e-6, 23)
+    found = PitchDeviation.of_single_pitches(single.tolist())
+    assert found.individual == pytest.approx(single - single.mean(), rel=1e-12, abs=1e-18)
+    assert found.cumulative[-1] == pytest.approx(0.0, abs=1e-18)
+    assert PitchDeviation.of_single_pitches(found.individual).individual == pytest.approx(found.individual)
+    assert PitchDeviation.of_single_pitches(()).neutral
+
+
+def test_a_gear_that_turns_back_shows_the_same_teeth_in_the_other_order():
+    flanks = tuple(ToothFlank(tooth, 1e-6 * tooth, helix_slope=1e-7 * tooth) for tooth in (1, 2, 5))
+    pair = pair_of("helical", WHEEL, tooth_flanks=flanks)
+    found, _ = gaps(pair, POSITION, FACE)
+    turned, _ = gaps(pair.swapped(), -POSITION, FACE)
+    assert np.abs(turned[:, ::-1] - found).max() < 1e-6 * 1e-6
+
+
+@pytest.mark.parametrize(
+    ("flanks", "field"),
+    [
+        ((ToothFlank(24, 1e-6),), "tooth_flanks[0].tooth"),
+        ((ToothFlank(1, 1e-6), ToothFlank(1, 1e-6)), "tooth_flanks[1].tooth"),
+        (
+            (ToothFlank(1, flank_grid=replace(GRID, roll_length=(1.0, 1.1, 1.2))),),
+            "tooth_flanks[0].flank_grid.roll_length",
+        ),
+        (tuple(ToothFlank(k, flank_grid=FINE) for k in range(1, 24)), "tooth_flanks"),
+    ],
+    ids=["no such tooth", "twice", "beside", "too many nodes"],
+)
+def test_flanks_of_no_tooth_are_refused(flanks, field):
+    with pytest.raises(InputError) as caught:
+        gear(23, tooth_flanks=flanks)
+    assert caught.value.field == field
+
+
+def test_a_plane_refuses_what_varies_along_the_face(tmp_path):
+    pair = pair_of("spur", PINION, tooth_flanks=(ToothFlank(1, helix_slope=1e-6),))
+    with pytest.raises(InputError) as caught:
+        analyze(pair, torques=[100.0], level="draft", model="plane_strain", cache=tmp_path)
+    assert caught.value.field == "pinion.tooth_flanks"
+
+
 def test_nothing_named_adds_nothing():
-    pair = pair_of("helical", PINION, run_out=RunOut(), waves=(Wave(11, 0.0),))
+    pair = pair_of("helical", PINION, run_out=RunOut(), waves=(Wave(11, 0.0),), tooth_flanks=(ToothFlank(3),))
     model, ledger = compose(ContactScene(pair, np.array([100.0]), EFFECTS), {})
     assert model.tooth_gaps == ContactModel().tooth_gaps
     (entry,) = [entry for entry in ledger if entry.name == "tooth_deviations"]
@@ -181,6 +301,28 @@ def test_under_any_load_an_eccentric_gear_adds_its_turned_eccentricity(solved, p
     run_out = RunOut(eccentricity=1e-7, eccentricity_angle=ANGLE)
     found = solved(pair_of("spur", PINION, run_out=run_out))
     assert np.abs(found - plain + 1e-7 * np.cos(TURN - ANGLE)[:, None]).max() < 1e-3 * 1e-7
+
+
+def test_under_light_load_a_tooth_that_stands_out_is_followed(solved):
+    """Early by its pitch it carries alone: the STE is its flank as it passes, and that of the others none."""
+    early = PitchDeviation(tuple(np.where(np.arange(23) == 5, 5e-6, 0.0)))
+    flank = ToothFlank(6, profile_slope=2e-7, profile_form=-1e-7)
+    plain, shaped = (
+        solved(pair_of("spur", PINION, pitch_deviation=early, tooth_flanks=flanks))[:, 0].reshape(23, -1)
+        for flanks in ((), (flank,))
+    )
+    pair = pair_of("spur", PINION)
+    position = np.arange(-4, 4) / 8
+    roll = pair.path_of_contact.pitch_point + position * pair.base_pitch
+    u = (
+        2.0
+        * (roll - pair.pinion.form_roll_length)
+        / (pair.pinion.tip_roll_length - pair.pinion.form_roll_length)
+        - 1.0
+    )
+    change = (shaped - plain).ravel()[5 * 8 - 4 : 5 * 8 + 4]
+    assert np.abs(change + 1e-7 * u - 1e-7 * (1 / 3 - u**2)).max() < 2e-3 * 1e-7
+    assert np.abs((shaped - plain)[8:]).max() == 0.0
 
 
 @pytest.mark.parametrize("order", [11, 23 + 11])

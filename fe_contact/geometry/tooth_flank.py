@@ -1,0 +1,191 @@
+"""Flanks of single teeth: slope and form of profile and helix, and measured surfaces (ISO 1328-1)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Hashable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bounds import Declared, Kind, between, declared, described, inside, integers, required
+from fe_contact.errors import InputError, declared_fields
+from fe_contact.flank.flank_grid import FlankGrid
+from fe_contact.flank.over_flank import SURFACE, check_reach
+from fe_contact.types import FloatArray, IntArray
+
+if TYPE_CHECKING:
+    from fe_contact.flank.part import Tooth
+
+_LARGEST = 1e-3  # m; larger deviations are micrometers stated as meters
+MOST_TEETH = 4000
+MOST_NODES = 250_000
+"""Nodes of the surfaces of all teeth of a gear."""
+
+
+def _deviation(words: str, example: float) -> Declared:
+    return Declared(Kind.LENGTH, "m", between(-_LARGEST, _LARGEST), words, example, written="um", later=True)
+
+
+def _waves(along: str) -> Declared:
+    words = f"Waves of the form deviation over the {along}, a crest in its middle; 0: a parabola"
+    return Declared(Kind.COUNT, "", integers(0, 50), words, 0, later=True)
+
+
+_TOOTH = "Number of the tooth in the order of meshing; 1 is that of pair 0 at position 0"
+_SLOPE = "Slope deviation {} over the {}; > 0: half of it in excess at {}, half missing at the other end"
+_FORM = "Form deviation {} over the {}, the height of its shape; > 0: in excess in the middle"
+_GRID = replace(
+    SURFACE,
+    description="Surface of this tooth, removed from it alone, besides the amounts and the modifications",
+    later=True,
+)
+
+
+@described
+@dataclass(frozen=True)
+class ToothFlank:
+    """Deviation of the loaded flank of one tooth from the designed flank; > 0 is material in excess.
+
+    Raises
+    ------
+    InputError
+        A value out of its bounds.
+    """
+
+    tooth: int = required(Declared(Kind.COUNT, "", integers(1, MOST_TEETH), _TOOTH, 1))
+    profile_slope: float = declared(
+        0.0, _deviation(_SLOPE.format("f_Halpha", "usable profile", "the tip"), 3e-6)
+    )
+    profile_form: float = declared(0.0, _deviation(_FORM.format("f_falpha", "usable profile"), 2e-6))
+    profile_form_waves: int = declared(0, _waves("usable profile"))
+    helix_slope: float = declared(
+        0.0, _deviation(_SLOPE.format("f_Hbeta", "face width", "the end of larger z"), 3e-6)
+    )
+    helix_form: float = declared(0.0, _deviation(_FORM.format("f_fbeta", "face width"), 2e-6))
+    helix_form_waves: int = declared(0, _waves("face width"))
+    flank_grid: FlankGrid | None = declared(None, _GRID)
+
+    def __post_init__(self) -> None:
+        declared_fields(self)
+
+    @property
+    def neutral(self) -> bool:
+        """Whether the flank is as designed."""
+        return not (any(self._amounts) or self._surface)
+
+    @property
+    def varies_along_face(self) -> bool:
+        """Whether it differs over the face width."""
+        across = bool(self._surface) and self._surface[0].varies_along_face
+        return bool(self.helix_slope or self.helix_form or across)
+
+    @property
+    def largest(self) -> float:
+        """Bound of the deviation, m."""
+        grids = (abs(value) for grid in self._surface for row in grid.removed for value in row)
+        slopes = 0.5 * (abs(self.profile_slope) + abs(self.helix_slope))
+        return slopes + abs(self.profile_form) + abs(self.helix_form) + max(grids, default=0.0)
+
+    @property
+    def shape(self) -> Hashable:
+        """What teeth have in common that are alike."""
+        return None if self.neutral else replace(self, tooth=1)
+
+    @property
+    def hollow(self) -> float:
+        """Largest curvature by which slope and form make the profile hollow, per square of `coordinates`."""
+        waves = math.pi * self.profile_form_waves
+        return 0.5 * waves**2 * abs(self.profile_form) if waves else 2.0 * max(-self.profile_form, 0.0)
+
+    @property
+    def _amounts(self) -> tuple[float, ...]:
+        return self.profile_slope, self.profile_form, self.helix_slope, self.helix_form
+
+    @property
+    def _surface(self) -> tuple[FlankGrid, ...]:
+        return () if self.flank_grid is None or self.flank_grid.neutral else (self.flank_grid,)
+
+
+def coordinates(gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> tuple[FloatArray, ...]:
+    """Return u, v of points on the flank: from -1 at the form circle to 1 at the tip, and over the face."""
+    form, tip = gear.form_roll_length, gear.tip_roll_length
+    u = (2.0 * roll_length - form - tip) / (tip - form)
+    return np.clip(u, -1.0, 1.0), 2.0 * face_position / gear.face_width
+
+
+def flanks_excess(
+    gear: Tooth, flanks: Sequence[ToothFlank], tooth: IntArray, roll_length: FloatArray, face: FloatArray
+) -> FloatArray:
+    """Return how far flanks of teeth stand towards the mate, m.
+
+    Parameters
+    ----------
+    tooth : ndarray of int
+        Teeth in the order of meshing, the first is 0; those without an entry are as designed.
+    roll_length, face : ndarray
+        Where on them, m; `face` from mid-face. All broadcast.
+    """
+    tooth, roll_length, face = np.broadcast_arrays(tooth, roll_length, face)
+    u, v = coordinates(gear, roll_length, face)
+    amounts = np.zeros((6, max(int(tooth.max(initial=0)) + 1, *(flank.tooth for flank in flanks))))
+    for flank in flanks:
+        amounts[:, flank.tooth - 1] = (
+            *(flank.profile_slope, flank.profile_form, flank.profile_form_waves),
+            *(flank.helix_slope, flank.helix_form, flank.helix_form_waves),
+        )
+    profile_slope, profile_form, profile_waves, helix_slope, helix_form, helix_waves = amounts[:, tooth]
+    excess = 0.5 * (profile_slope * u + helix_slope * v)
+    excess += _form(profile_form, profile_waves, u) + _form(helix_form, helix_waves, v)
+    for flank in flanks:
+        on = tooth == flank.tooth - 1
+        if flank.flank_grid is not None and on.any():
+            roll = 0.5 * (u[on] * (gear.tip_roll_length - gear.form_roll_length))
+            roll += 0.5 * (gear.tip_roll_length + gear.form_roll_length)
+            excess[on] -= flank.flank_grid.material_removed(roll, face[on])
+    return np.asarray(excess)
+
+
+def _form(height: FloatArray, waves: FloatArray, at: FloatArray) -> FloatArray:
+    """Return shapes of this height whose mean line over -1 to 1 is zero: a measurement splits them so."""
+    shape = np.where(waves == 0.0, 1.0 / 3.0 - at**2, 0.5 * np.cos(math.pi * waves * at))
+    return np.asarray(height * shape)
+
+
+def repeats_after(values: tuple[Hashable, ...]) -> int:
+    """Return the least number of entries after which a closed sequence repeats."""
+    count = len(values)
+    periods = (n for n in range(1, count) if count % n == 0 and values == values[:n] * (count // n))
+    return next(periods, max(count, 1))
+
+
+def flanks_period(flanks: Collection[ToothFlank], teeth: int) -> int:
+    """Return the number of teeth after which their flanks repeat."""
+    shapes: list[Hashable] = [None] * teeth
+    for flank in flanks:
+        shapes[flank.tooth - 1] = flank.shape
+    return repeats_after(tuple(shapes))
+
+
+def check_flanks(gear: Tooth, flanks: Sequence[ToothFlank], teeth: int) -> None:
+    """Refuse flanks of teeth that the gear does not have or that come twice, and surfaces beside them."""
+    seen: set[int] = set()
+    nodes = 0
+    for index, flank in enumerate(flanks):
+        with inside(f"tooth_flanks[{index}]"):
+            if flank.tooth > teeth:
+                raise InputError("tooth", flank.tooth, f"at most {teeth}, the number of teeth")
+            if flank.tooth in seen:
+                raise InputError("tooth", flank.tooth, "another tooth in every entry", "Add both up.")
+            if flank.flank_grid is not None:
+                check_reach(flank.flank_grid, gear)
+                nodes += len(flank.flank_grid.roll_length) * len(flank.flank_grid.face_position)
+        seen.add(flank.tooth)
+    if nodes > MOST_NODES:
+        raise InputError("tooth_flanks", f"{nodes} nodes", f"at most {MOST_NODES} nodes of all surfaces")
+
+
+def turned_back(flanks: Sequence[ToothFlank], teeth: int) -> tuple[ToothFlank, ...]:
+    """Return the flanks in the order of the other sense of rotation; the first tooth stays."""
+    return tuple(replace(flank, tooth=(1 - flank.tooth) % teeth + 1) for flank in flanks)
