@@ -9,12 +9,10 @@ from typing import NamedTuple, TypeVar
 
 from bounds import engineering
 from host import memory_figure, peak_memory
-from model_studies.progress import Progress
+from model_studies.progress import ANNOUNCED, Progress
 from model_studies.workers import InProcess, Workers, spent
 
 Result = TypeVar("Result")
-ANNOUNCED = 3.0
-"""CPU seconds from which on a cost is reported before the work begins."""
 
 
 class Cost(NamedTuple):

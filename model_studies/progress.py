@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from bounds import engineering
+
 Progress = Callable[[str, float], None]
 """Called as progress(stage, fraction); behind a semicolon the stage may say more, see `stage_name`."""
 
@@ -14,6 +16,23 @@ Report = Callable[[float], None]
 def stage_name(reported: str) -> str:
     """Return the name of a stage without what is said of it behind a semicolon."""
     return reported.partition(";")[0]
+
+
+ANNOUNCED = 3.0
+"""CPU seconds from which on a cost is reported before the work begins."""
+
+
+def announce(progress: Progress, stage: str, seconds: float, subject: str = "") -> None:
+    """Report what a stage will take before it begins, behind its name, if that is more than a moment.
+
+    Parameters
+    ----------
+    progress : callable
+        Called as progress("pairs; 200 before and after: about 25 CPU s", 0.0).
+    """
+    if seconds > ANNOUNCED:
+        of = f"{subject}: " if subject else ""
+        progress(f"{stage}; {of}about {engineering(seconds, 2)} CPU s", 0.0)
 
 
 def silent(_stage: str, _fraction: float) -> None:

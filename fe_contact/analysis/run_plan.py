@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import NamedTuple
 
 from bounds import engineering
 from fe_contact.analysis.checks.effect_ledger import effect_ledger
@@ -13,7 +14,7 @@ from fe_contact.analysis.request.request_check import as_checked
 from fe_contact.errors import positive
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import LEVELS, AnalysisOptions, TableAxes
-from fe_contact.planning.cost_model import Prediction
+from fe_contact.planning.cost_model import Prediction, predict_run
 from fe_contact.planning.plan import Plan
 from fe_contact.planning.planned import ExpectedCurves, ExpectedError, MeshChoice, expected_error
 from fe_contact.types import Json
@@ -126,6 +127,49 @@ def plan_run(
     if budget is not None and (options.tolerance is not None or options.level is not None):
         conflict = _conflict(decided, positive("time_budget", budget, "Seconds."), cache)
     return RunPlan(checked, choice, decided.plan, chosen, tuple(levels), conflict, cache)
+
+
+_DESIGN = 0.75
+"""A solution at equally spaced positions over the table of a search: 0.55 to 1.0 in sweeps of two pairs."""
+
+
+class PredictedDesigns(NamedTuple):
+    """CPU seconds of other flanks, loads and alignments on the same gears.
+
+    Attributes
+    ----------
+    bodies : float
+        To condense both gears, coarse meshes too.
+    design : float
+        One pair of flanks at one alignment, all loads at once.
+    errors : float
+        The solutions that measure the errors of one.
+    across_face : bool
+        Whether the gears are those of three dimensions.
+    """
+
+    bodies: float
+    design: float
+    errors: float
+    across_face: bool
+
+
+def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
+    """Predict what is solved on condensed gears; nothing is meshed.
+
+    Parameters
+    ----------
+    checked : Checked
+        The request whose loads every design is solved at.
+    cache : Path, optional
+        Of flank compliances: what is in it costs nothing.
+    """
+    decided = decide(checked, cache, tried=True)
+    pair, model = decided.checked.request.pair, decided.checked.model
+    parts = predict_run(pair, decided.plan, model, (1, 1), cache).parts
+    bodies = parts["compliance"]["bodies"] + parts["error estimate"]["bodies"]
+    design = _DESIGN * parts["contact"]["table"]
+    return PredictedDesigns(bodies, design, parts["error estimate"]["solutions"], model.across_face)
 
 
 def _decided(decided: Decided, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:

@@ -35,7 +35,7 @@ from fe_contact.planning.plan import MOST_ROWS, FaceDiscretization, NodeRule, Pl
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import BoolArray, FloatArray, IntArray, Status
-from model_studies.progress import Report, by_cost, unreported
+from model_studies.progress import Report, announce, by_cost, unreported
 from model_studies.stage_clock import StageClock
 from model_studies.workers import InProcess, pays
 
@@ -254,6 +254,7 @@ def solve_table(
         run = run if pays(run.workers, prediction.cpu_seconds) else replace(run, workers=InProcess())
     known = before.places.nominal if before is not None and _same_bodies(before.plan, plan) else None
     run.on_plan(prediction.stages)
+    announce(run.progress, "compliance", prediction.cpu_seconds, "table")
     report = partial(run.progress, "compliance")
     nominal = condensed_bodies(checked, plan, clock, run, known=known, report=report)
     points = operating_points(request.scene, request.choices, nominal, run.workers)

@@ -119,7 +119,7 @@ def run_analyze(
 ) -> None:
     """Compute, write, print."""
     case = assessed_case(file)
-    output = output_of(named, file, f"{file.path.stem}.nc")
+    output = output_of(named, file.project, f"{file.path.stem}.nc")
     check_netcdf_output(output)
     with open_executor(*executor) as workers, progress_bar() as report:
         database = analyzed(case, report, workers)

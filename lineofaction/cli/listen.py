@@ -13,10 +13,11 @@ from dynamics.acoustics import Recording, wav_file
 from dynamics.results import RunResult
 from host.directories import cache_home
 from lineofaction.cli.guard import warn
-from lineofaction.cli.output import check_writable, console, print_json, progress_bar, table
+from lineofaction.cli.output import check_writable, console, output_of, print_json, progress_bar, table
 from lineofaction.cli.subjects import assessed_scene
 from lineofaction.gearbox.convert.housings import HousedScene, housings_in
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.project import SOUND, run_in
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.listen import SoundPressure
@@ -172,8 +173,8 @@ def _cells(figures: SoundFigures) -> dict[str, str]:
 
 
 def run_listen(
-    files: Sequence[Path],
-    output: Path,
+    named: Sequence[Path],
+    target: Path | None,
     view: RunView,
     *,
     scene: Path | None,
@@ -183,6 +184,8 @@ def run_listen(
 ) -> None:
     """Read the runs, write a WAV file of each on one full scale, print what they hold."""
     receiver = _receiver(scene, point, microphone)
+    output = output_of(target, next((name for name in named if name.is_dir()), None), SOUND)
+    files = [run_in(name) for name in named]
     paths = _outputs(files, output)
     runs = {name: read_run(file, "runs") for name, file in named_files(files)}
     if scene is None or receiver is None:

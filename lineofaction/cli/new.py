@@ -6,13 +6,12 @@ import math
 import sys
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 
 from lineofaction.cli.guard import warn
 from lineofaction.cli.options import PairWishes
-from lineofaction.cli.output import check_writable, console, print_json, table
+from lineofaction.cli.output import check_writable, console, print_json
 from lineofaction.cli.pair_sketch import (
     LOAD,
     PLANETS,
@@ -27,7 +26,6 @@ from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
 from lineofaction.gearbox.from_rexs.account import FATES, Assumption
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.project import status_of
 from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.plan import left_out_warnings
@@ -418,19 +416,6 @@ def run_open(file: Path, out: Path | None, assume: Sequence[str] = (), *, as_jso
     _show_unit(unit, counts, written)
     if left_out:
         console().print(left_out, soft_wrap=True)
-
-
-def run_status(folder: Path, *, as_json: bool) -> None:
-    """Print the state of the results of a folder."""
-    if not folder.is_dir():
-        raise BadInput.of("folder", str(folder), "a folder", "Make one with: loa open UNIT.rexs")
-    states = status_of(folder)
-    if as_json:
-        print_json({"results": [asdict(state) for state in states]})
-        return
-    rows = [[state.state, state.name, f"loa {state.verb}"] for state in states]
-    head = ["state", "result", "made by"]
-    console().print(table(head, rows, words=head))
 
 
 def _write_unit(unit: OpenedUnit, folder: Path) -> list[Path]:

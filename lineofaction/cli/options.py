@@ -80,6 +80,10 @@ _SHORTHANDS: Mapping[str, tuple[str, tuple[str, ...]]] = {
 """Option to the path it sets, and those that it leaves out."""
 
 
+_OF_ONE = ("output", "json", "csv")
+"""Options that hold one file, or one object, for one case."""
+
+
 def file_argument(text: str, metavar: str) -> Any:
     """Return the argument of a case or scene file."""
     return typer.Argument(
@@ -119,14 +123,20 @@ def overridable(argument: str, subject: str = "case") -> Callable[[Callable[...,
         @functools.wraps(verb)
         def run(**options: Any) -> R:
             typed = {option.name: options.pop(option.name, None) for option in added}
-            from lineofaction.gearbox.project import file_of  # noqa: PLC0415 (start-up time)
+            from lineofaction.gearbox.project import files_of, only  # noqa: PLC0415 (start-up time)
 
             named, overrides = options[argument], _overrides(typed)
             several = isinstance(named, list)
-            files = [file_of(file, subject) for file in (named if several else [named])]
+            files = [own for file in (named if several else [named]) for own in files_of(file, subject)]
             read = [replace(file, overrides=overrides) for file in files]
-            options[argument] = read if several else read[0]
-            return verb(**options)
+            if several:
+                return verb(**options | {argument: read})
+            if any(options.get(name) for name in _OF_ONE):
+                only(read, named.path, subject)
+            *others, last = read  # of a folder each of its cases
+            for file in others:
+                verb(**options | {argument: file})
+            return verb(**options | {argument: last})
 
         return with_parameters(run, [*own, *added])
 

@@ -24,7 +24,6 @@ from rich.progress import (
 from rich.table import Table
 
 from lineofaction.cli.guard import warnings_so_far
-from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from model_studies.progress import silent, stage_name
 
@@ -111,24 +110,26 @@ def progress_bar() -> Iterator[Report]:
     clocks = (TimeElapsedColumn(), TimeRemainingColumn(), TextColumn("left"))
     with Progress(*columns, *clocks, console=Console(stderr=True)) as bars:
         tasks: dict[str, TaskID] = {}
+        said: dict[str, str] = {}  # a cost that was announced stays
 
         def report(stage: str, fraction: float) -> None:
             name = stage_name(stage)
             if name not in tasks:
                 tasks[name] = bars.add_task(stage, total=1.0)
-            bars.update(tasks[name], description=stage, completed=min(max(fraction, 0.0), 1.0))
+            said[name] = stage if stage != name else said.get(name, stage)
+            bars.update(tasks[name], description=said[name], completed=min(max(fraction, 0.0), 1.0))
 
         yield report
 
 
-def output_of(output: Path | None, file: InputFile, name: str) -> Path:
+def output_of(output: Path | None, project: Path | None, name: str) -> Path:
     """Return the output that is named, else the file of a name in the project of what was read.
 
     Raises `BadInput`: neither.
     """
-    if output is None and file.project is None:
+    if output is None and project is None:
         raise BadInput.of("output", None, "a file to write", "Give one with -o, or name a folder to work in.")
-    return output or (file.project or Path()) / name
+    return output or (project or Path()) / name
 
 
 def check_writable(output: Path) -> None:

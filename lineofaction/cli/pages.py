@@ -22,7 +22,7 @@ from lineofaction.cli.subjects import assessed_case
 from lineofaction.gearbox.convert.case import CheckedCase, case_at
 from lineofaction.gearbox.input_file import InputFile, number_list
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.project import about, file_of, results_in
+from lineofaction.gearbox.project import about, file_of, results_by_part, results_in
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.result_files import stamped
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
@@ -126,36 +126,51 @@ def run_report(
     flank: bool,
     as_json: bool,
 ) -> None:
-    """Write the page; draw the pictures and compute the flank results if requested."""
+    """Write the page, of a folder with several cases one for each and one for the rest.
+
+    Draw the pictures and compute the flank results if requested.
+    """
     projects = [name for name in named if name.is_dir()]
     block = options.about or next(filter(None, map(about, projects)), None)
     told = None if block is None else about_of(block)
-    files = [file for name in named for file in (results_in(name) if name.is_dir() else [name])]
-    output = page or next(iter(projects), Path()) / "report.html"
-    for file in files:
+    pages = _pages(named, page)
+    for file in (file for files in pages.values() for file in files):
         if not file.is_file():
             raise BadInput.of("file", str(file), "a file of results", "Check the path.")
-    check_writable(output)
-    read = replace(read_inputs(files), view=view)
-    warn(warning for file in files for warning in stamped(file))
-    spent = 0.0
-    if flank:
-        with progress_bar() as report:
-            found = _flanks(read, report)
-        flanks = page_beside(STUDIES["flank"], found, read.database)
-        read = replace(read, pages={**read.pages, "flanks": flanks})
-        spent = found.metadata.receipt["cpu_seconds"]
-    whole = titled(page_of(read), told)
-    written = write_whole(whole, output, options.images, still_only=options.still)
+    written = []
+    for output, files in pages.items():
+        check_writable(output)
+        read = replace(read_inputs(files), view=view)
+        warn(warning for file in files for warning in stamped(file))
+        whole = titled(page_of(_with_flanks(read, quiet=as_json) if flank else read), told)
+        written += write_whole(whole, output, options.images, still_only=options.still)
+        for words in (*whole.alarms, *(whole.block.verdicts if whole.block else ())):
+            if not as_json:
+                console().print(words, soft_wrap=True)
     if as_json:
-        print_json({"file": str(output), "written": [str(path) for path in written]})
+        print_json({"file": str(next(iter(pages))), "written": [str(path) for path in written]})
         return
-    for words in (*whole.alarms, *(whole.block.verdicts if whole.block else ())):
-        console().print(words, soft_wrap=True)
-    if flank:
-        console().print(f"flank results {engineering(spent, 3)} CPU s")
     for path in written:
         console().print(f"written to {path}", soft_wrap=True)
+
+
+def _pages(named: Sequence[Path], page: Path | None) -> dict[Path, list[Path]]:
+    """Return the results of each page."""
+    if page is None and len(named) == 1 and named[0].is_dir() and (by_part := results_by_part(named[0])):
+        return {named[0] / f"{part or 'report'}.html": files for part, files in by_part.items()}
+    files = [file for name in named for file in (results_in(name) if name.is_dir() else [name])]
+    folder = next((name for name in named if name.is_dir()), Path())
+    return {page or folder / "report.html": files}
+
+
+def _with_flanks(read: Inputs, *, quiet: bool) -> Inputs:
+    """Return inputs with the flank results that belong to their table."""
+    with progress_bar() as report:
+        found = _flanks(read, report)
+    if not quiet:
+        console().print(f"flank results {engineering(found.metadata.receipt['cpu_seconds'], 3)} CPU s")
+    flanks = page_beside(STUDIES["flank"], found, read.database)
+    return replace(read, pages={**read.pages, "flanks": flanks})
 
 
 def _flanks(read: Inputs, report: Report) -> LoadDistribution:

@@ -16,6 +16,7 @@ from bounds.types import Json
 from fe_contact.solver_version import SOLVER_VERSION
 from host import cpu_seconds
 from host.directories import cache_home
+from lineofaction.cli.costs import study_seconds
 from lineofaction.cli.guard import messages, until_interrupted, warn, warnings_so_far
 from lineofaction.cli.output import (
     Report,
@@ -47,6 +48,7 @@ from lineofaction.report.document import read_run, write_whole
 from lineofaction.report.document import write as write_result
 from lineofaction.report.presentation import presentation_of
 from lineofaction.report.title_block import titled
+from model_studies.progress import announce
 from model_studies.workers import Remembering, Workers
 from model_studies.workers.remembering import content_digest
 from service.version import solver_version
@@ -88,10 +90,11 @@ def run_study(study: Study, options: Json) -> None:
             if isinstance(narrowed, CheckedCase):  # what is implausible about a scene is said with its tables
                 warn(case_warnings(narrowed))
             subjects.append((narrowed, folder))
-    targets = _targets(study, options["output"], files[0].project)
+    targets = _targets(study, options["output"], files[0])
     for subject, _ in subjects:
         study.run.check(subject, inputs)
     written = [subject.case if isinstance(subject, CheckedCase) else subject for subject, _ in subjects]
+    expected = [study_seconds(study, subject, folder, inputs) for subject, folder in subjects]
     runs = targets[0].with_name(f"{targets[0].stem}_runs") if targets else None
     stopping = until_interrupted if study.run.interruptible else nullcontext
     with (
@@ -100,6 +103,8 @@ def run_study(study: Study, options: Json) -> None:
         progress_bar() as report,
         stopping() as cancel,
     ):
+        if None not in expected:
+            announce(report, study.stages[0][0], sum(filter(None, expected)), f"loa {study.name}")
         means = Means(cache_home(), report, workers, cancel, runs, run)
         results = [
             study.run.compute(_made(subject, folder, options.get("service"), report, workers), inputs, means)
@@ -193,10 +198,10 @@ def _names(study: Study, files: Sequence[InputFile]) -> list[str]:
     return [str(file) for file in files] if len(set(names)) < len(names) else names
 
 
-def _targets(study: Study, output: Path | None, project: Path | None) -> list[Path]:
+def _targets(study: Study, output: Path | None, file: InputFile) -> list[Path]:
     """Return the files to write; raises `BadInput` if one cannot be."""
-    if output is None and project is not None:
-        result = project / result_name(study)
+    if output is None and file.project is not None:
+        result = file.project / result_name(study, "" if study.several else file.part)
         output = result.parent if study.folder else result
     if output is None:
         return []

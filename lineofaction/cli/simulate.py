@@ -25,6 +25,7 @@ from lineofaction.cli.subjects import assessed_scene, tabled_scene
 from lineofaction.gearbox.convert.effects import run_lines
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput, JobFailed
+from lineofaction.gearbox.project import RUN
 from lineofaction.gearbox.result_files import run_json, stamp, stamp_complaint
 from lineofaction.gearbox.stages import staged
 from lineofaction.gearbox.studies.excitations import facts_of_scene
@@ -67,7 +68,7 @@ def run_simulate(
 ) -> None:
     """Gather the tables, integrate here into the file, print."""
     scene, folder = assessed_scene(file)
-    output = output_of(named, file, "run.nc")
+    output = output_of(named, file.project, RUN)
     check_netcdf_output(output)
     if resume and not interrupted_run(output).is_dir():
         advice = "There is none. Omit --resume to start a run."

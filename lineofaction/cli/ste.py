@@ -16,6 +16,7 @@ from lineofaction.cli.guard import warn
 from lineofaction.cli.output import console, csv_text, print_json, table
 from lineofaction.gearbox.convert.answers import curve_json
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.project import only, tables_in
 
 _FARTHEST = 1e6
 _SHOWN_ORDERS = 8
@@ -24,9 +25,25 @@ _BLOCKS = "▁▂▃▄▅▆▇█"
 
 
 def run_ste(
+    named: Path,
+    point: dict[str, float | None],
+    at: str | None,
+    *,
+    as_table: bool,
+    as_csv: bool,
+    as_json: bool,
+) -> None:
+    """Read, evaluate, print each table; `point` holds the options of load and alignment by their names."""
+    files = tables_in(named)
+    if as_csv or as_json:
+        only(files, named, "table")
+    for file in files:
+        _show(file, point, at, as_table=as_table, as_csv=as_csv, as_json=as_json)
+
+
+def _show(
     file: Path, point: dict[str, float | None], at: str | None, *, as_table: bool, as_csv: bool, as_json: bool
 ) -> None:
-    """Read, evaluate, print; `point` holds the options of load and alignment by their names."""
     database = open_ste(file)
     warn(database.metadata.warnings)
     curve = curve_json(database, **_arguments(point), at=None if at is None else positions(at))

@@ -61,6 +61,16 @@ def assessed_scene(file: Path | InputFile) -> tuple[SceneInput, Path]:
 # Tables of cases are kept in the cache, under the name of all that decides them: this very program included.
 
 
+def is_kept(case: Case) -> bool:
+    """Return whether the table of a case is in the cache."""
+    return _kept_file(case).is_file()
+
+
+def _kept_file(case: Case) -> Path:
+    content = {"case": case_json(case), "program": program_tag(), "packages": software_versions()}
+    return cache_home() / "tables" / f"{content_hash(content, SOLVER_VERSION, SCHEMA_VERSION)}.nc"
+
+
 @dataclass(frozen=True)
 class _KeptTables:
     """The tables of the cases of a scene: those of runs before, and those that are computed now."""
@@ -70,24 +80,20 @@ class _KeptTables:
     def find(self, case: Case) -> SteDatabase | None:
         """Return the table of a case, if it is here and undamaged."""
         try:
-            return SteDatabase.from_netcdf(self._file(case))
+            return SteDatabase.from_netcdf(_kept_file(case))
         except DatabaseError:
             return None
 
     def table(self, case: Case) -> SteDatabase:
         """Return the table of a case; one that is computed is kept, unless points of it failed."""
         return kept_in(
-            self._file(case),
+            _kept_file(case),
             SteDatabase.from_netcdf,
             lambda: self.compute(case),
             SteDatabase.to_netcdf,
             DatabaseError,
             keeps=lambda table: not table.n_failed,
         )
-
-    def _file(self, case: Case) -> Path:
-        content = {"case": case_json(case), "program": program_tag(), "packages": software_versions()}
-        return cache_home() / "tables" / f"{content_hash(content, SOLVER_VERSION, SCHEMA_VERSION)}.nc"
 
 
 def _analyzed(case: CheckedCase, report: Report, workers: Workers) -> SteDatabase:

@@ -51,11 +51,15 @@ class Override:
 
 @dataclass(frozen=True)
 class InputFile:
-    """A file and what is set over it, in order; `project` is the folder that was named in its place."""
+    """A file and what is set over it, in order; `project` is the folder that was named in its place.
+
+    `part` is what names of results begin with, where the folder has several such files.
+    """
 
     path: Path
     overrides: tuple[Override, ...] = ()
     project: Path | None = None
+    part: str = ""
 
     @classmethod
     def named(cls, name: str) -> InputFile:

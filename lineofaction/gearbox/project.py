@@ -6,10 +6,10 @@ nothing but fields of that study. Files of other content are left alone.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
@@ -19,10 +19,12 @@ from lineofaction.gearbox.study import Study
 
 _SIGNS = {"scene": "shafts", "case": "pair"}
 _ENDINGS = (".toml", ".json")
+RUN, SOUND = f"run{SUFFIX}", "run.wav"
+"""Of a scene, in its project."""
 
 
 def file_of(named: InputFile, subject: str) -> InputFile:
-    """Return a file as it is named, of a folder the one in it that holds what is studied.
+    """Return a file as it is named, of a folder the only one in it that holds what is studied.
 
     Parameters
     ----------
@@ -34,18 +36,35 @@ def file_of(named: InputFile, subject: str) -> InputFile:
     BadInput
         The folder holds no such file, or several of other names.
     """
+    return only(files_of(named, subject), named.path, subject)
+
+
+def files_of(named: InputFile, subject: str) -> list[InputFile]:
+    """Return what `file_of` does, of a folder with several cases each of them.
+
+    Raises `BadInput`: the folder holds no such file, or several scenes of other names.
+    """
     if not named.path.is_dir():
-        return named
-    kinds = [kind for kind in _SIGNS if kind in subject]
-    tables = dict(_tables(named.path))
-    for kind in kinds:
-        found = [path for path, table in tables.items() if _SIGNS[kind] in table]
-        chosen = [path for path in found if path.stem == kind] or found
+        return [named]
+    for kind in (kind for kind in _SIGNS if kind in subject):
+        chosen = _chosen(dict(_tables(named.path)), kind)
         if len(chosen) == 1:
-            return InputFile(chosen[0], named.overrides, named.path)
-        if chosen:
-            raise BadInput.of(kind, str(named), f"a folder of one {kind}", f"Name one: {_listed(chosen)}.")
+            return [InputFile(chosen[0], named.overrides, named.path)]
+        files = [InputFile(path, named.overrides, named.path, path.stem) for path in chosen]
+        if files:
+            return files if kind == "case" else [only(files, named.path, kind)]
     raise BadInput.of("file", str(named), f"a folder with a {subject} file in it", "Make one with: loa new")
+
+
+Named = TypeVar("Named", InputFile, Path)
+
+
+def only(files: Sequence[Named], project: Path, kind: str) -> Named:
+    """Return the file, of a folder; raises `BadInput`: there are several."""
+    if len(files) > 1:
+        advice = f"Name one: {_listed(files)}."
+        raise BadInput.of(kind, str(project), f"a folder of one {kind}", advice)
+    return files[0]
 
 
 def inputs_in(project: Path, study: Study) -> Path | None:
@@ -55,15 +74,43 @@ def inputs_in(project: Path, study: Study) -> Path | None:
     """
     fields = study.inputs.model_fields.keys()
     found = [path for path, table in _tables(project) if table and table.keys() <= fields]
-    if len(found) > 1:
-        advice = f"Name one: {_listed(found)}."
-        raise BadInput.of("study", str(project), f"a folder of one file for {study.name}", advice)
-    return found[0] if found else None
+    return only(found, project, f"file for {study.name}") if found else None
 
 
 def results_in(project: Path) -> list[Path]:
     """Return the results in a folder and in those that studies wrote into it."""
     return [*sorted(project.glob(f"*{SUFFIX}")), *sorted(project.glob(f"*/*{SUFFIX}"))]
+
+
+def results_by_part(project: Path) -> dict[str, list[Path]]:
+    """Return the results in a folder by the case whose name they bear; others by an empty text."""
+    parts = _parts(dict(_tables(project)))
+    by_part: dict[str, list[Path]] = {part: [] for part in ("", *parts)}
+    for path in results_in(project):
+        name = path.relative_to(project).with_suffix("").as_posix()
+        own = (part for part in parts if name == part or name.startswith(f"{part}_"))
+        by_part[max(own, key=len, default="")].append(path)
+    return {part: paths for part, paths in by_part.items() if paths}
+
+
+def tables_in(named: Path) -> list[Path]:
+    """Return a table as it is named, of a folder those of its cases.
+
+    Raises `BadInput`: the folder has none.
+    """
+    if not named.is_dir():
+        return [named]
+    cases = _chosen(dict(_tables(named)), "case")
+    tables = [table for case in cases if (table := named / f"{case.stem}{SUFFIX}").is_file()]
+    if not tables:
+        advice = f"Make them with: loa analyze {named}"
+        raise BadInput.of("file", str(named), "a folder with an STE database in it", advice)
+    return tables
+
+
+def run_in(named: Path) -> Path:
+    """Return a run as it is named, of a folder where its own lies."""
+    return named / RUN if named.is_dir() else named
 
 
 def about(project: Path) -> Path | None:
@@ -88,41 +135,77 @@ class ResultState:
         Of the file, relative to the folder, and of the verb that makes it.
     state : "fresh", "stale" or "missing"
         Stale: a file of the folder that says what is computed is newer.
+    source : Path, optional
+        The case or scene that it is of; None: not known.
     """
 
     name: str
     verb: str
     state: str
+    source: Path | None = None
 
 
 def status_of(project: Path) -> list[ResultState]:
-    """Return the state of the run and of every study that the folder has a subject for, then of the rest.
+    """Return the state of tables, run and every study that the folder has a subject for, then of the rest.
 
     Raises `BadInput`: the folder has neither a case nor a scene.
     """
     tables = dict(_tables(project))
-    subjects = [kind for kind, sign in _SIGNS.items() if any(sign in table for table in tables.values())]
+    subjects = [kind for kind in _SIGNS if _chosen(tables, kind)]
     if not subjects:
         raise BadInput.of(
             "file", str(project), "a folder with a case or scene file in it", "Make one: loa new"
         )
     newest = max(path.stat().st_mtime for path in tables)
-    expected = {} if "scene" not in subjects else {f"run{SUFFIX}": "simulate"}
-    for study in STUDIES.values():
-        if any(kind in study.takes.subject for kind in subjects):
-            expected[result_name(study)] = study.name
-    found = {path.relative_to(project).as_posix(): path for path in results_in(project)}
-    names = dict.fromkeys([*expected, *found])
-    states = {
-        name: "missing" if name not in found else "stale" if found[name].stat().st_mtime < newest else "fresh"
-        for name in names
-    }
-    return [ResultState(name, expected.get(name, "analyze"), state) for name, state in states.items()]
+    expected = _expected(tables)
+    names = (path.relative_to(project).as_posix() for path in results_in(project))
+    states = {name: _state(project / name, newest) for name in dict.fromkeys([*expected, *names])}
+    return [
+        ResultState(name, verb, state, source)
+        for name, state in states.items()
+        for verb, source in [expected.get(name, ("analyze", None))]
+    ]
 
 
-def result_name(study: Study) -> str:
-    """Return the file of a study's result in its project, relative to that."""
-    return f"{study.folder}/{study.folder}{SUFFIX}" if study.folder else f"{study.name}{SUFFIX}"
+def _expected(tables: Mapping[Path, Mapping[str, Any]]) -> dict[str, tuple[str, Path | None]]:
+    """Return the results of every verb that the files have a subject for: verb and subject by their names."""
+    cases, scenes = (_chosen(tables, kind) for kind in ("case", "scene"))
+    expected: dict[str, tuple[str, Path | None]] = {f"{own.stem}{SUFFIX}": ("analyze", own) for own in cases}
+    if scenes:
+        expected |= {RUN: ("simulate", scenes[0]), SOUND: ("listen", scenes[0])}
+    own_verbs = {verb for verb, _ in expected.values()}
+    for study in (study for study in STUDIES.values() if study.name not in own_verbs):
+        if scenes and "scene" in study.takes.subject:
+            expected[result_name(study)] = study.name, scenes[0]
+        elif cases and "case" in study.takes.subject:
+            several = len(cases) > 1 and not study.several
+            for case in cases if several else cases[:1]:
+                expected[result_name(study, case.stem if several else "")] = study.name, case
+    return expected
+
+
+def _state(result: Path, newest: float) -> str:
+    if not result.exists():
+        return "missing"
+    return "stale" if result.stat().st_mtime < newest else "fresh"
+
+
+def result_name(study: Study, part: str = "") -> str:
+    """Return the file of a study's result in its project, relative to that; `part` as of its `InputFile`."""
+    own = f"{part}_" if part else ""
+    return f"{own}{study.folder}/{study.folder}{SUFFIX}" if study.folder else f"{own}{study.name}{SUFFIX}"
+
+
+def _chosen(tables: Mapping[Path, Mapping[str, Any]], kind: str) -> list[Path]:
+    """Return the files of a kind, the one of that name alone if there is one."""
+    found = [path for path, table in tables.items() if _SIGNS[kind] in table]
+    return [path for path in found if path.stem == kind] or found
+
+
+def _parts(tables: Mapping[Path, Mapping[str, Any]]) -> list[str]:
+    """Return what names of results begin with: of one case nothing."""
+    cases = [path.stem for path in _chosen(tables, "case")]
+    return cases if len(cases) > 1 else []
 
 
 def _tables(project: Path) -> Iterator[tuple[Path, dict[str, Any]]]:
@@ -135,5 +218,5 @@ def _tables(project: Path) -> Iterator[tuple[Path, dict[str, Any]]]:
                 continue
 
 
-def _listed(paths: Collection[Path]) -> str:
+def _listed(paths: Iterable[Path | InputFile]) -> str:
     return ", ".join(map(str, paths))

@@ -26,11 +26,11 @@ from lineofaction.cli.verbs import Later
 from lineofaction.gearbox.input_file import InputFile, number_list
 
 if TYPE_CHECKING:
-    from lineofaction.cli import analyze, export, hardcases, listen, new, pages, simulate, ste
+    from lineofaction.cli import analyze, costs, export, hardcases, listen, new, pages, simulate, ste
     from lineofaction.report.run import view as views
 else:
-    analyze, export, hardcases, listen = map(
-        Later, ("cli.analyze", "cli.export", "cli.hardcases", "cli.listen")
+    analyze, costs, export, hardcases, listen = map(
+        Later, ("cli.analyze", "cli.costs", "cli.export", "cli.hardcases", "cli.listen")
     )
     new, pages, simulate, ste = map(Later, ("cli.new", "cli.pages", "cli.simulate", "cli.ste"))
     views = Later("report.run.view")
@@ -92,8 +92,8 @@ def _status(
     folder: Annotated[Path, typer.Argument(help="Folder that loa open made, or with a case or scene file.")],
     json: AsJson = False,
 ) -> None:
-    """Say which results of a folder are fresh, stale or missing, and which verb makes them."""
-    new.run_status(folder, as_json=json)
+    """Say which results of a folder are fresh, stale or missing, which verb makes them, and what it costs."""
+    costs.run_status(folder, as_json=json)
 
 
 @verbs.command(
@@ -136,7 +136,7 @@ def _geometry(
 @verbs.command("ste", rich_help_panel="pair", epilog="Example: loa ste ste.nc --torque 100 --at 0,0.25,0.5")
 @computing
 def _ste(
-    database: Annotated[Path, typer.Argument(help="STE database (netCDF).")],
+    database: Annotated[Path, typer.Argument(help="STE database (netCDF), or the folder of tables.")],
     torque: Annotated[float | None, typer.Option(help="Torque on the driving gear in N m.")] = None,
     force: Force = None,
     at: Annotated[
@@ -320,8 +320,13 @@ def _simulate(
 @grouped
 def _listen(
     *,
-    runs: Annotated[list[Path], typer.Argument(help="Runs (netCDF); several are written on one full scale.")],
-    output: Annotated[Path, to_file("WAV file, or folder of one file per run, named as the run.")],
+    runs: Annotated[
+        list[Path],
+        typer.Argument(help="Runs (netCDF), or the folder of one; several are written on one full scale."),
+    ],
+    output: Annotated[
+        Path | None, to_file("WAV file, or folder of one file per run; default: run.wav in the folder.")
+    ] = None,
     heard: _HeardOptions,
     housing: _HousingOptions,
     json: AsJson = False,

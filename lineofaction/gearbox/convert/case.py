@@ -255,6 +255,16 @@ class CheckedCase:
         return made
 
 
+PLANE = ("plane_strain", "plane_stress")
+"""Models that a case may state, and that have no misalignment."""
+
+
+def across_face(checked: CheckedCase) -> CheckedCase:
+    """Return a case in three dimensions."""
+    across = checked.case.accuracy.model_copy(update={"model": "3d"})
+    return CheckedCase(checked.case.model_copy(update={"accuracy": across}))
+
+
 class CheckedCases:
     """The cases of a scene, or the last ones of a process; equal ones are converted and checked once."""
 

@@ -149,6 +149,13 @@ class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):
     def check(self, subject: Written, inputs: Inputs) -> None:
         """Refuse what a schema accepts, and compute nothing; raises `BadInput`."""
 
+    def predicted(self, _subject: Written, _inputs: Inputs, _cache: Path | None) -> float | None:
+        """Return the CPU seconds it takes once a scene has its tables; None where nothing predicts them.
+
+        The cases of a scene are written out. What is in the cache of compliances costs nothing.
+        """
+        return None
+
     def normalized(self, _subject: Written, inputs: Inputs) -> Json:
         """Return the inputs of a job as JSON, alike for equal questions; may raise `BadInput`."""
         return inputs.model_dump(mode="json")

@@ -6,14 +6,25 @@ import json
 import os
 import shutil
 from pathlib import Path
+from typing import Any
 
 import pytest
 from command_line import loa
+from spur_case import spur_case
 
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import EXIT_BAD_INPUT, BadInput
-from lineofaction.gearbox.project import file_of, inputs_in, results_in, status_of
+from lineofaction.gearbox.project import (
+    file_of,
+    inputs_in,
+    result_name,
+    results_by_part,
+    results_in,
+    status_of,
+    tables_in,
+)
 from lineofaction.gearbox.registry import STUDIES
+from lineofaction.gearbox.study import Study
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
@@ -94,10 +105,96 @@ def test_without_a_folder_an_output_is_asked_for(verb: str) -> None:
 
 def test_the_status_is_json_too_and_a_folder_of_nothing_says_so(rotor: Path, tmp_path: Path) -> None:
     rows = json.loads(loa("status", rotor, "--json").stdout)["results"]
-    assert {"name": "modes.nc", "verb": "modes", "state": "missing"} in rows
+    assert {"name": "modes.nc", "verb": "modes", "state": "missing", "cpu_seconds": None} in rows
     empty = tmp_path / "empty"
     empty.mkdir()
     for folder, bound in ((empty, "a folder with a case or scene file in it"), (tmp_path / "no", "a folder")):
         done = loa("status", folder)
         assert done.exit_code == EXIT_BAD_INPUT
         assert f"must be {bound}" in done.output
+
+
+@pytest.fixture
+def unit(rotor: Path) -> Path:
+    """A folder with two cases and load cases beside its scene."""
+    for stage in ("first", "second"):
+        (rotor / f"{stage}.toml").write_text(spur_case(torques=[100.0]))
+    (rotor / "loads.toml").write_text("[[load_cases]]\nname = 'one'\n")
+    return rotor
+
+
+VERBS = {
+    "plan": ("analyze.run_plan", ["first.toml", "second.toml"]),
+    "geometry": ("pages.run_geometry", ["first.toml", "second.toml"]),
+    "analyze": ("analyze.run_analyze", ["first.toml", "second.toml"]),
+    "simulate": ("simulate.run_simulate", ["jeffcott.toml"]),
+}
+STUDIED = {"flank": "case", "sweep --over torque": "case", "sensitivity": "both"} | dict.fromkeys(
+    (
+        "deflect",
+        "modes",
+        "response --speed-rpm 600",
+        "noise --speed-rpm 600",
+        "ablate",
+        "steady --speed-rpm 600",
+    ),
+    "scene",
+)
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_a_verb_takes_a_folder_and_does_each_of_its_cases(
+    verb: str, unit: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    function, expected = VERBS[verb]
+    done: list[str] = []
+    monkeypatch.setattr(f"lineofaction.cli.{function}", lambda file, *_, **__: done.append(file.path.name))
+    assert loa(verb, unit).exit_code == 0
+    assert done == expected
+
+
+@pytest.mark.parametrize("words", STUDIED)
+def test_a_study_takes_a_folder_and_names_its_result_by_the_case(
+    words: str, unit: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    done: list[list[str]] = []
+
+    def study(study: Study, options: dict[str, Any]) -> None:
+        files = options[study.argument] if study.several else [options[study.argument]]
+        done.append([f"{file.path.name}: {result_name(study, file.part)}" for file in files])
+
+    monkeypatch.setattr("lineofaction.cli.run_study.run_study", study)
+    verb, *options = words.split()
+    assert loa(verb, unit, *options).exit_code == 0
+    own = result_name(STUDIES[verb])
+    by_case = [f"{stage}.toml: {stage}_{own}" for stage in ("first", "second")]
+    subjects = {"scene": [[f"jeffcott.toml: {own}"]], "case": [[line] for line in by_case], "both": [by_case]}
+    assert done == subjects[STUDIED[words]]
+
+
+def test_one_object_or_one_file_is_of_one_case(unit: Path) -> None:
+    for options in (("--json",), ("-o", unit / "ste.nc")):
+        done = loa("analyze", unit, *options)
+        assert done.exit_code == EXIT_BAD_INPUT
+        assert "must be a folder of one case. Name one:" in done.output
+
+
+def test_results_are_told_apart_by_the_case_whose_name_they_bear(unit: Path) -> None:
+    for name in ("modes", "first", "first_flank", "second_flank", "firstly"):
+        (unit / f"{name}.nc").touch()
+    by_part = {part: [path.stem for path in paths] for part, paths in results_by_part(unit).items()}
+    assert by_part == {
+        "": ["firstly", "modes"],
+        "first": ["first", "first_flank"],
+        "second": ["second_flank"],
+    }
+    assert tables_in(unit) == [unit / "first.nc"]
+
+
+def test_the_status_says_what_a_result_would_cost_or_that_nothing_predicts_it(unit: Path) -> None:
+    (unit / "jeffcott.toml").unlink()
+    facts = json.loads(loa("status", unit, "--json").stdout)
+    seconds = {row["name"]: row["cpu_seconds"] for row in facts["results"]}
+    assert facts["tables_cpu_seconds"] == 0.0  # no scene
+    assert seconds["first.nc"] > seconds["first_flank.nc"] > 0.0
+    assert seconds["first_scatter.nc"] is None

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from bounds import engineering
 from bounds.types import Json
 from fe_contact.analysis.live.condensed_request import condensed_pair
 from fe_contact.errors import SolveError
@@ -38,6 +37,7 @@ from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_f
 from lineofaction.gearbox.studies.scatter.run import PLANE, tolerance_request
 from lineofaction.gearbox.studies.study.scenes import FLANKS
 from lineofaction.gearbox.units import RPM
+from model_studies.progress import announce
 from model_studies.stage_clock import StageClock
 
 IN_A_TASK = 5
@@ -71,9 +71,7 @@ class _ChangeStudy(SceneStudy[Inputs, ChangeFigures, FlankChange]):
             with clock.stage("transfer functions"):
                 heard, nominal, each = _heard(subject, mesh, (before.pair, after.pair), inputs, means)
             expected = 2.0 * each * len(deviation)
-            means.report(
-                f"pairs; {len(deviation)} before and after: about {engineering(expected, 2)} CPU s", 0.0
-            )
+            announce(means.report, "pairs", expected, f"{len(deviation)} before and after")
             with clock.stage("pairs"):
                 levels = _levels(heard, (before.pair, after.pair), names, deviation, means)
         first, second = (

@@ -21,7 +21,7 @@ from fe_contact.options import Run, TableAxes
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.database import joined_over_misalignment
 from fe_contact.types import FloatArray
-from lineofaction.gearbox.convert.case import analysis_options, gear_pair
+from lineofaction.gearbox.convert.case import PLANE, analysis_options, gear_pair
 from lineofaction.gearbox.schemas import Case
 from model_studies.workers import InProcess, Workers, divided, spent
 
@@ -33,7 +33,6 @@ LOWEST, HIGHEST = 0.5, 1.25
 FIRST_MISALIGNMENT = 1e-6  # m: any one makes the bodies those of three dimensions
 ALIKE = 1e-6
 """Of a torque: closer ones are one load of the table."""
-PLANE = ("plane_strain", "plane_stress")
 
 
 @dataclass(frozen=True)

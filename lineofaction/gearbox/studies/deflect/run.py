@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
@@ -11,8 +12,9 @@ from bounds import leftover
 from bounds.types import Json
 from dynamics.deflection import CaseDeflection, MeshAlignment, deflect
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution, pressure_map
+from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.types import FloatArray
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.case import PLANE, CheckedCase, across_face, boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.meshes import MeshInput
@@ -31,6 +33,8 @@ from lineofaction.gearbox.studies.deflect.result import HARMONICS, GearboxDeflec
 from model_studies.workers import divided, spent
 
 ALONG_FACE, ALONG_PROFILE = 41, 40
+FIRST_KNOTS, USUAL_PASSES = 2, 3
+"""Tables beyond the first misalignments; passes, each with a table for every load case."""
 
 
 class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
@@ -40,6 +44,20 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
     def check(self, scene: SceneInput, inputs: Inputs) -> None:
         """Refuse load cases that cannot be, or that need what the scene lacks, before tables are computed."""
         check_cases(scene, inputs.load_cases)
+
+    def predicted(self, scene: SceneInput, inputs: Inputs, cache: Path | None) -> float:
+        """Return what the tables of usual passes and the flanks of every load case take, by mesh."""
+        count, seconds = len(inputs.load_cases), 0.0
+        cases = [case for mesh in scene.meshes if isinstance(case := mesh.case, Case)]
+        for case in {case.model_dump_json(): case for case in cases}.values():
+            with boundary_errors():
+                own = predicted = predicted_designs(CheckedCase(case).checked, cache)
+                if not own.across_face and case.accuracy.model not in PLANE:
+                    predicted = predicted_designs(across_face(CheckedCase(case)).checked, cache)
+                    seconds += predicted.bodies  # otherwise those of its table
+            knots = FIRST_KNOTS + count * USUAL_PASSES if predicted.across_face else 0
+            seconds += (knots + count) * predicted.design
+        return seconds
 
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> GearboxDeflection:
         began, scene = spent(means.workers) - tabled.seconds, tabled.scene

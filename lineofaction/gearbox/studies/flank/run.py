@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 from bounds.types import Json
 from fe_contact.analysis.flanks.flank_file import FORMAT, flank_results
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
+from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.options import Run
 from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, case_json
 from lineofaction.gearbox.convert.plausibility import phrased_for
@@ -40,6 +42,12 @@ class _FlankStudy(PointStudy[FlankFigures, LoadDistribution]):
     file = ResultFile(
         "format", (FORMAT,), LoadDistribution.to_netcdf, LoadDistribution.from_netcdf, LoadDistribution
     )
+
+    def predicted(self, case: CheckedCase, _inputs: FlankPoint, cache: Path | None) -> float:
+        """Return what the bodies and one solution with its errors take."""
+        with boundary_errors():
+            predicted = predicted_designs(case.at_point, cache)
+        return predicted.bodies + predicted.design + predicted.errors
 
     def compute(self, case: CheckedCase, _inputs: FlankPoint, means: Means) -> LoadDistribution:
         return flanks_of(case, means.analysis)

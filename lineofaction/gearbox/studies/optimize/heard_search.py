@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bounds import engineering
 from dynamics.assembly.assemble import assemble
 from dynamics.deflection.loaded_scene import with_loads
 from dynamics.linearize.steady_vibration import excited
@@ -61,7 +60,7 @@ from lineofaction.gearbox.studies.optimize.heard_problem import (
 )
 from lineofaction.gearbox.studies.optimize.result import HeardDesign, HeardOptimization
 from lineofaction.gearbox.units import RPM, UM
-from model_studies.progress import silent
+from model_studies.progress import announce, silent
 from model_studies.stage_clock import StageClock
 
 WALK, FINISH, LINEARIZED = 20, 8, 2.5
@@ -116,7 +115,7 @@ def heard_optimum(
         own, sample = dict(zip(heard.problem.names, request.own, strict=True)), heard.sample
         problem = _scaled(heard.problem if question.quantile is None or sample is None else sample, own)
         expected = _expected_seconds(problem, own, request.search)
-        means.report(f"search; about {engineering(expected, 2)} CPU s", 0.0)
+        announce(means.report, "search", expected)
         cancel = means.cancel or never
         runs = search_all(problem, request.search, request.own, run, cancel)
     best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)

@@ -10,7 +10,7 @@ from fe_contact.microgeometry.tolerance_study import (
     iso1328_tolerances,
     sampled,
 )
-from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
+from lineofaction.gearbox.convert.case import PLANE, CheckedCase, boundary_errors
 from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, record_file
@@ -19,7 +19,6 @@ from lineofaction.gearbox.units import UM, in_um
 
 MOST_SAMPLES = 100_000
 """Of a job: its result holds every pair, 10 to 100 MB."""
-PLANE = ("plane_strain", "plane_stress")
 
 
 class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):

@@ -11,7 +11,7 @@ from bounds.types import Json
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.studies.sensitivity import Sensitivity, study_sensitivity
 from fe_contact.options import TableAxes
-from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, study_options
+from lineofaction.gearbox.convert.case import PLANE, CheckedCase, across_face, boundary_errors, study_options
 from lineofaction.gearbox.stages import TableFraction
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, ResultFile
 from lineofaction.gearbox.studies.sensitivity import Inputs, SensitivityFigures
@@ -70,11 +70,7 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
 
     def narrowed(self, checked: CheckedCase, _inputs: Inputs) -> CheckedCase:
         """Return a case in three dimensions: no model of the plane knows a misalignment."""
-        accuracy = checked.case.accuracy
-        if accuracy.model not in ("plane_strain", "plane_stress"):
-            return checked
-        across = accuracy.model_copy(update={"model": "3d"})
-        return CheckedCase(checked.case.model_copy(update={"accuracy": across}))
+        return across_face(checked) if checked.case.accuracy.model in PLANE else checked
 
     def check(self, case: CheckedCase, inputs: Inputs) -> None:
         """Refuse a case that cannot be, and deviations at which it cannot be."""

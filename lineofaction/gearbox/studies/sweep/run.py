@@ -5,12 +5,14 @@ from __future__ import annotations
 import difflib
 from dataclasses import dataclass
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from bounds import Kind
 from bounds.types import Json
+from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.flank.modification import FlankModification
 from fe_contact.microgeometry.sweep import (
     CENTER_DISTANCE,
@@ -256,6 +258,13 @@ class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
     def check(self, case: CheckedCase, inputs: Inputs) -> None:
         with boundary_errors():
             _ = case.request(_request, inputs).checked
+
+    def predicted(self, case: CheckedCase, inputs: Inputs, cache: Path | None) -> float:
+        """Return what the bodies and every design at all torques take."""
+        with boundary_errors():
+            request = case.request(_request, inputs)
+            predicted = predicted_designs(request.checked, cache)
+        return predicted.bodies + len(request.designs) * predicted.design
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> SweepResult:
         """Sweep a case; what is not swept is at its highest load, its deviations nearest to zero."""
