@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
+from rich.console import Console, Group
 from rich.progress import (
     BarColumn,
     Progress,
@@ -53,16 +53,53 @@ def console() -> Console:
     )
 
 
+_WIDEST, _GAP = 24, 2
+"""Columns that a text takes before it wraps; between two columns of a table."""
+
+
 def table(
     columns: Sequence[str], rows: Sequence[Sequence[str]], title: str = "", words: Sequence[str] = ()
-) -> Table:
-    """Return a table of right-aligned numbers; columns of `words` are aligned left."""
-    grid = Table(title=title or None, box=None, pad_edge=False, title_justify="left")
-    for column in columns:
-        grid.add_column(column, justify="left" if column in words else "right", overflow="fold")
-    for row in rows:
-        grid.add_row(*row)
-    return grid
+) -> Group:
+    """Return a table of right-aligned numbers; columns of `words` are aligned left.
+
+    One that is wider than the terminal stands in blocks, each with the first columns of words, or the first
+    one: nothing is cut within a word or a number.
+    """
+    width = console().width
+    cells = [[row[k] for row in rows] for k in range(len(columns))]
+    least = [_least(name, own, text=name in words) for name, own in zip(columns, cells, strict=True)]
+    keys = max(1, next((k for k, name in enumerate(columns) if name not in words), 1))
+    grids: list[Table | str] = []
+    for block in _blocks(least, keys, width):
+        grid = Table(box=None, pad_edge=False, title_justify="left", title=None if grids else title or None)
+        room = width - sum(least[k] + _GAP for k in block) + _GAP
+        for k in block:
+            grown = min(max(map(len, (columns[k], *cells[k]))), least[k] + max(room, 0))
+            side, room = "left" if columns[k] in words else "right", room - grown + least[k]
+            grid.add_column(columns[k], justify=side, overflow="fold", width=max(grown, least[k]))
+        for row in rows:
+            grid.add_row(*(row[k] for k in block))
+        grids += ["", grid] if grids else [grid]
+    return Group(*grids)
+
+
+def _least(head: str, cells: Sequence[str], *, text: bool) -> int:
+    """Return the columns in which no word of the head and no cell is cut; a long text may wrap."""
+    parts = (head, *cells) if text else (head,)
+    longest = max((len(word) for part in parts for word in part.split()), default=1)
+    whole = max(map(len, cells), default=1)
+    return max(longest, min(whole, _WIDEST) if text else whole)
+
+
+def _blocks(least: Sequence[int], keys: int, width: int) -> list[list[int]]:
+    """Return the columns of each block: the first `keys`, and as many others as there is room for."""
+    first = list(range(keys))
+    blocks = [first.copy()]
+    for k in range(keys, len(least)):
+        if sum(least[own] + _GAP for own in (*blocks[-1], k)) - _GAP > width and len(blocks[-1]) > keys:
+            blocks.append(first.copy())
+        blocks[-1].append(k)
+    return blocks
 
 
 def print_headlines(headlines: Sequence[Headline]) -> None:

@@ -10,6 +10,8 @@ from command_line import loa
 from small_table import small_table
 from spur_case import spur_case
 
+from lineofaction.cli.output import console, table
+
 COLUMNS = (80, 120)
 FIRST = 14
 SCENE = Path(__file__).parents[3] / "examples" / "palermo_scene.toml"
@@ -63,3 +65,19 @@ def test_the_answer_stands_first_and_nothing_is_cut(
     sentences = ("warning (", *(str(path) for path in files.values()))  # which a terminal wraps
     long = [line for line in lines if len(line) > columns and not any(each in line for each in sentences)]
     assert long == []
+
+
+@pytest.mark.parametrize("columns", COLUMNS)
+def test_a_wide_table_stands_in_blocks_and_no_word_is_broken(
+    columns: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", str(columns))
+    head = ["mesh", "load case", *(f"quantity-{k}, unit" for k in range(12))]
+    rows = [["second stage", "load case 1", *(f"{k}.125 ± 0.0004" for k in range(12))]]
+    console().print(table(head, rows, "title", head[:2]))
+    printed = capsys.readouterr().out
+    assert max(map(len, printed.splitlines())) <= columns
+    blocks = printed.split("\n\n")
+    assert len(blocks) > 1 and all("second stage" in block and "load case 1" in block for block in blocks)
+    assert [cell for cell in rows[0][2:] if cell not in printed] == []
+    assert [k for k in range(12) if f"quantity-{k}," not in printed] == []

@@ -15,7 +15,7 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.tolerance_study import ToleranceRequest
 from fe_contact.types import FloatArray
 from host import cpu_seconds
-from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
+from lineofaction.gearbox.convert.case import PLANE, CheckedCase, boundary_errors
 from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
@@ -34,7 +34,7 @@ from lineofaction.gearbox.studies.change.heard_flanks import (
 from lineofaction.gearbox.studies.change.question import check_driving, check_heard, heard_mesh
 from lineofaction.gearbox.studies.change.result import DesignLevels, FlankChange
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
-from lineofaction.gearbox.studies.scatter.run import PLANE, tolerance_request
+from lineofaction.gearbox.studies.scatter.run import tolerance_request
 from lineofaction.gearbox.studies.study.scenes import FLANKS
 from lineofaction.gearbox.units import RPM
 from model_studies.progress import announce
