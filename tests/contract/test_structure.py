@@ -11,18 +11,18 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (40_683, 736),
-    ("dynamics",): (42_974, 827),
-    ("lineofaction.gearbox",): (25_855, 519),
+    ("fe_contact",): (40_728, 738),
+    ("dynamics",): (42_972, 827),
+    ("lineofaction.gearbox",): (25_985, 525),
     ("lineofaction.report",): (11_730, 225),
     ("service",): (14_799, 339),
     ("lineofaction.client",): (2_713, 53),
-    ("lineofaction.cli",): (5_070, 74),
+    ("lineofaction.cli",): (5_267, 78),
     ("lineofaction.hardcases",): (3_844, 35),
-    ("bounds", "host", "model_studies"): (4_498, 154),
+    ("bounds", "host", "model_studies"): (4_517, 155),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 811
+MOST_FILES = 812
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
