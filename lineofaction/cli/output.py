@@ -75,8 +75,9 @@ def table(
         room = width - sum(least[k] + _GAP for k in block) + _GAP
         for k in block:
             grown = min(max(map(len, (columns[k], *cells[k]))), least[k] + max(room, 0))
-            side, room = "left" if columns[k] in words else "right", room - grown + least[k]
-            grid.add_column(columns[k], justify=side, overflow="fold", width=max(grown, least[k]))
+            room -= grown - least[k]
+            grid.add_column(columns[k], overflow="fold", width=max(grown, least[k]))
+            grid.columns[-1].justify = "left" if columns[k] in words else "right"
         for row in rows:
             grid.add_row(*(row[k] for k in block))
         grids += ["", grid] if grids else [grid]

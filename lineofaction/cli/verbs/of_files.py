@@ -320,10 +320,7 @@ def _simulate(
 @grouped
 def _listen(
     *,
-    runs: Annotated[
-        list[Path],
-        typer.Argument(help="Runs (netCDF), or the folder of one; several are written on one full scale."),
-    ],
+    runs: Annotated[list[Path], typer.Argument(help="Runs (netCDF), or a folder; all on one full scale.")],
     output: Annotated[
         Path | None, to_file("WAV file, or folder of one file per run; default: run.wav in the folder.")
     ] = None,
