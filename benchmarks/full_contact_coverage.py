@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.assessed import QUANTITIES, Assessed, coverage_figures, coverage_table, error_cell
+from benchmarks.assessed import QUANTITIES, STATED, Assessed, coverage_figures, coverage_table, error_cell
 from benchmarks.figures import Figure
 from benchmarks.full_contact_cases import FullContactCase, full_contact_cases
 from benchmarks.marked_section import replace_section
@@ -19,6 +19,7 @@ from fe_contact.full_contact import solve_full_contact
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.model_error import in_small_displacements
 from fe_contact.ste.curve import AT_NODES, METHOD, PLANE, all_sources
+from fe_contact.ste.curve_quantities import BESIDE_MESH
 from fe_contact.types import FloatArray
 from lineofaction.report.drawing import figure as drawn
 from lineofaction.report.drawing import palette
@@ -78,10 +79,11 @@ def stated(table: SteDatabase, pair: ParallelAxes) -> FloatArray:
     curves = [table.curve(force=force) for force in table.force]
     found = [[curve.mean, curve.peak_to_peak, *curve.harmonics] for curve in curves]
     own = np.array([[quantity.value for quantity in row] for row in found]).T
+    own = np.insert(own, BESIDE_MESH, 0.0, axis=0)
     sources = table.curve_error[: len(AT_NODES), :, :, 0, 0].copy()
     sources[AT_NODES.index(METHOD)] = in_small_displacements(pair, table.force, own, over_face=False)
     sources[AT_NODES.index(PLANE)] = 0.0
-    return all_sources(sources)[: len(QUANTITIES)]
+    return all_sources(sources)[list(STATED)]
 
 
 def reference(name: str) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.assessed import QUANTITIES, Assessed, coverage_figures
+from benchmarks.assessed import QUANTITIES, STATED, Assessed, coverage_figures
 from benchmarks.drawn_pairs import assessed_pairs, fresh_pairs
 from benchmarks.error_coverage import LEVELS
 from benchmarks.figures import Figure
@@ -54,7 +54,7 @@ def assess(case: PairCase, cache: Path, levels: Sequence[str] = LEVELS) -> list[
     for level in levels:
         table = analyze(case.pair, normal_forces=case.forces, cache=cache, level=level, **case.options)
         value = _quantities(table.position, table.load_arm[:, :, 0, 0])
-        stated = all_sources(table.load_arm_error[:, : len(QUANTITIES), :, 0, 0])
+        stated = all_sources(table.load_arm_error[..., 0, 0])[list(STATED)]
         found.append(Assessed(case.name, level, np.abs(value), stated, np.abs(value - true)))
     return found
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.assessed import HARMONICS, QUANTITIES
+from benchmarks.assessed import HARMONICS, STATED
 from benchmarks.finest_solution import FINER, finest
 from benchmarks.pair_cases import PairCase
 from fe_contact import SteDatabase, analyze
@@ -91,7 +91,7 @@ def _run(case: PairCase, folder: Path, accuracy: Json) -> Json:
 
 def errors_by_source(table: SteDatabase) -> FloatArray:
     """Return the stated errors (6, 5, loads) in m at the loads of a table, in the order of `AT_NODES`."""
-    return np.asarray(table.curve_error[: len(AT_NODES), : len(QUANTITIES), :, 0, 0])
+    return np.asarray(table.curve_error[: len(AT_NODES), :, :, 0, 0][:, list(STATED)])
 
 
 def quantities(table: SteDatabase) -> FloatArray:

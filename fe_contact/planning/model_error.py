@@ -15,7 +15,7 @@ import numpy as np
 
 from fe_contact.geometry import ParallelAxes
 from fe_contact.hertz import contact_modulus
-from fe_contact.ste.curve_quantities import FIRST_HARMONIC, MEAN, QUANTITIES
+from fe_contact.ste.curve_quantities import BESIDE_MESH, FIRST_HARMONIC, MEAN, QUANTITIES
 from fe_contact.types import FloatArray
 
 # What contacts in the places of rigid flanks would leave out: flanks tilt as teeth bend, and contacts move.
@@ -99,7 +99,7 @@ def of_bending(pair: ParallelAxes, own: FloatArray) -> FloatArray:
     ripple = HELICAL_RIPPLE if pair.base_helix_angle else SPUR_RIPPLE
     number = np.arange(1, QUANTITIES - FIRST_HARMONIC + 1)
     harmonics = ripple * HARMONIC_OVER_PEAK * np.minimum(1.0, FLAT_HARMONICS / number)
-    over_mean = np.array([1.0, ripple, *harmonics])
+    over_mean = np.array([1.0, ripple, 0.0, *harmonics])
     return np.asarray(np.maximum(own, np.multiply.outer(over_mean[: len(own)], own[MEAN])))
 
 
@@ -114,4 +114,4 @@ def point_error(
 def _by_quantity(part: tuple[float, float, float], own: FloatArray) -> FloatArray:
     """Return the parts of the quantities (Q,) that there are."""
     mean, ripple, harmonic = part
-    return np.array([mean, ripple, *[harmonic] * (QUANTITIES - FIRST_HARMONIC)])[: len(own)]
+    return np.array([mean, ripple, *[harmonic] * (QUANTITIES - BESIDE_MESH)])[: len(own)]

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from bounds import Text, at_most, from_to
 from fe_contact.errors import InputError, positive, within
-from fe_contact.ste.curve_quantities import HARMONICS, QUANTITIES, Spectrum, even_positions, spectrum
+from fe_contact.ste.curve_quantities import BESIDE_MESH, QUANTITIES, Spectrum, even_positions, spectrum
 from fe_contact.ste.fields import SteFields
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.ste.mesh_force import MeshForce
@@ -100,7 +100,7 @@ OF_LOAD_ARM = ("discretisation", "slices", "position")
 
 
 def errors_by_source(table: SteFields, point: OperatingPoint) -> FloatArray:
-    """Return the errors of the quantities (sources, 22) in m at one load and alignment.
+    """Return the errors of the quantities (sources, 23) in m at one load and alignment.
 
     Linear between the nodes. NaN: not estimated.
     """
@@ -122,7 +122,7 @@ def errors_by_source(table: SteFields, point: OperatingPoint) -> FloatArray:
 
 
 def all_sources(errors: FloatArray) -> FloatArray:
-    """Return the error (22,) of all sources (sources, 22) together, m: the root of the sum of their squares.
+    """Return the error (23,) of all sources (sources, 23) together, m: the root of the sum of their squares.
 
     Meshes, slices, positions and nodes of the axes know nothing of each other, so that their errors are as
     likely to cancel as to add up. A sum states a third more and holds hardly more often (docs/accuracy.md).
@@ -140,7 +140,7 @@ def _linear(knots: FloatArray, values: FloatArray, at: float) -> FloatArray:
 
 
 def _interval(values: FloatArray, axes: tuple[tuple[FloatArray, float], ...], axis: int) -> FloatArray:
-    """Errors (22,) of the interval of one axis that holds the point, linear along the other two."""
+    """Errors (23,) of the interval of one axis that holds the point, linear along the other two."""
     knots, at = axes[axis]
     values = np.moveaxis(values, axis, 0)[int(np.searchsorted(knots, at)) - 1]
     for i, (others, where) in enumerate(axes):
@@ -288,8 +288,8 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
 
     The errors of mean, peak-to-peak and harmonics are those of all stored sources together
     (`curve_errors.all_sources`). Of a table without them they are bounds for any error inside the pointwise
-    bands: of the mean the mean of the band, of peak-to-peak the sum of the bands at the two extremes, of a
-    harmonic twice the mean band.
+    bands: of the mean the mean of the band, of peak-to-peak the sum of the bands at the two extremes, of an
+    order twice the mean band.
 
     Raises
     ------
@@ -300,11 +300,10 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
     even = even_positions(database.period)
     everywhere = np.concatenate([even, database.position])  # extremes of a stored load lie on knots
     ste, band, below = _evaluate(database, force, point, everywhere)
-    mean_band = float(np.mean((band + below)[: even.size]))
-    orders = spectrum(ste[: even.size], database.period, database.facts.teeth, 2.0 * mean_band)
+    mean_error, ripple_error, *of_orders = _errors(database, point, band, below, ste, even.size)
+    orders = spectrum(ste[: even.size], database.period, database.facts.teeth, np.array(of_orders))
     mesh = slice(database.period - 1, None, database.period)
     lowest, highest = int(np.argmin(ste)), int(np.argmax(ste))
-    mean_error, ripple_error, *harmonic_errors = _errors(database, point, band, below, ste, even.size)
     values, *error_parts = _evaluate(database, force, point, position)
     return Curve(
         point=point,
@@ -317,8 +316,8 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
         mean=Estimate(float(np.mean(ste[: even.size])), mean_error, "m"),
         peak_to_peak=Estimate(float(ste[highest] - ste[lowest]), ripple_error, "m"),
         harmonics=tuple(
-            Estimate(float(size), error, "m")
-            for size, error in zip(orders.amplitude[mesh], harmonic_errors, strict=True)
+            Estimate(float(size), float(error), "m")
+            for size, error in zip(orders.amplitude[mesh], orders.error[mesh], strict=True)
         ),
         harmonic_phases=orders.phase[mesh],
         spectrum=orders,
@@ -352,12 +351,12 @@ def _errors(
     ste: FloatArray,
     even: int,
 ) -> list[float]:
-    """Errors of mean, peak-to-peak and harmonics in m; NaN: a source was not estimated."""
+    """Errors (23,) of mean, peak-to-peak and orders in m; NaN: a source was not estimated."""
     stored = database.curve_error.size > 0
     left = below if stored else band + below
     ends = left[int(np.argmin(ste))] + left[int(np.argmax(ste))]
     mean = float(np.mean(left[:even]))
-    bounds = np.array([mean, ends, *[2.0 * mean] * HARMONICS])
+    bounds = np.array([mean, ends, *[2.0 * mean] * (QUANTITIES - BESIDE_MESH)])
     total = bounds + all_sources(errors_by_source(database, point)) if stored else bounds
     return [float(error) for error in total]
 

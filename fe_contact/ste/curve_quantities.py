@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,8 +34,8 @@ class Spectrum:
         A_k in m.
     phase : (K,) array
         phi_k in rad.
-    error : float
-        Half-width of the error band of every amplitude, m.
+    error : (K,) array
+        Half-widths of the error bands of the amplitudes, m; NaN: not estimated.
     teeth : (int, int)
         Of the driving and the driven gear.
     """
@@ -42,7 +43,7 @@ class Spectrum:
     order: FloatArray
     amplitude: FloatArray
     phase: FloatArray
-    error: float
+    error: FloatArray
     teeth: tuple[int, int]
 
     @property
@@ -74,31 +75,43 @@ def even_positions(period: int) -> FloatArray:
     return np.arange(period * per_pitch) / per_pitch
 
 
-def spectrum(samples: FloatArray, period: int, teeth: tuple[int, int], error: float) -> Spectrum:
-    """Transform the values at `even_positions`, up to the 20th mesh harmonic."""
+def spectrum(samples: FloatArray, period: int, teeth: tuple[int, int], errors: FloatArray) -> Spectrum:
+    """Transform the values at `even_positions`, up to the 20th mesh harmonic.
+
+    `errors` (21,) in m are those of all orders beside the mesh orders, and of the mesh orders.
+    """
     count = HARMONICS * period
     lines = np.fft.rfft(samples)[1 : count + 1] * (2.0 / len(samples))
+    error = np.full(count, errors[0])
+    error[period - 1 :: period] = errors[1:]
     order = np.arange(1, count + 1) / period
     return Spectrum(order, np.abs(lines), np.angle(lines) % (2.0 * math.pi), error, teeth)
 
 
-QUANTITIES = 2 + HARMONICS
-"""Mean, peak-to-peak, and the harmonics, in this order."""
-MEAN, PEAK_TO_PEAK, FIRST_HARMONIC = 0, 1, 2
+MEAN, PEAK_TO_PEAK, BESIDE_MESH, FIRST_HARMONIC = range(4)
+"""Mean, peak-to-peak, the largest order beside the mesh orders, and the harmonics, in this order.
+
+What repeats at every pitch is in mesh orders alone: other orders have the error of what pitches differ by."""
+QUANTITIES = FIRST_HARMONIC + HARMONICS
 BY_SOURCE = {"mean_m": MEAN, "peak_to_peak_m": PEAK_TO_PEAK, "first_harmonic_m": FIRST_HARMONIC}
 """Those whose errors a receipt has by source, m."""
 # samples of a pitch, a dozen for the shortest harmonic, and of a long period where that would be too many
 _PER_PITCH, _PER_PERIOD, _FEWEST = 256, 2**15, 64
 _FEWEST_ROWS = 8
 
-Quantities = tuple[FloatArray, NDArray[np.complex128]]
-"""Peak-to-peak (C,), and mean and phasors (21, C)."""
+
+class Quantities(NamedTuple):
+    """Peak-to-peak (C,) of curves; mean and phasors (20 period + 1, C) of all orders, 1/period apart."""
+
+    ripple: FloatArray
+    lines: NDArray[np.complex128]
+    period: int
 
 
 def quantity_changes(
     position: FloatArray, curves: FloatArray, other: FloatArray, period: int, at: FloatArray | None = None
 ) -> FloatArray:
-    """Return by how much the quantities of two sets of curves differ, (22, C) in m.
+    """Return by how much the quantities of two sets of curves differ, (23, C) in m.
 
     Of a harmonic it is the length of the difference of the two phasors, which bounds the change of its
     amplitude and does not vanish where only the phase moves; of peak-to-peak, where the knots are the same,
@@ -118,7 +131,7 @@ def quantity_changes(
     Returns
     -------
     ndarray
-        NaN for curves with fewer than eight rows.
+        NaN for curves with fewer than eight rows. Beside the mesh that of the order that changes most.
     """
     knots = position if at is None else at
     good = np.isfinite(curves) if at is not None else np.isfinite(curves) & np.isfinite(other)
@@ -126,9 +139,9 @@ def quantity_changes(
     if good.all() and beside.all():
         if at is not None:
             return _changes(_quantities(position, curves, period), _quantities(knots, other, period))
-        ripple, lines = _quantities(position, np.concatenate([curves, other], axis=1), period)
+        ripple, lines, _ = _quantities(position, np.concatenate([curves, other], axis=1), period)
         parts = zip(np.split(ripple, 2), np.split(lines, 2, axis=1), strict=True)
-        return _with_bend(_changes(*parts), curves - other)
+        return _with_bend(_changes(*(Quantities(*each, period) for each in parts)), curves - other)
     changes = np.full((QUANTITIES, curves.shape[1]), np.nan)
     for c in range(curves.shape[1]):
         rows, others = good[:, c], beside[:, c]
@@ -142,9 +155,9 @@ def quantity_changes(
 
 
 def quantity_derivatives(values: FloatArray, period: int) -> FloatArray:
-    """Return the derivatives of the quantities of a curve by its values, (22, P).
+    """Return the derivatives of the quantities of a curve by its values, (23, P).
 
-    Of the amplitude of a harmonic; of peak-to-peak by the highest and the lowest value.
+    Of the amplitude of a harmonic; of peak-to-peak by the highest and the lowest value; none beside the mesh.
 
     Parameters
     ----------
@@ -163,7 +176,7 @@ def quantity_derivatives(values: FloatArray, period: int) -> FloatArray:
     amplitude = np.abs(lines)
     turned = np.divide(lines.conj(), amplitude, out=np.ones_like(lines), where=amplitude > 0.0)
     mean = np.full(values.size, 1.0 / values.size)
-    return np.stack([mean, ripple, *(turned[:, None] * waves).real])
+    return np.stack([mean, ripple, np.zeros(values.size), *(turned[:, None] * waves).real])
 
 
 def _with_bend(changes: FloatArray, difference: FloatArray) -> FloatArray:
@@ -194,14 +207,14 @@ def _missed_tops(step: FloatArray, values: FloatArray) -> FloatArray:
 
 
 def error_bound(position: FloatArray, band: FloatArray, values: FloatArray, period: int) -> FloatArray:
-    """Return what errors within bands (P, C) around curves (P, C) can do to the quantities, (22, C) in m.
+    """Return what errors within bands (P, C) around curves (P, C) can do to the quantities, (23, C) in m.
 
-    To the mean their mean, to peak-to-peak their sum at both extremes, to a harmonic twice their mean.
+    To the mean their mean, to peak-to-peak their sum at both extremes, to any order twice their mean.
     """
     mean = mean_of_curves(position, np.nan_to_num(band), period)
     known = np.nan_to_num(values)
     ends = [np.take_along_axis(band, pick(known, axis=0)[None], 0)[0] for pick in (np.argmax, np.argmin)]
-    return np.stack([mean, np.nan_to_num(ends[0] + ends[1]), *[2.0 * mean] * HARMONICS])
+    return np.stack([mean, np.nan_to_num(ends[0] + ends[1]), *[2.0 * mean] * (QUANTITIES - BESIDE_MESH)])
 
 
 def mean_of_curves(position: FloatArray, values: FloatArray, period: int) -> FloatArray:
@@ -212,16 +225,18 @@ def mean_of_curves(position: FloatArray, values: FloatArray, period: int) -> Flo
 
 
 def _quantities(position: FloatArray, values: FloatArray, period: int) -> Quantities:
-    """Peak-to-peak of the knots (C,), and mean and phasors of the interpolant (21, C)."""
+    """Return peak-to-peak of the knots, and mean and phasors of the interpolant."""
     per_pitch = max(min(_PER_PITCH, _PER_PERIOD // period), _FEWEST)
     even = np.arange(period * per_pitch) / per_pitch
     samples = interpolate(Axis(position, float(period)), values, even)
-    lines = np.fft.rfft(samples, axis=0)[: HARMONICS * period + 1 : period] * (2.0 / even.size)
+    lines = np.fft.rfft(samples, axis=0)[: HARMONICS * period + 1] * (2.0 / even.size)
     lines[0] *= 0.5
-    return np.asarray(np.ptp(values, axis=0)), lines
+    return Quantities(np.asarray(np.ptp(values, axis=0)), lines, period)
 
 
 def _changes(quantities: Quantities, other: Quantities) -> FloatArray:
-    """Differences of two sets of quantities, (22, C)."""
-    lines = np.abs(quantities[1] - other[1])
-    return np.concatenate([lines[:1], np.abs(quantities[0] - other[0])[None], lines[1:]])
+    """Differences of two sets of quantities, (23, C)."""
+    lines, ripple = np.abs(quantities.lines - other.lines), np.abs(quantities.ripple - other.ripple)
+    mesh = lines[:: quantities.period].copy()
+    lines[:: quantities.period] = 0.0
+    return np.concatenate([mesh[:1], ripple[None], lines.max(axis=0)[None], mesh[1:]])

@@ -103,9 +103,10 @@ class SteFields:
         As the arrays of the same names without `support`.
     period : int
         Whole base pitches after which everything repeats: 1 where all teeth of a gear are alike.
-    curve_error : (9, 22, F, M, D) array
-        Errors of mean, peak-to-peak and 20 harmonics in m, >= 0, by source (`ste.curve.SOURCES`); NaN:
-        not estimated. Empty for tables without, whose errors follow from the bands.
+    curve_error : (9, 23, F, M, D) array
+        Errors of mean, peak-to-peak, any order beside the mesh orders, and 20 harmonics in m, >= 0, by source
+        (`ste.curve.SOURCES`); NaN: not estimated.
+        Empty for tables without, whose errors follow from the bands.
     edge_pressure : (P, F, M, D) array
         Largest pressure of the contacts that reach an edge of a flank, Pa: Hertz's as if the flank went on,
         where the true one is singular; 0 where none does. Empty for tables without.
@@ -113,9 +114,9 @@ class SteFields:
         Arm of the load about the axis of a misalignment, m: over all points of the contact lines the mean of
         the offset from mid-face less tan(beta_b) times the way from the pitch point along the line of action.
         On spur gears `face_centroid`. Empty for tables without.
-    load_arm_error : (3, 22, F, M, D) array
-        Errors of its mean, peak-to-peak and 20 harmonics in m, >= 0, by source (`ste.curve.OF_LOAD_ARM`);
-        NaN: not estimated. Empty for tables without.
+    load_arm_error : (3, 23, F, M, D) array
+        Errors of the same quantities of it in m, >= 0, by source (`ste.curve.OF_LOAD_ARM`); NaN: not
+        estimated. Empty for tables without.
 
     Raises
     ------

@@ -13,6 +13,7 @@ import numpy as np
 
 from fe_contact.errors import DatabaseError
 from fe_contact.ste.curve import AT_NODES, METHOD, OF_LOAD_ARM, SOURCES
+from fe_contact.ste.curve_quantities import BESIDE_MESH
 from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.ste.fields import DIMENSIONS, OPTIONAL, RESIDUALS, SteFields
 from fe_contact.types import Json, Status
@@ -113,6 +114,7 @@ def digest(arrays: Mapping[str, Any], before: str = "") -> str:
 
 
 FORMAT = "lineofaction STE database"
+_BESIDE_MESH_SINCE = 4
 WARNINGS = "warnings"
 _JSON_ATTRIBUTES = ("case", "effect_ledger", "receipt", "software_versions")
 FILES = FileFormat(FORMAT, "STE database", SCHEMA_VERSION, tuple(DIMENSIONS), optional=tuple(OPTIONAL))
@@ -144,12 +146,13 @@ ATTRIBUTES: dict[str, tuple[str, str]] = {
     "error_estimate": ("m", "half-width of the error band of the static transmission error"),
     "curve_error": (
         "m",
-        "error of mean, peak-to-peak and the harmonics 1 to 20, by source: " + ", ".join(SOURCES),
+        "error of mean, peak-to-peak, any order beside the mesh and harmonics 1 to 20, by source: "
+        + ", ".join(SOURCES),
     ),
     "load_arm_error": (
         "m",
-        "error of mean, peak-to-peak and harmonics 1 to 20 of the load arm, by source: "
-        + ", ".join(OF_LOAD_ARM),
+        "error of mean, peak-to-peak, any order beside the mesh and harmonics 1 to 20 of the load arm, "
+        "by source: " + ", ".join(OF_LOAD_ARM),
     ),
     "support_force": ("N", "further loads that only carry the force extraction"),
     "support_transmission_error": ("m", "static transmission error at the support loads"),
@@ -179,6 +182,9 @@ def read(path: Path) -> dict[str, Any]:
     content, attributes = FILES.read(path, lambda attributes: _before(_period(path, attributes)))
     if content.get("curve_error", np.empty(0)).shape[0] == len(SOURCES) - 1:  # of schema version 1
         content["curve_error"] = np.insert(content["curve_error"], AT_NODES.index(METHOD), 0.0, axis=0)
+    for name in ("curve_error", "load_arm_error"):
+        if attributes["schema_version"] < _BESIDE_MESH_SINCE and content.get(name, np.empty(0)).size:
+            content[name] = np.insert(content[name], BESIDE_MESH, np.nan, axis=1)
     documents = {name: json_attribute(path, attributes, name) for name in _JSON_ATTRIBUTES}
     return content | {
         "facts": _facts(path, attributes),

@@ -156,10 +156,9 @@ def _figure(name: str, value: float, error: float | None, decimals: int) -> str:
 def _orders(curve: dict[str, Any]) -> tuple[list[_Line], list[_Line]]:
     """Return the largest lines of the spectrum above their errors, and those below."""
     if curve["period"] > 1:
-        lines = sorted(zip(curve["amplitude_um"], curve["order_name"], strict=True), reverse=True)
-        of_mesh = {f"mesh {k}": error for k, error in enumerate(curve.get("harmonics_error_um") or (), 1)}
-        errors = [of_mesh.get(name, curve.get("amplitude_error_um")) for _, name in lines]
-        own = [(name, size, error) for (size, name), error in zip(lines, errors, strict=True)]
+        sizes, errors = _with_error(curve, "amplitude_um")
+        lines = zip(curve["order_name"], sizes, errors or [None] * len(sizes), strict=True)
+        own = sorted(lines, key=lambda line: -line[1])
         return [line for line in own if line[1] > (line[2] or 0.0)][:_SHOWN_ORDERS], []
     sizes, errors = _with_error(curve, "harmonics_um")
     named = [(f"harmonic {k}", size, errors[k - 1] if errors else None) for k, size in enumerate(sizes, 1)]

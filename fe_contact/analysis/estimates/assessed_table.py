@@ -26,6 +26,7 @@ from fe_contact.planning.plane_bias import LEFT_OUT, PlaneBias
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES, METHOD, OF_LOAD_ARM, PLANE, SOURCES
 from fe_contact.ste.curve_quantities import (
+    BESIDE_MESH,
     BY_SOURCE,
     FIRST_HARMONIC,
     MEAN,
@@ -187,13 +188,15 @@ def curve_errors(
     positions: PositionErrors,
     plan: Plan,
 ) -> FloatArray:
-    """Return the errors at the nodes of the table, (6, 22, F, M, D) in m: sources `AT_NODES`.
+    """Return the errors at the nodes of the table, (6, 23, F, M, D) in m: sources `AT_NODES`.
 
     Parameters are those of `estimate_errors`. Errors of the discretization are those at the loads and
     alignments that were solved again, and interpolated between them.
     """
     made, sample, pair = plan.discretization, nested.sample, points.nominal.pair
     own, by_mesh, by_patches, by_slices, free_ends = _measured(points, nested, plan)
+    if points.period > 1:
+        own[BESIDE_MESH] = _beside_by_load(points, solutions, sample)
     if bias := PlaneBias.of(pair, made):
         free_ends = bias.errors(pair, own)
     by_source = {
@@ -219,14 +222,14 @@ over the face of docs/lab/accuracy.md, three loads on two meshes, against 31 sli
 
 
 def load_arm_errors(points: OperatingPoints, table: SteDatabase, nested: Nested, plan: Plan) -> FloatArray:
-    """Return the errors of the arm of the load at the nodes, (3, 22, F, M, D) in m: sources `OF_LOAD_ARM`.
+    """Return the errors of the arm of the load at the nodes, (3, 23, F, M, D) in m: sources `OF_LOAD_ARM`.
 
     As those of the transmission error (`curve_errors`), of a mesh with more left of the change
     (`LEFT_OF_ARM`); between the positions half of them are held against all. `nested` are load arms.
     """
     _, by_mesh, by_patches, by_slices, _ = _measured(points, nested, plan, BALANCE)
     mean, ripple, harmonics = LEFT_OF_ARM
-    part = np.array([mean, ripple, *[harmonics] * (QUANTITIES - FIRST_HARMONIC)])
+    part = np.array([mean, ripple, *[harmonics] * (QUANTITIES - BESIDE_MESH)])
     by_mesh = part[:, None, None, None] * by_mesh
     arms = table.load_arm.reshape(table.position.size, -1)
     by_positions = errors_by_halves(table.position, arms, table.period).curves
@@ -239,7 +242,7 @@ def load_arm_errors(points: OperatingPoints, table: SteDatabase, nested: Nested,
 
 
 def _measured(points: OperatingPoints, nested: Nested, plan: Plan, balance: float = 0.0) -> FloatArray:
-    """Return quantities, and what meshes, patches, slices and free ends leave, (5, 22, F, M, D) in m.
+    """Return quantities, and what meshes, patches, slices and free ends leave, (5, 23, F, M, D) in m.
 
     `balance` is the least change of a mean over the mean size of the change about it.
     """
@@ -266,7 +269,7 @@ def _changes(
     balance: float,
     helical: bool,
 ) -> FloatArray:
-    """Return parts (k, 22) of the changes of k sets of curves (T R, f, m, d), (k, 22, F, M, D) in m."""
+    """Return parts (k, 23) of the changes of k sets of curves (T R, f, m, d), (k, 23, F, M, D) in m."""
     first, second = np.stack(these, axis=1), np.stack(those, axis=1)
     rows = sample.knots.size
     change = quantity_changes(sample.knots, first.reshape(rows, -1), second.reshape(rows, -1), sample.period)
@@ -279,8 +282,24 @@ def _changes(
     return sample.spread(np.moveaxis(_shared(change) if helical else change, 1, 0))
 
 
+def _beside_by_load(
+    points: OperatingPoints, solutions: list[ContactSolution], sample: TableSample
+) -> FloatArray:
+    """Return what load adds to the order beside the mesh to which it adds most, (F, M, D) in m.
+
+    What gears do without load, as the eccentricity of one, no model of teeth that bend has wrong.
+    """
+    knots = (np.arange(points.period)[:, None] + sample.position).ravel()
+
+    def added(solution: ContactSolution) -> FloatArray:
+        unloaded = np.broadcast_to(solution.no_load[:, None], solution.deflection.shape)
+        return quantity_changes(knots, solution.deflection, unloaded, points.period)[[BESIDE_MESH]]
+
+    return np.asarray(points.gathered([added(solution) for solution in solutions])[0])
+
+
 def _by_solver(points: OperatingPoints, solutions: list[ContactSolution], sample: TableSample) -> FloatArray:
-    """Errors (22, F, M, D) that the residuals of the contact can make."""
+    """Errors (23, F, M, D) that the residuals of the contact can make."""
     knots = (np.arange(points.period)[:, None] + sample.position).ravel()
     return points.gathered(
         [
@@ -291,24 +310,24 @@ def _by_solver(points: OperatingPoints, solutions: list[ContactSolution], sample
 
 
 def _left_by_mesh(pair: ParallelAxes, plan: Plan, helical: bool) -> FloatArray:
-    """Error left over the change to the coarse mesh, (22,)."""
+    """Error left over the change to the coarse mesh, (23,)."""
     made = plan.discretization
     straight = "spur" if all(gear.web is None for gear in plan.bodies(pair)) else "thin"
     kind = ("helical" if helical else straight) if isinstance(made, FaceDiscretization) else "plane"
     mean, ripple, harmonics = LEFT_BY_MESH[kind]["draft" if plan.level == "draft" else "standard"]
-    part = np.array([mean, ripple, *[harmonics] * (QUANTITIES - FIRST_HARMONIC)])
+    part = np.array([mean, ripple, *[harmonics] * (QUANTITIES - BESIDE_MESH)])
     return part * made.remaining if helical else part
 
 
 def _shared(change: FloatArray) -> FloatArray:
-    """Let every harmonic change (22, ...) by its share of peak-to-peak at least."""
+    """Let every harmonic change (23, ...) by its share of peak-to-peak at least."""
     number = np.arange(1, QUANTITIES - FIRST_HARMONIC + 1).reshape(-1, *[1] * (change.ndim - 1))
     least = HARMONIC_SHARE * change[PEAK_TO_PEAK] / np.sqrt(number)
     return np.concatenate([change[:FIRST_HARMONIC], np.maximum(change[FIRST_HARMONIC:], least)])
 
 
 def with_axes(at_nodes: FloatArray, axes: Mapping[str, AxisError]) -> FloatArray:
-    """Append the interpolation along the axes: (9, 22, F, M, D).
+    """Append the interpolation along the axes: (9, 23, F, M, D).
 
     What was assessed at one alignment stands for all of them. An interval that was not assessed has NaN.
     """
@@ -343,9 +362,9 @@ class AssessedTable:
     ----------
     band : ndarray, shape (P, F, M, D)
         Of every point, m; NaN where not estimated.
-    curve_error : ndarray, shape (9, 22, F, M, D)
+    curve_error : ndarray, shape (9, 23, F, M, D)
         Of mean, peak-to-peak and harmonics by source, m; NaN where not estimated.
-    load_arm_error : ndarray, shape (3, 22, F, M, D)
+    load_arm_error : ndarray, shape (3, 23, F, M, D)
         The same of the load arm.
     by_source, held_out : dict
         The largest by source; what was measured between the nodes of each axis.

@@ -61,7 +61,7 @@ def excitation_errors(table: SteDatabase, force: float) -> ExcitationErrors:
 
 
 def _stated(table: SteDatabase, force: float, m: int, d: int) -> FloatArray:
-    """Return the errors (sources, 22) of the transmission error by source at an alignment, m.
+    """Return the errors (sources, 23) of the transmission error by source at an alignment, m.
 
     An interval of loads that was not assessed, as of condensed gears, adds nothing.
     """

@@ -14,7 +14,7 @@ from fe_contact.effects import ContactScene
 from fe_contact.errors import DatabaseError
 from fe_contact.sampled import LOADS, WIDE_INTERVALS, WIDE_PROBES, sample_of, some_positions, spread
 from fe_contact.ste import SteDatabase
-from fe_contact.ste.curve_quantities import QUANTITIES, quantity_changes
+from fe_contact.ste.curve_quantities import BESIDE_MESH, FIRST_HARMONIC, QUANTITIES, quantity_changes
 from fe_contact.types import FloatArray, IntArray, Json
 
 LOAD_PROBES, MIDDLE = np.arange(1, WIDE_PROBES + 1) / (WIDE_PROBES + 1), np.array([0.5])
@@ -39,7 +39,7 @@ class AxisError:
     error : ndarray, shape (I, L) or (I, 1)
         Largest difference between interpolant and solution over the positions in m, at each load of the
         table; of the held-out loads themselves for the axis of loads. NaN where a solution did not converge.
-    change : ndarray, shape (22, I, L) or (22, I, 1)
+    change : ndarray, shape (23, I, L) or (23, I, 1)
         What that does to mean, peak-to-peak and harmonics, m; bounds of it from `error` for center distances,
         which are not assessed at all positions.
     """
@@ -200,8 +200,13 @@ class _Assessed:
         return self.table.ste(position[:, None], load, *alignment)
 
     def _changes(self, curves: Curves) -> FloatArray:
-        """Return the changes of the quantities, (22, L) in m."""
-        return quantity_changes(self.table.position[self.rows], *curves, 1)
+        """Return the changes of the quantities, (23, L) in m.
+
+        Of one pitch, which has no orders beside the mesh: they count as the harmonic that changes most.
+        """
+        changes = quantity_changes(self.table.position[self.rows], *curves, 1)
+        changes[BESIDE_MESH] = changes[FIRST_HARMONIC:].max(axis=0)
+        return changes
 
     def _nearest(self, name: str) -> FloatArray:
         nodes: FloatArray = getattr(self.table, name)

@@ -19,6 +19,7 @@ from fe_contact.contact import ContactSolution
 from fe_contact.planning.plan import NodeRule, Plan
 from fe_contact.sampled import sample_of, spread
 from fe_contact.ste.curve_quantities import (
+    BESIDE_MESH,
     PEAK_TO_PEAK,
     QUANTITIES,
     error_bound,
@@ -48,7 +49,7 @@ class PositionErrors:
     ----------
     band : ndarray, shape (T P, F)
         Largest error beside each position of all base pitches, m.
-    curves : ndarray, shape (22, F)
+    curves : ndarray, shape (23, F)
         Of mean, peak-to-peak and harmonics, m.
     """
 
@@ -75,11 +76,28 @@ def position_errors(
         return _told(nodes, _by_middles(nodes, 1), load.size)
     some = sample_of(load.size, LOADS)
     measured, left = _measured(nodes.position, points, solutions, plan, some)
-    band = np.maximum(left, np.roll(left, 1, axis=0))
-    bound = error_bound(_knots(measured, period), band, measured.value, period)
+    bound = _bound(measured, left, period)
+    if period > 1:
+        bound[BESIDE_MESH] = _bound(measured, _left_of_difference(measured, left, period), period)[
+            BESIDE_MESH
+        ]
     curves = _by_middles(measured, period) + bound
     errors = _told(measured, curves, some.size)
     return PositionErrors(spread(load, some, errors.band, 1), spread(load, some, errors.curves, 1))
+
+
+def _bound(nodes: PositionNodes, left: FloatArray, period: int) -> FloatArray:
+    """Return what errors `left` (T P, C) in the intervals after the nodes do to the curves, (23, C) in m."""
+    band = np.maximum(left, np.roll(left, 1, axis=0))
+    return error_bound(_knots(nodes, period), band, nodes.value, period)
+
+
+def _left_of_difference(nodes: PositionNodes, left: FloatArray, period: int) -> FloatArray:
+    """Return the same of what pitches differ by from their mean: no other error is beside the mesh orders."""
+    by_pitch = nodes.value.reshape(period, nodes.position.size, -1)
+    difference = (by_pitch - by_pitch.mean(axis=0)).reshape(left.shape)
+    failed = NEXT_SPACING * _predicted_failure(Axis(_knots(nodes, period), float(period)), difference)
+    return np.where(left > 0.0, np.maximum(failed, np.roll(failed, -1, axis=0)), 0.0)
 
 
 def _measured(
@@ -148,7 +166,7 @@ def _predicted_failure(axis: Axis, value: FloatArray) -> FloatArray:
 
 
 def _by_middles(nodes: PositionNodes, period: int) -> FloatArray:
-    """Carry the middles on to errors of the curves, (22, C) in m."""
+    """Carry the middles on to errors of the curves, (23, C) in m."""
     knots = _knots(nodes, period)
     axis = np.append(knots, period)
     everywhere = np.sort(np.concatenate([knots, 0.5 * (axis[1:] + axis[:-1])]))
@@ -200,7 +218,7 @@ def errors_by_halves(knots: FloatArray, values: FloatArray, period: int) -> Posi
     Returns
     -------
     PositionErrors
-        Bands (K, F) from what each position's neighbors miss of it; of the curves (22, F) the larger change
+        Bands (K, F) from what each position's neighbors miss of it; of the curves (23, F) the larger change
         of the two halves.
     """
     halves = slice(0, None, 2), slice(1, None, 2)

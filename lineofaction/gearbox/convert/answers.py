@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -62,8 +61,8 @@ def curve_json(
         answer["order"] = curve.spectrum.order.tolist()
         answer["order_name"] = list(curve.spectrum.names)
         answer["amplitude_um"] = (curve.spectrum.amplitude / UM).tolist()
-        if math.isfinite(curve.spectrum.error):
-            answer["amplitude_error_um"] = curve.spectrum.error / UM
+        if np.all(np.isfinite(curve.spectrum.error)):
+            answer["amplitude_error_um"] = (curve.spectrum.error / UM).tolist()
     if not all(np.all(np.isfinite(answer[name])) for name in ("ste_um", "load_share")):
         raise JobFailed(
             "The curve has points without a solution. Compute the table again with other settings."

@@ -388,7 +388,7 @@ def _spectrum_of(curve: Curve) -> tuple[FloatArray, FloatArray, FloatArray]:
         return np.arange(1.0, len(values) + 1.0), values[:, 0], values[:, 1]
     lines = curve.spectrum
     shown = lines.order <= LONG_ORDERS + 1e-9
-    return lines.order[shown], lines.amplitude[shown], np.full(np.count_nonzero(shown), lines.error)
+    return lines.order[shown], lines.amplitude[shown], lines.error[shown]
 
 
 def _panel(order: FloatArray, amplitude: FloatArray, error: FloatArray) -> Panel:

@@ -12,6 +12,7 @@ import pytest
 from fe_contact.errors import DatabaseError, InputError, SolveError
 from fe_contact.ste.curve import AT_NODES, METHOD, SOURCES
 from fe_contact.ste.curve_quantities import (
+    BESIDE_MESH,
     FIRST_HARMONIC,
     MEAN,
     PEAK_TO_PEAK,
@@ -232,6 +233,16 @@ def test_harmonics_of_a_longer_period_are_those_of_the_mesh() -> None:
     change = quantity_changes(position, np.tile(TWO_WAVES, (3, 1)), other, 3)[:, 0]
     assert change[FIRST_HARMONIC] == pytest.approx(1e-8, rel=1e-3)
     assert change[FIRST_HARMONIC + 1 :].max() < 1e-10
+    assert change[BESIDE_MESH] < 1e-18
+
+
+def test_what_differs_from_pitch_to_pitch_is_beside_the_mesh_orders() -> None:
+    position = np.arange(192) / 64
+    curve = np.tile(TWO_WAVES, (3, 1))
+    other = curve + 1e-8 * np.cos(2.0 * np.pi / 3.0 * position)[:, None]
+    change = quantity_changes(position, curve, other, 3)[:, 0]
+    assert change[BESIDE_MESH] == pytest.approx(1e-8, rel=1e-3)
+    assert change[FIRST_HARMONIC:].max() < 1e-10
 
 
 @pytest.fixture

@@ -14,6 +14,8 @@ import xarray
 
 from fe_contact.errors import DatabaseError
 from fe_contact.ste import SCHEMA_VERSION, SteDatabase
+from fe_contact.ste.curve import SOURCES
+from fe_contact.ste.curve_quantities import BESIDE_MESH, QUANTITIES
 from fe_contact.ste.fields import DIMENSIONS
 from fe_contact.types import Status
 
@@ -128,6 +130,17 @@ def test_what_another_program_changed_is_refused(stored):
     for name in ("case", "facts", "receipt"):
         message = rewritten(stored[1], lambda d, name=name: d.assign_attrs({name: "{broken"}))
         assert f"its {name} is not readable JSON" in message
+
+
+def test_older_files_do_not_know_the_errors_of_orders_beside_the_mesh(make, tmp_path):
+    database = make(position=[0.0, 0.3, 0.6], force=[1000.0, 2000.0])
+    errors = np.ones((len(SOURCES), QUANTITIES - 1, *database.status.shape[1:]))
+    older = replace(database.metadata, schema_version=3)
+    replace(database, curve_error=errors, metadata=older).to_netcdf(tmp_path / "older.nc")
+    read = SteDatabase.from_netcdf(tmp_path / "older.nc").curve_error
+    assert read.shape[1] == QUANTITIES
+    assert np.isnan(read[:, BESIDE_MESH]).all()
+    assert np.all(np.delete(read, BESIDE_MESH, axis=1) == 1.0)
 
 
 def test_every_flipped_bit_is_noticed_or_harmless(make, tmp_path):

@@ -9,7 +9,7 @@ from fe_contact import Gear, GearPair, analyze
 from fe_contact.analysis.estimates.excitation_errors import excitation_errors
 from fe_contact.geometry.backlash import reference_center_distance
 from fe_contact.ste.curve import all_sources
-from fe_contact.ste.curve_quantities import quantity_changes
+from fe_contact.ste.curve_quantities import FIRST_HARMONIC, quantity_changes
 from fe_contact.ste.extraction import sliding_sums
 
 FORCES = (1500.0, 3000.0)
@@ -32,7 +32,8 @@ def test_errors_at_a_stored_load_are_those_of_the_table(rough):
         found = excitation_errors(rough, force)
         curve = rough.curve(force=force)
         assert found.transmission_error == pytest.approx([each.error for each in curve.harmonics])
-        assert found.load_arm == pytest.approx(all_sources(rough.load_arm_error[:, 2:, load, 0, 0]))
+        stated = all_sources(rough.load_arm_error[..., load, 0, 0])
+        assert found.load_arm == pytest.approx(stated[FIRST_HARMONIC:])
 
 
 @pytest.mark.law
@@ -40,7 +41,7 @@ def test_friction_of_two_tables_differs_by_no_more_than_both_state(rough):
     """Of a spur pair whose load shares step, on other meshes and at more positions."""
     fine = spur_table(level="standard", positions=256)
     shares = [sliding_sums(table)[0][:, :, 0, 0] for table in (rough, fine)]
-    apart = quantity_changes(rough.position, *shares, 1, fine.position)[2:8]
+    apart = quantity_changes(rough.position, *shares, 1, fine.position)[FIRST_HARMONIC : FIRST_HARMONIC + 6]
     for load, force in enumerate(FORCES):
         stated = sum(excitation_errors(table, force).friction[:6] for table in (rough, fine))
         assert np.all(apart[:, load] <= stated)
