@@ -20,6 +20,8 @@ from fe_contact.errors import InputError, finite, integer, within
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.design_problem import DesignProblem
 from fe_contact.microgeometry.evaluator import Evaluation, Evaluator
+from fe_contact.microgeometry.objective import NO_LIMITS, Limits
+from fe_contact.microgeometry.root_influence import RootInfluence
 from fe_contact.microgeometry.scatter import MISALIGNMENT, ONE_NODE, Scatter
 from fe_contact.microgeometry.variables import effect_of, figure, modified
 from fe_contact.options import LARGEST_DEVIATION, AnalysisOptions, Levels, Run, TableAxes
@@ -198,6 +200,7 @@ def design_study(
     clock: StageClock,
     run: Run,
     checked: Checked | None = None,
+    limits: Limits = NO_LIMITS,
 ) -> DesignStudy:
     """Choose the model and condense the gears.
 
@@ -209,6 +212,8 @@ def design_study(
         Only this process works.
     checked : Checked, optional
         Of `DesignSpace.check`, where that is done.
+    limits : Limits
+        One of the root stress has its unit loads solved.
 
     Raises
     ------
@@ -228,7 +233,11 @@ def design_study(
     level = np.searchsorted(np.unique(loads.torque), loads.torque)  # the table has every torque once
     force = decided.checked.request.load[level]
     varied, choices = replace(contact, varied=True), decided.checked.decided
-    evaluator = Evaluator(varied, choices, position, force[counted], own.misalignment, nodes)
+    roots = None
+    if limits.root_stress is not None:
+        with clock.stage("root stress"):
+            roots = RootInfluence.of(contact, run.cache)
+    evaluator = Evaluator(varied, choices, position, force[counted], own.misalignment, nodes, roots)
     return DesignStudy(decided, loads, force, counted, evaluator)
 
 
@@ -366,7 +375,15 @@ def confirm(
     )
     counted_figures = Evaluation(
         figures.ste[:, :, counted],
-        *(each[:, counted] for each in (figures.pressure, figures.face_load_factor, figures.edge_load_share)),
+        *(
+            each[:, counted]
+            for each in (
+                figures.pressure,
+                figures.face_load_factor,
+                figures.edge_load_share,
+                figures.root_stress,
+            )
+        ),
     )
     rule = _scatter_error(problem, values)
     own = problem.objective.of(harris.expected_error[counted])

@@ -23,6 +23,7 @@ from fe_contact.contact.touch import Touch, modified_touch
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.objective import Limits
+from fe_contact.microgeometry.root_influence import RootInfluence
 from fe_contact.microgeometry.scatter import MISALIGNMENT, ScatterNodes
 from fe_contact.microgeometry.variables import LENGTHS, SLOPES, figure, modified
 from fe_contact.types import BoolArray, FloatArray, IntArray, Status
@@ -43,12 +44,18 @@ class Evaluation:
         K_Hbeta of the face load averaged over positions.
     edge_load_share : ndarray, shape (S, L)
         Largest part of the load on tip edges over positions.
+    root_stress : ndarray, shape (S, L)
+        Largest principal stress in the tension roots of both gears over positions, Pa; NaN where it is not
+        followed.
     """
 
     ste: FloatArray = field(metadata=in_unit("m", "node", "position", "torque"))
     pressure: FloatArray = field(metadata=in_unit("pa", "node", "torque"))
     face_load_factor: FloatArray
     edge_load_share: FloatArray
+    root_stress: FloatArray = field(
+        default_factory=lambda: np.full((1, 1), np.nan), metadata=in_unit("pa", "node", "torque")
+    )
 
     @property
     def peak_to_peak(self) -> FloatArray:
@@ -62,6 +69,7 @@ class Evaluation:
             (self.pressure, limits.max_pressure),
             (self.face_load_factor, limits.face_load_factor),
             (self.peak_to_peak, limits.peak_to_peak),
+            (self.root_stress, limits.root_stress),
         ):
             excess += 0.0 if limit is None else max(0.0, float(value.max()) / limit - 1.0)
         if limits.edge_load_share is not None:
@@ -87,6 +95,8 @@ class Evaluator:
         Normal forces, N.
     misalignment : ndarray, shape (L,)
         Of each load, about which it scatters, m.
+    roots : RootInfluence, optional
+        By which the stress of the roots is followed.
     """
 
     contact: PairContact
@@ -95,6 +105,7 @@ class Evaluator:
     load: FloatArray
     misalignment: FloatArray
     nodes: ScatterNodes
+    roots: RootInfluence | None = None
 
     @property
     def misalignments(self) -> FloatArray:
@@ -110,7 +121,7 @@ class Evaluator:
     def evaluate(self, values: Mapping[str, float]) -> Evaluation:
         """Solve the contact of one design, ``gear.quantity`` to m, at every node and load."""
         solved = self.solved(values, range(self.nodes.weight.size))
-        return self.evaluation(LoadFigures.of(problem, solution) for _, problem, solution in solved)
+        return self.evaluation(LoadFigures.of(*contact, self.roots) for _, *contact in solved)
 
     @cached_property
     def runs(self) -> tuple[tuple[int, ...], ...]:
@@ -133,7 +144,13 @@ class Evaluator:
     def evaluation(self, solved: Iterable[LoadFigures]) -> Evaluation:
         """Put the figures of all that was `solved` together."""
         figures = [
-            (f.ste, f.pressure.max(axis=(0, 2)), f.face_load.max(axis=1), f.edge_load_share.max(axis=0))
+            (
+                f.ste,
+                f.pressure.max(axis=(0, 2)),
+                f.face_load.max(axis=1),
+                f.edge_load_share.max(axis=0),
+                f.root_stress,
+            )
             for f in solved
         ]
         return Evaluation(*(self.gathered(each) for each in zip(*figures, strict=True)))
@@ -214,21 +231,29 @@ class LoadFigures:
         Mean over the positions at the points of the face, over its mean over the face.
     edge_load_share : ndarray, shape (P, L)
         Part of the load on tip edges.
+    root_stress : ndarray, shape (L,)
+        Largest of both gears over the positions, Pa; NaN: not followed.
     """
 
     ste: FloatArray
     pressure: FloatArray
     face_load: FloatArray
     edge_load_share: FloatArray
+    root_stress: FloatArray
 
     @classmethod
-    def of(cls, problem: ContactProblem, solution: ContactSolution) -> LoadFigures:
+    def of(
+        cls, problem: ContactProblem, solution: ContactSolution, roots: RootInfluence | None
+    ) -> LoadFigures:
         """Read the figures off a solution."""
         ste = np.where(solution.status == Status.CONVERGED, solution.deflection, np.nan)
         face_load = over_face(problem, solution.force)
         at_edges = on_edges(problem, solution.force) / carried(problem, solution.force).sum(axis=2)
         pressure = contact_pressure(problem, solution.force)
-        return cls(ste, pressure, face_load / face_load.mean(axis=1, keepdims=True), at_edges)
+        stress = np.full(ste.shape[1], np.nan)
+        if roots is not None:
+            stress = roots.stress(problem, solution.force).max(axis=(0, 1))
+        return cls(ste, pressure, face_load / face_load.mean(axis=1, keepdims=True), at_edges, stress)
 
 
 def over_face(problem: ContactProblem, force: FloatArray) -> FloatArray:

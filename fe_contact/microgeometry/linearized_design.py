@@ -29,6 +29,7 @@ from fe_contact.microgeometry.evaluator import (
     over_face,
 )
 from fe_contact.microgeometry.objective import Limits, Rows
+from fe_contact.microgeometry.root_influence import RootInfluence
 from fe_contact.microgeometry.scatter import MISALIGNMENT
 from fe_contact.microgeometry.variables import (
     ACROSS_FACE,
@@ -302,7 +303,7 @@ class _Solved:
 
     Attributes
     ----------
-    pair, problem, solution, figures
+    pair, problem, solution, figures, roots
     steps : tuple of _Difference
         Of the variables.
     opened : ndarray, shape (d, k)
@@ -316,6 +317,7 @@ class _Solved:
     steps: tuple[_Difference, ...]
     strips: CarryingStrips
     opened: FloatArray
+    roots: RootInfluence | None
 
     @cached_property
     def ste(self) -> FloatArray:
@@ -347,7 +349,7 @@ def linearized_nodes(
     nodes: Sequence[int],
 ) -> list[LinearizedNode]:
     """Solve a design, ``gear.quantity`` to m, at some nodes, and differentiate it by the variables named."""
-    parts = (differentiated(*solved, names) for solved in evaluator.solved(values, nodes))
+    parts = (differentiated(*solved, names, evaluator.roots) for solved in evaluator.solved(values, nodes))
     return [LinearizedNode(part.figures, part.ste, limit_rows(part, limits)) for part in parts]
 
 
@@ -370,13 +372,18 @@ def linearized(
 
 
 def differentiated(
-    pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution, names: Sequence[str]
+    pair: ParallelAxes,
+    problem: ContactProblem,
+    solution: ContactSolution,
+    names: Sequence[str],
+    roots: RootInfluence | None,
 ) -> _Solved:
     """Return a solution of some loads with its derivatives by the variables named."""
     strips = CarryingStrips.of(pair, problem, solution)
     steps = tuple(_Difference.of(pair, name) for name in names)
     opened = np.stack([step.opened(strips) for step in steps])
-    return _Solved(pair, problem, solution, LoadFigures.of(problem, solution), steps, strips, opened)
+    figures = LoadFigures.of(problem, solution, roots)
+    return _Solved(pair, problem, solution, figures, steps, strips, opened, roots)
 
 
 def limit_rows(solved: _Solved, limits: Limits) -> tuple[Rows, ...]:
@@ -390,6 +397,9 @@ def limit_rows(solved: _Solved, limits: Limits) -> tuple[Rows, ...]:
         rows.append(_edge_load(solved, limits.edge_load_share))
     if limits.peak_to_peak is not None:
         rows.append(_ripple(solved, limits.peak_to_peak))
+    if limits.root_stress is not None and solved.roots is not None:
+        stress, by = solved.roots.rows(solved.problem, solved.solution.force, solved.force)
+        rows.append((stress / limits.root_stress - 1.0, by / limits.root_stress))
     return tuple(rows)
 
 

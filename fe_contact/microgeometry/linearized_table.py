@@ -13,6 +13,7 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.evaluator import Evaluator, LoadFigures
 from fe_contact.microgeometry.linearized_design import differentiated, limit_rows
 from fe_contact.microgeometry.objective import NO_LIMITS, Limits, Rows
+from fe_contact.microgeometry.root_influence import RootInfluence
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 
@@ -63,7 +64,7 @@ def tabled_loads(
         for group, (pair, problem, solution) in zip(evaluator.groups, solved, strict=True):
             skew = float(evaluator.misalignments[node, group[0]])
             table = table_of_solution(pair, problem, solution, evaluator.position, skew)
-            yield _tabled(pair, problem, solution, table, names, limits)
+            yield _tabled(pair, problem, solution, table, names, limits, evaluator.roots)
 
 
 def _tabled(
@@ -73,10 +74,11 @@ def _tabled(
     table: SteDatabase,
     names: Sequence[str],
     limits: Limits,
+    roots: RootInfluence | None,
 ) -> TabledLoads:
     if not names:
-        return TabledLoads(LoadFigures.of(problem, solution), table, {}, ())
-    design = differentiated(pair, problem, solution, names)
+        return TabledLoads(LoadFigures.of(problem, solution, roots), table, {}, ())
+    design = differentiated(pair, problem, solution, names, roots)
     arm = np.stack([design.strips.arm_change(each) for each in design.opened])
     by = {
         "static_transmission_error": design.ste,

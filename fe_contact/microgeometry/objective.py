@@ -95,12 +95,15 @@ class Limits:
         Largest part of the load that tip edges carry at any position; 0 forbids their contact.
     peak_to_peak : float, optional
         Largest peak-to-peak of the transmission error, m.
+    root_stress : float, optional
+        Largest principal stress in the tension roots of both gears, Pa.
     """
 
     max_pressure: float | None = None
     face_load_factor: float | None = None
     edge_load_share: float | None = None
     peak_to_peak: float | None = None
+    root_stress: float | None = None
 
     def __post_init__(self) -> None:
         if self.max_pressure is not None:
@@ -118,6 +121,8 @@ class Limits:
             raise InputError("limits.edge_load_share", self.edge_load_share, bound)
         if self.peak_to_peak is not None:
             positive("limits.peak_to_peak", self.peak_to_peak, SiNote("In m: 1 um is 1e-6."))
+        if self.root_stress is not None:
+            positive("limits.root_stress", self.root_stress, SiNote("In Pa: 400 MPa is 4e8."))
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -126,6 +131,7 @@ class Limits:
             "face_load_factor": self.face_load_factor,
             "edge_load_share": self.edge_load_share,
             "peak_to_peak_m": self.peak_to_peak,
+            "root_stress_pa": self.root_stress,
         }
 
 

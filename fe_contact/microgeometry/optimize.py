@@ -441,7 +441,8 @@ def optimize(
         No acceptable mesh, or the contact of one of both designs cannot be solved.
     """
     clock = StageClock(run.workers.cost)
-    study = design_study(request.space, request.torques, request.further_torques, clock, run, request.checked)
+    torques = request.torques, request.further_torques
+    study = design_study(request.space, *torques, clock, run, request.checked, request.limits)
     with clock.stage("search"):
         problem = _posed(study, request, memory)
         runs = search_all(problem, request.search, request.own, run, cancel)

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from bounds import warn_of
 from fe_contact.analysis.flanks.solved_operating_point import solved_point
+from fe_contact.analysis.pairs.pair_contact import PairContact
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import as_checked
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
@@ -293,7 +294,7 @@ def root_stress(
     clock = StageClock(run.workers.cost)
     solved, receipt = solved_point(as_checked(pair, point, options), at, clock, run)
     with clock.stage("root stress"):
-        pinion, wheel = _histories(solved, _root_meshes(solved.contact.plan.discretization), run.cache)
+        pinion, wheel = _histories(solved, run.cache)
     run.progress("root stress", 1.0)
     request = solved.checked.request
     findings = [
@@ -315,28 +316,28 @@ def root_stress(
     )
 
 
-def _histories(
-    solved: SolvedOperatingPoint, meshes: _PlaneRootMeshes | _FaceRootMeshes, cache: Path | None
-) -> list[RootStressHistory]:
+def _histories(solved: SolvedOperatingPoint, cache: Path | None) -> list[RootStressHistory]:
     """Return the histories of both gears, with the error that coarser meshes show."""
     fine, rough = (
-        _pair_histories(solved, _unit_stresses(solved, meshes, coarse, cache)) for coarse in (False, True)
+        _pair_histories(solved, unit_stresses(solved.contact, coarse, cache)) for coarse in (False, True)
     )
+    remaining = _root_meshes(solved.contact.plan.discretization).remaining
     histories = []
     for history, other in zip(fine, rough, strict=True):
         peaks = [[h.peak(root).stress.value for h in (history, other)] for root in ROOTS]
         # the greater of both roots: one difference of two meshes may vanish by chance
         difference = max(abs(rougher / value - 1.0) for value, rougher in peaks)
-        histories.append(replace(history, relative_error=meshes.remaining * difference))
+        histories.append(replace(history, relative_error=remaining * difference))
     return histories
 
 
-def _unit_stresses(
-    solved: SolvedOperatingPoint, meshes: _PlaneRootMeshes | _FaceRootMeshes, coarse: bool, cache: Path | None
-) -> UnitStresses:
-    """Compute or fetch the unit-load stress of both gears; identical gears are computed once."""
-    pair = solved.contact.pair
-    gears = solved.contact.plan.bodies(pair)
+def unit_stresses(contact: PairContact, coarse: bool, cache: Path | None) -> UnitStresses:
+    """Compute or fetch the unit-load stress of both gears; identical gears are computed once.
+
+    `coarse`: on the meshes that tell the error of the others.
+    """
+    pair, meshes = contact.pair, _root_meshes(contact.plan.discretization)
+    gears = contact.plan.bodies(pair)
     if isinstance(meshes, _FaceRootMeshes):
         sectors = meshes.coarse_recipes if coarse else meshes.recipes
         first, second = unit_root_stresses_3d(gears, sectors, cache=cache)

@@ -64,11 +64,13 @@ def _levels_table(result: HeardOptimization) -> Table:
 
 
 def _flank_table(result: HeardOptimization) -> Table:
-    head = (
+    head: tuple[str, ...] = (
         "load", "misalignment, µm", "ripple before, µm", "± µm", "ripple after, µm", "± µm",
         "pressure before, MPa", "after, MPa", "K_Hbeta before", "after",
     )  # fmt: skip
     before, after = result.start, result.optimum
+    followed = bool(np.all(np.isfinite(after.root_stress)))
+    head += ("root stress before, MPa", "after") if followed else ()
     rows = tuple(
         (
             torque,
@@ -81,6 +83,7 @@ def _flank_table(result: HeardOptimization) -> Table:
             number(after.pressure[k] / 1e6, 4),
             number(before.face_load_factor[k], 3),
             number(after.face_load_factor[k], 3),
+            *(number(each.root_stress[k] / 1e6, 4) for each in (before, after) if followed),
         )
         for k, torque in enumerate(_loads(result))
     )

@@ -265,6 +265,13 @@ class Inputs(BoundaryModel):
             description="Largest peak-to-peak of the transmission error in um",
             examples=[0.5],
         )
+        root_stress_mpa: float | None = Field(
+            default=None,
+            gt=0.0,
+            le=1e5,
+            description="Largest stress in the tension roots of both gears in MPa",
+            examples=[400.0],
+        )
 
     torque_n_m: Torques | None = Field(
         default=None,
@@ -329,6 +336,7 @@ class HeardDesignFigures(Part):
     max_pressure_mpa: Annotated[list[float], Source("pressure")]
     face_load_factor: list[float]
     edge_load_share: list[float]
+    root_stress_mpa: list[float | None]
 
 
 class WithinFigures(Part):
@@ -421,6 +429,9 @@ class OptimizeFigures(Figures):
         edge_load_share: Annotated[list[float], Source(lambda own: own.figures.edge_load_share.max(axis=0))]
         harris_map: HarrisMapFigures
         max_pressure_mpa: Annotated[list[float], Source(lambda own: own.figures.pressure.max(axis=0))]
+        root_stress_mpa: Annotated[
+            list[float | None], Source(lambda own: own.figures.root_stress.max(axis=0))
+        ]
 
     class SearchFigures(Part):
         """The result of one start of the search."""

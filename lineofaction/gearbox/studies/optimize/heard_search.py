@@ -280,7 +280,8 @@ def _evaluator(
         request.pair, acting, request.scatter, skews, request.search.positions, request.options
     )
     run = replace(means.analysis, progress=silent)
-    study = design_study(space, [load for load, _ in points], (), StageClock(), run)
+    torques = [load for load, _ in points]
+    study = design_study(space, torques, (), StageClock(), run, limits=request.limits)
     force = torque / float(request.pair.torque(1.0))
     load, alignment = with_loads_beside(force, misalignment)
     return replace(study.evaluator, load=load, misalignment=alignment)
@@ -310,6 +311,7 @@ def _confirmed(heard: Heard, values: dict[str, float]) -> HeardDesign:
         figures.edge_load_share.max(axis=0)[own],
         contacts[0].parting,
         violation,
+        figures.root_stress.max(axis=0)[own],
     )
 
 

@@ -43,6 +43,8 @@ class HeardDesign:
         Largest share of the static mesh force by which flanks part at a speed, 0: they do not.
     violation : float
         Of the limits, in parts of them.
+    root_stress : (L,) array
+        Largest in the tension roots at any node of the scatter, Pa; NaN without a limit of it.
     """
 
     values: dict[str, float]
@@ -56,6 +58,9 @@ class HeardDesign:
     edge_load_share: FloatArray
     parting: FloatArray
     violation: float
+    root_stress: FloatArray = field(
+        default_factory=lambda: np.full(1, np.nan), metadata=in_unit("pa", "load_case")
+    )
 
 
 @dataclass(frozen=True)

@@ -126,7 +126,11 @@ class _OptimizeStudy(
 
     def _of_case(self, result: Optimization) -> Json:
         limits = dict(result.asked["limits"])
-        units = {"max_pressure_mpa": ("max_pressure_pa", MPA), "peak_to_peak_um": ("peak_to_peak_m", UM)}
+        units = {
+            "max_pressure_mpa": ("max_pressure_pa", MPA),
+            "peak_to_peak_um": ("peak_to_peak_m", UM),
+            "root_stress_mpa": ("root_stress_pa", MPA),
+        }
         for name, (known, unit) in units.items():
             value = limits.pop(known, None)  # files of version 0.2 lack some
             limits[name] = None if value is None else value / unit
@@ -254,12 +258,13 @@ def _library_request(checked: CheckedCase, study: Inputs) -> OptimizationRequest
         for gear, fields in gears.items()
         for name, ends, unit in _stated_fields(gear, fields)
     ]
-    pressure, ripple = study.limits.max_pressure_mpa, study.limits.peak_to_peak_um
+    stated = study.limits
     limits = Limits(
-        None if pressure is None else pressure * MPA,
-        study.limits.face_load_factor,
-        study.limits.edge_load_share,
-        None if ripple is None else ripple * UM,
+        _si(stated.max_pressure_mpa, MPA),
+        stated.face_load_factor,
+        stated.edge_load_share,
+        _si(stated.peak_to_peak_um, UM),
+        _si(stated.root_stress_mpa, MPA),
     )
     return OptimizationRequest(
         pair,
@@ -272,6 +277,10 @@ def _library_request(checked: CheckedCase, study: Inputs) -> OptimizationRequest
         _search(study.search, heard=study.heard is not None),
         checked.options,
     )
+
+
+def _si(value: float | None, unit: float) -> float | None:
+    return None if value is None else value * unit
 
 
 def _scatter_of(scatter: ScatterInput, seed: int) -> Scatter:

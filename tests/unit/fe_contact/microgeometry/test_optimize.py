@@ -154,6 +154,17 @@ def test_tip_edges_can_be_kept_from_contact_and_pressures_low(found: Optimizatio
     assert (held.outcome is Outcome.LIMITS_EXCEEDED) == (held.optimum.violation > 0.005)
 
 
+def test_a_root_stress_that_no_relief_reaches_is_told(found: Optimization) -> None:
+    """One tooth carries all at the outer point of single contact, whatever the reliefs are."""
+    assert np.all(np.isnan(found.start.figures.root_stress))
+    limits = Limits(root_stress=130e6)
+    held = searched(limits=limits)
+    assert held.outcome is Outcome.LIMITS_EXCEEDED
+    largest = held.start.figures.root_stress.max()
+    assert held.start.violation == pytest.approx(largest / 130e6 - 1.0, rel=1e-9, abs=0.0)
+    assert 0.95 * largest < held.optimum.figures.root_stress.max() < 1.01 * largest
+
+
 def test_a_gain_smaller_than_the_errors_is_not_claimed() -> None:
     tiny = [DesignVariable("pinion.profile_slope", -1e-10, 1e-10)]
     best = searched(tiny, PAIR)

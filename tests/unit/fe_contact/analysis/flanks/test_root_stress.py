@@ -13,13 +13,19 @@ from numpy.typing import ArrayLike
 from spur_gears import GEAR
 
 from fe_contact import Gear, GearPair, RootStress, root_stress
-from fe_contact.analysis.flanks.root_stress import _crest_values, _finer_root, _pair_histories
+from fe_contact.analysis.flanks.root_stress import (
+    _crest_values,
+    _finer_root,
+    _pair_histories,
+    unit_stresses,
+)
 from fe_contact.analysis.flanks.solved_operating_point import solve_operating_point
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
 from fe_contact.compliance import unit_root_stress, unit_root_stress_3d
 from fe_contact.geometry import InternalGearPair, RingGear
 from fe_contact.mesh import MeshRecipe, SectorRecipe
+from fe_contact.microgeometry.root_influence import RootInfluence
 from fe_contact.options import Run
 from model_studies.stage_clock import StageClock
 
@@ -176,3 +182,27 @@ def test_a_root_under_the_patch_counts_for_no_peak(cache: Path) -> None:
     spoiled[:, :, 0, 0, :, 0] += 1e12 * near
     assert replace(history, stress=spoiled).peak("tension") == unchanged
     assert unchanged.flank_coordinate < lowest
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("model", ["plane_strain", "3d"])
+def test_unit_loads_on_slices_give_the_peaks_of_the_whole_history(cache: Path, model: str) -> None:
+    """What searches follow: equal in the plane; over the face forces go to the ends of coarse layers."""
+    found = place(SPUR, cache, model)
+    roots = RootInfluence.of(found.contact, cache)
+    units = unit_stresses(found.contact, False, cache)
+    stress = roots.stress(found.problem, found.solution.force)[:, :, 0]
+    for gear, history in enumerate(_pair_histories(found, units)):
+        peaks = np.where(history.near_load, -np.inf, history.principal("tension")).max(axis=(1, 2, 3))
+        assert stress[gear] == pytest.approx(peaks, rel=1e-3 if model == "plane_strain" else 0.015)
+
+
+def test_changes_of_root_stress_are_those_of_differences(cache: Path) -> None:
+    found = place(SPUR, cache, "plane_strain")
+    roots, force = RootInfluence.of(found.contact, cache), found.solution.force
+    change = force * np.cos(np.arange(force.size)).reshape(force.shape)
+    (value, by), step = roots.rows(found.problem, force, change[None]), 1e-4
+    ends = (roots.rows(found.problem, force + end * change, change[None])[0] for end in (step, -step))
+    above, below = ends
+    assert value.size >= 2
+    assert by[:, 0] == pytest.approx((above - below) / (2.0 * step), rel=1e-7)

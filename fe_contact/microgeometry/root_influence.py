@@ -1,0 +1,190 @@
+"""Stress of the tension roots of both gears as other flanks change the forces of the contact.
+
+Load patches lie where plain involutes touch, so what a force on each slice does to the roots of its tooth and
+of its neighbors follows from unit loads once; the stress is its product with the forces of a solved contact.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from fe_contact.analysis.flanks.root_stress import unit_stresses
+from fe_contact.analysis.pairs.pair_contact import PairContact
+from fe_contact.compliance import UnitRootStress
+from fe_contact.contact import Candidates, ContactProblem
+from fe_contact.contact.patch import Patches
+from fe_contact.types import FloatArray, IntArray
+
+NEAR = 0.8
+"""Stresses from this part of the largest on are followed when flanks change."""
+FEWEST = 3
+"""Stations along the profile that are left at least, however low the patches reach."""
+
+
+@dataclass(frozen=True)
+class RootInfluence:
+    """Unit-load stress of both gears, driving gear first.
+
+    Attributes
+    ----------
+    units : pair of UnitRootStress
+    offset : float
+        Distance of the driven gear's mid-face from the driving gear's, m.
+    """
+
+    units: tuple[UnitRootStress, UnitRootStress]
+    offset: float
+
+    @classmethod
+    def of(cls, contact: PairContact, cache: Path | None = None) -> RootInfluence:
+        """Compute or fetch the unit-load stress of the gears of a contact."""
+        return cls(unit_stresses(contact, False, cache), contact.pair.axial_offset)
+
+    def stress(self, problem: ContactProblem, force: FloatArray) -> FloatArray:
+        """Return the largest principal stress of the tension roots of the teeth in contact, (2, P, L) Pa.
+
+        Stations that load patches reach do not count; between stations it is up to 1 % more.
+
+        Parameters
+        ----------
+        force : ndarray, shape (P, L, m)
+            Of the candidates, N.
+        """
+        pressed = problem.candidates.on_slices(force)
+        return np.stack([gear.crests(pressed)[0].max(axis=2) for gear in self._gears(problem.candidates)])
+
+    def rows(
+        self, problem: ContactProblem, force: FloatArray, changes: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the stresses (R,) near the largest, and their changes (R, d) with changes of the forces.
+
+        Parameters
+        ----------
+        force : ndarray, shape (P, L, m)
+        changes : ndarray, shape (d, P, L, m)
+        """
+        candidates = problem.candidates
+        pressed, changed = candidates.on_slices(force), candidates.on_slices(changes)
+        parts = [gear.near_rows(pressed, changed) for gear in self._gears(candidates)]
+        values, by = zip(*parts, strict=True)
+        return np.concatenate(values), np.concatenate(by)
+
+    def _gears(self, candidates: Candidates) -> Iterator[_GearRoots]:
+        slices = candidates.slices
+        patches, levers = (slices.patch_1, slices.patch_2), (slices.touch.lever_1, slices.touch.lever_2)
+        sides = zip(self.units, patches, levers, (-1, 1), (0.0, self.offset), strict=True)
+        yield from (_GearRoots.of(candidates, *side) for side in sides)
+
+
+@dataclass(frozen=True)
+class _GearRoots:
+    """What forces on the slices of T pairs do to the tension roots of their teeth of one gear.
+
+    Attributes
+    ----------
+    on_nodes : ndarray, shape (Q, T, Z, K)
+        Parts of the force on a slice at each of K nodes of the profile, at Q positions.
+    influence : ndarray, shape (D, Z, K, 3, R)
+        Stress along the profile, across it and in shear at R stations by a force at a node under a slice, of
+        teeth one after the other, Pa/N.
+    row : ndarray of int, shape (T, T)
+        Row of D by which the tooth of the first is loaded by that of the second; -1: not at all.
+    """
+
+    on_nodes: FloatArray
+    influence: FloatArray
+    row: IntArray
+
+    @classmethod
+    def of(
+        cls,
+        candidates: Candidates,
+        unit: UnitRootStress,
+        patches: Patches,
+        lever: FloatArray,
+        direction: int,
+        offset: float,
+    ) -> _GearRoots:
+        """Return those of a gear whose teeth count against (-1) or with (1) the pairs."""
+        slices = candidates.slices
+        teeth = np.unique(slices.pair)
+        shape = len(slices.present), teeth.size, -1
+        present = slices.present.reshape(shape)
+        center, half = (each.reshape(*present.shape, -1) for each in (patches.center, patches.half_width))
+        lowest = np.where(present[..., None], center - 2.0 * half, np.inf).min()
+        below = max(int(np.searchsorted(unit.station_s, lowest)), FEWEST)
+        factor = lever.reshape(shape) * present / (1.0 if unit.across_face else slices.width)
+        along = slices.face_position.reshape(teeth.size, -1)[0] - offset
+        ahead = direction * (teeth[:, None] - teeth) - unit.distance[0]
+        known = (ahead >= 0) & (ahead < len(unit.distance))
+        patch = np.concatenate([center - 0.5 * half, center + 0.5 * half], axis=-1)  # its second moment
+        on_nodes = _on_profile(unit.s, patch) * factor[..., None]
+        ends = (along + end * slices.slice_width / math.sqrt(12.0) for end in (-1.0, 1.0))
+        below_contact = [_under_slices(unit, end, below) for end in ends]
+        return cls(on_nodes, 0.5 * (below_contact[0] + below_contact[1]), np.where(known, ahead, -1))
+
+    def crests(self, pressed: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
+        """Return the largest principal stress of each tooth (P, L, T), its components (3, ...) and place."""
+        on_nodes = self._at_rows(pressed)
+        rows, (_, slices, nodes, _, stations) = pressed.shape[:2], self.influence.shape
+        flat = on_nodes.reshape(-1, len(self.row), slices * nodes)
+        by_distance = self.influence.reshape(len(self.influence), slices * nodes, -1)
+        stress = np.zeros((len(self.row), len(flat), by_distance.shape[-1]))
+        for tooth, loaded in np.argwhere(self.row >= 0):
+            stress[tooth] += flat[:, loaded] @ by_distance[self.row[tooth, loaded]]
+        parts = stress.reshape(len(self.row), *rows, 3, stations)
+        along, across, shear = np.moveaxis(parts, (3, 0), (0, 3))
+        principal = 0.5 * (along + across) + np.hypot(0.5 * (along - across), shear)
+        at = principal.argmax(axis=-1)
+
+        def there(values: FloatArray) -> FloatArray:
+            return np.take_along_axis(values, at[..., None], axis=-1)[..., 0]
+
+        return there(principal), np.stack([there(along), there(across), there(shear)]), at
+
+    def near_rows(self, pressed: FloatArray, changed: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the largest stresses of teeth near the largest of all (R,), and their changes (R, d)."""
+        crest, (along, across, shear), at = self.crests(pressed)
+        p, load, tooth = near = np.nonzero(crest >= NEAR * crest.max())
+        apart, shear = 0.5 * (along[near] - across[near]), shear[near]
+        radius = np.maximum(np.hypot(apart, shear), 1e-300)
+        turn = 0.5 * apart / radius
+        weight = np.stack([0.5 + turn, 0.5 - turn, shear / radius], axis=-1)  # of the components
+        row = self.row[tooth]
+        unit = self.influence[np.maximum(row, 0), :, :, :, at[near][:, None]]  # R, T, Z, K, 3
+        by_force = np.einsum("rtzkc,rc,rtzk->rtz", unit, weight, self.on_nodes[p % len(self.on_nodes)])
+        by_force *= (row >= 0)[..., None]
+        moved = changed[:, p, load].reshape(len(changed), p.size, -1)
+        return crest[near], np.einsum("rn,arn->ra", by_force.reshape(p.size, -1), moved)
+
+    def _at_rows(self, pressed: FloatArray) -> FloatArray:
+        """Return the forces at the nodes, (P, L, T, Z, K), N."""
+        _, teeth, slices, _ = self.on_nodes.shape
+        by_slice = pressed.reshape(*pressed.shape[:2], teeth, slices, 1)
+        return by_slice * self.on_nodes[np.arange(len(pressed)) % len(self.on_nodes)][:, None]
+
+
+def _on_profile(s: FloatArray, center: FloatArray) -> FloatArray:
+    """Return the parts at nodes `s` (K,) of a force at the mean of some centers (..., c), linear between."""
+    low = np.clip(np.searchsorted(s, center) - 1, 0, s.size - 2)
+    part = np.clip((center - s[low]) / (s[low + 1] - s[low]), 0.0, 1.0)
+    hats = (1.0 - part)[..., None] * np.eye(s.size)[low] + part[..., None] * np.eye(s.size)[low + 1]
+    return np.asarray(hats.mean(axis=-2))
+
+
+def _under_slices(unit: UnitRootStress, along: FloatArray, below: int) -> FloatArray:
+    """Return the stress (D, Z, K, 3, R) of the lowest stations by forces at `along` (Z,) of the face."""
+    stress = np.moveaxis(unit.stress[:, 0][:, :, :below], -1, 1)
+    stress = stress.reshape(*stress.shape[:3], -1)  # D, freedoms, 3, R
+    if not unit.across_face:
+        return np.asarray(stress[:, unit.index[:1]])
+    layer = np.clip(np.searchsorted(unit.z, along) - 1, 0, unit.z.size - 2)
+    part = np.clip((along - unit.z[layer]) / (unit.z[layer + 1] - unit.z[layer]), 0.0, 1.0)
+    ends = (stress[:, unit.index[2 * plane]] for plane in (layer, layer + 1))
+    share = (1.0 - part, part)
+    return np.asarray(sum(each * w[:, None, None, None] for each, w in zip(ends, share, strict=True)))
