@@ -99,6 +99,10 @@ class ToothFlank:
         waves = math.pi * self.profile_form_waves
         return 0.5 * waves**2 * abs(self.profile_form) if waves else 2.0 * max(-self.profile_form, 0.0)
 
+    def excess(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
+        """Return how far it stands towards the mate at roll lengths and distances from mid-face, all in m."""
+        return flanks_excess(gear, (self,), np.array(self.tooth - 1), roll_length, face_position)
+
     @property
     def _amounts(self) -> tuple[float, ...]:
         return self.profile_slope, self.profile_form, self.helix_slope, self.helix_form

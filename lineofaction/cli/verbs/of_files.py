@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -26,13 +27,25 @@ from lineofaction.cli.verbs import Later
 from lineofaction.gearbox.input_file import InputFile, number_list
 
 if TYPE_CHECKING:
-    from lineofaction.cli import analyze, costs, export, hardcases, listen, new, pages, simulate, ste
+    from lineofaction.cli import (
+        analyze,
+        costs,
+        export,
+        hardcases,
+        listen,
+        measured,
+        new,
+        pages,
+        simulate,
+        ste,
+    )
     from lineofaction.report.run import view as views
 else:
     analyze, costs, export, hardcases, listen = map(
         Later, ("cli.analyze", "cli.costs", "cli.export", "cli.hardcases", "cli.listen")
     )
-    new, pages, simulate, ste = map(Later, ("cli.new", "cli.pages", "cli.simulate", "cli.ste"))
+    measured, new, pages = map(Later, ("cli.measured", "cli.new", "cli.pages"))
+    simulate, ste = map(Later, ("cli.simulate", "cli.ste"))
     views = Later("report.run.view")
 
 verbs = typer.Typer()
@@ -131,6 +144,46 @@ def _geometry(
 ) -> None:
     """Print the data sheet of a pair (ISO 21771-1), and draw its mesh and its flank modifications."""
     pages.run_geometry(case, output, as_json=json)
+
+
+class _Gear(StrEnum):
+    """The gears of a pair."""
+
+    PINION = "pinion"
+    WHEEL = "wheel"
+
+
+class _Flank(StrEnum):
+    """The flanks of a gear."""
+
+    LEFT = "left"
+    RIGHT = "right"
+
+
+@verbs.command(
+    "measured",
+    rich_help_panel="pair",
+    epilog="Example: loa measured case.toml pinion.csv --gear pinion --loaded right -o measured.toml",
+)
+@guarded
+def _measured(
+    case: CaseFile,
+    sheet: Annotated[
+        Path | None, typer.Argument(help="Traces of the gear (CSV); left out: write those of the case.")
+    ] = None,
+    *,
+    gear: Annotated[_Gear, typer.Option(help="The gear that was inspected.")],
+    loaded: Annotated[_Flank, typer.Option(help="Flanks that carry the load, seen from the datum face.")],
+    cutoff_mm: Annotated[
+        float | None,
+        typer.Option(min=1e-3, max=1e3, help="Cut-off of the filter in mm; default: 1/30 of each trace."),
+    ] = None,
+    output: Annotated[Path | None, to_file("Case (TOML) or, without a sheet, CSV file to write.")] = None,
+    json: AsJson = False,
+) -> None:
+    """Take pitches, traces and topographies of an inspected gear into a case, every line accounted for."""
+    of = measured.Inspected(gear.value, loaded.value, cutoff_mm)
+    measured.run_measured(case, sheet, of, output, as_json=json)
 
 
 @verbs.command("ste", rich_help_panel="pair", epilog="Example: loa ste ste.nc --torque 100 --at 0,0.25,0.5")

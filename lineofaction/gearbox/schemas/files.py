@@ -275,7 +275,7 @@ def _nodes(text: str) -> dict[tuple[float, float], float]:
     rows = [(n, line) for n, line in lines if line.strip() and not line.lstrip().startswith("#")]
     if not rows:
         raise ValueError(f"a CSV file with the columns {', '.join(COLUMNS)}; it is empty")
-    heading = _cells(rows[0][1])
+    heading = csv_cells(rows[0][1])
     if sorted(heading) != sorted(COLUMNS):
         raise ValueError(
             f"a CSV file whose heading is {','.join(COLUMNS)} in any order, with commas; it is {heading}"
@@ -283,15 +283,19 @@ def _nodes(text: str) -> dict[tuple[float, float], float]:
     order = [heading.index(column) for column in COLUMNS]
     nodes: dict[tuple[float, float], float] = {}
     for number, line in rows[1:]:
-        roll, face, removed = _row(_cells(line), order, number)
+        roll, face, removed = _row(csv_cells(line), order, number)
         if (roll, face) in nodes:
             raise ValueError(f"a file that gives each node once; line {number} repeats one")
         nodes[roll, face] = removed
     return nodes
 
 
-def _cells(line: str) -> list[str]:
-    return [cell.strip() for cell in next(csv.reader([line]))]
+def csv_cells(line: str) -> list[str]:
+    """Return the cells of a line of CSV without spaces around them; raises ValueError: it is none."""
+    try:
+        return [cell.strip() for cell in next(csv.reader([line]))]
+    except csv.Error as fault:
+        raise ValueError(f"a CSV file: {fault}") from None
 
 
 def _row(cells: list[str], order: list[int], number: int) -> list[float]:

@@ -1,0 +1,116 @@
+"""``loa measured``: the deviations of a gear from the sheet of its inspection, and a sheet from a case."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from bounds import engineering
+from bounds.types import Json
+from fe_contact.geometry import Toothing
+from lineofaction.cli.output import check_writable, console, print_json, print_written, table
+from lineofaction.gearbox.convert.case import case_json, gear_pair
+from lineofaction.gearbox.input_file import InputFile
+from lineofaction.gearbox.inspection.evaluation import Split
+from lineofaction.gearbox.inspection.measured_gear import Chart, MeasuredGear, inspected, measured_gear
+from lineofaction.gearbox.inspection.sheet import FIELD, Flank, read_sheet, sheet_text
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case, read_model, validated
+from lineofaction.gearbox.schemas.files import read_text
+from lineofaction.gearbox.schemas.toml import toml_text
+from lineofaction.gearbox.units import MM, UM
+
+_PITCH_FIELDS = ("pitch_deviation_um", "single_pitch_deviation_um")
+
+
+@dataclass(frozen=True)
+class Inspected:
+    """Which gear of the case was inspected, and which of its flanks carry the load."""
+
+    gear: str
+    loaded: Flank
+    cutoff_mm: float | None
+
+
+def run_measured(
+    file: InputFile, sheet: Path | None, of: Inspected, output: Path | None, *, as_json: bool
+) -> None:
+    """Write the case with what was measured, or without a sheet the sheet of the case."""
+    case = read_model(Case, file)
+    gear: Toothing = getattr(gear_pair(case), of.gear)
+    chart = Chart(gear, of.loaded, of.gear == "pinion")
+    if output is not None:
+        check_writable(output)
+    if sheet is None:
+        _write(output, sheet_text(inspected(chart)))
+        return
+    try:
+        text = read_text(sheet, str(sheet))
+    except BadInput as error:
+        raise error.within(FIELD) from None
+    cutoff = None if of.cutoff_mm is None else of.cutoff_mm * MM
+    found = measured_gear(read_sheet(text, gear, str(sheet)), chart, str(sheet), cutoff)
+    changed = _with_fields(case, of.gear, found)
+    written = [] if output is None else [output]
+    if output is not None:
+        output.write_text(toml_text(case_json(changed)), encoding="utf-8")
+    if as_json:
+        print_json(_as_json(found, written))
+        return
+    _show(found)
+    print_written(written)
+
+
+def _write(output: Path | None, text: str) -> None:
+    if output is None:
+        console().print(text, end="", soft_wrap=True, markup=False, highlight=False)
+    else:
+        output.write_text(text, encoding="utf-8")
+        print_written([output])
+
+
+def _with_fields(case: Case, name: str, found: MeasuredGear) -> Case:
+    """Return the case with the measured fields in place of those it had; it is one that can be read."""
+    content = case_json(case)
+    gear = content["pair"][name]
+    replaced = set(found.fields)
+    if replaced & set(_PITCH_FIELDS):
+        replaced |= set(_PITCH_FIELDS)
+    kept = {key: value for key, value in gear.items() if key not in replaced}
+    content["pair"][name] = {**kept, **found.fields}
+    changed = validated(Case, content)
+    gear_pair(changed)
+    return changed
+
+
+def _show(found: MeasuredGear) -> None:
+    out = console()
+    if found.splits:
+        head = ("tooth", "trace", "f_H, um", "f_f, um", "over, mm", "cut-off, mm")
+        rows = [
+            (str(tooth), trace, *_figures(split)) for (tooth, trace), split in sorted(found.splits.items())
+        ]
+        out.print(table(head, rows, "Slope and form, Gaussian filter (ISO 16610-21)", ("trace",)))
+    lines = [(fate, str(count)) for fate, count in found.account.items() if count]
+    out.print(table(("lines", "number"), lines, "Every line of the sheet", ("lines",)))
+
+
+def _figures(split: Split) -> tuple[str, ...]:
+    values = split.slope / UM, split.form / UM, (split.place[-1] - split.place[0]) / MM, split.cutoff / MM
+    return tuple(engineering(float(value), 3) for value in values)
+
+
+def _as_json(found: MeasuredGear, written: list[Path]) -> Json:
+    traces = [
+        {
+            "tooth": tooth,
+            "trace": trace,
+            "slope_um": split.slope / UM,
+            "form_um": split.form / UM,
+            "length_mm": float(split.place[-1] - split.place[0]) / MM,
+            "cutoff_mm": split.cutoff / MM,
+        }
+        for (tooth, trace), split in sorted(found.splits.items())
+    ]
+    files = [str(path) for path in written]
+    return {"lines": dict(found.account), "traces": traces, "fields": dict(found.fields), "written": files}

@@ -1,0 +1,92 @@
+"""Evaluation of a trace: Gaussian filter (ISO 16610-21), mean line, slope and form (ISO 1328-1)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.types import FloatArray
+
+ALPHA = math.sqrt(math.log(2.0) / math.pi)
+"""A wave as long as the cut-off keeps half its amplitude (ISO 16610-21)."""
+CUTOFFS = 30.0
+"""Cut-offs over the length of a trace, where none is stated."""
+_MOST_CUTOFFS, _MOST_POINTS = 200, 20_000
+_PER_CUTOFF = 2
+"""Steps of the stations at which the filtered trace is kept."""
+
+
+@dataclass(frozen=True)
+class Split:
+    """A trace split into a line and what is left; m.
+
+    Attributes
+    ----------
+    place : ndarray
+        Stations, even over the length of the trace.
+    slope : float
+        Rise of the mean line from the first station to the last.
+    rest : ndarray
+        Filtered trace less its mean line, at the stations.
+    cutoff : float
+        Wavelength of which the filter keeps half the amplitude.
+    """
+
+    place: FloatArray
+    slope: float
+    rest: FloatArray
+    cutoff: float
+
+    @property
+    def form(self) -> float:
+        """Form deviation: the range of what is left."""
+        return float(np.ptp(self.rest))
+
+
+def split(place: FloatArray, values: FloatArray, cutoff: float | None = None) -> Split:
+    """Filter a trace and split it.
+
+    Parameters
+    ----------
+    place, values : ndarray, shape (n,)
+        Places in order and deviations, m.
+    cutoff : float, optional
+        m; left out: a thirtieth of the length.
+
+    Raises
+    ------
+    ValueError
+        Too few or too many points, points further apart than the cut-off, or one that is too short.
+    """
+    if not 3 <= place.size <= _MOST_POINTS:
+        raise ValueError(f"a trace of 3 to {_MOST_POINTS} points; it has {place.size}")
+    length = float(place[-1] - place[0])
+    cutoff = length / CUTOFFS if cutoff is None else cutoff
+    if cutoff < length / _MOST_CUTOFFS:
+        raise ValueError(f"a trace of at most {_MOST_CUTOFFS} cut-offs; {1e3 * cutoff:.4g} mm is too short")
+    apart = float(np.diff(place).max())
+    if apart > cutoff * (1.0 + 1e-9):
+        raise ValueError(
+            f"a trace whose points are at most the cut-off {1e3 * cutoff:.4g} mm apart; "
+            f"two are {1e3 * apart:.4g} mm apart"
+        )
+    stations = np.linspace(place[0], place[-1], math.ceil(_PER_CUTOFF * length / cutoff) + 1)
+    filtered = gaussian(place, values, stations, cutoff)
+    slope, mean = np.polyfit((stations - stations[0]) / length, filtered, 1)
+    rest = filtered - mean - slope * (stations - stations[0]) / length
+    return Split(stations, float(slope), rest, cutoff)
+
+
+def gaussian(place: FloatArray, values: FloatArray, at: FloatArray, cutoff: float) -> FloatArray:
+    """Return a trace (n,) at places (k,), all in m, filtered by the Gaussian of a cut-off.
+
+    The weights hold lines, so that a slope passes unchanged up to the ends (ISO 16610-28); inside they are
+    those of ISO 16610-21.
+    """
+    way = (place - at[:, None]) / (ALPHA * cutoff)
+    weight = np.exp(-math.pi * way**2) * np.gradient(place)
+    zero, one, two = (np.sum(weight * way**power, axis=1) for power in range(3))
+    mean, moment = weight @ values, (weight * way) @ values
+    return np.asarray((two * mean - one * moment) / (zero * two - one**2))

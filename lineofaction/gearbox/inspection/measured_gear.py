@@ -1,0 +1,210 @@
+"""From the sheet of an inspection to the deviations of a gear in a case, and back."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fe_contact.geometry import Toothing
+from fe_contact.types import FloatArray
+from lineofaction.gearbox.inspection.evaluation import Split, split
+from lineofaction.gearbox.inspection.sheet import FIELD, PITCHES, Flank, Point, Sheet
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.units import MM, UM
+
+_LISTED = 61
+"""Points of a trace that is written."""
+
+
+@dataclass(frozen=True)
+class Chart:
+    """How teeth on an inspection sheet follow each other in mesh.
+
+    A sheet numbers teeth clockwise as the datum face is seen, the right flank on the right of a tooth whose
+    tip points up. The loaded flank of an external gear faces clockwise if it is the right one. The driving
+    gear turns to where it faces, the driven one back, and from behind come the next teeth.
+    """
+
+    gear: Toothing
+    loaded: Flank
+    drives: bool
+
+    @property
+    def facing(self) -> int:
+        """1 if the loaded flanks face clockwise, else -1."""
+        return (1 if self.loaded == "right" else -1) * self.gear.sign
+
+    def meshing(self, tooth: int) -> int:
+        """Return the number from 1 in the order of meshing of a tooth of the sheet; tooth 1 is the first."""
+        step = -self.facing if self.drives else self.facing
+        return (tooth - 1) * step % self.gear.teeth + 1
+
+    def on_sheet(self, tooth: int) -> int:
+        """Return the number on the sheet of a tooth in the order of meshing; the same rule back."""
+        return self.meshing(tooth)
+
+
+@dataclass(frozen=True)
+class MeasuredGear:
+    """Deviations of a gear as a case has them, and what became of every line of the sheet.
+
+    Attributes
+    ----------
+    fields : mapping
+        Fields of the gear's table in the case.
+    account : mapping
+        Number of lines by what became of them.
+    splits : mapping
+        Evaluated traces by tooth of the sheet and trace.
+    """
+
+    fields: Mapping[str, Any]
+    account: Mapping[str, int]
+    splits: Mapping[tuple[int, str], Split]
+
+
+def measured_gear(sheet: Sheet, chart: Chart, name: str, cutoff: float | None = None) -> MeasuredGear:
+    """Return what a sheet says of the loaded flanks of a gear; `cutoff` in m as of `split`.
+
+    Raises `BadInput`: pitches of some teeth alone or stated twice, a trace that cannot be evaluated.
+    """
+    account = Counter({"heading": 1, "comment or blank": sheet.silent})
+    traces: dict[tuple[int, str], list[Point]] = defaultdict(list)
+    over_flank = {point.tooth for point in sheet.points if _taken(point, chart) == "topography"}
+    for point in sheet.points:
+        fate = _taken(point, chart)
+        if fate in ("profile", "helix") and point.tooth in over_flank:
+            fate = "left out: the tooth has a topography"
+        account[fate] += 1
+        if not fate.startswith("left out"):
+            traces[point.tooth, point.trace].append(point)
+    try:
+        pitches = _pitches(traces, chart)
+        splits = dict(_splits(traces, cutoff))
+        surfaces = {tooth: _surface(traces[tooth, "topography"]) for tooth in over_flank}
+    except ValueError as fault:
+        advice = "See docs/how-to/measured-gear.md."
+        raise BadInput.of(FIELD, name, str(fault), advice) from None
+    flanks = [
+        _flank(tooth, splits, surfaces, chart)
+        for tooth in sorted({tooth for tooth, _ in splits} | over_flank)
+    ]
+    fields = {"tooth_flanks": sorted(flanks, key=lambda flank: int(flank["tooth"]))} if flanks else {}
+    return MeasuredGear(fields | pitches, dict(account), splits)
+
+
+def _taken(point: Point, chart: Chart) -> str:
+    """Return the trace that a point belongs to, or why it is left out."""
+    gear = chart.gear
+    if point.flank != chart.loaded:
+        return "left out: not the loaded flank"
+    ends = sorted((gear.form_roll_length, gear.tip_roll_length))
+    if point.roll is not None and not ends[0] - 1e-9 <= point.roll <= ends[1] + 1e-9:
+        return "left out: beyond the usable profile"
+    if point.face is not None and abs(point.face) > 0.5 * gear.face_width + 1e-9:
+        return "left out: beyond the face width"
+    return point.trace
+
+
+def _pitches(traces: Mapping[tuple[int, str], list[Point]], chart: Chart) -> dict[str, list[float]]:
+    stated = {name for _, name in traces if name in PITCHES}
+    if not stated:
+        return {}
+    if len(stated) > 1:
+        raise ValueError("single or cumulative pitch deviations, not both")
+    (name,), teeth = stated, chart.gear.teeth
+    missing = [tooth for tooth in range(1, teeth + 1) if not traces.get((tooth, name))]
+    if missing:
+        raise ValueError(
+            f"{name} of all {teeth} teeth; {len(missing)} are missing, the first is {missing[0]}"
+        )
+    values = np.array([traces[tooth, name][0].deviation for tooth in range(1, teeth + 1)])
+    if name == "pitch":
+        values = np.cumsum(values - values.mean())
+    order = [chart.on_sheet(tooth) - 1 for tooth in range(1, teeth + 1)]
+    return {"pitch_deviation_um": _um(chart.facing * values[order])}
+
+
+def _splits(
+    traces: Mapping[tuple[int, str], list[Point]], cutoff: float | None
+) -> Iterator[tuple[tuple[int, str], Split]]:
+    for (tooth, name), points in sorted(traces.items()):
+        if name not in ("profile", "helix"):
+            continue
+        rows = np.array(sorted((_place(point), point.deviation) for point in points))
+        try:
+            yield (tooth, name), split(rows[:, 0], rows[:, 1], cutoff)
+        except ValueError as fault:
+            raise ValueError(f"{fault} ({name} of tooth {tooth})") from None
+
+
+def _place(point: Point) -> float:
+    place = point.roll if point.trace == "profile" else point.face
+    assert place is not None
+    return place
+
+
+def _surface(points: list[Point]) -> dict[str, Any]:
+    """Return the flank grid of a topography."""
+    nodes = {(point.roll or 0.0, point.face or 0.0): point.deviation for point in points}
+    rolls, faces = (sorted({node[axis] for node in nodes}) for axis in (0, 1))
+    if len(nodes) != len(rolls) * len(faces):
+        missing = len(rolls) * len(faces) - len(nodes)
+        raise ValueError(f"topographies on a whole grid; tooth {points[0].tooth} lacks {missing} points")
+    return _grid(np.array(rolls), np.array(faces), np.array([[nodes[r, f] for f in faces] for r in rolls]))
+
+
+def _flank(
+    tooth: int, splits: Mapping[tuple[int, str], Split], surfaces: Mapping[int, dict[str, Any]], chart: Chart
+) -> dict[str, Any]:
+    """Return the entry of a tooth: slopes over the whole flank, and what is left of its traces as a grid."""
+    entry: dict[str, Any] = {"tooth": chart.meshing(tooth)}
+    if tooth in surfaces:
+        return entry | {"flank_grid": surfaces[tooth]}
+    gear = chart.gear
+    form, tip, half = gear.form_roll_length, gear.tip_roll_length, 0.5 * gear.face_width
+    over = {"profile": (tip - form, np.sort([form, tip])), "helix": (2.0 * half, np.array([-half, half]))}
+    places, rests = [], []
+    for name, (length, ends) in over.items():
+        trace = splits.get((tooth, name))
+        places.append(ends if trace is None else trace.place)
+        rests.append(np.zeros(2) if trace is None else trace.rest)
+        if trace is not None:
+            rise = trace.slope / (trace.place[-1] - trace.place[0])
+            (entry[f"{name}_slope_um"],) = _um(np.array([rise * length]))
+    return entry | {"flank_grid": _grid(places[0], places[1], np.add.outer(rests[0], rests[1]))}
+
+
+def _grid(rolls: FloatArray, faces: FloatArray, excess: FloatArray) -> dict[str, Any]:
+    return {
+        "roll_length_mm": np.round(rolls / MM, 6).tolist(),
+        "face_position_mm": np.round(faces / MM, 6).tolist(),
+        "removed_um": [_um(-row) for row in excess],
+    }
+
+
+def _um(values: FloatArray) -> list[float]:
+    return [float(value) for value in np.round(values / UM, 5) + 0.0]
+
+
+def inspected(chart: Chart) -> Iterator[Point]:
+    """Yield the points that an inspection of a gear would measure: pitches, and traces of tooth flanks."""
+    gear = chart.gear
+    cumulative = np.array(gear.pitch_deviation.cumulative)
+    for tooth in range(1, 1 + cumulative.size):
+        deviation = chart.facing * cumulative[chart.meshing(tooth) - 1]
+        yield Point(0, tooth, chart.loaded, "cumulative_pitch", None, None, float(deviation))
+    root, tip = sorted((gear.form_roll_length, gear.tip_roll_length))
+    rolls = np.linspace(root, tip, _LISTED)
+    faces = np.linspace(-0.5, 0.5, _LISTED) * gear.face_width
+    middle = np.full(_LISTED, rolls.mean())
+    for flank in gear.tooth_flanks:
+        tooth = chart.on_sheet(flank.tooth)
+        for roll, value in zip(rolls, flank.excess(gear, rolls, np.zeros(_LISTED)), strict=True):
+            yield Point(0, tooth, chart.loaded, "profile", float(roll), None, float(value))
+        for face, value in zip(faces, flank.excess(gear, middle, faces), strict=True):
+            yield Point(0, tooth, chart.loaded, "helix", None, float(face), float(value))

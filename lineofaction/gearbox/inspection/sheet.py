@@ -1,0 +1,194 @@
+"""Traces of an inspection as CSV: reader and writer; every line is a point, a comment or refused."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+from fe_contact.geometry import Toothing
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.files import csv_cells
+from lineofaction.gearbox.units import DEGREE, MM, UM
+
+Flank = Literal["left", "right"]
+FIELD = "measured"
+PITCHES = ("pitch", "cumulative_pitch")
+TRACES = (*PITCHES, "profile", "helix", "topography")
+PROFILE = ("roll_length_mm", "roll_angle_deg", "diameter_mm")
+FACE = ("face_position_mm", "face_distance_mm")
+_HELP = "See docs/how-to/measured-gear.md."
+_TOOTH = re.compile(r"[0-9]{1,4}")
+_LARGEST = 1000.0
+"""um; larger deviations are in another unit."""
+MOST_POINTS = 200_000
+
+
+@dataclass(frozen=True)
+class Point:
+    """A point of a trace in SI; `roll` and `face` are None where the trace has no such place.
+
+    Attributes
+    ----------
+    line : int
+        Its line in the file, from 1.
+    tooth : int
+        From 1, clockwise as the datum face is seen.
+    roll, face : float, optional
+        Roll length, and distance from mid-face, m.
+    deviation : float
+        m; of profile, helix and topography > 0 in excess, of pitches > 0 clockwise.
+    """
+
+    line: int
+    tooth: int
+    flank: Flank
+    trace: str
+    roll: float | None
+    face: float | None
+    deviation: float
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """What a file holds; its lines are the points, the heading, and `silent` comments and blank ones."""
+
+    points: tuple[Point, ...]
+    lines: int
+    silent: int
+
+
+def read_sheet(text: str, gear: Toothing, name: str) -> Sheet:
+    """Return the points that the text of a CSV file holds, of a gear.
+
+    Raises `BadInput`: the first line that is none, by its number.
+    """
+    try:
+        return _sheet(text, gear)
+    except ValueError as fault:
+        raise BadInput.of(FIELD, name, str(fault), _HELP) from None
+
+
+def sheet_text(points: Iterable[Point]) -> str:
+    """Return points as the text of a CSV file."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(("tooth", "flank", "trace", PROFILE[0], FACE[0], "deviation_um"))
+    for point in points:
+        places = (_written(point.roll, MM), _written(point.face, MM))
+        deviation = _written(point.deviation, UM)
+        writer.writerow((point.tooth, point.flank, point.trace, *places, deviation))
+    return text.getvalue()
+
+
+def _written(value: float | None, unit: float) -> str:
+    return "" if value is None else f"{value / unit + 0.0:.9g}"
+
+
+def _sheet(text: str, gear: Toothing) -> Sheet:
+    lines = text.removeprefix("\ufeff").splitlines()
+    rows = [
+        (n, line) for n, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")
+    ]
+    if not rows:
+        raise ValueError("a CSV file with a heading and a row per point; it is empty")
+    if len(rows) > MOST_POINTS:
+        raise ValueError(f"at most {MOST_POINTS} points")
+    heading = csv_cells(rows[0][1])
+    _check_heading(heading)
+    points = tuple(_point(number, dict(_row(heading, line, number)), gear) for number, line in rows[1:])
+    if not points:
+        raise ValueError("a file with a row per point; it has a heading alone")
+    _refuse_repeated(points)
+    return Sheet(points, len(lines), len(lines) - len(rows))
+
+
+def _check_heading(heading: list[str]) -> None:
+    known = ("tooth", "flank", "trace", "deviation_um", *PROFILE, *FACE)
+    if len(set(heading)) != len(heading) or not set(heading) <= set(known):
+        raise ValueError(
+            f"a file whose heading names each column once, of {', '.join(known)}; it is {heading}"
+        )
+    for needed in ("tooth", "flank", "trace", "deviation_um"):
+        if needed not in heading:
+            raise ValueError(f"a file with the column {needed}; its heading is {heading}")
+    for several in (PROFILE, FACE):
+        if len(set(several) & set(heading)) > 1:
+            raise ValueError(f"a file with one of the columns {', '.join(several)}; its heading is {heading}")
+
+
+def _row(heading: list[str], line: str, number: int) -> Iterable[tuple[str, str]]:
+    cells = csv_cells(line)
+    if len(cells) != len(heading):
+        raise ValueError(f"a file with {len(heading)} values in each row; line {number} has {len(cells)}")
+    return zip(heading, cells, strict=True)
+
+
+def _point(line: int, row: dict[str, str], gear: Toothing) -> Point:
+    tooth, flank, trace = row["tooth"], row["flank"], row["trace"]
+    if not _TOOTH.fullmatch(tooth) or not 1 <= int(tooth) <= gear.teeth:
+        raise ValueError(f"a file of teeth from 1 to {gear.teeth}; line {line} has {tooth!r}")
+    if flank not in ("left", "right"):
+        raise ValueError(f"a file of left and right flanks; line {line} has {flank!r}")
+    if trace not in TRACES:
+        raise ValueError(f"a file of the traces {', '.join(TRACES)}; line {line} has {trace!r}")
+    roll = _roll(row, gear, line) if trace in ("profile", "topography") else None
+    face = _face(row, gear, line) if trace in ("helix", "topography") else None
+    deviation = _number(row["deviation_um"], "deviation_um", line)
+    if abs(deviation) > _LARGEST:
+        raise ValueError(f"a file of deviations up to {_LARGEST:g} um; line {line} has {deviation:g}")
+    side: Flank = "left" if flank == "left" else "right"
+    return Point(line, int(tooth), side, trace, roll, face, deviation * UM)
+
+
+def _roll(row: dict[str, str], gear: Toothing, line: int) -> float:
+    column = next((name for name in PROFILE if name in row), None)
+    if column is None:
+        raise ValueError(
+            f"a file with one of the columns {', '.join(PROFILE)}: line {line} is along the profile"
+        )
+    value = _number(row[column], column, line)
+    if column == "roll_length_mm":
+        return value * MM
+    if column == "roll_angle_deg":
+        return value * DEGREE * gear.base_radius
+    radius = 0.5 * value * MM
+    if radius < gear.base_radius or not math.isfinite(radius**2):
+        raise ValueError(
+            f"a file of diameters from {2e3 * gear.base_radius:.6g} mm on; line {line} has {value:g}"
+        )
+    return math.sqrt(radius**2 - gear.base_radius**2)
+
+
+def _face(row: dict[str, str], gear: Toothing, line: int) -> float:
+    column = next((name for name in FACE if name in row), None)
+    if column is None:
+        raise ValueError(f"a file with one of the columns {', '.join(FACE)}: line {line} is along the face")
+    value = _number(row[column], column, line) * MM
+    return value if column == "face_position_mm" else value - 0.5 * gear.face_width
+
+
+def _number(cell: str, column: str, line: int) -> float:
+    try:
+        value = float(cell)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        shown = f"{cell[:40]!r}" if cell else "nothing"
+        raise ValueError(f"a file of finite numbers; line {line} holds {shown} in {column}")
+    return value
+
+
+def _refuse_repeated(points: Iterable[Point]) -> None:
+    seen: dict[tuple[object, ...], int] = {}
+    for point in points:
+        place = (point.tooth, point.flank, point.trace, point.roll, point.face)
+        if place in seen:
+            raise ValueError(
+                f"a file that gives each point once; line {point.line} repeats line {seen[place]}"
+            )
+        seen[place] = point.line

@@ -1,0 +1,249 @@
+"""Sheets of an inspection: every line has its fate, and what a case holds comes back from its sheet."""
+
+from __future__ import annotations
+
+import builtins
+import json
+import math
+import random
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from command_line import loa, printed
+from spur_case import spur_case
+
+from fe_contact.geometry import Gear, PitchDeviation, RingGear, ToothFlank, Toothing
+from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.inspection.evaluation import gaussian, split
+from lineofaction.gearbox.inspection.measured_gear import Chart, MeasuredGear, inspected, measured_gear
+from lineofaction.gearbox.inspection.sheet import Flank, read_sheet, sheet_text
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case, read_model
+
+TEETH = 20
+FLANKS = (ToothFlank(3, 4e-6, -2e-6, 2, -3e-6), ToothFlank(20, -1e-6, helix_form=3e-6))
+PITCHES = PitchDeviation(tuple(1e-6 * np.random.default_rng(5).normal(0.0, 4.0, TEETH)))
+PINION = Gear(TEETH, 4e-3, 25e-3, 40e-3, pitch_deviation=PITCHES, tooth_flanks=FLANKS)
+RING = RingGear(60, 4e-3, 25e-3, 280e-3, addendum_coefficient=0.75, tooth_flanks=FLANKS)
+HEAD = "tooth,flank,trace,roll_length_mm,face_position_mm,deviation_um"
+
+
+def taken(text: str, gear: Toothing = PINION, loaded: Flank = "right", drives: bool = True) -> MeasuredGear:
+    found = measured_gear(read_sheet(text, gear, "sheet.csv"), Chart(gear, loaded, drives), "sheet.csv")
+    assert sum(found.account.values()) == len(text.splitlines())
+    return found
+
+
+def refused(text: str) -> str:
+    with pytest.raises(BadInput) as caught:
+        taken(text)
+    (fault,) = caught.value.faults
+    assert (fault.field, fault.value) == ("measured", "sheet.csv")
+    return fault.bound
+
+
+@pytest.mark.parametrize("gear", [PINION, RING], ids=["external", "internal"])
+@pytest.mark.parametrize("loaded", ["left", "right"])
+@pytest.mark.parametrize("drives", [True, False], ids=["drives", "driven"])
+def test_an_inspection_gives_back_what_it_measured(gear: Toothing, loaded: Flank, drives: bool) -> None:
+    chart = Chart(gear, loaded, drives)
+    found = taken(sheet_text(inspected(chart)), gear, loaded, drives)
+    cumulative = 1e6 * np.array(gear.pitch_deviation.cumulative)
+    assert found.fields.get("pitch_deviation_um", []) == pytest.approx(cumulative, abs=1e-5)
+    for entry, flank in zip(found.fields["tooth_flanks"], gear.tooth_flanks, strict=True):
+        assert entry["tooth"] == flank.tooth
+        slopes = entry["profile_slope_um"], entry["helix_slope_um"]
+        assert slopes == pytest.approx((1e6 * flank.profile_slope, 1e6 * flank.helix_slope), abs=2e-2)
+
+
+@pytest.mark.parametrize(
+    ("gear", "loaded", "drives", "order", "sign"),
+    [
+        (PINION, "right", True, (1, 20, 19), 1),
+        (PINION, "left", True, (1, 2, 3), -1),
+        (PINION, "right", False, (1, 2, 3), 1),
+        (PINION, "left", False, (1, 20, 19), -1),
+        (RING, "right", False, (1, 60, 59), -1),
+        (RING, "left", False, (1, 2, 3), 1),
+    ],
+)
+def test_teeth_come_in_the_order_in_which_the_loaded_flanks_mesh(
+    gear: Toothing, loaded: Flank, drives: bool, order: tuple[int, ...], sign: int
+) -> None:
+    """Clockwise on the sheet; a gear that drives by its right flanks turns clockwise, the next behind."""
+    rows = [f"{tooth},{loaded},cumulative_pitch,,,{tooth}" for tooth in range(1, gear.teeth + 1)]
+    found = taken("\n".join((HEAD, *rows)), gear, loaded, drives)
+    assert found.fields["pitch_deviation_um"][:3] == [float(sign * tooth) for tooth in order]
+
+
+def test_single_pitches_of_a_sheet_are_summed_clockwise() -> None:
+    rows = [f"{tooth},right,pitch,,,{3 if tooth == 2 else 0}" for tooth in range(1, 21)]
+    found = taken("\n".join((HEAD, *rows))).fields["pitch_deviation_um"]
+    assert found[0] == pytest.approx(-0.15)  # tooth 1: the mean of all pitches is taken out
+    assert found[-1] == pytest.approx(2.7)  # tooth 2, the last in mesh of a driving gear
+    assert found[1] == pytest.approx(0.0)  # tooth 20 closes the circle
+
+
+def test_the_filter_keeps_half_a_wave_of_its_cut_off_and_all_of_a_line() -> None:
+    place = np.linspace(0.0, 20e-3, 2001)
+    at = np.linspace(0.0, 20e-3, 41)
+    line = 3e-6 + 2e-4 * place
+    assert gaussian(place, line, at, 0.5e-3) == pytest.approx(line[::50], rel=1e-12)
+    wave = np.cos(2.0 * math.pi * place / 0.5e-3)
+    assert gaussian(place, wave, at, 0.5e-3)[2:-2] == pytest.approx(0.5 * wave[::50][2:-2], abs=1e-6)
+
+
+def test_a_trace_is_split_into_its_line_and_the_height_of_the_rest() -> None:
+    place = np.linspace(2e-3, 20e-3, 901)
+    u = (place - 11e-3) / 9e-3
+    found = split(place, 1e-6 + 2e-6 * u + 0.75e-6 * np.cos(2.0 * math.pi * u))
+    assert found.slope == pytest.approx(4e-6, rel=2e-3)
+    assert found.form == pytest.approx(1.5e-6, rel=2e-2)
+    assert found.cutoff == pytest.approx(18e-3 / 30)
+
+
+def test_places_are_taken_as_they_are_typed() -> None:
+    """Roll angle, diameter and distance from the datum face are the same points by closed form."""
+    radius, half = PINION.base_radius, 12.5
+    rolls = np.linspace(4.0, 14.0, 61)
+    rows = [(roll, face, math.sin(roll)) for roll, face in zip(rolls, np.linspace(-10, 10, 61), strict=True)]
+    other = {
+        "roll_angle_deg": [math.degrees(1e-3 * roll / radius) for roll in rolls],
+        "diameter_mm": [2e3 * math.hypot(radius, 1e-3 * roll) for roll in rolls],
+    }
+    plain = taken("\n".join((HEAD, *(f"1,right,profile,{r:.12g},,{d:.9g}" for r, _, d in rows))))
+    for column, values in other.items():
+        text = [f"1,right,profile,{v:.12g},,{d:.9g}" for v, (_, _, d) in zip(values, rows, strict=True)]
+        found = taken("\n".join((HEAD.replace("roll_length_mm", column), *text)))
+        assert found.splits[1, "profile"].rest == pytest.approx(plain.splits[1, "profile"].rest, abs=1e-12)
+    near = taken("\n".join((HEAD, *(f"1,right,helix,,{f:.12g},{d:.9g}" for _, f, d in rows))))
+    text = [f"1,right,helix,,{f + half:.12g},{d:.9g}" for _, f, d in rows]
+    far = taken("\n".join((HEAD.replace("face_position_mm", "face_distance_mm"), *text)))
+    assert far.splits[1, "helix"].slope == pytest.approx(near.splits[1, "helix"].slope, rel=1e-9)
+
+
+def test_a_topography_is_taken_whole_and_its_tooth_has_no_other_trace() -> None:
+    nodes = [(roll, face) for roll in (4, 9, 14) for face in (-10, 0, 10)]
+    rows = [f"5,right,topography,{roll},{face},{roll * face / 100}" for roll, face in nodes]
+    found = taken("\n".join((HEAD, "# measured", "", *rows, "5,right,profile,5,,1", "5,left,profile,5,,1")))
+    (entry,) = found.fields["tooth_flanks"]
+    assert entry["flank_grid"]["removed_um"][2] == [1.4, 0.0, -1.4]
+    assert found.account == {
+        "heading": 1,
+        "comment or blank": 2,
+        "topography": 9,
+        "left out: the tooth has a topography": 1,
+        "left out: not the loaded flank": 1,
+    }
+
+
+PROFILE = [f"1,right,profile,{4 + 0.1 * k:.3f},,{k % 3}" for k in range(100)]
+
+
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        ([], "empty"),
+        ([HEAD], "heading alone"),
+        ([HEAD.replace("deviation_um", "deviation_mm"), *PROFILE], "names each column once"),
+        ([HEAD.replace("tooth,", ""), *PROFILE], "the column tooth"),
+        ([HEAD + ",diameter_mm", *PROFILE], "one of the columns"),
+        ([HEAD, *PROFILE[:-1], "1,right,profile,5"], "line 101 has 4"),
+        ([HEAD, *PROFILE, PROFILE[3]], "line 102 repeats line 5"),
+        ([HEAD, "21,right,profile,5,,1"], "teeth from 1 to 20; line 2"),
+        ([HEAD, "1,top,profile,5,,1"], "left and right flanks; line 2"),
+        ([HEAD, "1,right,lead,5,,1"], "the traces pitch"),
+        ([HEAD, "1,right,profile,5,,nan"], "finite numbers; line 2"),
+        ([HEAD, "1,right,profile,5,,2000"], "up to 1000 um; line 2"),
+        ([HEAD, *PROFILE[::20]], "at most the cut-off"),
+        ([HEAD, *PROFILE[:2]], "a trace of 3 to"),
+        ([HEAD, "1,right,pitch,,,1"], "19 are missing, the first is 2"),
+        ([HEAD, "1,right,pitch,,,1", "1,right,cumulative_pitch,,,1"], "not both"),
+        ([HEAD, "1,right,topography,5,1,1", "1,right,topography,6,2,1"], "lacks 2 points"),
+        ([HEAD, '1,right,profile,5,,"' + 200_000 * "9"], "CSV"),
+    ],
+)
+def test_a_sheet_is_refused_by_what_is_wrong(lines: list[str], said: str) -> None:
+    assert said in refused("\n".join(lines))
+
+
+JUNK = ("\0", "\x1b[2J", "/etc/passwd", "=cmd()", "\u202e", "1e999", '"', ",,,,", "\ufffd", "-")
+
+
+def damaged(text: str, seed: int) -> str:
+    """Return a text with one kind of damage: bytes lost, turned or added, lines lost, mixed or doubled."""
+    draw = random.Random(seed)
+    lines = text.splitlines()
+    at, row = draw.randrange(len(text)), draw.randrange(len(lines))
+    junk = draw.choice(
+        ["\0", "\x1b[2J", "/etc/passwd", "=cmd()", "\u202e", "1e999", '"', ",,,,", "\ufffd", "-"]
+    )
+    match seed % 6:
+        case 0:
+            return text[:at]
+        case 1:
+            return text[:at] + junk + text[at:]
+        case 2:
+            return text[:at] + text[at + draw.randrange(1, 40) :]
+        case 3:
+            return "\n".join(lines[:row] + lines[row + 1 :])
+        case 4:
+            draw.shuffle(lines)
+            return "\n".join(lines)
+        case _:
+            cells = lines[row].split(",")
+            cells[draw.randrange(len(cells))] = junk
+            return "\n".join((*lines[:row], ",".join(cells), *lines[row + 1 :]))
+
+
+def test_a_hundred_damaged_sheets_are_refused_once_or_accounted_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """And nothing is opened on the way, whatever they name."""
+    sound = sheet_text(inspected(Chart(replace(PINION, tooth_flanks=FLANKS[:1]), "right", True)))
+
+    def never(*_: object, **__: object) -> Any:
+        raise AssertionError("a sheet opens no file")
+
+    fates = {"refused": 0, "accounted for": 0}
+    taken(sound)
+    monkeypatch.setattr(builtins, "open", never)
+    for seed in range(100):
+        text = damaged(sound, seed)
+        try:
+            taken(text)
+            fates["accounted for"] += 1
+        except BadInput as error:
+            assert len(error.faults) == 1
+            assert len(str(error)) < 2000
+            fates["refused"] += 1
+    assert min(fates.values()) >= 10, fates
+
+
+def test_the_verb_writes_a_sheet_and_takes_it_back(tmp_path: Path) -> None:
+    pitches = [float(value) for value in range(20)]
+    case, sheet, out = (tmp_path / name for name in ("case.toml", "sheet.csv", "out.toml"))
+    tables = "\n[[pair.pinion.tooth_flanks]]\ntooth = 3\nprofile_slope_um = 4.0\n"
+    text = spur_case(f"pitch_deviation_um = {pitches}", torques=[100.0]).replace(
+        "\n[pair.wheel]", f"{tables}[pair.wheel]"
+    )
+    case.write_text(text, encoding="utf-8")
+    of = ("--gear", "pinion", "--loaded", "left")
+    assert loa("measured", case, *of, "-o", sheet).exit_code == 0
+    done = printed("measured", case, sheet, *of, "-o", out)
+    assert sum(done["lines"].values()) == len(sheet.read_text().splitlines())
+    assert [trace["slope_um"] for trace in done["traces"]] == pytest.approx([0.0, 4.0], abs=1e-6)
+    first, second = (gear_pair(read_model(Case, file)).pinion for file in (case, out))
+    assert second.pitch_deviation.cumulative == pytest.approx(first.pitch_deviation.cumulative, abs=1e-11)
+    assert second.tooth_flanks[0].profile_slope == pytest.approx(4e-6, rel=1e-6)
+    said = loa("measured", case, sheet, *of)
+    assert "cumulative_pitch" in said.stdout and "cut-off" in said.stdout
+
+
+def test_the_verb_names_a_sheet_that_is_not_there(tmp_path: Path) -> None:
+    case = tmp_path / "case.toml"
+    case.write_text(spur_case(torques=[100.0]), encoding="utf-8")
+    done = loa("measured", case, tmp_path / "none.csv", "--gear", "pinion", "--loaded", "left", "--json")
+    assert done.exit_code == 2
+    assert "measured.file" in done.stderr or "measured.file" in json.dumps(done.stdout)
