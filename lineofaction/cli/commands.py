@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from host import keep_to_one_thread
-from lineofaction.cli.verbs import of_files, of_services
+from lineofaction.cli.verbs import of_files, of_imports, of_services
 from lineofaction.cli.verbs.of_studies import StudyGroup
 
 _EPILOG = (
@@ -30,7 +30,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for family in (of_files, of_services):
+for family in (of_files, of_imports, of_services):
     for verb in family.verbs.registered_commands:  # the whole sentence, which the list would cut off
         verb.short_help = (verb.callback.__doc__ or "").partition("\n")[0]
     app.add_typer(family.verbs)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -33,7 +32,6 @@ if TYPE_CHECKING:
         export,
         hardcases,
         listen,
-        measured,
         new,
         pages,
         simulate,
@@ -44,16 +42,10 @@ else:
     analyze, costs, export, hardcases, listen = map(
         Later, ("cli.analyze", "cli.costs", "cli.export", "cli.hardcases", "cli.listen")
     )
-    measured, new, pages = map(Later, ("cli.measured", "cli.new", "cli.pages"))
-    simulate, ste = map(Later, ("cli.simulate", "cli.ste"))
+    new, pages, simulate, ste = map(Later, ("cli.new", "cli.pages", "cli.simulate", "cli.ste"))
     views = Later("report.run.view")
 
 verbs = typer.Typer()
-
-_ASSUME = (
-    "Set a value over the file's before it is opened, in its unit: 14.helix_angle_reference_diameter=-12; "
-    "repeatable."
-)
 
 
 @verbs.command(
@@ -76,24 +68,6 @@ def _new(
     """Write a first case or scene file; rules set all data that are not given."""
     kinds = {"spur": spur, "helical": helical, "internal": internal, "planetary": planetary, "scene": scene}
     new.run_new(kinds, wanted, output)
-
-
-@verbs.command("open", rich_help_panel="start", epilog="Example: loa open gearbox.rexs --out gearbox")
-@computing
-def _open_unit(
-    file: Annotated[Path, typer.Argument(help="Gear unit as REXS: .rexs, .rexsj, .rexsz or .rexs.zip.")],
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", help="Folder for the files; default: that of the file's name, here."),
-    ] = None,
-    assume: Annotated[
-        list[str] | None,
-        typer.Option("--assume", metavar="COMPONENT.ATTRIBUTE=VALUE", help=_ASSUME),
-    ] = None,
-    json: AsJson = False,
-) -> None:
-    """Open a gear unit of another tool (REXS): write its cases, its scene and the report of the import."""
-    new.run_open(file, out, assume or (), as_json=json)
 
 
 # Verbs on one gear pair: its table, curves, and files for other programs.
@@ -144,46 +118,6 @@ def _geometry(
 ) -> None:
     """Print the data sheet of a pair (ISO 21771-1), and draw its mesh and its flank modifications."""
     pages.run_geometry(case, output, as_json=json)
-
-
-class _Gear(StrEnum):
-    """The gears of a pair."""
-
-    PINION = "pinion"
-    WHEEL = "wheel"
-
-
-class _Flank(StrEnum):
-    """The flanks of a gear."""
-
-    LEFT = "left"
-    RIGHT = "right"
-
-
-@verbs.command(
-    "measured",
-    rich_help_panel="pair",
-    epilog="Example: loa measured case.toml pinion.csv --gear pinion --loaded right -o measured.toml",
-)
-@guarded
-def _measured(
-    case: CaseFile,
-    sheet: Annotated[
-        Path | None, typer.Argument(help="Traces of the gear (CSV); left out: write those of the case.")
-    ] = None,
-    *,
-    gear: Annotated[_Gear, typer.Option(help="The gear that was inspected.")],
-    loaded: Annotated[_Flank, typer.Option(help="Flanks that carry the load, seen from the datum face.")],
-    cutoff_mm: Annotated[
-        float | None,
-        typer.Option(min=1e-3, max=1e3, help="Cut-off of the filter in mm; default: 1/30 of each trace."),
-    ] = None,
-    output: Annotated[Path | None, to_file("Case (TOML) or, without a sheet, CSV file to write.")] = None,
-    json: AsJson = False,
-) -> None:
-    """Take pitches, traces and topographies of an inspected gear into a case, every line accounted for."""
-    of = measured.Inspected(gear.value, loaded.value, cutoff_mm)
-    measured.run_measured(case, sheet, of, output, as_json=json)
 
 
 @verbs.command("ste", rich_help_panel="pair", epilog="Example: loa ste ste.nc --torque 100 --at 0,0.25,0.5")

@@ -1,0 +1,83 @@
+"""Arguments, help and examples of the verbs on files of others: gear units, sheets of inspections."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from lineofaction.cli.guard import computing, guarded
+from lineofaction.cli.options import AsJson, CaseFile, to_file
+from lineofaction.cli.verbs import Later
+
+if TYPE_CHECKING:
+    from lineofaction.cli import measured, new
+else:
+    measured, new = map(Later, ("cli.measured", "cli.new"))
+
+verbs = typer.Typer()
+
+_ASSUME = (
+    "Set a value over the file's before it is opened, in its unit: 14.helix_angle_reference_diameter=-12; "
+    "repeatable."
+)
+
+
+@verbs.command("open", rich_help_panel="start", epilog="Example: loa open gearbox.rexs --out gearbox")
+@computing
+def _open_unit(
+    file: Annotated[Path, typer.Argument(help="Gear unit as REXS: .rexs, .rexsj, .rexsz or .rexs.zip.")],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", help="Folder for the files; default: that of the file's name, here."),
+    ] = None,
+    assume: Annotated[
+        list[str] | None,
+        typer.Option("--assume", metavar="COMPONENT.ATTRIBUTE=VALUE", help=_ASSUME),
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Open a gear unit of another tool (REXS): write its cases, its scene and the report of the import."""
+    new.run_open(file, out, assume or (), as_json=json)
+
+
+class _Gear(StrEnum):
+    """The gears of a pair."""
+
+    PINION = "pinion"
+    WHEEL = "wheel"
+
+
+class _Flank(StrEnum):
+    """The flanks of a gear."""
+
+    LEFT = "left"
+    RIGHT = "right"
+
+
+@verbs.command(
+    "measured",
+    rich_help_panel="pair",
+    epilog="Example: loa measured case.toml pinion.csv --gear pinion --loaded right -o measured.toml",
+)
+@guarded
+def _measured(
+    case: CaseFile,
+    sheet: Annotated[
+        Path | None, typer.Argument(help="Traces of the gear (CSV); left out: write those of the case.")
+    ] = None,
+    *,
+    gear: Annotated[_Gear, typer.Option(help="The gear that was inspected.")],
+    loaded: Annotated[_Flank, typer.Option(help="Flanks that carry the load, seen from the datum face.")],
+    cutoff_mm: Annotated[
+        float | None,
+        typer.Option(min=1e-3, max=1e3, help="Cut-off of the filter in mm; default: 1/30 of each trace."),
+    ] = None,
+    output: Annotated[Path | None, to_file("Case (TOML) or, without a sheet, CSV file to write.")] = None,
+    json: AsJson = False,
+) -> None:
+    """Take pitches, traces and topographies of an inspected gear into a case, every line accounted for."""
+    of = measured.Inspected(gear.value, loaded.value, cutoff_mm)
+    measured.run_measured(case, sheet, of, output, as_json=json)
