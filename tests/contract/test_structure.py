@@ -11,18 +11,18 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (41_044, 741),
+    ("fe_contact",): (41_048, 741),
     ("dynamics",): (42_972, 827),
-    ("lineofaction.gearbox",): (26_011, 525),
+    ("lineofaction.gearbox",): (26_512, 537),
     ("lineofaction.report",): (11_733, 225),
     ("service",): (14_799, 339),
     ("lineofaction.client",): (2_713, 53),
-    ("lineofaction.cli",): (5_264, 78),
+    ("lineofaction.cli",): (5_450, 80),
     ("lineofaction.hardcases",): (3_844, 35),
     ("bounds", "host", "model_studies"): (4_517, 155),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 813
+MOST_FILES = 819
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
