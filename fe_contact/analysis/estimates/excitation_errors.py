@@ -10,7 +10,7 @@ import numpy as np
 from fe_contact.analysis.estimates.position_errors import errors_by_halves
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve import AT_NODES, METHOD, OperatingPoint, all_sources, errors_by_source
-from fe_contact.ste.curve_quantities import FIRST_HARMONIC, HARMONICS, MEAN, mean_of_curves
+from fe_contact.ste.curve_quantities import BESIDE_MESH, FIRST_HARMONIC, HARMONICS, MEAN, mean_of_curves
 from fe_contact.ste.extraction import sliding_sums
 from fe_contact.types import FloatArray
 
@@ -25,11 +25,14 @@ class ExcitationErrors:
         m; of the transmission error with what the method leaves out.
     friction : ndarray
         Of the friction over the largest, the coefficient of friction times the mesh force.
+    beside_mesh : float
+        Of the transmission error in any order beside the mesh orders, m.
     """
 
     transmission_error: FloatArray
     load_arm: FloatArray
     friction: FloatArray
+    beside_mesh: float
 
 
 def excitation_errors(table: SteDatabase, force: float) -> ExcitationErrors:
@@ -41,10 +44,12 @@ def excitation_errors(table: SteDatabase, force: float) -> ExcitationErrors:
     """
     at = float(np.clip(force, table.force[0], table.force[-1]))
     of_ste, of_arm, of_shares = (np.zeros(HARMONICS) for _ in range(3))
+    beside = 0.0
     mean = mean_of_curves(table.position, table.static_transmission_error, table.period)
     for m, d in product(range(table.misalignment.size), range(table.center_distance_change.size)):
         stated = _stated(table, at, m, d)
-        of_ste = np.maximum(of_ste, all_sources(stated)[FIRST_HARMONIC:])
+        errors = all_sources(stated)
+        of_ste, beside = np.maximum(of_ste, errors[FIRST_HARMONIC:]), np.maximum(beside, errors[BESIDE_MESH])
         of_mesh = all_sources(np.delete(stated, AT_NODES.index(METHOD), axis=0))[MEAN]
         of_shares = np.maximum(of_shares, of_mesh / np.interp(at, table.force, mean[:, m, d]))
         if table.load_arm_error.size:
@@ -55,9 +60,8 @@ def excitation_errors(table: SteDatabase, force: float) -> ExcitationErrors:
     missed = errors_by_halves(table.position, sliding.reshape(len(sliding), -1), table.period).curves
     by_load = missed.reshape(-1, *sliding.shape[1:]).max(axis=(2, 3))
     missed_here = np.array([np.interp(at, table.force, each) for each in by_load[FIRST_HARMONIC:]])
-    return ExcitationErrors(
-        of_ste, of_arm if table.load_arm_error.size else unknown, np.hypot(of_shares, missed_here)
-    )
+    arm = of_arm if table.load_arm_error.size else unknown
+    return ExcitationErrors(of_ste, arm, np.hypot(of_shares, missed_here), float(beside))
 
 
 def _stated(table: SteDatabase, force: float, m: int, d: int) -> FloatArray:

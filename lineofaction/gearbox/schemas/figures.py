@@ -139,12 +139,12 @@ Forces = Annotated[BearingForces, Source("forces", missing=LINEAR)]
 class ExcitationFigures(Part):
     """A harmonic of a mesh at its torque on the driving gear: amplitudes that excite, each with its error.
 
-    Null: the table states no error.
+    Null: the table states no error. Orders beside the mesh orders, of single teeth, have no harmonic.
     """
 
     mesh: str
     torque_n_m: float
-    harmonic: int
+    harmonic: int | None
     order: float
     transmission_error_um: float
     error_of_transmission_error_um: float | None

@@ -21,11 +21,14 @@ from lineofaction.gearbox.convert.complaint import Complaint, complaint_of
 from lineofaction.gearbox.convert.scene import TabledScene
 
 Result = TypeVar("Result")
+BESIDE_MESH = 6
+"""Orders beside the mesh orders that are listed of a mesh."""
 
 
 def excitations_of(response: HarmonicResponse, system: System, subject: TabledScene) -> list[Json]:
-    """Return what excites in the harmonics of every mesh with a table, in SI.
+    """Return what excites in the harmonics of every mesh with a table, and in orders beside them, in SI.
 
+    Of the latter those largest in transmission error, where it is above its error; their `harmonic` is None.
     Copies of a planet excite as the one that the scene names. An error that the table does not state is None.
     """
     rate = mesh_frequencies(system, np.ones(1))[:, 0]
@@ -77,16 +80,26 @@ def _of_mesh(
         "load_moment": (response.load_moment, force * errors.load_arm),
         "friction_force": (response.friction_force, slides * errors.friction),
     }
+    unknown = dict.fromkeys(by_name, np.nan) | {"transmission_error": errors.beside_mesh}
+
+    def row(at: int, harmonic: int | None) -> Json:
+        excites: Json = {"mesh": response.mesh[mesh], "torque": torque, "harmonic": harmonic}
+        excites["order"] = float(response.order[at])
+        for name, (values, error) in by_name.items():
+            own = unknown[name] if harmonic is None else float(error[harmonic - 1])
+            excites[name] = float(abs(values[mesh, at]))
+            excites[f"error_of_{name}"] = own if np.isfinite(own) else None
+        return excites
+
+    multiple = response.order / step
+    whole = np.isclose(multiple, np.rint(multiple), rtol=1e-6)
     for harmonic in range(1, errors.load_arm.size + 1):
-        (at,) = np.nonzero(np.isclose(response.order, harmonic * step, rtol=1e-6))
-        if at.size:
-            row: Json = {"mesh": response.mesh[mesh], "torque": torque}
-            row |= {"harmonic": harmonic, "order": float(response.order[at[0]])}
-            for name, (values, error) in by_name.items():
-                own = float(error[harmonic - 1])
-                row[name] = float(abs(values[mesh, at[0]]))
-                row[f"error_of_{name}"] = own if np.isfinite(own) else None
-            yield row
+        for at in np.flatnonzero(whole & (np.rint(multiple) == harmonic))[:1].tolist():
+            yield row(at, harmonic)
+    size = np.where(whole, 0.0, np.abs(response.static_transmission_error[mesh]))
+    for at in np.argsort(-size, kind="stable")[:BESIDE_MESH].tolist():
+        if size[at] > np.nan_to_num(errors.beside_mesh):
+            yield row(at, None)
 
 
 def with_facts_of_scene(result: Result, subject: TabledScene) -> Result:

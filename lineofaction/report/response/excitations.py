@@ -9,10 +9,11 @@ import numpy as np
 
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Bars, Figure, Panel, Table, number
+from lineofaction.report.drawing.marks import order_words
 
 Row = Mapping[str, Any]
 SHOWN = 6
-"""Harmonics of each mesh that are listed and drawn."""
+"""Harmonics of each mesh that are listed and drawn; orders beside them are listed."""
 _QUANTITIES = {
     "transmission_error": ("transmission error, nm", 1e9),
     "load_moment": ("moment of the load F z_c, N m", 1.0),
@@ -32,8 +33,8 @@ def excitation_table(facts: Mapping[str, Any]) -> Table | None:
         (
             row["mesh"],
             number(row["torque"], 4),
-            str(row["harmonic"]),
-            f"{row['order']:.4g}",
+            "" if row["harmonic"] is None else str(row["harmonic"]),
+            order_words(row["order"], facts),
             *(_with_error(row, name, scale) for name, (_, scale) in _QUANTITIES.items()),
         )
         for row in rows
@@ -55,8 +56,8 @@ def excitation_figures(facts: Mapping[str, Any]) -> tuple[Figure, ...]:
         title="What excites",
         caption="Amplitudes of the harmonics at the static mesh forces; from bottom to top of the pale bars "
         "they lie within the errors of the table.",
-        alternative=f"The largest transmission error is {size} nm in harmonic {largest['harmonic']} of "
-        f"{largest['mesh']}.",
+        alternative=f"The largest transmission error is {size} nm in order "
+        f"{order_words(largest['order'], facts)} of {largest['mesh']}.",
         content=tuple(_panel(rows, name, meshes) for name in acting),
         table=table,
     )
@@ -64,7 +65,7 @@ def excitation_figures(facts: Mapping[str, Any]) -> tuple[Figure, ...]:
 
 
 def _shown(facts: Mapping[str, Any]) -> list[Row]:
-    return [row for row in facts.get("excitations", ()) if row["harmonic"] <= SHOWN]
+    return [row for row in facts.get("excitations", ()) if (row["harmonic"] or 0) <= SHOWN]
 
 
 def _with_error(row: Row, name: str, scale: float) -> str:
@@ -76,7 +77,7 @@ def _panel(rows: list[Row], name: str, meshes: list[str]) -> Panel:
     label, scale = _QUANTITIES[name]
     width, bars = _WIDTH / len(meshes), []
     for index, mesh in enumerate(meshes):
-        own = [row for row in rows if row["mesh"] == mesh]
+        own = [row for row in rows if row["mesh"] == mesh and row["harmonic"]]
         at = np.array([row["harmonic"] for row in own]) + (index - 0.5 * (len(meshes) - 1)) * width
         size = scale * np.array([row[name] for row in own])
         error = scale * np.array([row[f"error_of_{name}"] or 0.0 for row in own])

@@ -28,6 +28,7 @@ from lineofaction.gearbox.registry import STUDIES
 from lineofaction.report.comparison.compare import stored_comparison
 from lineofaction.report.document import _study_page, stored_figures
 from lineofaction.report.drawing.figure import HeatMap, Panel
+from lineofaction.report.response.excitations import excitation_figures, excitation_table
 from lineofaction.report.run.levels import MAP_DEPTH as DEPTH
 from lineofaction.report.run.levels import (
     campbell,
@@ -275,3 +276,25 @@ def test_a_terminal_shows_names_as_they_are(name: str, capsys: pytest.CaptureFix
     console().print(f"bearing {name}")
     console().print(grid)
     assert capsys.readouterr().out.count(name) == 4
+
+
+def test_orders_beside_the_mesh_are_listed_by_name_and_not_drawn_among_harmonics() -> None:
+    amounts = {"transmission_error": 2e-7, "load_moment": 0.1, "friction_force": 0.0}
+    amounts |= {
+        "error_of_transmission_error": 1e-9,
+        "error_of_load_moment": None,
+        "error_of_friction_force": None,
+    }
+    row = {"mesh": "mesh", "torque": 40.0} | amounts
+    facts = {
+        "turning": {"mesh": {"mesh": 1.0}, "shaft": {"pinion": 1.0 / 19.0}},
+        "excitations": [row | {"harmonic": 1, "order": 1.0}, row | {"harmonic": None, "order": 11.0 / 19.0}],
+    }
+    table = excitation_table(facts)
+    assert table is not None
+    assert [cells[2:5] for cells in table.rows] == [
+        ("1", "1", "200 ± 1.0"),
+        ("", "0.5789 (pinion 11)", "200 ± 1.0"),
+    ]
+    (figure,) = excitation_figures(facts)
+    assert [bars.x.size for bars in figure.content[0].bars] == [1, 1]
