@@ -1,4 +1,4 @@
-"""Modifications over the whole flank: twist, triangular relief (ISO 21771-1), a free form.
+"""Modifications over the whole flank: twist, ground crowning, triangular relief (ISO 21771-1), a free form.
 
 A triangular relief removes material from the corners where lines of contact begin and end. It is a tip or
 root relief whose start is a line of contact instead of a circle: deepest at that corner of the flank which
@@ -36,6 +36,36 @@ class _FlankTwist(Polynomial):
         5e-6,
     )
     powers: ClassVar[tuple[int, int]] = (1, 1)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _GroundHelixCrowning(FlankPart):
+    """Helix crowning with the natural twist of generating grinding.
+
+    While the worm stands at one place Z along the face it touches the flank along its normal, so that the
+    infeed there is felt at z = Z + (l - l_m) tan(beta_b): on the whole profile, l_m in its middle.
+    """
+
+    ground_helix_crowning: float = amount(
+        _FLANK,
+        "Helix crowning as generating grinding makes it by infeed along the face, with its natural twist; of "
+        "external gears",
+        5e-6,
+        later=True,
+    )
+
+    def check_fits(self, gear: Tooth) -> None:
+        """Raise `InputError` for a ring gear, which no worm grinds."""
+        if self.ground_helix_crowning and gear.sign < 0:
+            advice = "Give it a helix crowning and a twist."
+            name = "modification.ground_helix_crowning"
+            raise InputError(name, self.ground_helix_crowning, "0 for a ring gear", advice)
+
+    def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
+        """See `FlankPart.removed`."""
+        middle = 0.5 * (gear.form_roll_length + gear.tip_roll_length)
+        worm = face_position - (roll_length - middle) * math.tan(gear.base_helix_angle)
+        return np.asarray(self.ground_helix_crowning * (2.0 * worm / gear.face_width) ** 2)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -157,6 +187,7 @@ def check_reach(grid: FlankGrid, gear: Tooth) -> None:
 
 class OverFlank(
     _FlankTwist,
+    _GroundHelixCrowning,
     _TriangularTipRelief,
     _TriangularRootRelief,
     _FreeForm,

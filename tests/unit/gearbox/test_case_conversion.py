@@ -47,6 +47,7 @@ MODIFIED: dict[str, Any] = {
     "helix_crowning_um": 5.0,
     "helix_slope_um": -6.0,
     "flank_twist_um": 2.5,
+    "ground_helix_crowning_um": 4.5,
     "end_relief_um": 7.0,
     "end_relief_length_mm": 2.0,
     "end_relief_shape": "parabolic",

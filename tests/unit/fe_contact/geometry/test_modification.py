@@ -337,3 +337,34 @@ def test_deviations_are_one_for_each_tooth_of_the_same_gear():
     with pytest.raises(InputError, match="a list of 20") as refusal:
         replace(GEAR, pitch_deviation=PitchDeviation((1e-6,) * 19))
     assert refusal.value.field == "pitch_deviation"
+
+
+@pytest.mark.parametrize("hand", [1.0, -1.0])
+def test_ground_crowning_is_the_same_all_along_the_normal_that_the_worm_touches(hand: float) -> None:
+    """So it is crowning, twist and profile crowning by closed form."""
+    gear = Gear(25, 2e-3, 30e-3, 20e-3, helix_angle=hand * math.radians(22.0))
+    ground = FlankModification(ground_helix_crowning=4e-6)
+    form, tip = gear.form_roll_length, gear.tip_roll_length
+    roll, middle, tangent = np.linspace(form, tip, 21), 0.5 * (form + tip), math.tan(gear.base_helix_angle)
+    for worm in (-9e-3, 0.0, 6e-3):
+        along = ground.material_removed(gear, roll, worm + (roll - middle) * tangent)
+        assert along == pytest.approx(4e-6 * (2.0 * worm / 30e-3) ** 2, rel=1e-12, abs=1e-20)
+    k = (tip - form) * tangent / 30e-3
+    parts = FlankModification(helix_crowning=4e-6, flank_twist=-2.0 * 4e-6 * k, profile_crowning=4e-6 * k**2)
+    roll, face = np.meshgrid(roll, np.linspace(-15e-3, 15e-3, 31))
+    assert ground.material_removed(gear, roll, face) == pytest.approx(
+        parts.material_removed(gear, roll, face), rel=1e-9, abs=1e-18
+    )
+
+
+def test_a_ring_gear_is_not_ground_by_a_worm() -> None:
+    with pytest.raises(InputError) as caught:
+        RingGear(
+            60,
+            4e-3,
+            25e-3,
+            280e-3,
+            addendum_coefficient=0.75,
+            modification=FlankModification(ground_helix_crowning=1e-6),
+        )
+    assert caught.value.field == "modification.ground_helix_crowning"
