@@ -7,13 +7,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.integrators.march import Cancel, Ending, Progress, ending, march_on, start_march
+from dynamics.integrators.march import (
+    NO_SAMPLES,
+    Cancel,
+    Ending,
+    Progress,
+    ending,
+    march_on,
+    start_march,
+)
 from dynamics.integrators.start_value import StartValue, Trail
 from dynamics.integrators.state_sink import MemorySink
 from dynamics.integrators.static import StaticSolution
 from dynamics.motion.sampled_states import States
 from dynamics.scene import Integration
-from dynamics.types import FloatArray
+from dynamics.types import FloatArray, IntArray
 from model_studies.stage_clock import TimeTaken
 
 
@@ -52,15 +60,16 @@ def integrate(
     cancel: Cancel | None = None,
     trail: Trail | None = None,
     taken: StartValue | None = None,
+    whole: IntArray = NO_SAMPLES,
 ) -> Trajectory:
     """Run `system` over its scene's duration, from rest in `start` or from the `velocity` (n,) there.
 
     At rest means without any deviation from the kinematic motion: the shafts turn with the drive. `cancel` is
     polled about fifty times or more. `trail` saves the states of the run; `taken`
-    is where it goes on for another run.
+    is where it goes on for another run. Samples `whole` (W,) keep all freedoms.
     """
     began = TimeTaken.now()
-    march = start_march(system, start, integration, velocity)
+    march = start_march(system, start, integration, velocity, whole)
     sink = MemorySink(march.samples, march.widths)
     if taken is not None:
         taken.into(march, sink)

@@ -16,6 +16,7 @@ from dynamics.integrators.method_choice import choose_method
 from dynamics.integrators.sampler import (
     Sampler,
     SampleRing,
+    carried_signals,
     continue_past_the_end,
     sample_step,
 )
@@ -163,6 +164,7 @@ CHUNKS = 50
 BLOCK_WORK = 25_000
 """Samples times freedoms of a block that nobody waits for: 5 to 50 ms without the interpreter's lock."""
 FIRST_STEP = 1e-6
+NO_SAMPLES = np.zeros(0, dtype=np.int64)
 STEP_SHARE = 0.07
 """Error allowed per step over the tolerance of the run.
 
@@ -216,7 +218,8 @@ class March:
     def widths(self) -> Widths:
         """Sizes of the sampled states."""
         channels, rows = self.sampler.filtered, self.ring.local.force.size
-        return Widths(self.work.q.size, self.work.moved.size, channels, rows)
+        carried = carried_signals(self.system.arrays, self.sampler)
+        return Widths(self.sampler.kept, carried, self.work.moved.size, channels, rows)
 
 
 @dataclass(frozen=True)
@@ -243,6 +246,8 @@ class Ending:
         By the stepping; in a process's first run with reading or making the compiled code.
     figures : _SampleFigures
         Peaks and rms over the run, and what the anti-alias filter took away.
+    whole : (W, 2, b) array
+        q and v of the modal freedoms at the samples that were to be whole.
     """
 
     status: RunStatus
@@ -255,12 +260,22 @@ class Ending:
     step_range: FloatArray
     taken: TimeTaken
     figures: _SampleFigures
+    whole: FloatArray
+
+
+def sample_count(system: System) -> int:
+    """Return how many output samples a run has that comes to its end."""
+    return int(np.floor(system.scene.duration * system.sampling.rate * (1.0 + 1e-12))) + 1
 
 
 def start_march(
-    system: System, start: StaticSolution, integration: Integration, velocity: FloatArray | None = None
+    system: System,
+    start: StaticSolution,
+    integration: Integration,
+    velocity: FloatArray | None = None,
+    whole: IntArray = NO_SAMPLES,
 ) -> March:
-    """Start at t = 0 from `start`, at rest or with the `velocity` (n,)."""
+    """Start at t = 0 from `start`, at rest or with the `velocity` (n,); the samples `whole` (W,) have all."""
     if integration.method == "auto":
         integration = choose_method(system, start.displacement, integration).settings(integration)
     if integration.fixed_step is None:
@@ -270,15 +285,13 @@ def start_march(
     work = Workspace.of(system.arrays, step_sizes, start.displacement, integration.fixed_step or FIRST_STEP)
     if velocity is not None:
         work.v[:] = velocity
-    scene = system.scene
-    samples = int(np.floor(scene.duration * system.sampling.rate * (1.0 + 1e-12))) + 1
     control = _control(system, integration)
     initial = _audited_energy(system, control, 0.0, work)
-    sampler = Sampler.of(system)
+    sampler = Sampler.of(system, whole)
     ring = SampleRing.of(system.arrays, sampler)
     run = by_address(system.arrays), by_address(work)
     passed = _Passed(*run, by_address(control), by_address(sampler), by_address(ring))
-    march = March(system, work, ring, control, sampler, passed, initial, samples)
+    march = March(system, work, ring, control, sampler, passed, initial, sample_count(system))
     prepare_steps(*run, control.implicit, control.audit)
     prepare_samples(*run, passed.sampler, passed.ring, by_address(march.widths.states(0)))
     return march
@@ -360,6 +373,7 @@ def ending(march: March, sink: StateSink, status: RunStatus, taken: TimeTaken) -
         _step_range(work),
         taken,
         figures,
+        ring.whole,
     )
 
 

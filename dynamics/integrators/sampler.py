@@ -9,6 +9,7 @@ output trails the integration by half the filter, and its delay is compensated.
 from __future__ import annotations
 
 import math
+from inspect import unwrap
 from typing import NamedTuple
 
 import numpy as np
@@ -65,8 +66,12 @@ class Sampler(NamedTuple):
         Of the channels of a point; without signals where no output has them.
     bodies : int
         Freedoms that are not modal.
+    kept : int
+        Freedoms that samples have: all, or without the amplitudes of housings where nothing asks for them.
     filtered : int
         Channels that the filter takes: without the amplitudes of modal freedoms where no output has them.
+    whole : (W,) int array
+        Samples of which the amplitudes are kept in any case.
     """
 
     taps: FloatArray
@@ -78,10 +83,12 @@ class Sampler(NamedTuple):
     level: IntArray
     bearings: BearingForce
     bodies: int
+    kept: int
     filtered: int
+    whole: IntArray
 
     @classmethod
-    def of(cls, system: System) -> Sampler:
+    def of(cls, system: System, whole: IntArray) -> Sampler:
         """Gather what the compiled loop needs."""
         sampling = system.sampling
         static, nominal = system.flanks.static, system.flanks.nominal_force
@@ -92,12 +99,20 @@ class Sampler(NamedTuple):
         channels = np.concatenate([np.arange(rows), rows + own, q, rows + bodies + own, v])
         signals = system.bearing_map if outputs.bearing_forces else NO_SIGNALS
         bearings = signals._replace(column=channels[signals.column])
-        amplitudes = n - bodies if outputs.displacements or outputs.accelerations else 0
-        filtered = rows + 2 * (bodies + amplitudes) + nominal.size
+        asked = outputs.displacements or outputs.accelerations
+        filtered = rows + 2 * (n if asked else bodies) + nominal.size
+        kept = n if asked or not _dispensable(system) else bodies
         level = [level_below(by_address(static), m, float(force)) for m, force in enumerate(nominal)]
-        rest = (np.array(level, dtype=np.int64), bearings, bodies, filtered)
+        rest = (np.array(level, dtype=np.int64), bearings, bodies, kept, filtered, whole)
         taps, rate = sampling.filter_taps(), sampling.inner_rate
         return cls(taps, HIGH_PASS, sampling.factor, rate, static, nominal, *rest)
+
+
+def _dispensable(system: System) -> bool:
+    """Return whether samples do without modal freedoms: they are of housings, and no law accelerates."""
+    own = system.freedoms.column[system.arrays.sparse.modal.first :]
+    unbalanced = unwrap(has_unbalance)(system.arrays.elements)  # as Python: not compiled for this alone
+    return bool(np.all(own >= system.rotors.first_of_housings)) and not unbalanced
 
 
 class _Peaks(NamedTuple):
@@ -121,7 +136,8 @@ class SampleRing(NamedTuple):
     """Points of the inner grid: L as the filter has taps, n freedoms, R local coordinates, m meshes, k laws.
 
     A point's C channels are the R local forces, q and v of all freedoms but the modal ones, the m static
-    deflections, then q and v of the modal ones. Local coordinates are linear in q.
+    deflections, then q and v of the modal ones, or what they carry (see `States`). Local coordinates are
+    linear in q.
 
     Attributes
     ----------
@@ -140,6 +156,8 @@ class SampleRing(NamedTuple):
         of their content near half the inner rate.
     high : (R,) array
         Scratch: that content at one output sample.
+    whole : (W, 2, b) array
+        q and v of the b modal freedoms at the samples ``Sampler.whole``.
     """
 
     point: FloatArray
@@ -153,12 +171,14 @@ class SampleRing(NamedTuple):
     removed: FloatArray
     folded: FloatArray
     high: FloatArray
+    whole: FloatArray
 
     @classmethod
     def of(cls, arrays: SystemArrays, sampler: Sampler) -> SampleRing:
         """Allocate."""
         n, rows, laws = arrays.mass.shape[0], arrays.direction.shape[0], arrays.inertial.shape[0]
-        channels = int(rows + 2 * n + sampler.nominal_force.size)
+        channels = int(rows + 2 * sampler.kept + sampler.nominal_force.size)
+        channels += carried_signals(arrays, sampler)
         signals = rows + sampler.bearings.constant.size
         return cls(
             np.zeros((sampler.taps.size, channels)),
@@ -172,7 +192,13 @@ class SampleRing(NamedTuple):
             np.zeros(rows),
             np.zeros(rows),
             np.zeros(rows),
+            np.zeros((sampler.whole.size, 2, n - sampler.bodies)),
         )
+
+
+def carried_signals(arrays: SystemArrays, sampler: Sampler) -> int:
+    """Return how many signals a sample has in place of amplitudes, 2 s of `States`."""
+    return 0 if sampler.kept == arrays.mass.shape[0] else 2 * arrays.sparse.modal.row.size
 
 
 @routine
@@ -193,6 +219,7 @@ def sample_step(
         row = point % sampler.taps.size
         _interpolate(work, ring, step, time - work.time[0], has_unbalance(system.elements))
         _look(system, work, sampler, ring, time, row)
+        _keep_whole(sampler, ring, point)
         if point <= sampler.taps.size // 2:
             _mirror(ring, 0, point, -point)
         _see_peaks(ring, sampler, row)
@@ -283,8 +310,24 @@ def _look(
         force, level = sampler.nominal_force[m], sampler.level[m]
         point[rows + 2 * n + m] = deflection_from(sampler.static, m, local.position[m], force, level)
     first = rows + 2 * n + meshes
-    for i in range(modes):
-        point[first + i], point[first + modes + i] = q[n + i], v[n + i]
+    if sampler.kept > n:
+        for i in range(modes):
+            point[first + i], point[first + modes + i] = q[n + i], v[n + i]
+        return
+    carried = system.sparse.modal.row
+    for r in range(carried.size):
+        point[first + r] = local.coordinate[carried[r]]
+        point[first + carried.size + r] = local.rate[carried[r]]
+
+
+@inner
+def _keep_whole(sampler: Sampler, ring: SampleRing, point: int) -> None:
+    """Keep the amplitudes at `point` if it is a sample that needs them."""
+    first, modes = np.uint64(sampler.bodies), np.uint64(ring.whole.shape[2])
+    for w in range(sampler.whole.size):
+        if sampler.whole[w] * sampler.factor == point:
+            for i in range(modes):
+                ring.whole[w, 0, i], ring.whole[w, 1, i] = ring.q[first + i], ring.v[first + i]
 
 
 @inner
@@ -335,10 +378,12 @@ def store_if_due(work: Workspace, sampler: Sampler, ring: SampleRing, point: int
     rows, n = ring.local.force.size, sampler.bodies
     for i in range(n):
         out.q[row, i], out.v[row, i] = ring.point[center, rows + i], ring.point[center, rows + n + i]
-    first, modes = rows + 2 * n + sampler.nominal_force.size, ring.q.size - n
+    first, modes = rows + 2 * n + sampler.nominal_force.size, sampler.kept - n
     for i in range(modes):
         out.q[row, n + i] = ring.point[center, first + i]
         out.v[row, n + i] = ring.point[center, first + modes + i]
+    for r in range(out.carried.shape[1]):
+        out.carried[row, r] = ring.point[center, first + r]
     for k in range(work.moved.size):
         out.moved[row, k] = work.moved[k]
     _see_extremes(ring, sampler.factor, center, out, row)

@@ -38,12 +38,15 @@ class _SavedState:
         Of its ring.
     figures : tuple of arrays
         Running figures of its ring: the two last values, peaks and squares (..., P), sums (R,).
+    whole : (W, 2, b) array
+        Of its ring.
     """
 
     state: dict[str, FloatArray]
     force: FloatArray
     point: FloatArray
     figures: tuple[FloatArray, ...]
+    whole: FloatArray
 
     @property
     def time(self) -> float:
@@ -60,7 +63,7 @@ def _saved_state(march: March) -> _SavedState:
     work, ring = march.state
     state = {name: np.array(getattr(work, name)) for name in STATE}
     figures = tuple(part.copy() for part in _figures(ring))
-    return _SavedState(state, work.force.copy(), ring.point.copy(), figures)
+    return _SavedState(state, work.force.copy(), ring.point.copy(), figures, ring.whole.copy())
 
 
 def _figures(ring: SampleRing) -> tuple[FloatArray, ...]:
@@ -122,7 +125,7 @@ class StartValue:
         filtered[:, to[:kept]] = states.filtered
         least, largest = (np.zeros((states.q.shape[0], rows)) for _ in range(2))
         least[:, self.rows_of], largest[:, self.rows_of] = states.least, states.largest
-        return States(states.q, states.v, states.moved, filtered, least, largest)
+        return states._replace(filtered=filtered, least=least, largest=largest)
 
     def start(self, march: March) -> None:
         """Start `march` from there; elements that it has beside those of the other one carry no force."""
@@ -137,6 +140,7 @@ class StartValue:
         ring, rows, own = march.ring, march.ring.local.force.size, self.rows_of
         ring.point[...] = 0.0
         ring.point[:, self._channels(march)] = self.at.point
+        ring.whole[...] = self.at.whole
         supports = np.arange(rows, ring.peaks.largest.size)
         signals = np.concatenate([own, supports])
         columns = (signals, signals, signals, own, own)

@@ -63,7 +63,7 @@ def blocks(samples: int) -> Iterator[tuple[int, int]]:
 # Checkpoints of a run: every array its workspace carries, in one file that appears whole or not at all.
 
 
-VERSION = 2
+VERSION = 3
 Arrays = dict[str, Any]
 
 
@@ -183,10 +183,9 @@ class StateSpool:
         self._file.seek(8 * record * first)
         content = self._file.read(8 * record * (stop - first))
         table: FloatArray = np.frombuffer(content).reshape(stop - first, record)
-        q, v, moved, *rest = (
-            np.ascontiguousarray(part) for part in np.split(table, np.cumsum(columns)[:-1], axis=1)
-        )
-        return States(q, v, moved.view(np.int64), *rest)
+        split = np.split(table, np.cumsum(columns)[:-1], axis=1)
+        states = States(*(np.ascontiguousarray(part) for part in split))
+        return states._replace(moved=states.moved.view(np.int64))
 
     def rewrite(self, before: Widths, samples: int, convert: Callable[[States], States]) -> None:
         """Replace `samples` records of the narrower widths `before` by what `convert` makes of them.

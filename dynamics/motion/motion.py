@@ -104,12 +104,25 @@ def add_motion(
     rate: FloatArray,
 ) -> None:
     """Add `q` to the positions, and write the elements' local coordinates and their rates."""
-    bodies, modal, turn = system.sparse.bodies, system.sparse.modal, system.sparse.turn
+    add_body_motion(system, q, v, position, coordinate, rate)
+    add_modal_motion(system.sparse.modal, q, coordinate)
+    add_modal_motion(system.sparse.modal, v, rate)
+
+
+@inner
+def add_body_motion(
+    system: SystemArrays,
+    q: FloatArray,
+    v: FloatArray,
+    position: FloatArray,
+    coordinate: FloatArray,
+    rate: FloatArray,
+) -> None:
+    """Do what `add_motion` does without modal freedoms, which `q` and `v` need not have."""
+    bodies, turn = system.sparse.bodies, system.sparse.turn
     for r in range(coordinate.size):
         moved, moving = row_products(bodies, r, bodies.weight, q, bodies.weight, v)
         coordinate[r], rate[r] = system.elements.offset[r] + moved, moving
-    add_modal_motion(modal, q, coordinate)
-    add_modal_motion(modal, v, rate)
     for m in range(position.size):
         position[m] += row_product(turn, turn.weight, m, q)
 

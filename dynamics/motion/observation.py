@@ -16,6 +16,7 @@ from dynamics.meshes.packed_tables import PackedTables
 from dynamics.meshes.table_lookup import table_deflection, wrapped
 from dynamics.motion.motion import (
     MOTION_COLUMNS,
+    add_body_motion,
     add_motion,
     external_force,
     set_drift,
@@ -43,14 +44,20 @@ class Observed(NamedTuple):
 
 
 def observe(
-    system: SystemArrays, time: FloatArray, q: FloatArray, v: FloatArray, moved: IntArray | None = None
+    system: SystemArrays,
+    time: FloatArray,
+    q: FloatArray,
+    v: FloatArray,
+    moved: IntArray | None = None,
+    carried: FloatArray | None = None,
 ) -> Observed:
     """Return what the elements do at T states.
 
     `time` (T,), `q` and `v` (T, n); `moved` (T, k) counts the quanta of free trains moved into the reference.
+    Amplitudes of housings may be missing in `q` and `v` if there is what is `carried` (see `States`).
     """
     local = make_local(system.elements, system.turn.shape[0])
-    return _look(system, local, time, moved, q, v)
+    return _look(system, local, time, moved, q, v, carried)
 
 
 def local_state(
@@ -70,14 +77,17 @@ def _look(
     moved: IntArray | None,
     q: FloatArray,
     v: FloatArray,
+    carried: FloatArray | None = None,
 ) -> Observed:
     """Observe T states, and leave the last one in `local`."""
     rows, meshes, laws = system.direction.shape[0], system.turn.shape[0], system.inertial.shape[0]
     seen = Observed(*(np.empty((size, time.size)) for size in (meshes, rows, rows)))
     counted = np.zeros((time.size, laws), dtype=np.int64) if moved is None else moved
+    seats = np.empty((time.size, 0)) if carried is None else carried
     motion = np.empty((laws, MOTION_COLUMNS))
     scratch = np.empty((2, q.shape[1]))
-    _observe(by_address(system), by_address(local), motion, time, counted, q, v, scratch, by_address(seen))
+    into = scratch, by_address(seen)
+    _observe(by_address(system), by_address(local), motion, time, counted, q, v, seats, *into)
     return seen
 
 
@@ -90,6 +100,7 @@ def _observe(
     moved: IntArray,
     q: FloatArray,
     v: FloatArray,
+    carried: FloatArray,
     scratch: FloatArray,
     seen: Observed,
 ) -> None:
@@ -97,7 +108,11 @@ def _observe(
         write_motion(system.reference, time[k], moved[k], motion)
         set_phases(system.reference, motion, local.position, local)
         set_drift(system.elements, time[k], motion, local)
-        add_motion(system, q[k], v[k], local.position, local.coordinate, local.rate)
+        if carried.shape[1] > 0:
+            add_body_motion(system, q[k], v[k], local.position, local.coordinate, local.rate)
+            _set_carried(system.sparse.modal.row, carried[k], local)
+        else:
+            add_motion(system, q[k], v[k], local.position, local.coordinate, local.rate)
         evaluate_all(system.elements, local)
         if has_unbalance(system.elements):
             _settle(system, local, motion, time[k], q[k], v[k], scratch)
@@ -105,6 +120,13 @@ def _observe(
             seen.position[m, k] = wrapped(local.position[m], float(system.reference.period[m]))
         for r in range(local.force.size):
             seen.coordinate[r, k], seen.force[r, k] = local.coordinate[r], local.force[r]
+
+
+@inner
+def _set_carried(row: IntArray, carried: FloatArray, local: LocalState) -> None:
+    """Write coordinates and rates of the rows that modal freedoms move."""
+    for r in range(row.size):
+        local.coordinate[row[r]], local.rate[row[r]] = carried[r], carried[row.size + r]
 
 
 @inner

@@ -15,7 +15,10 @@ class States(NamedTuple):
     Attributes
     ----------
     q, v : (T, n) arrays
-        Deviations from the kinematic motion and their rates.
+        Deviations from the kinematic motion and their rates; without the amplitudes of housings where no
+        output has them.
+    carried : (T, 2 s) array
+        Local coordinates, then their rates, of the rows that these amplitudes move; s = 0 where `q` has them.
     moved : (T, k) int array
         Quanta of a revolution by which each free train's own rotation was moved into the kinematic motion.
     filtered : (T, C) array
@@ -26,6 +29,7 @@ class States(NamedTuple):
 
     q: FloatArray
     v: FloatArray
+    carried: FloatArray
     moved: IntArray
     filtered: FloatArray
     least: FloatArray
@@ -33,15 +37,14 @@ class States(NamedTuple):
 
     def rows(self, first: int, stop: int) -> States:
         """Return a view of the samples `first` to `stop` - 1."""
-        part = slice(first, stop)
-        moved, filtered = self.moved[part], self.filtered[part]
-        return States(self.q[part], self.v[part], moved, filtered, self.least[part], self.largest[part])
+        return States(*(part[first:stop] for part in self))
 
 
 class Widths(NamedTuple):
-    """Numbers of freedoms, laws, channels and local forces of `States`."""
+    """Numbers of freedoms, carried signals, laws, channels and local forces of `States`."""
 
     freedoms: int
+    carried: int
     laws: int
     channels: int
     rows: int
@@ -51,6 +54,7 @@ class Widths(NamedTuple):
         return States(
             np.zeros((samples, self.freedoms)),
             np.zeros((samples, self.freedoms)),
+            np.zeros((samples, self.carried)),
             np.zeros((samples, self.laws), dtype=np.int64),
             np.zeros((samples, self.channels)),
             np.zeros((samples, self.rows)),

@@ -98,7 +98,7 @@ class _HeldOperatingPointChecks:
 
     def see(self, _series: SeriesBlock, states: States) -> None:
         for k, (_, _, gradient) in enumerate(self._watched):
-            moved = states.q @ gradient
+            moved = states.q @ gradient[: states.q.shape[1]]
             low, high = self._range[k]
             self._range[k] = (float(np.min(moved, initial=low)), float(np.max(moved, initial=high)))
 

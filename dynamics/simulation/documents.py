@@ -380,7 +380,7 @@ def _known_influences(decided: Decided, system: System, end: Ending) -> Mapping[
 
 def series_of(system: System, time: FloatArray, states: States) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return all series of `RunResult` for the `states` at `time` (T,), and those to check, unfiltered."""
-    seen = observe(system.arrays, time, states.q, states.v, states.moved)
+    seen = observe(system.arrays, time, states.q, states.v, states.moved, states.carried)
     motion = system, time, observe_laws(system.arrays, time), states, seen
     if system.sampling.stop_band == 0.0:
         points = histories(*motion, unfiltered(system, seen, states))
@@ -410,8 +410,11 @@ def measured_error(total: float, samples: int, meshes: int, finer: Ending) -> Js
 
 
 def squared_difference(system: System, q: FloatArray, other: FloatArray) -> float:
-    """Return the sum of the squared differences in the transmission errors of the states (T, n)."""
-    difference = (q - other) @ system.arrays.direction[system.driving_rows].T
+    """Return the sum of the squared differences in the transmission errors of the states (T, n).
+
+    Amplitudes of housings, which move no flank, may be missing at their end.
+    """
+    difference = (q - other) @ system.arrays.direction[system.driving_rows, : q.shape[1]].T
     return float(np.sum(difference**2))
 
 

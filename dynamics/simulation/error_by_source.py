@@ -10,13 +10,14 @@ import numpy as np
 from dynamics.assembly.assemble import System
 from dynamics.assembly.varied import starting_at, with_decimated_tables
 from dynamics.integrators import StaticSolution, integrate
+from dynamics.integrators.march import sample_count
 from dynamics.kernels.by_address import by_address
 from dynamics.motion.observation import observe
 from dynamics.motion.sampled_states import States
 from dynamics.results.order_fit import order_amplitudes, orders_seen, unwrapped
 from dynamics.scene import Integration
 from dynamics.simulation.documents import ERROR_CHECK_FACTOR, finer, requested_error
-from dynamics.types import FloatArray, Json, StaticStatus
+from dynamics.types import FloatArray, IntArray, Json, StaticStatus
 from host import cpu_seconds
 
 WINDOWS = 3
@@ -44,6 +45,8 @@ class _Window:
         Whose clock starts there.
     states : States
         Of the run.
+    start : (2, n) array
+        Displacements and rates of all freedoms at the first sample.
     position : (m, T) array
         Unwrapped base pitches.
     error : (m, T) array
@@ -57,15 +60,16 @@ class _Window:
     time: FloatArray
     system: System
     states: States
+    start: FloatArray
     position: FloatArray
     error: FloatArray
     force: FloatArray
 
     def repeated(self, system: System, integration: Integration) -> _Difference | None:
         """Integrate it as `system`, from the run's state at its start; None if that ends early."""
-        first = self.states.rows(0, 1)
-        start = StaticSolution(StaticStatus.CONVERGED, first.q[0], np.empty(0), 0.0, 0)
-        run = integrate(system, start, integration, velocity=first.v[0])
+        q, v = self.start
+        start = StaticSolution(StaticStatus.CONVERGED, q, np.empty(0), 0.0, 0)
+        run = integrate(system, start, integration, velocity=v)
         if not run.status.usable or run.samples != self.time.size:
             return None
         _, error, force = _seen(self.system, self.time, run.states)
@@ -106,18 +110,33 @@ class _Difference:
     force_orders: FloatArray
 
 
-def _windows(system: System, states_of: StatesOf, samples: int) -> list[_Window]:
+def window_starts(system: System) -> IntArray:
+    """Return the first samples (W,) of the windows of a run, which are to be whole."""
+    full = system.scene.outputs.receipt == "full"
+    return np.array([first for first, _ in _spans(system)] if full else [], dtype=np.int64)
+
+
+def _spans(system: System) -> list[tuple[int, int]]:
     """Return windows at the ends of equal parts of the run; none where it is too short or has no mesh."""
+    samples = sample_count(system)
     count = WINDOWS if SHARE * samples >= WINDOWS * LEAST_SAMPLES else 1
     size = min(int(SHARE * samples / count), MOST_SAMPLES)
     if size < LEAST_SAMPLES or not system.scene.meshes:
         return []
     ends = [round((k + 1) * samples / count) for k in range(count)]
-    return [_window(system, states_of, end - size, end) for end in ends]
+    return [(end - size, end) for end in ends]
 
 
-def _window(system: System, states_of: StatesOf, first: int, stop: int) -> _Window:
-    rate = system.sampling.rate
+def _windows(system: System, states_of: StatesOf, whole: FloatArray) -> list[_Window]:
+    """Return the windows of a run; `whole` (W, 2, b) are the modal freedoms at their starts."""
+    return [
+        _window(system, states_of, *span, amplitudes)
+        for span, amplitudes in zip(_spans(system), whole, strict=False)
+    ]
+
+
+def _window(system: System, states_of: StatesOf, first: int, stop: int, amplitudes: FloatArray) -> _Window:
+    rate, bodies = system.sampling.rate, system.arrays.sparse.modal.first
     states, time = states_of(first, stop), np.arange(stop - first) / rate
     later = starting_at(system, first / rate, states.moved[0])
     outputs = replace(system.scene.outputs, energy_audit=False)
@@ -125,11 +144,12 @@ def _window(system: System, states_of: StatesOf, first: int, stop: int) -> _Wind
     later = replace(later, scene=scene, sampling=system.sampling.points())
     counted = states._replace(moved=states.moved - states.moved[0])
     position, error, force = _seen(later, time, counted)
-    return _Window(first, stop, time, later, counted, position, error, force)
+    start = np.concatenate([[states.q[0, :bodies], states.v[0, :bodies]], amplitudes], axis=1)
+    return _Window(first, stop, time, later, counted, start, position, error, force)
 
 
 def _seen(system: System, time: FloatArray, states: States) -> tuple[FloatArray, FloatArray, FloatArray]:
-    seen = observe(system.arrays, time, states.q, states.v, states.moved)
+    seen = observe(system.arrays, time, states.q, states.v, states.moved, states.carried)
     force = system.bearing_force(seen.force, states.q, states.v)
     meshes = len(system.scene.meshes)  # frames that turn have positions too, behind those of the meshes
     return unwrapped(seen.position[:meshes]), seen.coordinate[system.driving_rows], force[:, :3]
@@ -141,15 +161,15 @@ TABLE_REST = 1.0 / 3.0
 """Error over the difference to half the positions: second order, as kinks at handovers allow."""
 
 
-def error_by_source(system: System, states_of: StatesOf, samples: int) -> Json:
+def error_by_source(system: System, states_of: StatesOf, whole: FloatArray) -> Json:
     """Return the estimates of a run, measured in windows of it; the requested error where it is too short.
 
-    Sources: time steps, and table interpolation between positions.
+    Sources: time steps, and table interpolation between positions. `whole` (W, 2, b) are the modal freedoms
+    at the samples `window_starts`.
     """
     requested, integration = requested_error(system.scene.integration), system.scene.integration
     began = cpu_seconds()
-    full = system.scene.outputs.receipt == "full"
-    looked = _windows(system, states_of, samples) if full else []
+    looked = _windows(system, states_of, whole)
     if not looked:
         return requested
     steps = [window.repeated(window.system, finer(integration)) for window in looked]

@@ -42,7 +42,7 @@ from dynamics.simulation.documents import (
     series_of,
     squared_difference,
 )
-from dynamics.simulation.error_by_source import error_by_source
+from dynamics.simulation.error_by_source import error_by_source, window_starts
 from dynamics.simulation.violations import FIRST, EarlierRun, StatesOf, needed_effects, taken_over
 from dynamics.types import Json, RunStatus
 from model_studies.stage_clock import StageClock, TimeTaken
@@ -72,7 +72,7 @@ class _Leg:
         resume: bool,
         earlier: _MadeRun | None = None,
     ) -> None:
-        self.march: March = start_march(system, start, integration)
+        self.march: March = start_march(system, start, integration, whole=window_starts(system))
         work, control, duration = self.march.work, self.march.control, system.scene.duration
         self._mark = fingerprint(
             system.arrays, control, self.march.sampler, work.step_sizes, start.displacement, duration
@@ -265,7 +265,14 @@ def _run(
         taken = taken_over(earlier.result.effect_ledger, earlier.trail, states_of, system)
         before = before if taken is None else replace(before, since=taken.at.time)
     trajectory = integrate(
-        system, start.rest, system.scene.integration, progress, cancel=cancel, trail=start.trail, taken=taken
+        system,
+        start.rest,
+        system.scene.integration,
+        progress,
+        cancel=cancel,
+        trail=start.trail,
+        taken=taken,
+        whole=window_starts(system),
     )
     start.clock.book("integration", trajectory.taken)
     with start.clock.stage("error_estimate"):
@@ -329,7 +336,7 @@ def _error_estimate(
     integration = system.scene.integration
     if not trajectory.status.usable:
         return requested_error(integration)
-    error = error_by_source(system, trajectory.states.rows, trajectory.samples)
+    error = error_by_source(system, trajectory.states.rows, trajectory.whole)
     if not integration.estimate_error:
         return error
     check = integrate(system, start, finer(integration), progress)
@@ -443,7 +450,7 @@ def _run_to_file(
         error = requested_error(integration)
         with clock.stage("error_estimate"):
             if end.status.usable:
-                error = error_by_source(system, leg.spool.states, end.samples)
+                error = error_by_source(system, leg.spool.states, end.whole)
             if integration.estimate_error and end.status.usable:
                 check = _Leg(stack, folder / "check", system, rest, finer(integration), resume)
                 other = check.go(*going)

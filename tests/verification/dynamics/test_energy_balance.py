@@ -22,7 +22,7 @@ from dynamics.loads import TimeLaw
 from dynamics.results.order_fit import order_amplitudes, unwrapped
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import documents, simulate
-from dynamics.simulation.error_by_source import _windows
+from dynamics.simulation.error_by_source import _windows, window_starts
 
 # Energy: conserved without damping and drive, and the audit closes with everything on.
 
@@ -189,8 +189,10 @@ def test_the_error_of_the_table_is_within_the_one_stated(positions, record_figur
 def test_a_window_run_again_as_it_was_is_the_run(make):
     """Law, loads and counted quanta at its start are right: only the choice of steps is another."""
     system = assemble(make())
-    found = integrate(system, static_equilibrium(system), system.scene.integration)
-    looked = _windows(system, found.states.rows, found.samples)
+    starts = window_starts(system)
+    found = integrate(system, static_equilibrium(system), system.scene.integration, whole=starts)
+    looked = _windows(system, found.states.rows, found.whole)
+    assert [window.first for window in looked] == starts.tolist()
     for window in looked:
         again = window.repeated(window.system, system.scene.integration)
         assert again is not None
