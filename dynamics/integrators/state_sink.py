@@ -183,9 +183,10 @@ class StateSpool:
         self._file.seek(8 * record * first)
         content = self._file.read(8 * record * (stop - first))
         table: FloatArray = np.frombuffer(content).reshape(stop - first, record)
-        split = np.split(table, np.cumsum(columns)[:-1], axis=1)
-        states = States(*(np.ascontiguousarray(part) for part in split))
-        return states._replace(moved=states.moved.view(np.int64))
+        q, v, carried, moved, *rest = (
+            np.ascontiguousarray(part) for part in np.split(table, np.cumsum(columns)[:-1], axis=1)
+        )
+        return States(q, v, carried, moved.view(np.int64), *rest)
 
     def rewrite(self, before: Widths, samples: int, convert: Callable[[States], States]) -> None:
         """Replace `samples` records of the narrower widths `before` by what `convert` makes of them.

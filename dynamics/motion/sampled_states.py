@@ -37,7 +37,9 @@ class States(NamedTuple):
 
     def rows(self, first: int, stop: int) -> States:
         """Return a view of the samples `first` to `stop` - 1."""
-        return States(*(part[first:stop] for part in self))
+        part = slice(first, stop)
+        state = self.q[part], self.v[part], self.carried[part], self.moved[part]
+        return States(*state, self.filtered[part], self.least[part], self.largest[part])
 
 
 class Widths(NamedTuple):

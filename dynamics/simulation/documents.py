@@ -226,7 +226,7 @@ def _modes_of_run(system: System) -> Json:
         "frequency": [float(value) for value in modes.frequency],
         "damping_ratio": [float(value) for value in modes.damping_ratio],
         "freedom": [modes.freedom[index] for index in most],
-        "moves": [_moves(modes.freedom, shares) for shares in modes.kinetic_energy],
+        "moves": _moves(modes.freedom, modes.kinetic_energy),
         **({"over_speed": _over_speed(system, linear)} if rotating else {}),
     }
 
@@ -247,18 +247,20 @@ def _over_speed(system: System, linear: LinearSystem) -> Json:
         "damping_ratio": branches.damping_ratio[:, whole].T.tolist(),
         "whirl": branches.whirl[:, whole].T.tolist(),
         "freedom": [linear.freedom[index] for index in most[whole]],
-        "moves": [_moves(linear.freedom, shares) for shares in branches.kinetic_energy[-1][whole]],
+        "moves": _moves(linear.freedom, branches.kinetic_energy[-1][whole]),
     }
 
 
-def _moves(freedom: Sequence[str], shares: FloatArray) -> Json:
-    """Return what moves in a mode, "shaft, how", with its share of the kinetic energy; the largest first."""
-    summed: dict[str, float] = {}
-    for (shaft, how), share in zip(freedom_parts(freedom), shares, strict=True):
-        name = f"{shaft}, {how}"
-        summed[name] = summed.get(name, 0.0) + float(share)
-    most = sorted(summed.items(), key=lambda part: -part[1])
-    return {name: share for name, share in most if share >= LEAST_SHARE}
+def _moves(freedom: Sequence[str], kinetic_energy: FloatArray) -> list[Json]:
+    """Return what each mode moves, "shaft, how", with its share of the energy (m, n), the largest first."""
+    names, moves = [f"{shaft}, {how}" for shaft, how in freedom_parts(freedom)], []
+    for shares in kinetic_energy.tolist():
+        summed = dict.fromkeys(names, 0.0)
+        for name, share in zip(names, shares, strict=True):
+            summed[name] += share
+        most = sorted(summed.items(), key=lambda part: -part[1])
+        moves.append({name: share for name, share in most if share >= LEAST_SHARE})
+    return moves
 
 
 ROWS = (Law.BALLS, Law.ROLLERS)

@@ -14,6 +14,7 @@ from geared_scenes import (
     with_gear,
     with_mesh,
 )
+from housed_pair import housed_pair
 from planetary_scenes import planetary_scene, published_set
 
 from dynamics.assembly.assemble import assemble
@@ -145,6 +146,10 @@ def free_planets():
     return planetary_scene(published_set(3, **tables), duration=0.1)
 
 
+def in_housing():
+    return replace(housed_pair(), meshes=gear_pair_scene(square_wave_table()).meshes, duration=0.05)
+
+
 def difference(one, other, error):
     """rms of the transmission errors' difference, and its worst order amplitudes in the windows."""
     apart = one.dynamic_transmission_error - other.dynamic_transmission_error
@@ -185,7 +190,9 @@ def test_the_error_of_the_table_is_within_the_one_stated(positions, record_figur
     assert 0.3 * max(by_error) < max(stated["transmission_error_orders"]) < 30.0 * max(by_error)
 
 
-@pytest.mark.parametrize("make", [lambda: run_up(64), free_planets], ids=["drive", "free train"])
+@pytest.mark.parametrize(
+    "make", [lambda: run_up(64), free_planets, in_housing], ids=["drive", "free train", "housing"]
+)
 def test_a_window_run_again_as_it_was_is_the_run(make):
     """Law, loads and counted quanta at its start are right: only the choice of steps is another."""
     system = assemble(make())

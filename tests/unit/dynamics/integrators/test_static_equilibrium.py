@@ -20,7 +20,7 @@ from dynamics.integrators import integrate, static_equilibrium
 from dynamics.linearize import linearize
 from dynamics.loads import AppliedForce, TimeLaw
 from dynamics.loads.load_course import Orders
-from dynamics.motion.observation import local_state
+from dynamics.motion.observation import local_state, observe
 from dynamics.scene import Integration
 from dynamics.settings import Outputs
 from dynamics.simulation import simulate, simulate_to_file
@@ -258,6 +258,24 @@ def test_series_are_the_same_whether_amplitudes_are_filtered_or_not(tmp_path):
     simulate_to_file(replace(scene, outputs=Outputs(sample_rate=10e3)), path)
     kept = type(runs[0]).from_netcdf(path)
     np.testing.assert_array_equal(kept.bearing_force, runs[0].bearing_force)
+
+
+def test_samples_without_amplitudes_have_what_these_carry_and_all_of_them_where_asked():
+    scene = replace(housed_pair(), meshes=gear_pair_scene(square_wave_table()).meshes, duration=0.01)
+    whole, runs = np.array([30, 80]), []
+    for outputs in (POINTS, replace(POINTS, displacements=False)):
+        system = assemble(replace(scene, outputs=outputs))
+        start = static_equilibrium(system)
+        runs.append(integrate(system, start, system.scene.integration, whole=whole))
+    (full, lean), modal = (run.states for run in runs), system.arrays.sparse.modal
+    assert lean.q.shape[1] == modal.first < full.q.shape[1] == system.arrays.mass.shape[0]
+    np.testing.assert_array_equal(lean.q, full.q[:, : modal.first])
+    amplitudes = np.stack([full.q[whole, modal.first :], full.v[whole, modal.first :]], axis=1)
+    for run in runs:
+        np.testing.assert_array_equal(run.whole, amplitudes)
+    for states in (full, lean):
+        seen = observe(system.arrays, runs[0].time, states.q, states.v, states.moved, states.carried)
+        np.testing.assert_array_equal(seen.force[0], full.filtered[:, 0])
 
 
 def test_freedoms_that_a_chain_joins_are_those_of_a_graph() -> None:
