@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from bounds import engineering
 from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedRotor
 from dynamics.forces.frames import FrameTerm
@@ -41,7 +42,8 @@ class CentrifugalLoad(RotorEffect):
         radius = math.hypot(x, y)
         force = own.inertia.mass * radius * float(mechanism.largest_speed[own.carrier]) ** 2
         along = [abs(x * mesh.direction[0] + y * mesh.direction[1]) / radius for mesh in rotor.meshes]
-        reason = f"up to {force:.3g} N away from the carrier's axis; mesh forces are {rotor.pushed:.3g} N"
+        pulled, pushed = engineering(force), engineering(rotor.pushed)
+        reason = f"up to {pulled} N away from the carrier's axis; mesh forces are {pushed} N"
         influence = force / own.radial_stiffness * max(along, default=0.0)
         return Verdict(force > SHARE * rotor.pushed, True, reason, influence)
 

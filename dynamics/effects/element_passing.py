@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from bounds import engineering
 from dynamics.bearings.row_law import row_law
 from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedRotor
@@ -33,11 +34,11 @@ class ElementPassing(RotorEffect):
             return Verdict(False, False, "no rolling bearing by its geometry", 0.0)
         size = max(row_law(part).passing_motion(mechanism.bearing_duty[part.name]) for part in own)
         tolerance = mechanism.scene.tolerance
-        moved = f"elements that pass move the shaft by {1e6 * size:.3g} µm"
+        moved = f"elements that pass move the shaft by {engineering(1e6 * size)} µm"
         if tolerance is None:
             return Verdict(False, True, f"{moved}; averaged, as no tolerance is stated", size)
         yielding = float(np.min(rotor.flanks.nominal_force / rotor.flanks.mean_stiffness))
-        words = f"{moved}, {size / yielding:.3g} of what the meshes yield"
+        words = f"{moved}, {engineering(size / yielding)} of what the meshes yield"
         return Verdict(size > tolerance * yielding, True, words, size)
 
     def extend(self, mechanism: Mechanism, decided: Sequence[Verdict | None]) -> Mechanism:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from bounds import engineering
 from dynamics.bearings.seat import SEAT
 from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedRotor
@@ -201,9 +202,9 @@ def _influence(
         share = max(share, here / pressed if pressed > 0.0 else 0.0)
     tilted = tilted if tilted > ROUNDING * away else 0.0
     reason = (
-        f"the nominal force bends and twists the shaft by {1e6 * away:.3g} µm along the line of "
-        f"action, {100.0 * share:.3g} % of the mesh deflection, and misaligns the gear by "
-        f"{1e6 * tilted:.3g} µm over the face"
+        f"the nominal force bends and twists the shaft by {engineering(1e6 * away)} µm along the line of "
+        f"action, {engineering(100.0 * share)} % of the mesh deflection, and misaligns the gear by "
+        f"{engineering(1e6 * tilted)} µm over the face"
     )
     return _Bending(share > SHARE, True, reason, away, elastic)
 

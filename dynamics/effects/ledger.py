@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from bounds import engineering
 from dynamics.checks import one_of
 from dynamics.effects.effect import Effect, MeshEffect, RotorEffect, Verdict
 from dynamics.effects.registry import EFFECTS, LEFT_OUT
@@ -90,7 +91,7 @@ class _LedgerEntry:
         """The price of a choice against the scene, in words; empty where there is none."""
         if self.on == self.verdict.on:
             return ""
-        neglected = f"{1e6 * self.influence:.3g} µm of static displacement neglected"
+        neglected = f"{engineering(1e6 * self.influence)} µm of static displacement neglected"
         return self.decided.cost if self.on else neglected
 
     def to_json(self) -> Json:

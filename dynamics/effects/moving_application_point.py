@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from bounds import engineering
 from dynamics.effects.effect import MeshEffect, Verdict
 from dynamics.effects.force_terms import MISALIGNMENT, FlankInSpace, FlankTerms
 from dynamics.effects.loaded_parts import LoadedMesh
@@ -37,7 +38,7 @@ class MovingApplicationPoint(MeshEffect):
         lever = lever / common_face_width(mesh.train.mechanism.scene, mesh.index)
         if lever <= CENTERED:
             return Verdict(False, True, "the load stays centered on the face", 0.0)
-        reason = f"the load's arm about mid-face is up to {100.0 * lever:.3g} % of the face"
+        reason = f"the load's arm about mid-face is up to {engineering(100.0 * lever)} % of the face"
         tilts = mesh.axes[MISALIGNMENT]
         return Verdict(
             True, True, reason, mesh.force * lever**2 * float(tilts @ mesh.train.compliance @ tilts)
