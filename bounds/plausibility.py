@@ -19,7 +19,7 @@ TYPED: dict[str, tuple[Unit, ...]] = {
     "N": (Unit("kN", 1e3), Unit("N", 1.0)),
     "rad": (Unit("radians", 1.0), Unit("degrees", math.pi / 180.0)),
     "Pa": (Unit("GPa", 1e9), Unit("MPa", 1e6), Unit("Pa", 1.0)),
-    "N/m": (Unit("N/um", 1e6), Unit("N/mm", 1e3), Unit("N/m", 1.0)),
+    "N/m": (Unit("N/µm", 1e6), Unit("N/mm", 1e3), Unit("N/m", 1.0)),
     "rad/s": (Unit("rad/s", 1.0), Unit("rpm", math.pi / 30.0), Unit("degrees per second", math.pi / 180.0)),
     "s": (Unit("milliseconds", 1e-3), Unit("seconds", 1.0)),
     "kg": (Unit("grams", 1e-3), Unit("kilograms", 1.0)),

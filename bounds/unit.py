@@ -30,6 +30,11 @@ class Unit:
     factor: float = 1.0
     si: str = ""
 
+    @property
+    def plain(self) -> str:
+        """The symbol in ASCII, as programs read it."""
+        return self.name.replace("µ", "u")
+
     def after(self, number: str) -> str:
         """Return a number with the symbol."""
         return f"{number} {self.name}".rstrip()

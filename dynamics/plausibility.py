@@ -57,9 +57,9 @@ _CHECKS = (
         0.1e-6,
         5e-3,
         "m",
-        "ISO 5753-1: 1 um to 1 mm",
+        "ISO 5753-1: 1 µm to 1 mm",
     ),
-    Check("backlash", "backlash of a mesh", 0.5e-6, 20e-3, "m", "DIN 3967: 10 um to 3 mm"),
+    Check("backlash", "backlash of a mesh", 0.5e-6, 20e-3, "m", "DIN 3967: 10 µm to 3 mm"),
     Check(
         "friction",
         "coefficient of friction of the teeth",
@@ -74,7 +74,7 @@ _CHECKS = (
         0.1e-6,
         None,
         "m",
-        "ISO 1328-1: class 1 allows about 1 um",
+        "ISO 1328-1: class 1 allows about 1 µm",
     ),
     Check(
         "mesh_misalignment_over_face",

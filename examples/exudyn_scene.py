@@ -40,7 +40,7 @@ def main() -> None:
     error = own.dynamic_transmission_error[0]
     apart = np.interp(own.time, other.time, other.dynamic_transmission_error) - error
     relative = float(np.sqrt(np.mean(apart**2)) / np.std(error))
-    print(f"transmission error swings by {1e6 * float(np.std(error)):.3f} um rms")
+    print(f"transmission error swings by {1e6 * float(np.std(error)):.3f} µm rms")
     print(f"Exudyn differs by {100.0 * relative:.3g} % of it")
     print(f"CPU: {seconds:.3f} s here, {other.cpu_seconds:.3f} s in Exudyn's {arguments.solver}")
 

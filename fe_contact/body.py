@@ -27,7 +27,7 @@ _STIFFNESS = Declared(
     up_to(1e15),
     "Radial stiffness of each bearing; left out: rigid",
     4e8,
-    written="N/um",
+    written="N/µm",
 )
 
 

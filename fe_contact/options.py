@@ -58,7 +58,7 @@ class TableAxes:
         for name in ("misalignments", "center_distance_changes"):
             for i, value in enumerate(increasing(name, getattr(self, name))):
                 ends = -LARGEST_DEVIATION, LARGEST_DEVIATION
-                within(f"{name}[{i}]", float(value), *ends, SiNote("In m: 30 um is 3e-5."))
+                within(f"{name}[{i}]", float(value), *ends, SiNote("In m: 30 µm is 3e-5."))
         if self.pitches is not None:
             integer("pitches", self.pitches, 1, LARGEST_PERIOD)
 

@@ -59,7 +59,7 @@ CLEARANCE = Declared(
     "Play: across the axis between both extremes where the contact angle is 0, otherwise along the axis to "
     "contact; negative: preload",
     1e-5,
-    written="um",
+    written="µm",
 )
 
 

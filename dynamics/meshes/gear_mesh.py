@@ -59,7 +59,7 @@ _DAMPING_RATIO = Declared(Kind.RATIO, "", between(0.0, 10.0), "Damping ratio of 
 _NOMINAL = "Nominal transverse mesh force in {unit}; left out: from the loads"
 _NOMINAL_FORCE = Declared(Kind.LOAD, "N", up_to(1e9), _NOMINAL, 2660.0)
 _OFFSET = Declared(Kind.RATIO, "", between(-1e6, 1e6), "Position in base pitches at the start", 0.0)
-_MISALIGNMENT = Declared(Kind.LENGTH, "m", between(-0.01, 0.01), "Misalignment in {unit}", 0.0, written="um")
+_MISALIGNMENT = Declared(Kind.LENGTH, "m", between(-0.01, 0.01), "Misalignment in {unit}", 0.0, written="µm")
 _CHANGE = Declared(Kind.LENGTH, "m", between(-0.1, 0.1), "Change of the center distance in {unit}", 0.0)
 _SLIDING = "Coefficient of sliding friction of the teeth; left out: none"
 _FRICTION = Declared(Kind.RATIO, "", up_to(1.0), _SLIDING, 0.05)

@@ -151,7 +151,7 @@ def peak_levels(path: Path) -> dict[str, float]:
 
 
 def harmonic(facts: dict[str, Any], stage: str, number: int) -> float:
-    """Return a harmonic, one of the first five, of a stage's STE at the load of the scene, um."""
+    """Return a harmonic, one of the first five, of a stage's STE at the load of the scene, µm."""
     mesh = next(mesh for mesh in at_load(facts)["meshes"] if mesh["name"] == stage)
     return float(mesh["flanks"]["harmonics_um"][number - 1])
 
@@ -159,11 +159,11 @@ def harmonic(facts: dict[str, Any], stage: str, number: int) -> float:
 def ripples(before: dict[str, Any], after: dict[str, Any], source: tuple[str, int]) -> list[str]:
     """Return the table of both stages' ripple over the spectrum, and of the harmonic that is heard."""
     rows = {
-        f"{old['name']}, peak-to-peak STE, um": (old["mean_peak_to_peak_um"], new["mean_peak_to_peak_um"])
+        f"{old['name']}, peak-to-peak STE, µm": (old["mean_peak_to_peak_um"], new["mean_peak_to_peak_um"])
         for old, new in zip(before["meshes"], after["meshes"], strict=True)
     }
     stage, number = source
-    rows[f"{stage}, harmonic {number} when heard, um"] = harmonic(before, *source), harmonic(after, *source)
+    rows[f"{stage}, harmonic {number} when heard, µm"] = harmonic(before, *source), harmonic(after, *source)
     table = [f"{name:44}{old:10.3f}{new:10.3f}" for name, (old, new) in rows.items()]
     return [f"{'':44}{'before':>10}{'after':>10}", *table]
 

@@ -150,11 +150,11 @@ def _across_face(gear: Toothing) -> dict[str, str]:
 def _figures(gear: Toothing) -> str:
     """Return the amounts of a gear in words."""
     amounts = (("eccentricity", gear.run_out.eccentricity), ("wobble", gear.run_out.wobble))
-    waves = [f"{wave.order} waves {1e6 * wave.amplitude:.3g} um" for wave in gear.waves if wave.amplitude]
+    waves = [f"{wave.order} waves {1e6 * wave.amplitude:.3g} µm" for wave in gear.waves if wave.amplitude]
     flanks = [flank.largest for flank in gear.tooth_flanks if not flank.neutral]
-    teeth = [f"{len(flanks)} flanks of teeth up to {1e6 * max(flanks):.3g} um"] if flanks else []
+    teeth = [f"{len(flanks)} flanks of teeth up to {1e6 * max(flanks):.3g} µm"] if flanks else []
     return ", ".join(
-        [*(f"{name} {1e6 * amount:.3g} um" for name, amount in amounts if amount), *waves, *teeth]
+        [*(f"{name} {1e6 * amount:.3g} µm" for name, amount in amounts if amount), *waves, *teeth]
     )
 
 

@@ -75,8 +75,8 @@ class FlankGrid:
         beyond = _beyond(self._nodes, np.array(self.roll_length), np.array(self.face_position))
         i, j = np.unravel_index(beyond.argmax(), beyond.shape)
         if beyond[i, j] > LARGEST_INVENTION:
-            value = f"{1e6 * beyond[i, j]:.3g} um beyond the nodes around it"
-            bound = f"at most {1e6 * LARGEST_INVENTION:g} um; add nodes beside the steps of the flank"
+            value = f"{1e6 * beyond[i, j]:.3g} µm beyond the nodes around it"
+            bound = f"at most {1e6 * LARGEST_INVENTION:g} µm; add nodes beside the steps of the flank"
             raise InputError(f"removed[{i}..{i + 1}][{j}..{j + 1}]", value, bound)
 
     @cached_property
@@ -110,7 +110,7 @@ class FlankGrid:
 def _row(index: int, row: Sequence[float], length: int) -> tuple[float, ...]:
     if len(row) != length:
         raise InputError(f"removed[{index}]", f"{len(row)} values", f"{length} values, one per face position")
-    advice = SiNote("In m: 5 um is 5e-6.")
+    advice = SiNote("In m: 5 µm is 5e-6.")
     return tuple(within(f"removed[{index}][{j}]", v, -_LARGEST, _LARGEST, advice) for j, v in enumerate(row))
 
 

@@ -81,4 +81,4 @@ def check_axes(
     for position in positions:
         finite("positions", position, "By the driving gear, in base pitches.")
     for misalignment in misalignments:
-        finite("misalignments", misalignment, "In m: 30 um is 30e-6.")
+        finite("misalignments", misalignment, "In m: 30 µm is 30e-6.")

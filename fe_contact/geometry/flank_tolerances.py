@@ -107,9 +107,9 @@ class MisalignmentRange:
         """Say how the range is made, in one sentence."""
         parts = ", ".join(f"{name} {1e6 * value:.1f}" for name, value in self.by_source.items())
         return (
-            f"misalignment to {1e6 * self.axis[-1]:g} um to either side by class {self.tolerance_class} of "
-            f"ISO 1328-1:2013 and ISO/TR 10064-3: {parts} um, {1e6 * self.likely:.1f} um by squares, "
-            f"{1e6 * self.worst:.1f} um at worst"
+            f"misalignment to {1e6 * self.axis[-1]:g} µm to either side by class {self.tolerance_class} of "
+            f"ISO 1328-1:2013 and ISO/TR 10064-3: {parts} µm, {1e6 * self.likely:.1f} µm by squares, "
+            f"{1e6 * self.worst:.1f} µm at worst"
         )
 
 

@@ -13,7 +13,7 @@ from fe_contact.errors import InputError, declared_fields
 from fe_contact.geometry.tooth_flank import ToothFlank, flanks_period
 from fe_contact.types import FloatArray
 
-_UM = "um"
+_UM = "µm"
 _LARGEST = 1e-3  # m; larger deviations are micrometers stated as meters
 
 

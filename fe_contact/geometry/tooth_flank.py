@@ -25,7 +25,7 @@ MOST_NODES = 250_000
 
 
 def _deviation(words: str, example: float) -> Declared:
-    return Declared(Kind.LENGTH, "m", between(-_LARGEST, _LARGEST), words, example, written="um", later=True)
+    return Declared(Kind.LENGTH, "m", between(-_LARGEST, _LARGEST), words, example, written="µm", later=True)
 
 
 def _waves(along: str) -> Declared:

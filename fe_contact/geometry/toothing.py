@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 LARGEST = 1e-3
 """m; larger deviations are micrometers given as meters."""
-_IN_M = SiNote("In m: 5 um is 5e-6.")
+_IN_M = SiNote("In m: 5 µm is 5e-6.")
 
 
 @dataclass(frozen=True)
@@ -173,7 +173,7 @@ _ALLOWANCE = Declared(
     between(0.0, 5.0),
     "Normal tooth thickness removed at the reference circle, which is backlash; up to half a module",
     5e-5,
-    written="um",
+    written="µm",
 )
 
 _OF_AXIS = "Axis of the teeth off the axis of rotation; left out: they are one"

@@ -120,7 +120,7 @@ class Limits:
             bound = Bound(0.0, 1.0, high_open=True)
             raise InputError("limits.edge_load_share", self.edge_load_share, bound)
         if self.peak_to_peak is not None:
-            positive("limits.peak_to_peak", self.peak_to_peak, SiNote("In m: 1 um is 1e-6."))
+            positive("limits.peak_to_peak", self.peak_to_peak, SiNote("In m: 1 µm is 1e-6."))
         if self.root_stress is not None:
             positive("limits.root_stress", self.root_stress, SiNote("In Pa: 400 MPa is 4e8."))
 

@@ -252,8 +252,8 @@ def _conclusion(choice: _Choice, request: OptimizationRequest) -> tuple[Outcome,
     gain = gain_of(choice.start, choice.optimum)
     moved = "falls" if gain.value >= 0.0 else "rises"
     change = (
-        f"expected peak-to-peak {moved} by {1e6 * abs(gain.value):.3g} um, errors "
-        f"{engineering(1e6 * gain.error, 2)} um{_worse(choice)}"
+        f"expected peak-to-peak {moved} by {1e6 * abs(gain.value):.3g} µm, errors "
+        f"{engineering(1e6 * gain.error, 2)} µm{_worse(choice)}"
     )
     if outcome is Outcome.IMPROVED:
         return outcome, f"{change}; {ended}"
@@ -270,7 +270,7 @@ def _worse(choice: _Choice) -> str:
         return ""
     torques = ", ".join(f"{torque:.6g}" for torque in before.torque[worse])
     most = worse[np.argmax((after.expected - before.expected)[worse])]
-    change = f"{1e6 * before.expected[most]:.3g} to {1e6 * after.expected[most]:.3g} um"
+    change = f"{1e6 * before.expected[most]:.3g} to {1e6 * after.expected[most]:.3g} µm"
     return f"; it rises at {torques} N m, most at {before.torque[most]:.6g} N m from {change}"
 
 
@@ -289,7 +289,7 @@ def _why_not(choice: _Choice, request: OptimizationRequest, error: float) -> str
         return f"the start lies beyond the bounds of {', '.join(request.outside)}; "
     spread = max(run.spread for run in choice.runs)
     if choice.run.converged and spread <= error:
-        return f"the variables have no influence: all designs lie within {engineering(1e6 * spread, 2)} um; "
+        return f"the variables have no influence: all designs lie within {engineering(1e6 * spread, 2)} µm; "
     return ""
 
 

@@ -128,7 +128,7 @@ class Scatter:
     rule: _ScatterRule = GaussHermite()
 
     def __post_init__(self) -> None:
-        if finite("scatter.misalignment", self.misalignment, SiNote("In m: 10 um is 1e-5.")) < 0.0:
+        if finite("scatter.misalignment", self.misalignment, SiNote("In m: 10 µm is 1e-5.")) < 0.0:
             raise InputError("scatter.misalignment", self.misalignment, at_least(0.0))
         for name, deviation in self.modification.items():
             gear_and_quantity(f"scatter.modification.{name}", name)

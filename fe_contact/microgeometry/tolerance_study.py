@@ -55,10 +55,10 @@ class Tolerances:
 
     def __post_init__(self) -> None:
         if self.misalignment:
-            positive("tolerances.misalignment", self.misalignment, SiNote("In m: 10 um is 1e-5."))
+            positive("tolerances.misalignment", self.misalignment, SiNote("In m: 10 µm is 1e-5."))
         for name, width in self.modification.items():
             gear_and_quantity(f"tolerances.modification.{name}", name)
-            positive(f"tolerances.modification.{name}", width, SiNote("In m: 10 um is 1e-5."))
+            positive(f"tolerances.modification.{name}", width, SiNote("In m: 10 µm is 1e-5."))
         if self.distribution not in ("normal", "uniform"):
             raise InputError("tolerances.distribution", self.distribution, 'one of "normal" and "uniform"')
         if not self.widths:

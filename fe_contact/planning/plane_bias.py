@@ -76,7 +76,7 @@ class PlaneBias:
         """In one sentence."""
         ripple = _part(self.peak_to_peak)
         if self.hidden:
-            ripple = f"by up to {engineering(self.hidden / _UM, 2)} um, either way"
+            ripple = f"by up to {engineering(self.hidden / _UM, 2)} µm, either way"
         return (
             f"bias of {self.model}: over the face of {self.face_width / _MM:.4g} mm mean {_part(self.mean)}, "
             f"peak-to-peak {ripple}, not in the errors; compute it with model auto and effect finite_width on"

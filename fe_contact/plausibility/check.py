@@ -64,7 +64,7 @@ _DEVIATIONS = (
         0.1e-6,
         None,
         "m",
-        "ISO 1328-1: class 1 allows about 1 um",
+        "ISO 1328-1: class 1 allows about 1 µm",
     ),
     Check(
         "relief_over_module",
@@ -88,7 +88,7 @@ _DEVIATIONS = (
         0.1e-6,
         None,
         "m",
-        "ISO 1328-1: class 1 allows about 1 um",
+        "ISO 1328-1: class 1 allows about 1 µm",
     ),
     Check(
         "misalignment_over_face",
@@ -104,7 +104,7 @@ _DEVIATIONS = (
         0.1e-6,
         None,
         "m",
-        "ISO 286-1: grades of center distances begin at 1 um",
+        "ISO 286-1: grades of center distances begin at 1 µm",
     ),
 )
 _SHAFTS = (
@@ -122,7 +122,7 @@ _SHAFTS = (
         1e6,
         2e10,
         "N/m",
-        "rolling bearings: 20 N/um (miniature) to 10 000 N/um (main bearings of wind turbines)",
+        "rolling bearings: 20 N/µm (miniature) to 10 000 N/µm (main bearings of wind turbines)",
     ),
 )
 _LOADS = (
@@ -160,7 +160,7 @@ _LOADS = (
     ),
     Check(
         "transmission_error",
-        "mean transmission error over normal module (before a run: from 14 N/(mm um))",
+        "mean transmission error over normal module (before a run: from 14 N/(mm µm))",
         None,
         0.1,
         "1",

@@ -114,7 +114,7 @@ def _largest(displacement: FloatArray) -> float:
 
 
 def _show_deformed(pairs: tuple[DeformedPair, ...], written: list[Path]) -> None:
-    columns = ["position", "STE um", "pinion moves um", "wheel moves um", "residual"]
+    columns = ["position", "STE µm", "pinion moves µm", "wheel moves µm", "residual"]
     rows = [
         [*(f"{row[name]:.4g}" for name in row if name != "residual"), leftover(row["residual"])]
         for row in _figures(pairs)

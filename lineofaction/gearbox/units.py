@@ -21,9 +21,9 @@ N_PER_MM3 = 1e9
 BY_SUFFIX: dict[str, Unit] = {
     "_g_mm": Unit("g mm", G_MM, "kg m"),  # before "_mm", with which it ends
     "_mm": Unit("mm", MM, "m"),
-    "_n_per_um": Unit("N/um", N_PER_UM, "N/m"),
+    "_n_per_um": Unit("N/µm", N_PER_UM, "N/m"),
     "_n_per_mm3": Unit("N/mm^3", N_PER_MM3, "N/m^3"),
-    "_um": Unit("um", UM, "m"),
+    "_um": Unit("µm", UM, "m"),
     "_mrad": Unit("mrad", MRAD, "rad"),
     "_nm": Unit("nm", NM, "m"),
     "_gpa": Unit("GPa", GPA, "Pa"),

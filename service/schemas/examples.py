@@ -123,7 +123,7 @@ _REXS_FILE = (
 )
 
 BODIES: dict[str, Json] = {
-    "/v1/jobs/{job_id}": {"title": "Tip relief 20 um", "tags": ["ev-3", "draft"]},
+    "/v1/jobs/{job_id}": {"title": "Tip relief 20 µm", "tags": ["ev-3", "draft"]},
     "/v1/batches": {
         "process": "analyze",
         "inputs": {"case": CASE},
@@ -171,7 +171,7 @@ STATUS: Json = {
     "type": "process",
     "jobID": JOB,
     "status": "running",
-    "title": "Tip relief 20 um",
+    "title": "Tip relief 20 µm",
     "tags": ["ev-3", "draft"],
     "priority": 0,
     "max_cost_s": 600.0,
@@ -224,7 +224,7 @@ _ASSUMED = {
     "effect": "coast_flank",
     "assumption": "coast flanks stay apart",
     "holds": True,
-    "reason": "the least clearance is 12 um",
+    "reason": "the least clearance is 12 µm",
 }
 _LIVE: Json = {
     "curves": [
@@ -254,7 +254,7 @@ _REPORT: Json = {
     "title": "STE database",
     "lead": "20/20 teeth, module 4 mm",
     "alarms": [],
-    "headlines": [{"name": "peak to peak at 100 N m", "value": "2.80 um"}],
+    "headlines": [{"name": "peak to peak at 100 N m", "value": "2.80 µm"}],
     "sections": [
         {
             "title": "Transmission error",

@@ -23,7 +23,7 @@ Tags = Annotated[list[Tag], Field(max_length=16)]
 class LabelChange(BoundaryModel):
     """A change of a job's label; what is left out stays."""
 
-    title: Title | None = Field(None, description="Name of the job", examples=["Tip relief 20 um"])
+    title: Title | None = Field(None, description="Name of the job", examples=["Tip relief 20 µm"])
     tags: Tags | None = Field(None, description="Replace the tags of the job", examples=[["ev-3", "draft"]])
 
 
@@ -121,7 +121,7 @@ def execute_model(process: str, inputs: type[BoundaryModel], output: str) -> typ
         "inputs": (inputs, Field(description="Inputs of the process")),
         "outputs": (outputs, Field(default_factory=outputs, description="Requested outputs; default: all")),
         "response": (Literal["raw", "document"], form),
-        "title": (Title, Field("", description="Name of the job", examples=["Tip relief 20 um"])),
+        "title": (Title, Field("", description="Name of the job", examples=["Tip relief 20 µm"])),
         "priority": (
             Priority,
             Field(0, description="Turn of the job: the oldest of the highest is next", examples=[1]),

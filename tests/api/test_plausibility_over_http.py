@@ -40,7 +40,7 @@ def messages(body: dict[str, Any]) -> list[str]:
 
 def test_a_case_is_assessed_from_plan_to_result(served: tuple[LineOfActionClient, TestClient]) -> None:
     client, http = served
-    said = ["pair.pinion.tip_relief_um = 0.02 um"]
+    said = ["pair.pinion.tip_relief_um = 0.02 µm"]
     inputs = {"inputs": {"case": CASE}}
     assert messages(http.post("/v1/plans", json=inputs).json()) == said
     status = http.post("/v1/processes/analyze/execution", json=inputs).json()
@@ -69,7 +69,7 @@ def test_studies_in_json_and_netcdf_carry_it(
         ).json()
         result = client.wait(status["jobID"])
         assert result.kind == kind
-        assert messages(http.get(result.href).json()) == ["pair.pinion.tip_relief_um = 0.02 um"]
+        assert messages(http.get(result.href).json()) == ["pair.pinion.tip_relief_um = 0.02 µm"]
 
 
 def test_what_an_import_left_out_goes_with_every_answer(

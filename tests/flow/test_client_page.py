@@ -84,7 +84,7 @@ def test_the_scripts_of_the_page_run_one_after_the_other(capsys: pytest.CaptureF
     assert "transverse" not in before and "corner_contact" in before
     assert names["again"].model_dump(mode="json") == names["example"].case
     assert int(lists.split()[0]) >= 3 and {len(word) for word in lists.split()} & {64}
-    assert labeled.splitlines()[0].startswith("Tip relief 20 um, released ('ev-3',) 20/20")
+    assert labeled.splitlines()[0].startswith("Tip relief 20 µm, released ('ev-3',) 20/20")
     assert shown == "" and "<details>" in names["report"]._repr_html_()
     assert float(run_up) == pytest.approx(100.0 / (0.04 * np.cos(np.radians(20.0))), rel=2e-3)
 

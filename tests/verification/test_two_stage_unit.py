@@ -54,9 +54,9 @@ def test_the_unit_is_cast_deflected_optimized_and_heard(tmp_path: Path) -> None:
         row[0]: (float(row[1]), float(row[2])) for row in re.findall(r"(.+?) +([\d.]+) +([\d.]+)\n", printed)
     }
     assert "optimized: second stage" in printed
-    before, after = rows["second stage, harmonic 1 when heard, um"]
+    before, after = rows["second stage, harmonic 1 when heard, µm"]
     excited = 20.0 * np.log10(after / before)
-    before, after = rows["first stage, peak-to-peak STE, um"]
+    before, after = rows["first stage, peak-to-peak STE, µm"]
     assert after == pytest.approx(before, rel=0.02)
 
     sounds = {name: RadiatedSound.from_netcdf(tmp_path / name / "sound.nc") for name in ("before", "after")}

@@ -174,7 +174,7 @@ def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:
     deepest = 1e6 * float(depth.max())
     reason = "the gaps at the tip edges stay open"
     if deepest > 0.0:
-        reason = f"teeth bend {engineering(deepest, 2)} um beyond the gap at a tip edge"
+        reason = f"teeth bend {engineering(deepest, 2)} µm beyond the gap at a tip edge"
     yield Assumption(effect, "tip edges stay clear", change <= _allowed(run).relative, change, reason)
 
 
@@ -219,7 +219,7 @@ def _coast_flanks(run: SolvedRun) -> Iterator[Assumption]:
             return
         room.append(pair.transverse_base_backlash + float(np.min(solution.no_load)) - _closing(point))
     least = 1e6 * min(room)
-    reason = f"the least clearance is {least:.3g} um" if least > 0 else f"the teeth jam by {-least:.3g} um"
+    reason = f"the least clearance is {least:.3g} µm" if least > 0 else f"the teeth jam by {-least:.3g} µm"
     yield Assumption("", "coast flanks stay apart", least > 0, float("nan"), reason)
 
 
@@ -229,9 +229,9 @@ def _printed_data(run: SolvedRun) -> Iterator[Assumption]:
     if pair.rounding_jam > LEAST_BACKLASH:
         rounding = backlash_rounding(pair.pinion, pair.wheel, pair.center_distance)
         reason = (
-            f"jam of {engineering(1e6 * pair.rounding_jam, 2)} um "
+            f"jam of {engineering(1e6 * pair.rounding_jam, 2)} µm "
             "is rounding of the printed data, which makes up to "
-            f"{engineering(1e6 * rounding, 2)} um; computed as zero backlash"
+            f"{engineering(1e6 * rounding, 2)} µm; computed as zero backlash"
         )
         yield Assumption("", "nominal teeth do not jam", True, float("nan"), reason)
 

@@ -130,7 +130,7 @@ def _ste(
         str | None,
         typer.Option(help="Positions of the driving gear in base pitches, 0 = pitch point: 0,0.25,0.5"),
     ] = None,
-    misalignment_um: Annotated[float | None, typer.Option(help="Misalignment in um.")] = None,
+    misalignment_um: Annotated[float | None, typer.Option(help="Misalignment in µm.")] = None,
     center_distance_change_mm: Annotated[
         float | None, typer.Option(help="Change of the center distance in mm.")
     ] = None,
@@ -154,7 +154,7 @@ class _LoadPoint:
     ] = None
     normal_force_n: Force = None
     misalignment_um: Annotated[
-        float | None, typer.Option(help="Misalignment in um; default: the value of the case nearest to 0.")
+        float | None, typer.Option(help="Misalignment in µm; default: the value of the case nearest to 0.")
     ] = None
     center_distance_change_mm: Annotated[
         float | None,
@@ -171,7 +171,7 @@ class _FmuOptions:
     ] = 0.0
     backlash_um: Annotated[
         float | None,
-        typer.Option(help="Backlash of an FMU with coast flanks, along the transverse line of action in um."),
+        typer.Option(help="Backlash of an FMU with coast flanks, along the transverse line of action in µm."),
     ] = None
 
 

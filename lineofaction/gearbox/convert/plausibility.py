@@ -95,7 +95,7 @@ def _phrased(content: Json, name: Callable[[str], str]) -> Json:
         key: None if content[key] is None else float(f"{content[key] / unit.factor:.12g}")
         for key in ("value", "low", "high")
     }
-    return {**content, **scaled, "field": field, "unit": unit.name, "message": finding.message(field, unit)}
+    return {**content, **scaled, "field": field, "unit": unit.plain, "message": finding.message(field, unit)}
 
 
 def _field_in(case: Case) -> Callable[[str], str]:

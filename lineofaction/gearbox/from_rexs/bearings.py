@@ -38,9 +38,9 @@ def _radial_clearance(part: Part) -> float:
     limits = [_stated(part, f"{end}_radial_bearing_clearance", "limit") for end in ("minimum", "maximum")]
     if limits[0] is not None and limits[1] is not None:
         mean = 0.5 * (limits[0] + limits[1])
-        part.say(_OPERATING, "derived", f"{1e6 * mean:g} um: mean of the limits before mounting")
+        part.say(_OPERATING, "derived", f"{1e6 * mean:g} µm: mean of the limits before mounting")
         return mean
-    part.say(_OPERATING, "defaulted", "0 um: the file gives none")
+    part.say(_OPERATING, "defaulted", "0 µm: the file gives none")
     return 0.0
 
 
@@ -52,7 +52,7 @@ def _axial_clearance(part: Part, contact_angle: float) -> float:
     follows.
     """
     way = _way_to_contact(part, contact_angle)
-    distance = _stated(part, "preload_distance", "approach of the rings beyond contact, um")
+    distance = _stated(part, "preload_distance", "approach of the rings beyond contact, µm")
     if distance and not part.number("preload_force", "preload force, N"):
         return way - distance
     if distance:
@@ -69,9 +69,9 @@ def _way_to_contact(part: Part, contact_angle: float) -> float:
         across = _stated(part, f"{stage}radial_bearing_clearance", meaning)
         if across is not None:
             way = 0.5 * across / math.tan(contact_angle)
-            part.say(item, "derived", f"{1e6 * way:.3g} um: half of the radial clearance over tan(alpha)")
+            part.say(item, "derived", f"{1e6 * way:.3g} µm: half of the radial clearance over tan(alpha)")
             return way
-    part.say("operating_axial_bearing_clearance", "defaulted", "0 um: the file gives none")
+    part.say("operating_axial_bearing_clearance", "defaulted", "0 µm: the file gives none")
     return 0.0
 
 

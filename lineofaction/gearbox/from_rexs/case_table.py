@@ -153,7 +153,7 @@ def _thickness_allowance(gear: ToothingData) -> float:
     """
     part = gear.part
     if part.attribute(_SERIES) is not None:
-        part.say(_SERIES, "ignored", "no backlash but that of the center distance, without deviations in um")
+        part.say(_SERIES, "ignored", "no backlash but that of the center distance, without deviations in µm")
     upper = part.number(_UPPER, "thickness_allowance_um")
     lower = part.number(_LOWER, "thickness_allowance_um")
     if upper is None or lower is None:

@@ -46,7 +46,7 @@ def micro_geometry(gear: Toothing, loaded: LoadedFlank) -> Table:
         fields["flank_grid"] = raster.table
         lines = f"{raster.counts[0]} roll lengths by {raster.counts[1]} face positions"
         words = f"{', '.join(entry.part.name for entry in rest)} on {lines}; differs by at most"
-        loaded.flank.say("flank_grid", "derived", f"{words} {engineering(raster.difference / UM, 2)} um")
+        loaded.flank.say("flank_grid", "derived", f"{words} {engineering(raster.difference / UM, 2)} µm")
     return fields
 
 

@@ -119,7 +119,7 @@ class BearingInput(BoundaryModel):
             default=0.0,
             ge=0.0,
             le=1e4,
-            description="Radial displacement from the middle to contact in um",
+            description="Radial displacement from the middle to contact in µm",
             examples=[20.0],
         )
         damping_n_s_per_m: float | None = Field(
@@ -148,7 +148,7 @@ class BearingInput(BoundaryModel):
         )
         displacement_um: _Curve | None = Field(
             default=None,
-            description="Displacements in um, increasing; for x, y, z",
+            description="Displacements in µm, increasing; for x, y, z",
             examples=[[-40.0, 0.0, 40.0]],
         )
         force_n: _Curve | None = Field(

@@ -80,10 +80,10 @@ class PlanetsInput(BoundaryModel):
         examples=[[0.0, 120.0, 240.0]],
     )
     radial_errors_um: PinErrors | None = Field(
-        default=None, description="Position errors of all pins outwards in um", examples=[[0.0, 0.0, 0.0]]
+        default=None, description="Position errors of all pins outwards in µm", examples=[[0.0, 0.0, 0.0]]
     )
     tangential_errors_um: PinErrors | None = Field(
-        default=None, description="Position errors of all pins about +z in um", examples=[[20.0, 0.0, 0.0]]
+        default=None, description="Position errors of all pins about +z in µm", examples=[[20.0, 0.0, 0.0]]
     )
 
     @model_validator(mode="after")

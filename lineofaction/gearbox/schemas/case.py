@@ -164,7 +164,7 @@ class ErrorsInput(BoundaryModel):
 
     misalignment_um: Misalignments = Field(
         default=(0.0,),
-        description="Tilt of the axes in the plane of action: gap growth in um over the common face width",
+        description="Tilt of the axes in the plane of action: gap growth in µm over the common face width",
         examples=[[0.0, 30.0]],
     )
     misalignment_class: int | None = Field(
@@ -181,7 +181,7 @@ class ErrorsInput(BoundaryModel):
         min_length=2,
         max_length=2,
         description="With misalignment_class: radial internal clearance of the bearings of both shafts in "
-        "um, by which they tilt",
+        "µm, by which they tilt",
         examples=[[20.0, 25.0]],
         exclude_if=_left_out,
     )

@@ -26,7 +26,7 @@ class FlankGridInput(BoundaryModel):
     removed_um: Listed[_GridRow] = Field(
         min_length=2,
         max_length=500,
-        description="Material removed in um, a row per roll length",
+        description="Material removed in µm, a row per roll length",
         examples=[[[0.0, 2.0], [0.0, 0.0], [5.0, 7.0]]],
     )
 

@@ -61,14 +61,14 @@ class ToothingInput(_ToothingFigures):
 
     pitch_deviation_um: PitchDeviations = Field(
         default=(),
-        description="Cumulative pitch deviation F_pi (ISO 1328-1) of the loaded flank of every tooth in um, "
+        description="Cumulative pitch deviation F_pi (ISO 1328-1) of the loaded flank of every tooth in µm, "
         "in the order of meshing; > 0: towards the mate; left out: none",
         examples=[[0.0, 3.0, 1.0, -4.0, -2.0]],
     )
     single_pitch_deviation_um: PitchDeviations = Field(
         default=(),
         description="Single pitch deviation f_pi (ISO 1328-1) of the loaded flank of every tooth to the one "
-        "before it in um, in the order of meshing, instead of F_pi; its mean is taken out; left out: none",
+        "before it in µm, in the order of meshing, instead of F_pi; its mean is taken out; left out: none",
         examples=[[4.0, 3.0, -2.0, -5.0, 2.0]],
         exclude_if=operator.not_,
     )
@@ -125,7 +125,7 @@ class FlankPoint(BoundaryModel):
         title="Misalignment, µm",
         ge=-10_000.0,
         le=10_000.0,
-        description="Misalignment in um; left out: the case's value nearest to 0",
+        description="Misalignment in µm; left out: the case's value nearest to 0",
     )
     center_distance_change_mm: float | None = Field(
         default=None,

@@ -44,7 +44,7 @@ class LiveInput(BoundaryModel):
         default=0.0,
         ge=-10_000.0,
         le=10_000.0,
-        description="Tilt of the axes in the plane of action: gap growth in um over the common face width",
+        description="Tilt of the axes in the plane of action: gap growth in µm over the common face width",
         examples=[0.0],
     )
     center_distance_change_mm: float = Field(
@@ -130,10 +130,10 @@ class LiveCurve(BoundaryModel):
     class SourceError(BoundaryModel):
         """Error of one source; null where it is not known."""
 
-        mean: float | None = Field(description="Error of the mean in um", examples=[0.01])
-        peak_to_peak: float | None = Field(description="Error of peak-to-peak in um", examples=[0.02])
+        mean: float | None = Field(description="Error of the mean in µm", examples=[0.01])
+        peak_to_peak: float | None = Field(description="Error of peak-to-peak in µm", examples=[0.02])
         first_harmonic: float | None = Field(
-            description="Error of the first mesh harmonic in um", examples=[0.01]
+            description="Error of the first mesh harmonic in µm", examples=[0.01]
         )
 
     class CurveDerivatives(BoundaryModel):
@@ -170,7 +170,7 @@ class LiveCurve(BoundaryModel):
             )
 
         by: dict[str, CurveDerivative] = Field(
-            description="Derivatives by every active quantity: per um, per mm of a length, per N m",
+            description="Derivatives by every active quantity: per µm, per mm of a length, per N m",
             examples=[
                 {
                     "pinion.tip_relief_um": {
@@ -237,12 +237,12 @@ class LiveCurve(BoundaryModel):
         )
         pressure_mpa: list[list[int]] = Field(description="Hertz pressure in MPa", examples=[[[0, 900]]])
         apart_um: list[list[float]] = Field(
-            description="How far the load moves the flanks of the pair apart, in um", examples=[[[8.1, 9.2]]]
+            description="How far the load moves the flanks of the pair apart, in µm", examples=[[[8.1, 9.2]]]
         )
 
     torque_n_m: float = Field(description="Torque on the driving gear in N m", examples=[100.0])
     normal_force_n: float = Field(description="Normal tooth force in N", examples=[2660.4])
-    misalignment_um: float = Field(description="Misalignment in um", examples=[0.0])
+    misalignment_um: float = Field(description="Misalignment in µm", examples=[0.0])
     center_distance_change_mm: float = Field(
         description="Change of the center distance in mm", examples=[0.0]
     )
@@ -250,20 +250,20 @@ class LiveCurve(BoundaryModel):
     position: list[float] = Field(
         description="Positions in base pitches; 0 = pitch point", examples=[[0.0, 0.5]]
     )
-    ste_um: list[float] = Field(description="Static transmission error in um", examples=[[9.7, 12.1]])
+    ste_um: list[float] = Field(description="Static transmission error in µm", examples=[[9.7, 12.1]])
     pair: list[int] = Field(description="Tooth pair of each column of load_share", examples=[[-1, 0]])
     load_share: list[list[float]] = Field(
         description="Share of each pair", examples=[[[0.5, 0.5], [0.0, 1.0]]]
     )
-    mean_um: float = Field(description="Mean in um", examples=[10.9])
-    mean_error_um: float | None = Field(default=None, description="Its error in um", examples=[0.02])
-    peak_to_peak_um: float = Field(description="Peak to peak in um", examples=[2.8])
-    peak_to_peak_error_um: float | None = Field(default=None, description="Its error in um", examples=[0.03])
+    mean_um: float = Field(description="Mean in µm", examples=[10.9])
+    mean_error_um: float | None = Field(default=None, description="Its error in µm", examples=[0.02])
+    peak_to_peak_um: float = Field(description="Peak to peak in µm", examples=[2.8])
+    peak_to_peak_error_um: float | None = Field(default=None, description="Its error in µm", examples=[0.03])
     harmonics_um: list[float] = Field(
-        description="Amplitudes of the mesh harmonics in um", examples=[[1.1, 0.4]]
+        description="Amplitudes of the mesh harmonics in µm", examples=[[1.1, 0.4]]
     )
     harmonics_error_um: list[float] | None = Field(
-        default=None, description="Their errors in um", examples=[[0.02, 0.01]]
+        default=None, description="Their errors in µm", examples=[[0.02, 0.01]]
     )
     error_by_source_um: dict[str, SourceError] = Field(
         description="Errors by source; the total is the root of the sum of squares",
@@ -275,7 +275,7 @@ class LiveCurve(BoundaryModel):
     order: list[float] | None = Field(
         default=None, description="Orders, if the period has several base pitches"
     )
-    amplitude_um: list[float] | None = Field(default=None, description="Their amplitudes in um")
+    amplitude_um: list[float] | None = Field(default=None, description="Their amplitudes in µm")
     derivatives: CurveDerivatives | None = Field(
         default=None, description="Derivatives of the curve, if requested"
     )
@@ -296,7 +296,7 @@ class LiveOutput(BoundaryModel):
         effect: str = Field(description="Effect that removes the assumption; empty if there is none")
         assumption: str = Field(description="The assumption", examples=["coast flanks stay apart"])
         holds: bool | None = Field(description="Null: not checked, or not assessable", examples=[True])
-        reason: str = Field(description="Finding of the check", examples=["the least clearance is 12 um"])
+        reason: str = Field(description="Finding of the check", examples=["the least clearance is 12 µm"])
         change: float | None = Field(
             default=None, description="Upper bound of its relative change of mean or peak-to-peak"
         )

@@ -115,7 +115,7 @@ class StiffnessMeshInput(BoundaryModel):
     )
     transmission_error_um: PeriodicInput | None = Field(
         default=None,
-        description="Transmission error e without load in um; left out: 0",
+        description="Transmission error e without load in µm; left out: 0",
         examples=[{"value": [0.0], "amplitude": [5.0]}],
     )
 
@@ -127,7 +127,7 @@ class CoastFlankInput(BoundaryModel):
     """The backs of a mesh's teeth, alike to their fronts, for the effect "backlash"."""
 
     backlash_um: float = Field(
-        ge=0.0, le=1e5, description="Backlash along the transverse line of action in um", examples=[80.0]
+        ge=0.0, le=1e5, description="Backlash along the transverse line of action in µm", examples=[80.0]
     )
     tooth_thickness: float | None = Field(
         default=None,

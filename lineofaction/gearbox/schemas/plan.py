@@ -59,7 +59,7 @@ class ModelBias(BaseModel):
 
     mean: float
     peak_to_peak: float | None = Field(description="Null where reliefs hide it: it may have either sign")
-    either_way_um: float = Field(description="Then the largest change of peak-to-peak in um, else 0")
+    either_way_um: float = Field(description="Then the largest change of peak-to-peak in µm, else 0")
     error: float = Field(description="Error of the bias in parts of it")
     stated: float = Field(description="Part of STE by which error bands are wider for it")
     words: str
@@ -76,7 +76,7 @@ class PlannedError(BaseModel):
     method: float = Field(description="What the method leaves out, whatever the mesh")
     total: float
     bias: ModelBias | None = Field(
-        description="What a plane model leaves out; part of `plane` and `total`, not of the errors in um"
+        description="What a plane model leaves out; part of `plane` and `total`, not of the errors in µm"
     )
     mean_um: float | None = Field(description="Null where no size is known before the run")
     peak_to_peak_um: float | None = Field(description="Null where no size is known before the run")

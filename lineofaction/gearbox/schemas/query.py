@@ -64,10 +64,10 @@ class QueryInput(BoundaryModel):
         examples=[[0.0, 0.25]],
     )
     deflection_um: _Deflections = Field(
-        description="Deflections along the line of action in um", examples=[[5.0, 7.5]]
+        description="Deflections along the line of action in µm", examples=[[5.0, 7.5]]
     )
     misalignment_um: _Misalignments = Field(
-        default=0.0, description="Misalignment in um, one value or one per point", examples=[0.0]
+        default=0.0, description="Misalignment in µm, one value or one per point", examples=[0.0]
     )
     center_distance_change_mm: _Changes = Field(
         default=0.0,
@@ -97,7 +97,7 @@ class QueryOutput(BoundaryModel):
 
     force_n: list[float] = Field(description="Transverse mesh force F_bt in N", examples=[[1834.2, 2651.8]])
     stiffness_n_per_um: list[float] = Field(
-        description="Tangent dF/d(deflection) in N/um", examples=[[371.5, 402.3]]
+        description="Tangent dF/d(deflection) in N/µm", examples=[[371.5, 402.3]]
     )
     validity: list[str] = Field(
         description="inside, or lifted_off, above_table, outside_misalignment, outside_center_distance "

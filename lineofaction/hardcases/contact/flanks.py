@@ -125,7 +125,7 @@ def _relief_that_touches() -> Sequence[Measured]:
     entering = np.sort(raised[1].force[0], axis=1)[:, -2] / raised[1].load
     return (
         *(max(column, key=lambda m: m.value) for column in zip(*checks, strict=True)),
-        Measured("relief found, um", 1e6 * exact),
+        Measured("relief found, µm", 1e6 * exact),
         Measured("its gap off the closed form of a straight ramp", _off_the_ramp(case, exact), most=1e-3),
         Measured("share of the touching pair", float(_share(*solved[_NUDGES.size // 2])), most=1e-9),
         Measured("its share a millionth below the load at which it touches", float(entering[1]), most=0.0),
@@ -301,7 +301,7 @@ _SEED = 20260101
 
 @SCENES.add(
     "gap_beyond_deflection",
-    "Relief of 0.3 mm where teeth bend by 8 um: gaps and deflections differ by orders of magnitude, and "
+    "Relief of 0.3 mm where teeth bend by 8 µm: gaps and deflections differ by orders of magnitude, and "
     "most candidates never touch.",
     "Out of reach means without effect: taking those candidates away, or a meter further, changes no bit.",
 )
@@ -327,7 +327,7 @@ def _gap_beyond_deflection() -> Sequence[Measured]:
 
 @SCENES.add(
     "pitch_error_beyond_deflection",
-    "One tooth stands 50 um ahead where teeth bend by 8 um: its neighbors lose contact and STE jumps.",
+    "One tooth stands 50 µm ahead where teeth bend by 8 µm: its neighbors lose contact and STE jumps.",
     "The tooth ahead carries alone, on the curve shifted by its deviation on the line of action; all teeth "
     "ahead shift the whole curve (superposition of rigid offsets).",
 )
@@ -362,7 +362,7 @@ def _pitch_error_beyond_deflection() -> Sequence[Measured]:
 
 @SCENES.add(
     "noisy_flanks",
-    "Flanks from a measurement with 2 um of noise: bumps as high as the deflection, touching points that "
+    "Flanks from a measurement with 2 µm of noise: bumps as high as the deflection, touching points that "
     "wander.",
     "STE grows by no less than the least and no more than the most removed, and with load; two solvers "
     "agree.",

@@ -53,7 +53,7 @@ def _module_of(module: float) -> Sequence[Measured]:
 
 
 for _module, _because in (
-    (0.2e-3, "Elements of 1 um: any length written into the mesher or the solver shows."),
+    (0.2e-3, "Elements of 1 µm: any length written into the mesher or the solver shows."),
     (40e-3, "Gears of 0.8 m: any length written into the mesher or the solver shows."),
 ):
     SCENES.add(

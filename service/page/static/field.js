@@ -7,7 +7,6 @@ const UNITS = [
   ["_n_per_um", "N/µm"], ["_n_per_mm3", "N/mm³"], ["_n_m", "N m"], ["_gpa", "GPa"], ["_deg", "°"], ["_mm", "mm"],
   ["_um", "µm"], ["_rpm", "rpm"], ["_hz", "Hz"], ["_percent", "%"], ["_n", "N"], ["_s", "s"],
 ];
-const SYMBOLS = [[/\bin um\b/g, "in µm"], [/\bN\/um\b/g, "N/µm"]];
 const NONE = "not set";
 const READ = 40; // characters of a list in a sentence
 
@@ -47,7 +46,7 @@ export class Field {
   }
 
   get hint() {
-    const full = SYMBOLS.reduce((found, [from, to]) => found.replace(from, to), this.schema.description || "");
+    const full = this.schema.description || "";
     const text = full.replace(/,? in (mm|µm|deg|degrees|N m|GPa)\b/, "");
     return text.toLowerCase() === this.label.toLowerCase() ? "" : text;
   }

@@ -46,7 +46,7 @@ function ledger(entries) {
   const shown = entries.filter(({ influence }) => !influence?.trifle);
   const trifles = entries.filter(({ influence }) => influence?.trifle).map(({ name }) => words(name));
   const { torque_n_m: torque, misalignment_um: skew } = entries.find(({ influence }) => influence)?.influence ?? {};
-  const place = torque ? `at ${number(torque)} N m, misalignment ${number(skew)} um` : "";
+  const place = torque ? `at ${number(torque)} N m, misalignment ${number(skew)} µm` : "";
   const rows = shown.map((entry) => [
     words(entry.name), entry.on ? "yes" : "no", text(entry.reason), entry.influence?.words ?? "not estimated", text(entry.decision),
   ]);

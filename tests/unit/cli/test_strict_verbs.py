@@ -20,7 +20,7 @@ NOT_COMPUTING = {"new", "cache", "hardcases", "serve", "keys", "database", "stor
 LOA = get_command(app)  # loads its verbs when asked: the application itself lists none
 VERBS = LOA.list_commands(Context(LOA))
 CASE = spur_case("{relief}", torques=[100.0], model="plane_strain", receipt="minimal", positions=8)
-MESSAGE = "pair.pinion.tip_relief_um = 0.02 um: "
+MESSAGE = "pair.pinion.tip_relief_um = 0.02 µm: "
 
 
 @pytest.fixture

@@ -24,12 +24,12 @@ def test_a_class_makes_the_axis_and_says_how() -> None:
     made = case({"misalignment_class": 7})
     assert [1e6 * value for value in table_axes(made).misalignments] == pytest.approx([-20, -10, 0, 10, 20])
     allowed = allowed_misalignment(made)
-    assert allowed is not None and allowed.words.startswith("misalignment to 20 um to either side by class 7")
+    assert allowed is not None and allowed.words.startswith("misalignment to 20 µm to either side by class 7")
     assert allowed_misalignment(case({"misalignment_um": [0.0, 30.0]})) is None
 
 
 def test_a_clearance_widens_the_axis_over_the_bearings_of_the_shaft() -> None:
-    """50 um over 100 mm are 10 um over the face: the root of 19.94^2 + 10^2 is 22.3, rounded 22."""
+    """50 µm over 100 mm are 10 µm over the face: the root of 19.94^2 + 10^2 is 22.3, rounded 22."""
     errors = {"misalignment_class": 7, "bearing_clearance_um": [50.0, 0.0]}
     assert 1e6 * table_axes(case(errors, shaft=SHAFT)).misalignments[-1] == pytest.approx(22.0)
     with pytest.raises(BadInput, match="without the shaft of the pinion") as caught:

@@ -152,7 +152,7 @@ NONSENSE_SCENES: dict[str, tuple[str, str | None, str, Any]] = {
         "N/mm",
         100000.0,
     ),
-    "bearing stiffness in N/um": ("bushings[2].radial_stiffness_n_per_m", "support_stiffness", "N/um", 100.0),
+    "bearing stiffness in N/µm": ("bushings[2].radial_stiffness_n_per_m", "support_stiffness", "N/µm", 100.0),
     "duration in ms": ("run.duration_s", "duration", "milliseconds", 500.0),
     "duration in ms, too many samples": ("run.duration_s", None, "", 5000.0),
     "a damping ratio of 5": ("bushings[1].damping_ratio", "damping_ratio", "per cent", 5.0),
@@ -394,7 +394,7 @@ def limit_text(limit: float | None, unit: str) -> str:
         return ""
     small, soft = limit < 1e-3, limit < 1e9
     scales = {
-        "m": (UM, "um") if small else (MM, "mm"),
+        "m": (UM, "µm") if small else (MM, "mm"),
         "Pa": (1e6, "MPa") if soft else (GPA, "GPa"),
         "rad": (DEGREE, "deg"),
         "1": (1.0, ""),

@@ -50,7 +50,7 @@ def verdicts(*requirements: str) -> tuple[str, ...]:
     ("requirement", "verdict"),
     [
         ("peak-to-peak STE at most 0.5 µm", "Met: "),
-        ("peak-to-peak STE at most 0.457 um", "Met: "),
+        ("peak-to-peak STE at most 0.457 µm", "Met: "),
         ("peak-to-peak STE at most 0.44 µm", "Open within the error: "),
         ("peak-to-peak STE at most 0.43 µm", "Open within the error: "),
         ("peak-to-peak STE at most 0.4 µm", "Not met: "),

@@ -118,7 +118,7 @@ def test_errors_come_back_in_the_users_words_and_units(error: Exception, said: s
         (at_least(0.001), "at least 1"),
         (exactly(0.0305), "30.5"),
         (below(0.07, "m", "the root diameter"), "below the root diameter 70 mm"),
-        (Text.of("larger: the tips cut ", Quantity(1.2e-5, "m"), " deep"), "larger: the tips cut 12 um deep"),
+        (Text.of("larger: the tips cut ", Quantity(1.2e-5, "m"), " deep"), "larger: the tips cut 12 µm deep"),
         (Text.of("at a place ", from_to(0.0, 0.02, "m")), "at a place from 0 mm to 20 mm"),
         ("smaller: the contact ratio is 0.93, below 1", "smaller: the contact ratio is 0.93, below 1"),
         ("a finite number", "a finite number"),

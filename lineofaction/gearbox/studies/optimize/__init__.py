@@ -76,7 +76,7 @@ class ScatterInput(BoundaryModel):
         title="Misalignment, standard deviation, µm",
         ge=0.0,
         le=1000.0,
-        description="Standard deviation of the misalignment in um",
+        description="Standard deviation of the misalignment in µm",
         examples=[8.0],
     )
     pinion: GearScatterInput = Field(
@@ -164,7 +164,7 @@ class HeardObjectiveInput(OverOrders, HeardInput):
     )
     misalignment_um: Misalignments | None = Field(
         default=None,
-        description="Misalignment of the mesh in um, one value or one for each load case; left out: that of "
+        description="Misalignment of the mesh in µm, one value or one for each load case; left out: that of "
         "the mesh in the scene, where it is none those of the deflection of the scene",
         examples=[[3.0]],
     )
@@ -224,7 +224,7 @@ class Inputs(BoundaryModel):
             gt=0.0,
             le=1000.0,
             description="If no modification is named: tip relief of both gears up to this amount, 0.15 to "
-            "0.8 modules long, and lead crowning of the driving gear up to 30 um unless the model is "
+            "0.8 modules long, and lead crowning of the driving gear up to 30 µm unless the model is "
             "plane",
             examples=[40.0],
         )
@@ -262,7 +262,7 @@ class Inputs(BoundaryModel):
             default=None,
             gt=0.0,
             le=1e4,
-            description="Largest peak-to-peak of the transmission error in um",
+            description="Largest peak-to-peak of the transmission error in µm",
             examples=[0.5],
         )
         root_stress_mpa: float | None = Field(
@@ -281,7 +281,7 @@ class Inputs(BoundaryModel):
     )
     misalignment_um: Misalignments = Field(
         default=0.0,
-        description="Misalignment in um, one value or one for each torque",
+        description="Misalignment in µm, one value or one for each torque",
         examples=[0.0],
     )
     variables: VariablesInput = Field(

@@ -192,7 +192,7 @@ class HeardOptimization:
         rises = ripple > before.peak_to_peak_error + after.peak_to_peak_error
         for load in np.flatnonzero(rises).tolist():
             ends = (engineering(1e6 * design.peak_to_peak[load], 3) for design in (before, after))
-            yield f"peak-to-peak STE at {self.torque[load]:.4g} N m {' to '.join(ends)} um"
+            yield f"peak-to-peak STE at {self.torque[load]:.4g} N m {' to '.join(ends)} µm"
         yield from self._rising("largest pressure", before.pressure / 1e6, after.pressure / 1e6, "MPa")
         yield from self._rising("K_Hbeta", before.face_load_factor, after.face_load_factor, "")
 

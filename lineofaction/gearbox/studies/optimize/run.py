@@ -354,7 +354,7 @@ def _worse_load_warning(before: HarrisMap, after: HarrisMap, index: int) -> Json
     error = float(before.expected_error[index] + after.expected_error[index]) / UM
     torque = float(before.torque[index])
     reason = "the search makes another load better at the cost of this one"
-    words = f"from {first:.3g} to {second:.3g} um, errors {engineering(error, 2)} um: {reason}"
+    words = f"from {first:.3g} to {second:.3g} µm, errors {engineering(error, 2)} µm: {reason}"
     return {
         "check": "worse_load",
         "field": f"torque_n_m = {torque:.6g}",

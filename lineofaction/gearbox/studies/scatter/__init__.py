@@ -26,7 +26,7 @@ class Inputs(BoundaryModel):
         default=0.0,
         ge=0.0,
         le=1000.0,
-        description="Tolerance of the misalignment in um, to either side",
+        description="Tolerance of the misalignment in µm, to either side",
         examples=[20.0],
     )
     distribution: Annotated[Literal["normal", "uniform"], Spelling("--uniform", "uniform")] = Field(

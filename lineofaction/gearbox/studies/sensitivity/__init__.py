@@ -21,7 +21,7 @@ class Inputs(BoundaryModel):
         title="Misalignments, µm",
         min_length=1,
         max_length=64,
-        description="Misalignments in um, increasing",
+        description="Misalignments in µm, increasing",
         examples=[[0.0, 30.0]],
     )
     center_distance_change_percent: Row[Percent] = Field(

@@ -67,7 +67,7 @@ class _Swept:
     @property
     def unit(self) -> str:
         """Symbol of the unit of the boundary."""
-        return (unit_name(self.path) or "N m").replace("um", "µm")
+        return unit_name(self.path) or "N m"
 
     @property
     def factor(self) -> float:

@@ -258,7 +258,7 @@ def test_the_verdict_states_the_amounts_and_the_period():
     pair = pair_of("helical", PINION, waves=(Wave(11, 5e-7),), run_out=RunOut(eccentricity=1e-5))
     _, ledger = compose(ContactScene(pair, np.array([100.0]), EFFECTS), {})
     (entry,) = [entry for entry in ledger if entry.name == "tooth_deviations"]
-    assert entry.verdict.reason == ("pinion eccentricity 10 um, 11 waves 0.5 um, over 23 base pitches")
+    assert entry.verdict.reason == ("pinion eccentricity 10 µm, 11 waves 0.5 µm, over 23 base pitches")
 
 
 def test_orders_are_named_by_what_turns():

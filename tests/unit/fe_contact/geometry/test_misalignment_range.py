@@ -40,7 +40,7 @@ def test_class_seven_of_a_spur_pair_is_that_of_the_formulas_by_hand() -> None:
     assert 1e6 * made.likely == pytest.approx(19.94, abs=0.01)
     assert 1e6 * made.worst == pytest.approx(38.61, abs=0.01)
     assert [1e6 * value for value in made.axis] == pytest.approx([-20.0, -10.0, 0.0, 10.0, 20.0])
-    assert "to 20 um" in made.words and "19.9 um by squares, 38.6 um at worst" in made.words
+    assert "to 20 µm" in made.words and "19.9 µm by squares, 38.6 µm at worst" in made.words
 
 
 def test_the_axis_ends_at_a_figure_of_the_standard() -> None:
@@ -54,12 +54,12 @@ def test_the_axis_ends_at_a_figure_of_the_standard() -> None:
 
 @pytest.mark.parametrize(("tolerance_class", "helix_um"), [(5, 9.0), (6, 13.0), (7, 18.0), (9, 36.0)])
 def test_the_whole_helix_is_rounded_once(tolerance_class: int, helix_um: float) -> None:
-    """8.932 um of class 5, times the root of two to the classes above, then rounded (5.2.2, 5.2.3)."""
+    """8.932 µm of class 5, times the root of two to the classes above, then rounded (5.2.2, 5.2.3)."""
     assert 1e6 * helix_tolerance(pair().pinion, tolerance_class) == pytest.approx(helix_um)
 
 
 def test_a_gear_wider_than_the_common_face_opens_it_by_its_part() -> None:
-    """b 25 mm: f_Hbeta of 0.05 * 12.2474 + 0.35 * 5 + 4 = 6.362, twice and rounded 13 um, 20/25 of it."""
+    """b 25 mm: f_Hbeta of 0.05 * 12.2474 + 0.35 * 5 + 4 = 6.362, twice and rounded 13 µm, 20/25 of it."""
     made = misalignment_range(pair(wheel_width=25e-3), 7)
     assert 1e6 * made.by_source["helix slope of the wheel"] == pytest.approx(10.4)
 

@@ -259,7 +259,7 @@ def test_measured_flanks_are_not_refused_and_leave_their_nodes_little() -> None:
 def test_a_surface_that_leaves_its_nodes_is_refused_with_the_place() -> None:
     roll, face = (2e-3, 2.3e-3, 4.3e-3), (0.3e-3, 2.3e-3, 2.6e-3)
     removed = 20e-6 * np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 1.0]])
-    expected = r"removed\[1\.\.2\]\[0\.\.1\] = '1\.09 um beyond the nodes .* at most 0\.1 um; add nodes"
+    expected = r"removed\[1\.\.2\]\[0\.\.1\] = '1\.09 µm beyond the nodes .* at most 0\.1 µm; add nodes"
     with pytest.raises(InputError, match=expected):
         FlankGrid(roll, face, removed)
     assert FlankGrid(roll, face, 0.09 * removed)

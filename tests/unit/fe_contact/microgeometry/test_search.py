@@ -350,7 +350,7 @@ UM = 1e-6
 
 
 def harris(*ripples: float) -> HarrisMap:
-    """Return the map of ripples in um at 20, 50 and 80 N m, each known to 0.01 um."""
+    """Return the map of ripples in µm at 20, 50 and 80 N m, each known to 0.01 µm."""
     ripple, error = np.array(ripples) * UM, np.full(3, 0.01 * UM)
     torque, position = np.array([20.0, 50.0, 80.0]), np.arange(2.0)
     ste = np.zeros((2, 3))
@@ -358,7 +358,7 @@ def harris(*ripples: float) -> HarrisMap:
 
 
 def concluded(after: HarrisMap, objective: float = 0.2, violation: float = 0.0) -> tuple[Outcome, str]:
-    """Return the conclusion of a search from 0.042, 0.2 and 0.3 um."""
+    """Return the conclusion of a search from 0.042, 0.2 and 0.3 µm."""
 
     def design(table: HarrisMap, value: float, over: float = 0.0) -> Any:
         return SimpleNamespace(
@@ -388,8 +388,8 @@ def test_a_ripple_rises_if_it_does_by_more_than_both_errors(
 def test_the_reason_names_the_torques_that_get_worse() -> None:
     outcome, reason = concluded(harris(0.123, 0.25, 0.2))
     assert outcome is Outcome.IMPROVED
-    assert "falls by 0.1 um" in reason
-    assert "it rises at 20, 50 N m, most at 20 N m from 0.042 to 0.123 um" in reason
+    assert "falls by 0.1 µm" in reason
+    assert "it rises at 20, 50 N m, most at 20 N m from 0.042 to 0.123 µm" in reason
     assert "rises" not in concluded(harris(0.042, 0.1, 0.2))[1]
 
 
