@@ -19,7 +19,7 @@ BUDGETS = {
     ("lineofaction.client",): (2_713, 53),
     ("lineofaction.cli",): (5_450, 80),
     ("lineofaction.hardcases",): (3_844, 35),
-    ("bounds", "host", "model_studies"): (4_517, 155),
+    ("bounds", "host", "model_studies"): (4_522, 155),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 819
