@@ -86,7 +86,7 @@ def _with_fields(case: Case, name: str, found: MeasuredGear) -> Case:
 def _show(found: MeasuredGear) -> None:
     out = console()
     if found.splits:
-        head = ("tooth", "trace", "f_H, um", "f_f, um", "over, mm", "cut-off, mm")
+        head = ("tooth", "trace", "f_H, µm", "f_f, µm", "over, mm", "cut-off, mm")
         rows = [
             (str(tooth), trace, *_figures(split)) for (tooth, trace), split in sorted(found.splits.items())
         ]

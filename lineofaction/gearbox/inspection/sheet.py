@@ -140,7 +140,7 @@ def _point(line: int, row: dict[str, str], gear: Toothing) -> Point:
     face = _face(row, gear, line) if trace in ("helix", "topography") else None
     deviation = _number(row["deviation_um"], "deviation_um", line)
     if abs(deviation) > _LARGEST:
-        raise ValueError(f"a file of deviations up to {_LARGEST:g} um; line {line} has {deviation:g}")
+        raise ValueError(f"a file of deviations up to {_LARGEST:g} µm; line {line} has {deviation:g}")
     side: Flank = "left" if flank == "left" else "right"
     return Point(line, int(tooth), side, trace, roll, face, deviation * UM)
 
