@@ -152,7 +152,8 @@ def _figures(gear: Toothing) -> str:
     amounts = (("eccentricity", gear.run_out.eccentricity), ("wobble", gear.run_out.wobble))
     waves = [f"{wave.order} waves {1e6 * wave.amplitude:.3g} µm" for wave in gear.waves if wave.amplitude]
     flanks = [flank.largest for flank in gear.tooth_flanks if not flank.neutral]
-    teeth = [f"{len(flanks)} flanks of teeth up to {1e6 * max(flanks):.3g} µm"] if flanks else []
+    largest = f"up to {1e6 * max(flanks, default=0.0):.3g} µm"
+    teeth = [f"flanks of {len(flanks)} of {gear.teeth} teeth {largest}"] if flanks else []
     return ", ".join(
         [*(f"{name} {1e6 * amount:.3g} µm" for name, amount in amounts if amount), *waves, *teeth]
     )

@@ -255,10 +255,14 @@ def test_nothing_named_adds_nothing():
 
 
 def test_the_verdict_states_the_amounts_and_the_period():
-    pair = pair_of("helical", PINION, waves=(Wave(11, 5e-7),), run_out=RunOut(eccentricity=1e-5))
+    flanks = (ToothFlank(2), ToothFlank(3, profile_slope=4e-6))
+    own = {"waves": (Wave(11, 5e-7),), "run_out": RunOut(eccentricity=1e-5), "tooth_flanks": flanks}
+    pair = pair_of("helical", PINION, **own)
     _, ledger = compose(ContactScene(pair, np.array([100.0]), EFFECTS), {})
     (entry,) = [entry for entry in ledger if entry.name == "tooth_deviations"]
-    assert entry.verdict.reason == ("pinion eccentricity 10 µm, 11 waves 0.5 µm, over 23 base pitches")
+    assert entry.verdict.reason == (
+        "pinion eccentricity 10 µm, 11 waves 0.5 µm, flanks of 1 of 23 teeth up to 2 µm, over 23 base pitches"
+    )
 
 
 def test_orders_are_named_by_what_turns():
