@@ -157,7 +157,7 @@ PROFILE = [f"1,right,profile,{4 + 0.1 * k:.3f},,{k % 3}" for k in range(100)]
         ([HEAD, "1,top,profile,5,,1"], "left and right flanks; line 2"),
         ([HEAD, "1,right,lead,5,,1"], "the traces pitch"),
         ([HEAD, "1,right,profile,5,,nan"], "finite numbers; line 2"),
-        ([HEAD, "1,right,profile,5,,2000"], "up to 1000 um; line 2"),
+        ([HEAD, "1,right,profile,5,,2000"], "up to 1000 µm; line 2"),
         ([HEAD, *PROFILE[::20]], "at most the cut-off"),
         ([HEAD, *PROFILE[:2]], "a trace of 3 to"),
         ([HEAD, "1,right,pitch,,,1"], "19 are missing, the first is 2"),
