@@ -30,12 +30,14 @@ from lineofaction.cli.output import (
     progress_bar,
 )
 from lineofaction.cli.subjects import assessed_scene, tabled_scene
-from lineofaction.gearbox.convert.case import CheckedCase
+from lineofaction.gearbox.convert.case import CheckedCase, case_json
+from lineofaction.gearbox.convert.complaint import marks_of_case
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.input_file import InputFile, number_list
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.project import inputs_in, result_name
-from lineofaction.gearbox.result_files import stamp
+from lineofaction.gearbox.registry import SUFFIX
+from lineofaction.gearbox.result_files import COMPLAINT, stamp, stamp_complaint
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
 from lineofaction.gearbox.schemas.model import BoundaryModel, item_type, spelling_of
 from lineofaction.gearbox.schemas.reading import located
@@ -46,6 +48,7 @@ from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.tabled_scene import open_executor
 from lineofaction.report.document import read_run, write_whole
 from lineofaction.report.document import write as write_result
+from lineofaction.report.drawing.marks import marked_page_of_case
 from lineofaction.report.presentation import presentation_of
 from lineofaction.report.title_block import titled
 from model_studies.progress import announce
@@ -139,6 +142,8 @@ def _tell(
         target.parent.mkdir(exist_ok=True)
         _writers(study, *subject)[target.suffix](result, target)
         stamp(target, warnings_so_far())
+        if target.suffix == SUFFIX and (marks := _marks(subject[0])):
+            stamp_complaint(target, {COMPLAINT: marks})
     if options["json"]:
         names = [str(target) for target in targets]
         files: Json = {"written": names[0], "file": names[0]} if names else {}
@@ -236,7 +241,8 @@ def _writers(study: Study, subject: Any, about: ReportInput | None) -> dict[str,
 
     def write_page(result: Any, file: Path) -> None:
         records = {f"{study.name}.json": run.figures(result)}
-        whole = titled(replace(page.page(result), records=records), about)
+        marks, shown = _marks(subject), replace(page.page(result), records=records)
+        whole = titled(shown if marks is None else marked_page_of_case(shown, marks), about)
         write_whole(whole, file, warnings=messages())
 
     further = {
@@ -249,6 +255,11 @@ def _writers(study: Study, subject: Any, about: ReportInput | None) -> dict[str,
         ".csv": lambda result, file: file.write_text(_csv(study, result), encoding="utf-8"),
         **further,
     }
+
+
+def _marks(subject: Any) -> Json | None:
+    """Return the marks of a case's complaint; results of a scene know its own."""
+    return marks_of_case(case_json(subject.case)) if isinstance(subject, CheckedCase) else None
 
 
 def _csv(study: Study, result: Any) -> str:

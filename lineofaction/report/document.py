@@ -25,7 +25,13 @@ from lineofaction.report.drawing.attaching import attached
 from lineofaction.report.drawing.figure import Figure, Table
 from lineofaction.report.drawing.image import png, still
 from lineofaction.report.drawing.interactive import plotly_figure
-from lineofaction.report.drawing.marks import Marks, marked_sections, of_run
+from lineofaction.report.drawing.marks import (
+    Marks,
+    marked_page_of_case,
+    marked_sections,
+    marks_of,
+    of_run,
+)
 from lineofaction.report.drawing.page import Headline, Page, Section, html, sound_json
 from lineofaction.report.drawing.printing import pdf
 from lineofaction.report.drawing.tables import one_effects_section
@@ -43,7 +49,10 @@ def stored_study(attributes: Mapping[str, object]) -> Study | None:
 
 
 def _study_page(study: Study, file: Path, database: SteDatabase | None = None) -> Page:
-    return page_beside(study, read_stored(study, file), database)
+    result = read_stored(study, file)
+    page = page_beside(study, result, database)
+    stated = file_attributes(file).get(COMPLAINT)
+    return page if stated is None or marks_of(result) else marked_page_of_case(page, json.loads(stated))
 
 
 def read_stored(study: Study, file: Path) -> Any:

@@ -70,6 +70,11 @@ def marked_page(page: Page, marks: Marks) -> Page:
     return replace(page, lead=lead, sections=sections)
 
 
+def marked_page_of_case(page: Page, marks: Marks) -> Page:
+    """Return the page of a study of a case with the marks of its complaint."""
+    return marked_page(page, of_run(marks, next(iter(marks["meshes"]), "")))
+
+
 def marked_sections(sections: Iterable[Section], marks: Marks) -> tuple[Section, ...]:
     """Return sections with the marks in all their plots."""
     return tuple(

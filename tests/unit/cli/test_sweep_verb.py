@@ -117,3 +117,15 @@ def test_a_report_shows_a_stored_map(file: Path, tmp_path: Path) -> None:
     curve = tmp_path / "curve.png"
     output("sweep", file, "--over", "torque=100:200:50", "--show", "max_pressure", "-o", curve)
     assert curve.stat().st_size > 10_000
+
+
+def test_the_complaint_of_the_case_is_marked_in_the_plots_and_in_those_of_its_file(
+    file: Path, tmp_path: Path
+) -> None:
+    file.write_text(f"{CASE}\n[complaint]\nfrequency_hz = 1000.0\nspeed_rpm = 3000.0\ntorque_n_m = 130.0\n")
+    for ending in (".html", ".nc"):
+        done = loa("sweep", file, "--over", "torque=100:200:50", "-o", tmp_path / f"map{ending}")
+        assert done.exit_code == 0, done.output
+    assert loa("report", tmp_path / "map.nc", "-o", tmp_path / "report.html").exit_code == 0
+    for page in ("map.html", "report.html"):
+        assert "complaint, 130 N m" in (tmp_path / page).read_text("utf-8").replace("\\u00a0", " ")
