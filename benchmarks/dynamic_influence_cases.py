@@ -43,8 +43,8 @@ SPUR = spur_pair(gear_of(18, **PLAY), gear_of(27, **PLAY))
 HELICAL = spur_pair(gear_of(18, helix_angle=HELIX, **PLAY), gear_of(23, helix_angle=-HELIX, **PLAY))
 AXES = {"misalignments": (-40e-6, 0.0, 40e-6), "center_distance_changes": (-40e-6, 0.0, 40e-6)}
 CONSTANT = TimeLaw.constant
-SHORT = {"flexible_shafts_scene": 1.0, "wind_turbine_scene": 0.4}
-"""Seconds of the examples that run too long to be toggled seven times."""
+SHORT = {"flexible_shafts_scene": 1.0}
+"""Seconds of the example that runs too long to be toggled seven times."""
 
 
 @cache

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -29,7 +29,8 @@ LEAST_SPEED = 1e-9
 ORDERS = 24
 """Mesh orders that make the peak-to-peak value."""
 SPEEDS, FEWER = 32, 10
-"""Speeds and mesh orders at which a response is looked at, alike with and without an effect."""
+"""Speeds and mesh orders at which a response is looked at, alike with and without an effect; levels of runs
+have as many orders."""
 LOADS = 6
 """Loads at which a system is linearized where they vary along the run."""
 
@@ -39,23 +40,25 @@ class OperatingCondition:
     """Speeds (S,) of the leading law, rad/s, > 0, rising, under the loads at a `time`, s.
 
     `rate` (S,) is how fast they change, rad/s^2, >= 0, `weight` (S,) the part of the run at each; all
-    conditions together have 1. Solved for are the mesh `orders` from 1 on.
+    conditions together have 1. Between the speeds of its `span` (2,) the run passes all of them. Solved for
+    are the mesh `orders` from 1 on.
     """
 
     time: float
     speed: FloatArray
     rate: FloatArray
     weight: FloatArray
+    span: FloatArray
     orders: int = ORDERS
 
     def passing(self, speed: FloatArray) -> OperatingCondition:
         """Return the condition with those of the speeds (k,) added that it passes, of no weight."""
-        inside = speed[(speed > self.speed[0]) & (speed < self.speed[-1])]
+        inside = speed[(speed > self.span[0]) & (speed < self.span[1])]
         whole = np.concatenate([self.speed, inside])
         order = np.argsort(whole)
         rate = np.concatenate([self.rate, np.interp(inside, self.speed, self.rate)])
         weight = np.concatenate([self.weight, np.zeros(inside.size)])
-        return OperatingCondition(self.time, whole[order], rate[order], weight[order], self.orders)
+        return replace(self, speed=whole[order], rate=rate[order], weight=weight[order])
 
 
 def operating_conditions(scene: Scene, law: int, settled: float = 0.0) -> tuple[OperatingCondition, ...]:
@@ -64,12 +67,14 @@ def operating_conditions(scene: Scene, law: int, settled: float = 0.0) -> tuple[
     `law` is the leading law. At rest nothing vibrates: such moments are
     left out.
     """
-    share = (np.arange(MOMENTS) + 0.5) / MOMENTS
+    share = np.arange(2 * MOMENTS + 1) / (2 * MOMENTS)  # moments and the ends of their parts in turn
     time = scene.duration * (settled + (1.0 - settled) * share)
     speed = np.broadcast_to(np.abs(scene.references[law].speed(time)), time.shape)
+    ends = np.sort(np.stack([speed[:-2:2], speed[2::2]]), axis=0)
+    time, speed = time[1::2], speed[1::2]
     rate = np.abs(np.gradient(speed, time)) if scene.duration > 0.0 else np.zeros(time.size)
     moving = speed > LEAST_SPEED * np.max(speed, initial=0.0)
-    time, speed, rate = time[moving], speed[moving], rate[moving]
+    time, speed, rate, ends = time[moving], speed[moving], rate[moving], ends[:, moving]
     if not time.size:
         return ()
     parts = [np.arange(time.size)]
@@ -79,7 +84,8 @@ def operating_conditions(scene: Scene, law: int, settled: float = 0.0) -> tuple[
     for part in parts:  # moments together, their loads taken at the middle one
         once, first, times = np.unique(speed[part], return_index=True, return_counts=True)
         middle = float(time[part][part.size // 2])
-        conditions.append(OperatingCondition(middle, once, rate[part][first], times / time.size))
+        span = np.array([ends[0, part].min(), ends[1, part].max()])
+        conditions.append(OperatingCondition(middle, once, rate[part][first], times / time.size, span))
     return tuple(conditions)
 
 
@@ -88,7 +94,7 @@ def conditions_at(speed: FloatArray, time: float) -> tuple[OperatingCondition, .
     rising = np.unique(speed)
     own = rising[np.unique(np.linspace(0, rising.size - 1, min(SPEEDS, rising.size)).round().astype(int))]
     still, alike = np.zeros(own.size), np.full(own.size, 1.0 / own.size)
-    return (OperatingCondition(time, own, still, alike, FEWER),)
+    return (OperatingCondition(time, own, still, alike, own[[0, -1]], FEWER),)
 
 
 def _loads_vary(scene: Scene, time: FloatArray) -> bool:
@@ -131,7 +137,7 @@ class LinearFigures:
     coasting : bool
         Whether a mesh has its coast flank.
     lines : mapping of float to float
-        Of the quantity that the scene is computed for, by order.
+        Of the quantity that the scene is computed for, by order up to 10, as far as runs tell them.
     """
 
     mean: FloatArray
@@ -180,7 +186,8 @@ def linear_figures(system: System, conditions: Sequence[OperatingCondition]) -> 
         orders = np.maximum(orders, _low_orders(harmonics.dynamic_transmission_error, harmonics))
         amplitude = np.maximum(amplitude, _low_orders(harmonics.bearing_force[:, :3], harmonics))
         loads = np.maximum(loads, _by_loads(at, condition, harmonics))
-        lines = loudest_lines(harmonics.order, quantity.squares(harmonics), lines)
+        told = harmonics.order <= FEWER
+        lines = loudest_lines(harmonics.order[told], quantity.squares(harmonics)[:, told], lines)
         pull = np.maximum(-np.min(harmonics.least_mesh_force, axis=1), 0.0)
         parted = np.maximum(parted, pull / np.maximum(harmonics.mean_stiffness, 1e-300))
     size = system.arrays.mass.shape[0], system.arrays.direction.shape[0]

@@ -63,6 +63,8 @@ class Influence:
         Of what the scene is computed for, by default of all bearing forces together.
     decides : bool
         Whether the level alone decides on the effect.
+    beyond : str
+        Why a run may change by more, in words; empty where linear theory holds.
     """
 
     mean: FloatArray = field(metadata=in_unit("m", "curve"))
@@ -80,6 +82,7 @@ class Influence:
     relative_bearing_orders: FloatArray = field(default_factory=_no_orders)
     level: LevelChange = field(default_factory=LevelChange)
     decides: bool = False
+    beyond: str = ""
 
     @property
     def largest(self) -> float:
@@ -96,7 +99,8 @@ class Influence:
             for part in (self.relative_mean, self.relative_peak_to_peak)
         )
         mean, ripple = (f"{engineering(share, 2)} %" for share in shares)
-        return f"{self.level.words}, {mean} of the mean, {ripple} of the peak-to-peak transmission error"
+        parts = f"{self.level.words}, {mean} of the mean, {ripple} of the peak-to-peak transmission error"
+        return f"{parts}; {self.beyond}" if self.beyond else parts
 
     def to_json(self) -> Json:
         """Return plain JSON without numbers that are not known; whoever shows it says `on` beside it."""
@@ -164,7 +168,8 @@ def _influences(
         except (InputError, SolveError):
             continue
         both = (whole, figures) if on else (figures, whole)
-        influences[name] = _influence_of(system, on, *both)
+        beyond = _beyond(system, name in LINEAR, *both)
+        influences[name] = replace(_influence_of(system, on, *both), beyond=beyond)
     return influences
 
 
@@ -209,6 +214,21 @@ def _influence_of(system: System, on: bool, whole: LinearFigures, without: Linea
         level=level_change(whole.lines, without.lines, quantity.name, quantity.unit),
         decides=system.scene.quantity is not None,
     )
+
+
+LINEAR = frozenset(effect.name for effect in EFFECTS if effect.linear)
+"""Effects whose size linear theory estimates."""
+
+
+def _beyond(system: System, linear: bool, whole: LinearFigures, without: LinearFigures) -> str:
+    """Return what linear theory leaves out of a change, in words: of an effect that is `linear` or not."""
+    if max(np.max(whole.parted, initial=0.0), np.max(without.parted, initial=0.0)) > 0.0:
+        return "flanks part, which linear theory leaves out"
+    if system.bearings and not linear:
+        return "its size is by the tangents of bearings at the load"
+    if system.bearings:
+        return "bearings count by their tangents at the load: motion across their clearance is left out"
+    return ""
 
 
 def _by_order(change: FloatArray, value: FloatArray) -> FloatArray:
@@ -286,8 +306,7 @@ def decide_effects(
         if not influence.on and influence.largest > allowed
     }
     choices, total = dict.fromkeys(automatic, "on"), 0.0
-    linear = {effect.name for effect in EFFECTS if effect.linear}
-    candidates = {name: influence for name, influence in free.items() if influence.on and name in linear}
+    candidates = {name: influence for name, influence in free.items() if influence.on and name in LINEAR}
     for name, influence in sorted(candidates.items(), key=lambda item: item[1].largest):
         total += influence.largest
         if total <= allowed:

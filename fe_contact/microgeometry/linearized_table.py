@@ -14,7 +14,9 @@ from fe_contact.microgeometry.evaluator import Evaluator, LoadFigures
 from fe_contact.microgeometry.linearized_design import differentiated, limit_rows
 from fe_contact.microgeometry.objective import NO_LIMITS, Limits, Rows
 from fe_contact.microgeometry.root_influence import RootInfluence
-from fe_contact.ste import SteDatabase
+from fe_contact.ste import ForceTable, SteDatabase
+from fe_contact.ste.database import AXIS
+from fe_contact.ste.extraction import force_table
 from fe_contact.types import FloatArray
 
 
@@ -36,13 +38,22 @@ class TabledLoads:
     by: Mapping[str, FloatArray]
     limits: tuple[Rows, ...]
 
-    def moved(self, step: Sequence[float] | FloatArray) -> SteDatabase:
-        """Return the table, to first order, of a design that differs by a step (d,), m."""
-        changes = {
-            name: getattr(self.table, name) + np.tensordot(step, by, 1)[:, :, None, None]
-            for name, by in self.by.items()
-        }
-        return replace(self.table, **changes)
+    def moved(self, steps: FloatArray) -> list[ForceTable]:
+        """Return the mesh forces, to first order, of designs that differ by steps (K, d), m.
+
+        They are made at once, as a table over as many misalignments: at levels that all of them share.
+        """
+        table, count = self.table, len(steps)
+        along = {name: axes.index(AXIS) for name, axes in table.stored.items() if AXIS in axes}
+        stacked = {name: np.repeat(getattr(table, name), count, axis) for name, axis in along.items()}
+        for name, by in self.by.items():
+            stacked[name] = stacked[name] + np.moveaxis(np.tensordot(steps, by, 1), 0, 2)[..., None]
+        whole = force_table(replace(table, **stacked | {AXIS: APART * np.arange(count)}))
+        return [whole.at_misalignment(k, table.misalignment) for k in range(count)]
+
+
+APART = 1e-9
+"""Between the misalignments by which moved tables are told apart, m: any number would do."""
 
 
 def tabled_loads(

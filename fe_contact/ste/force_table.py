@@ -319,3 +319,17 @@ class ForceTable:
             array = np.array(getattr(self, entry.name), dtype=float, order="C")
             array.flags.writeable = False
             object.__setattr__(self, entry.name, array)
+
+    def at_misalignment(self, index: int, misalignment: FloatArray) -> ForceTable:
+        """Return the table of one of the misalignments, without that axis, called `misalignment` (1,), m."""
+        at = slice(index, index + 1)
+        arms = (None if arm is None else arm[at] for arm in self.arms)
+        numbers = self.deflection, self.deflection_slope, self.stiffness, self.stiffness_slope
+        deflection, across, stiffness, along = (each[at] for each in numbers)
+        axes = self.position, self.level, misalignment, self.center_distance_change
+        return ForceTable(*axes, deflection, across, stiffness, along, self.period, None, None, *arms)
+
+    @property
+    def arms(self) -> tuple[FloatArray | None, FloatArray | None, FloatArray | None]:
+        """Where the load acts: arm about the axis of a misalignment, share and lever of sliding."""
+        return self.load_arm, self.sliding_share, self.sliding_lever

@@ -11,7 +11,7 @@ from pkgutil import iter_modules
 from typing import Any
 
 from fe_contact.ste import SteDatabase
-from lineofaction.gearbox.convert.effects import run_lines, scene_table
+from lineofaction.gearbox.convert.effects import beyond_lines, run_lines, scene_table
 from lineofaction.gearbox.loading import LOADING
 from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.units import boundary_ledger
@@ -97,6 +97,7 @@ def effect_text(ledger: Mapping[str, Any]) -> Iterator[Table | str]:
         yield Table("Effects: change without each", tuple(columns), tuple(map(tuple, rows)))
     if trifles:
         yield trifles
+    yield from beyond_lines(ledger)
 
 
 def dynamics_page(

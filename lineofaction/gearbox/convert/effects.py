@@ -161,6 +161,16 @@ def scene_table(ledger: Json) -> tuple[list[str], list[list[str]], str]:
     return columns, rows, f"{trifles_title(names)}: {', '.join(names)}" if names else ""
 
 
+def beyond_lines(ledger: Json) -> Iterator[str]:
+    """Yield why runs may change by more than the sizes of effects say, and of which effects."""
+    effects = dict[str, list[str]]()
+    for name, estimate in ledger.get("influences", {}).items():
+        if beyond := estimate.get("beyond"):
+            effects.setdefault(beyond, []).append(name.replace("_", " "))
+    for beyond, names in effects.items():
+        yield f"May change by more: {', '.join(names)}; {beyond}"
+
+
 def _is_trifle(entries: list[Json], size: str, estimate: Json | None) -> bool:
     """Whether an effect is off everywhere and changes next to nothing."""
     if any(entry["on"] for entry in entries):

@@ -106,6 +106,20 @@ def test_the_derivative_of_a_level_is_that_of_solved_contacts() -> None:
     np.testing.assert_allclose(slope, differences, atol=1e-4 * np.abs(differences).max())
 
 
+def test_moved_tables_made_at_once_are_those_made_one_by_one() -> None:
+    own = problems()[0]
+    tabled_at = list(tabled_loads(own.evaluator, DESIGN, (0,), own.names))[-1]
+    steps = 1e-9 * np.eye(len(own.names))
+    for step, moved in zip(steps, tabled_at.moved(steps), strict=True):
+        changes = {
+            name: getattr(tabled_at.table, name) + np.tensordot(step, by, 1)[..., None, None]
+            for name, by in tabled_at.by.items()
+        }
+        alone = replace(tabled_at.table, **changes).force_table()
+        for name in ("level", "misalignment", "deflection", "stiffness", "stiffness_slope", "load_arm"):
+            np.testing.assert_allclose(getattr(moved, name), getattr(alone, name), rtol=1e-12, err_msg=name)
+
+
 def test_a_mean_over_loads_or_speeds_is_no_louder_than_the_worst() -> None:
     means, worst = level(problems()[0], DESIGN), level(problems()[1], DESIGN)
     assert means < worst

@@ -66,12 +66,12 @@ class HeardAt:
     def powers(self, tabled: TabledLoads) -> Powers:
         """Return what is heard of designs about a table, to first order of what excites."""
         transfer, form = self.case.transfer, self.case.form
-        flanks = self.case.with_table(tabled.table)
-        excitation = flanks.excitation
-        inputs = transfer.inputs(excitation)
         largest = np.abs(tabled.by["static_transmission_error"]).max(axis=(1, 2))
         steps = STEP / np.where(largest > 0.0, largest, 1.0)
-        beside = [tabled.moved(step).force_table() for step in np.diag(steps)]
+        own, *beside = tabled.moved(np.vstack([np.zeros(steps.size), np.diag(steps)]))
+        flanks = self.case.others.with_table(own)
+        excitation = flanks.excitation
+        inputs = transfer.inputs(excitation)
         changes = transfer.input_changes(excitation, inputs, flanks.changes(beside)) / steps
         moved = np.swapaxes(changes.conj(), 2, 3)
         weight = form.weighting * self.counted
