@@ -11,7 +11,7 @@ from dynamics.identity_cache import identity_cached
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.meshes.flank_force import FlankLaws
 from dynamics.meshes.packed_tables import PackedTables, pack_tables
-from dynamics.meshes.table_lookup import table_deflection, table_force
+from dynamics.meshes.table_lookup import read_tangents
 from dynamics.meshes.technique import PlainTable, secant_table, table_at
 from dynamics.types import FloatArray
 
@@ -82,9 +82,9 @@ def flank_laws(mechanism: Mechanism) -> Flanks:
 @identity_cached
 def mean_stiffness(table: PlainTable, force: float) -> float:
     """Return the tangent stiffness at `force` (N), mean over the positions of `table`, N/m."""
-    packed = pack_tables([table])
-    deflections = [(x, table_deflection(packed, 0, x, force)) for x in table.position]
-    return float(np.mean([table_force(packed, 0, x, d, 0)[1] for x, d in deflections]))
+    stiffness = np.empty(table.position.size)
+    read_tangents(pack_tables([table]), 0, table.position, force, stiffness)
+    return float(np.mean(stiffness))
 
 
 def with_technique(technique: str, table: PlainTable, force: float) -> PlainTable:

@@ -102,6 +102,16 @@ def table_deflection(table: PackedTables, flank: int, position: float, force: fl
 
 
 @compiled
+def read_tangents(
+    table: PackedTables, flank: int, position: FloatArray, force: float, stiffness: FloatArray
+) -> None:
+    """Write the tangent stiffness (P,) at `force` (N) at positions (P,), N/m."""
+    for k in range(position.size):
+        deflection = table_deflection(table, flank, position[k], force)
+        stiffness[k] = table_force(table, flank, position[k], deflection, 0)[1]
+
+
+@compiled
 def level_below(table: PackedTables, flank: int, force: float) -> int:
     """Return the level interval that holds `force` (N): the same at all positions."""
     first = table.offset[flank, 4]

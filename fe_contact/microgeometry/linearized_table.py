@@ -17,7 +17,7 @@ from fe_contact.microgeometry.root_influence import RootInfluence
 from fe_contact.ste import ForceTable, SteDatabase
 from fe_contact.ste.database import AXIS
 from fe_contact.ste.extraction import force_table
-from fe_contact.types import FloatArray
+from fe_contact.types import FloatArray, IntArray
 
 
 @dataclass(frozen=True)
@@ -38,6 +38,13 @@ class TabledLoads:
     by: Mapping[str, FloatArray]
     limits: tuple[Rows, ...]
 
+    def at_loads(self, loads: IntArray) -> TabledLoads:
+        """Return the table of some of the loads, by their rising indices; figures and limits are of all."""
+        along = {name: axes.index(LOAD) for name, axes in self.table.stored.items() if LOAD in axes}
+        own = {name: getattr(self.table, name).take(loads, axis) for name, axis in along.items()}
+        by = {name: each[:, :, loads] for name, each in self.by.items()}
+        return replace(self, table=replace(self.table, **own), by=by)
+
     def moved(self, steps: FloatArray) -> list[ForceTable]:
         """Return the mesh forces, to first order, of designs that differ by steps (K, d), m.
 
@@ -52,6 +59,7 @@ class TabledLoads:
         return [whole.at_misalignment(k, table.misalignment) for k in range(count)]
 
 
+LOAD = "force"
 APART = 1e-9
 """Between the misalignments by which moved tables are told apart, m: any number would do."""
 

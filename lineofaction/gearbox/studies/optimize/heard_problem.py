@@ -252,10 +252,13 @@ class HeardProblem(SearchProblem):
         return self.evaluator.evaluation(figures).violation(self.limits)
 
     def tables_of(self, tabled: Sequence[TabledLoads]) -> list[TabledLoads]:
-        """Return which of the tables of a node each load case has."""
-        groups = self.evaluator.groups
-        own = [BESIDE_EACH.size * load + 1 for load in range(len(self.heard.at))]
-        return [tabled[next(g for g, group in enumerate(groups) if load in group)] for load in own]
+        """Return the table of each load case, at its own load and beside it, of those of a node."""
+        count, groups, own = BESIDE_EACH.size, self.evaluator.groups, []
+        for case in range(len(self.heard.at)):
+            of_case = [np.flatnonzero(group // count == case) for group in groups]
+            (at,) = (k for k, loads in enumerate(of_case) if loads.size)
+            own.append(tabled[at].at_loads(of_case[at]))
+        return own
 
 
 _Node = tuple[list[LoadFigures], FloatArray]
