@@ -153,7 +153,21 @@ def test_an_effect_without_which_nothing_holds_has_no_estimate() -> None:
     contacts = tuple(RollingContact(part.name, 1e11, 1.5, 1e-5) for part in bushings)
     found = estimate_influences(replace(scene, bushings=bushings, rolling_contacts=contacts))
     assert "lateral" not in found
-    assert "tilt" in found
+    assert "clearance" in found["tilt"].beyond
+    assert found["tilt"].words.endswith(found["tilt"].beyond)
+    linear = estimate_influences(helical())
+    assert not any(size.beyond for size in linear.values())
+    assert all(size.level.order <= 10.0 for size in linear.values())
+
+
+def test_conditions_pass_all_speeds_of_the_run() -> None:
+    """Also those before the first moment that is looked at, and after the last."""
+    law = TimeLaw((0.0, 0.1), (10.0, 200.0))
+    scene = in_housing(law)
+    (condition,) = operating_conditions(scene, 0)
+    ends = scene.references[0].speed(np.array([0.0, scene.duration]))
+    np.testing.assert_allclose(condition.span, ends)
+    assert condition.passing(condition.span * [1.001, 0.999]).speed.size == condition.speed.size + 2
 
 
 def test_a_tolerance_leaves_off_what_cannot_be_seen_and_says_so() -> None:
