@@ -67,8 +67,10 @@ class RunOut:
 
         `along` is the distance from its mid-face over the face width. Both broadcast.
         """
-        tilted = self.wobble * along * np.cos(turn - self.wobble_angle)
-        return np.asarray(self.eccentricity * np.cos(turn - self.eccentricity_angle) + tilted)
+        excess = self.eccentricity * np.cos(turn - self.eccentricity_angle)
+        if self.wobble:
+            excess = excess + self.wobble * along * np.cos(turn - self.wobble_angle)
+        return np.asarray(excess)
 
 
 NO_RUN_OUT = RunOut()

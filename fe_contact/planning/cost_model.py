@@ -34,6 +34,8 @@ _PLANE_POSITION, _PLANE_POINT, _PLANE_CANDIDATE = 4e-5, 3e-6, 0.55e-6
 _FACE_POSITION, _FACE_SLICE = 0.4e-6, 2.2e-5
 """Per slice of a tooth pair and square of the elements of a module along the profile, and per slice."""
 _FACE_CANDIDATE = 4.6e-6
+_TOOTH_POINT = 0.25e-6
+"""Gaps of teeth at a touching point."""
 _FACE_TILT = 2.7
 """Assembly with the change of the compliance along sloping flanks, over that without."""
 _PLANE_EXPECTED, _FACE_EXPECTED = 118, 76
@@ -60,14 +62,20 @@ _POINT_NUMBERS = 25
 
 
 class _Work(NamedTuple):
-    """CPU seconds to assemble one position, and to solve one load at it."""
+    """CPU seconds to assemble a position, to solve one load at it, and to find the gaps of one pitch."""
 
     position: float
     point: float
+    pitch: float
 
     def of(self, positions: float, points: float) -> float:
         """Return the CPU seconds of so many positions and points."""
         return positions * self.position + points * self.point
+
+    def in_pitches(self, rows: float, loads: float, pitches: int) -> float:
+        """Return the CPU seconds of rows of positions in so many pitches, at each of some loads."""
+        gaps = self.pitch if pitches > 1 else 0.0
+        return rows * pitches * (loads * self.point + gaps)
 
 
 def _contact_seconds(
@@ -81,13 +89,19 @@ def _contact_seconds(
     """CPU seconds of the search of positions, of the table, and of the solutions that measure its errors."""
     kept, loads = _expected_positions(plan), plan.load.size
     points, distances = alignments[0] * alignments[1], alignments[1]
-    assessed, rows = min(points, _JUDGED), model.period * points
-    tried = expected_tries(plan)
+    assessed = min(points, _JUDGED)
+    tried, window = expected_tries(plan), _searched_pitches(plan, model.period)
     work = unit_work(pair, plan, plan.discretization.slices)
-    search = work.of(tried * distances, tried * assessed * loads)
-    table = work.of(kept * distances, kept * rows * (loads + plan.support.size))
+    search = work.of(tried * distances, 0) + work.in_pitches(tried * assessed, loads, window)
+    table = work.of(kept * distances, 0)
+    table += work.in_pitches(kept * points, loads + plan.support.size, model.period)
     table += _FACE_CHECK if plan.discretization.slices > 1 else 0.0
     return search, table, _errors(pair, plan, model.period, alignments) if with_errors else 0.0
+
+
+def _searched_pitches(plan: Plan, period: int) -> int:
+    """Return in how many base pitches the search solves a position: each assessed one has two beside it."""
+    return 1 if period == 1 else 3 * min(plan.nodes.assessed_pitches, period)
 
 
 def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, int]) -> float:
@@ -101,10 +115,12 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
         rougher.append(work)
     some, rows = min(loads, LOADS), some_positions(kept).size
     skews, distances = (min(count, ALIGNMENTS) for count in alignments)
-    seconds = sum(w.of(rows * distances, rows * period * skews * distances * some) for w in rougher)
+    seconds = sum(
+        w.of(rows * distances, 0) + w.in_pitches(rows * skews * distances, some, period) for w in rougher
+    )
     if plan.positions is not None:
         middles, assessed = _SOLVED_MIDDLES * kept, min(alignments[0] * alignments[1], _JUDGED)
-        seconds += work.of(middles * alignments[1], middles * period * assessed * some)
+        seconds += work.of(middles * alignments[1], 0) + work.in_pitches(middles * assessed, some, period)
     held_out_loads = (loads - 1) * (WIDE_PROBES if loads - 1 <= WIDE_INTERVALS else 1)
     held = rows * (held_out_loads + (alignments[0] - 1) * some)
     apart = _HELD_OUT_DISTANCES * (alignments[1] - 1)
@@ -138,10 +154,11 @@ def unit_work(pair: ParallelAxes, plan: Plan, slices: int) -> _Work:
     made = plan.discretization
     count = _candidates(pair, slices)
     if not isinstance(made, FaceDiscretization):
-        return _Work(_PLANE_POSITION, _PLANE_POINT + _PLANE_CANDIDATE * count)
+        return _Work(_PLANE_POSITION, _PLANE_POINT + _PLANE_CANDIDATE * count, _TOOTH_POINT * count)
     elements = max(pair.pinion.normal_module / recipe.flank_size for recipe in made.recipes)
     position = (_FACE_POSITION * elements**2 + _FACE_SLICE) * count
-    return _Work(_FACE_TILT * position if _with_tilt(pair, plan) else position, _FACE_CANDIDATE * count)
+    tilted = _FACE_TILT * position if _with_tilt(pair, plan) else position
+    return _Work(tilted, _FACE_CANDIDATE * count, _TOOTH_POINT * POINTS * count)
 
 
 def expected_tries(plan: Plan) -> int:

@@ -279,15 +279,15 @@ def solved(tmp_path_factory):
     """STE (23 pitches x 8 positions, 2 loads) of a plane pair in m."""
     cache, position = tmp_path_factory.mktemp("compliance"), np.arange(8) / 8
 
-    def solve(pair):
+    def solve(pair, position=position, pitches=23):
         request = table_request(torques=(1e-3, 100.0), level="draft", effects={"corner_contact": "off"})
         checked = check_request(pair, *request, whole_table=False)
         plan = make_plan(pair, checked.request.load, checked.request.options, checked.model)
         contact = pair_contact(pair, plan, cache)
         (place,) = operating_points(checked.request.scene, checked.request.choices, contact).places
-        solution = place.solve(position, plan.load, np.repeat(np.arange(23), position.size))[1]
+        solution = place.solve(position, plan.load, np.repeat(np.arange(pitches), position.size))[1]
         assert solution.converged
-        return solution.deflection.reshape(23 * position.size, -1)
+        return solution.deflection.reshape(pitches * position.size, -1)
 
     return solve
 
@@ -338,6 +338,25 @@ def test_a_wave_is_a_ghost_order_of_its_amplitude(solved, plain, order):
     assert 0.9 * AMPLITUDE < heavy[order] < AMPLITUDE
     for lines in (light, heavy):
         assert np.delete(lines, [0, order]).max() < 2e-2 * AMPLITUDE
+
+
+def test_pitches_at_random_have_the_orders_of_their_sequences(solved):
+    """One pair of teeth in contact: each gear's orders are its teeth's, and nothing else holds energy."""
+    own = [np.random.default_rng(seed).normal(0.0, 2e-6, count) for seed, count in enumerate((23, 67))]
+    sequences = [each - each.mean() for each in own]
+    deviations = [{"pitch_deviation": PitchDeviation(tuple(each))} for each in sequences]
+    pair = GearPair(gear(23, **deviations[PINION]), gear(67, **deviations[WHEEL]), axial_offset=0.0)
+    cycle, pitch_point = 23 * 67, np.zeros(1)
+    transverse = math.cos(pair.pinion.transverse_pressure_angle)
+    found = solved(pair, pitch_point, cycle)[:, 0] - solved(pair_of("spur", PINION), pitch_point)[0, 0]
+    lines = np.fft.rfft(found) / cycle
+    expected = np.zeros(lines.size, dtype=complex)
+    for sequence, other in zip(sequences, (67, 23), strict=True):
+        teeth = np.fft.rfft(sequence) / sequence.size
+        expected[: other * teeth.size : other] -= transverse * teeth
+    assert np.abs(lines - expected).max() < 1e-9 * np.abs(expected).max()
+    energy = transverse**2 * sum(np.mean(each**2) for each in sequences)
+    assert np.mean(found**2) == pytest.approx(energy, rel=1e-9)
 
 
 @pytest.mark.parametrize(("order", "holds"), [(11, True), (400, False)])
