@@ -10,6 +10,7 @@ from pydantic import ConfigDict, Field, model_validator
 from fe_contact.body import Shaft
 from fe_contact.flank.modification import FlankModification
 from fe_contact.geometry.gear import Gear
+from fe_contact.geometry.tooth_flank import MOST_NODES
 from fe_contact.geometry.toothing import MATING, Toothing
 from fe_contact.material import Material
 from lineofaction.gearbox.schemas.declared import (
@@ -93,6 +94,15 @@ class ToothingInput(_ToothingFigures):
         if self.pitch_deviation_um and self.single_pitch_deviation_um:
             bound = "left out when pitch_deviation_um is given"
             refuse("single_pitch_deviation_um", "given", bound, "One follows from the other.")
+        return self
+
+    @model_validator(mode="after")
+    def _few_nodes(self) -> Self:
+        """Refuse surfaces of teeth that take long to look through, before any is."""
+        grids = [flank.flank_grid for flank in getattr(self, "tooth_flanks", ()) if flank.flank_grid]
+        nodes = sum(len(grid.roll_length_mm) * len(grid.face_position_mm) for grid in grids)
+        if nodes > MOST_NODES:
+            refuse("tooth_flanks", f"{nodes} nodes", f"at most {MOST_NODES} nodes of all surfaces")
         return self
 
 

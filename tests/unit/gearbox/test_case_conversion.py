@@ -299,6 +299,11 @@ def test_a_modulus_below_that_of_rubber_is_refused() -> None:
 
 
 INLINE = {"roll_length_mm": [4.0, 19.0], "face_position_mm": [-5.0, 5.0], "removed_um": [[0, 0], [1, 2]]}
+TOO_FINE = {
+    "roll_length_mm": [0.01 * k for k in range(500)],
+    "face_position_mm": [0.01 * k for k in range(300)],
+    "removed_um": [[0.0, 0.0]] * 2,
+}
 HEADING = "roll_length_mm,face_position_mm,removed_um"
 ROWS = [f"{roll},{face},{roll * face / 10}" for roll in (4.5, 10, 19) for face in (-12.5, 0, 12.5)]
 CASE_WITH_GRID = (
@@ -461,6 +466,10 @@ def test_flanks_of_teeth_arrive_in_si() -> None:
         (
             {"tooth_flanks": [{"tooth": 1, "flank_grid": INLINE | {"removed_um": [[0, 0], [1]]}}]},
             "pair.pinion.tooth_flanks[0].flank_grid.removed_um[1]",
+        ),
+        (
+            {"tooth_flanks": [{"tooth": k, "flank_grid": TOO_FINE} for k in (1, 2)]},
+            "pair.pinion.tooth_flanks",
         ),
         ({"single_pitch_deviation_um": [1.0] * 19}, "pair.pinion.single_pitch_deviation_um"),
         (
