@@ -3,13 +3,22 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 import pytest
-from page_visit import CASE, Visit, answered, choose_case, computed, control, opened, tab
+from page_visit import (
+    CASE,
+    Visit,
+    answered,
+    choose_case,
+    computed,
+    control,
+    opened,
+    other_browser,
+    shows_the_same,
+    tab,
+)
 from playwright.sync_api import Browser, Page, Route, expect
 from running_service import until
 
@@ -47,21 +56,6 @@ def test_a_reload_shows_what_was_typed_if_the_browser_loses_its_entry(visit: Vis
     page.reload()
     expect(page.locator("#f-pair-pinion-tip_relief_um")).to_have_value("7")
     expect(page.locator("#results-design")).to_contain_text(EDITED)
-
-
-def test_back_and_forward_show_what_they_showed(visit: Visit, analyzed: str) -> None:
-    page = visit.page
-    type_relief(page)
-    page.locator("#example").select_option("internal_gear")
-    expect(page.locator("#f-pair-wheel-teeth")).to_have_value("96")
-    expect(page.locator("#results-design")).to_contain_text("pinion teeth 20 → 36")
-    page.go_back()
-    expect(page.locator("#f-pair-wheel-teeth")).to_have_value("20")
-    expect(page.locator("#results-design")).to_contain_text(EDITED)
-    page.go_forward()
-    expect(page.locator("#f-pair-wheel-teeth")).to_have_value("96")
-    assert page.locator("#example").input_value() == "internal_gear"
-    assert analyzed in page.url
 
 
 def test_a_result_says_of_which_design_it_is_and_leads_back(visit: Visit) -> None:
@@ -165,34 +159,6 @@ def test_a_study_whose_answer_is_lost_is_asked_again(visit: Visit, address: str,
     page.reload()
     tab(page, "Tolerance")
     expect(page.locator("[data-figure=scatter] .plot")).to_have_attribute("data-drawn", "yes")
-
-
-TYPED = """() => Object.fromEntries(
-  [...document.querySelectorAll("#main :is(input, select, textarea)[id]")]
-    .filter((control) => !control.matches("[type=file], #jobs-search, #example"))
-    .map(({ id, value }) => [id, value]))"""
-
-
-@contextmanager
-def other_browser(browser: Browser, address: str) -> Iterator[Page]:
-    context = browser.new_context()
-    page = context.new_page()
-    page.goto(address)
-    page.wait_for_selector("html[data-ready=yes]")
-    yield page
-    context.close()
-
-
-def typed(page: Page) -> dict[str, str]:
-    fields: dict[str, str] = page.evaluate(TYPED)
-    return fields
-
-
-def shows_the_same(page: Page, sent: Page) -> None:
-    """Wait until all controls of two pages hold the same: what is typed live comes with its first answer."""
-    with suppress(AssertionError):
-        until(lambda: typed(page) == typed(sent))
-    assert typed(page) == typed(sent)
 
 
 def entered(address: str, process: str, **inputs: Any) -> str:
@@ -336,20 +302,6 @@ def test_openings_file_no_job(browser: Browser, address: str) -> None:
             with other_browser(browser, address) as page:
                 expect(page.locator("#live-ripple .plot")).to_have_attribute("data-drawn", "yes")
         assert [job.id for job in client.jobs(process="analyze")] == before
-
-
-def test_a_design_that_nobody_computed_is_sent_by_its_address(visit: Visit, browser: Browser) -> None:
-    page = visit.page
-    type_relief(page)
-    tab(page, "Load")
-    expect(page).to_have_url(re.compile("#database=.*&tab=load&case=|#database=.*&case=.*&tab=load"))
-    with other_browser(browser, page.url) as other:
-        expect(other.locator("#f-pair-pinion-tip_relief_um")).to_have_value("7")
-        expect(other.locator("#results-design")).to_contain_text(EDITED)
-        expect(other.locator("#load")).to_be_visible()
-        shows_the_same(other, page)
-    control(page, "#f-pair-pinion-tip_relief_um").fill("")
-    expect(page).not_to_have_url(re.compile("case="))
 
 
 def test_the_same_design_analyzed_again_is_the_same_job(visit: Visit) -> None:

@@ -1,4 +1,4 @@
-"""Live flanks follow the sliders; two results on one pair of axes, one kept as reference."""
+"""Live flanks follow the sliders; two results on one pair of axes, of variants."""
 
 from __future__ import annotations
 
@@ -52,54 +52,18 @@ def change(page: Page) -> str:
     return page.locator("#live-figures dd small").first.text_content() or ""
 
 
-def test_flanks_are_compared_with_those_that_were_kept(visit: Visit, tmp_path: Path) -> None:
-    page = visit.page
-    assert set(curves(page, tmp_path)) == {"as analyzed", "now"}
-    moved(page, "#live-pinion-tip_relief_um", "End")
-    relieved = curves(page, tmp_path)["now"]
-    count = answers(page)
-    tab(page, "Flanks, live")
-    page.get_by_role("button", name="Keep as reference").press("Enter")
-    until(lambda: answers(page) > count)
-    expect(page.locator("#kept-words")).to_contain_text("20/20, pinion tip relief 20 µm")
-    assert re.search(r"\+0 %$", change(page)), "itself is the reference"
-    moved(page, "#live-pinion-tip_relief_um", "Home")
-    expect(page.locator("#kept-words")).to_contain_text(
-        "differs from what is shown: pinion tip relief 20 µm (now 0 µm)"
-    )
-    found = curves(page, tmp_path)
-    assert found["reference"] == relieved
-    assert found["now"] == found["as analyzed"] != relieved
-    bars = control(page, "[data-figure=live_harmonics] .plot").locator(".barlayer .trace")
-    expect(bars).to_have_count(3)
-    count = answers(page)
-    tab(page, "Flanks, live")
-    page.get_by_role("button", name="Forget the reference").press("Enter")
-    until(lambda: answers(page) > count)
-    assert page.evaluate("document.activeElement.id") == "keep", "the button that had the focus is gone"
-    assert "reference" not in curves(page, tmp_path)
-
-
 @pytest.mark.nightly
 def test_another_pair_is_compared_at_the_torque_that_is_looked_at(
-    visit: Visit, other: str, tmp_path: Path
+    browser: Browser, address: str, analyzed: str, other: str, tmp_path: Path
 ) -> None:
+    visit = opened(browser, f"{address}/#database={other}&a={analyzed}&on=b")
     page = visit.page
-    count = answers(page)
-    tab(page, "Flanks, live")
-    page.get_by_role("button", name="Keep as reference").press("Enter")
-    until(lambda: answers(page) > count)
-    tab(page, "Jobs")
-    row = page.get_by_role("row").filter(has=page.get_by_role("button", name=re.compile("Open analyze")))
-    count = answers(page)
-    row.first.get_by_role("button", name=re.compile("^Open")).press("Enter")  # the newest: the other pair
-    expect(page).to_have_url(re.compile(other))
-    until(lambda: answers(page) > count)
-    assert "24" in (page.locator("#f-pair-wheel-teeth").input_value())
-    one = curves(page, tmp_path)["reference"]
+    until(lambda: answers(page) > 0)
+    assert page.locator("#f-pair-wheel-teeth").input_value() == "24"
+    one = curves(page, tmp_path)["A"]
     moved(page, "#live-torque_n_m", "End")
-    two = curves(page, tmp_path)["reference"]
-    assert 1.6 < sum(two) / sum(one) < 2.0, "twice the torque: the reference follows"
+    two = curves(page, tmp_path)["A"]
+    assert 1.6 < sum(two) / sum(one) < 2.0, "twice the torque: the other variant follows"
     unfold(page)
     assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)
     assert visit.complaints == []
@@ -117,13 +81,10 @@ def test_in_three_dimensions_misalignment_and_crowning_act(
     moved(page, "#live-pinion-helix_crowning_um", "End")
     assert page.locator("#live-pinion-helix_crowning_um").get_attribute("aria-valuetext") == "30 µm"
     tab(page, "Flanks, live")
-    page.get_by_role("button", name="Keep as reference").press("Enter")
-    kept = page.locator("#kept-words")
-    expect(kept).to_contain_text("pinion helix crowning 30 µm, misalignment 50 µm")
     count = answers(page)
     page.get_by_role("button", name="As analyzed").press("Enter")
     until(lambda: answers(page) > count)
-    expect(kept).to_contain_text("pinion helix crowning 30 µm (now 0 µm), misalignment 50 µm (now 0 µm)")
+    expect(page.locator("#live-figures dd").first).to_have_text(before or "")
     tab(page, "Flank")
     page.get_by_role("button", name="Compute flank pressure").press("Enter")
     pattern = page.locator("[data-figure=contact_pattern] .plot")

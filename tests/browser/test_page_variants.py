@@ -42,6 +42,9 @@ def test_a_variant_begins_as_a_copy_and_moves_by_itself(visit: Visit, analyzed: 
     page.wait_for_timeout(500)  # drawn in a moment
     found = curves(page)
     assert found["A"] == same["A"] != found["B"]
+    page.get_by_role("button", name="Variant A").press("Enter")
+    expect(page.locator("#live-pinion-tip_relief_um")).to_have_value("0")
+    until(lambda: curves(page).get("B") == found["B"])  # with its moved flanks
     assert visit.complaints == []
 
 

@@ -116,7 +116,16 @@ def test_a_unit_turns_when_its_file_opens_and_a_mesh_that_is_clicked_opens_its_p
     page.locator("#import-file").set_input_files(UNIT)
     said = page.locator("#view [role=status]")
     expect(said).to_contain_text("click a mesh")
-    assert len(np.unique(picture(page).reshape(-1, 3), axis=0)) > 50
+    plain = picture(page)
+    assert len(np.unique(plain.reshape(-1, 3), axis=0)) > 50
+    part_of_tree = page.get_by_role("button", name="wheel 1", exact=True)
+    part_of_tree.press("Enter")
+    expect(part_of_tree).to_have_attribute("aria-pressed", "true")
+    expect(page.locator("#unit [role=status]")).to_contain_text("wheel 1: gear on intermediate")
+    marked = picture(page)
+    assert different(plain, marked) > 0.002
+    assert np.any((marked[..., 0] > 1.5 * marked[..., 2]) & (marked[..., 0] > 120)), "marked in orange"
+    assert found_inaccessible(page, "#unit") == {}
     box = page.locator(CANVAS).bounding_box()
     assert box is not None
     for part in np.linspace(0.3, 0.7, 12):
@@ -124,6 +133,9 @@ def test_a_unit_turns_when_its_file_opens_and_a_mesh_that_is_clicked_opens_its_p
         if "click a mesh" not in said.inner_text():
             break
     expect(page.locator("#f-pair-pinion-teeth")).to_have_value(re.compile("^(25|21)$"))
+    page.get_by_role("button", name="second stage, 21/74").press("Enter")
+    expect(page.locator("#f-pair-wheel-teeth")).to_have_value("74")
+    assert "see=" not in page.url
     assert view.complaints == []
 
 

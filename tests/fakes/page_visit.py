@@ -7,7 +7,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -159,3 +159,32 @@ def found_inaccessible(page: Page, part: str = "html") -> dict[str, list[str]]:
     """Return what axe-core finds to complain about, by rule; a whole page with plots takes it 3 CPU s."""
     found = Axe().run(page, context=part).response["violations"]
     return {rule["id"]: [node["html"][:160] for node in rule["nodes"]] for rule in found}
+
+
+TYPED = """() => Object.fromEntries(
+  [...document.querySelectorAll("#main :is(input, select, textarea)[id]")]
+    .filter((control) => !control.matches("[type=file], #jobs-search, #example"))
+    .map(({ id, value }) => [id, value]))"""
+
+
+@contextmanager
+def other_browser(browser: Browser, address: str, ready: str = "html[data-ready=yes]") -> Iterator[Page]:
+    """Open an address in a browser that has nothing of the others; gives its page when it is ready."""
+    context = browser.new_context()
+    page = context.new_page()
+    page.goto(address)
+    page.wait_for_selector(ready)
+    yield page
+    context.close()
+
+
+def typed(page: Page) -> dict[str, str]:
+    fields: dict[str, str] = page.evaluate(TYPED)
+    return fields
+
+
+def shows_the_same(page: Page, sent: Page) -> None:
+    """Wait until all controls of two pages hold the same: what is typed live comes with its first answer."""
+    with suppress(AssertionError):
+        until(lambda: typed(page) == typed(sent))
+    assert typed(page) == typed(sent)

@@ -5,7 +5,8 @@
 export const HASH = /^[0-9a-f]{64}$/;
 export const JOB = /^[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}$/;
 const DESIGN = /^[\w-]+$/; // typed (see packed.js), a job or a result
-const VIEWS = { tab: /^[a-z]+$/, case: DESIGN, on: /^[abc]$/, a: DESIGN, b: DESIGN, c: DESIGN };
+const VARIANT = /^[\w.-]+$/; // a design, a result and its moved flanks, or a file
+const VIEWS = { tab: /^[a-z]+$/, case: DESIGN, live: DESIGN, name: /./, at: /^\d(\.\d+)?$/, unit: VARIANT, see: /./, on: /^[abc]$/, a: VARIANT, b: VARIANT, c: VARIANT };
 const LEFT = "left";
 
 /**
@@ -13,7 +14,6 @@ const LEFT = "left";
  * @property {Record<string, string>} [fields] everything typed, by the id of its control
  * @property {{key: string, fields: Record<string, string>}} [ofResult] the same of the controls that belong to one result
  * @property {{example: string, note: string, replaced?: string}} [origin] what the design began with
- * @property {{known: object, question: object}} [reference] the result kept to compare with
  */
 
 export class Address {
@@ -39,22 +39,22 @@ export class Address {
     /** @type {string[]} */
     this.faults = [];
     this.section = "";
-    const text = decodeURIComponent(location.hash.slice(1));
-    if (text && !text.includes("=")) this.section = text;
+    const text = location.hash.slice(1);
+    if (text && !text.includes("=")) this.section = decoded(text);
     else for (const part of text.split("&").filter(Boolean)) this.readPart(part);
     if (this.section && !document.querySelector(`section#${CSS.escape(this.section)}`)) this.faults.push(this.section);
   }
 
   /** @param {string} part */
   readPart(part) {
-    const [name, value] = part.split("=");
+    const [name, value] = part.split("=").map(decoded);
     if (VIEWS[name]?.test(value ?? "")) {
       this.views.set(name, value);
       return;
     }
     const pattern = name === "database" ? HASH : this.places.has(name) ? JOB : null;
     if (pattern?.test(value ?? "")) this.names.set(name, value);
-    else this.faults.push(part);
+    else this.faults.push(decoded(part));
   }
 
   /** @param {string} name */
@@ -65,9 +65,16 @@ export class Address {
   /** Say which tab or design is looked at; null: the usual one. @param {string} name @param {string | null} value */
   look(name, value) {
     if ((this.views.get(name) ?? null) === value) return;
-    if (value) this.views.set(name, value);
-    else this.views.delete(name);
+    this.view({ [name]: value });
     this.keep({});
+  }
+
+  /** Change views, to be kept with what comes next. @param {Record<string, string | null>} views null: as usual */
+  view(views) {
+    for (const [name, value] of Object.entries(views)) {
+      if (value) this.views.set(name, value);
+      else this.views.delete(name);
+    }
   }
 
   /**
@@ -94,12 +101,13 @@ export class Address {
    * Go on to an entry that shows one thing alone, with the design that it was computed from.
    * @param {string} name
    * @param {string} value
+   * @param {string} title what it is called
    */
-  open(name, value) {
+  open(name, value, title) {
     this.keep(this.typed());
     this.names = new Map([[name, value]]);
-    this.views.delete("case");
-    this.kept = { reference: this.kept.reference };
+    this.view({ case: null, live: null, at: null, unit: null, see: null, name: title || null });
+    this.kept = {};
     this.faults = [];
     history.pushState(this.kept, "", this.text);
   }
@@ -113,10 +121,7 @@ export class Address {
   turn(names, views, kept = this.kept) {
     this.keep(this.typed());
     this.names = new Map(Object.entries(names));
-    for (const [name, value] of Object.entries(views)) {
-      this.views.delete(name);
-      if (value) this.views.set(name, value);
-    }
+    this.view(views);
     this.kept = kept;
     this.faults = [];
     history.pushState(this.kept, "", this.text);
@@ -160,13 +165,22 @@ export class Address {
 
   /** Whether it says nothing at all. */
   get empty() {
-    return !this.names.size && !this.section && !this.faults.length && !this.views.has("case");
+    return !this.names.size && !this.section && !this.faults.length && !this.views.has("case") && !this.views.has("unit");
   }
 
   get text() {
     if (this.faults.length || (this.section && !this.names.size && !this.views.size)) return location.href;
-    const fragment = [...this.names, ...this.views].map((pair) => pair.join("=")).join("&");
+    const fragment = [...this.names, ...this.views].map((pair) => pair.map(encodeURIComponent).join("=")).join("&");
     return `${location.pathname}${location.search}${fragment ? `#${fragment}` : ""}`;
+  }
+}
+
+/** A part of an address as it was written. @param {string} text */
+function decoded(text) {
+  try {
+    return decodeURIComponent(text);
+  } catch {
+    return text;
   }
 }
 

@@ -1,6 +1,7 @@
 /** A study on the page: what it does, its fields, a button, progress and what came out. */
 
 import { make } from "./elements.js";
+import { numberIn, numbersIn } from "./field.js";
 import { at } from "./schema.js";
 
 /**
@@ -22,14 +23,6 @@ function control({ name, label, value = "", choices, list = false }, title) {
   const read = choices ? (text) => text : list ? numbersIn : numberIn;
   return { name, input, read, write, block: make("span", { class: "row" }, make("label", { for: id }, label), input) };
 }
-
-/** A number as typed; text that is none passes as it is, for the service to refuse by name. */
-function numberIn(text) {
-  const value = Number(text.replace(",", "."));
-  return Number.isFinite(value) ? value : text;
-}
-
-const numbersIn = (text) => text.split(/[,;\s]+/).filter(Boolean).map(numberIn);
 
 /** What was typed, by name, in a table where the name is a path; empty fields are left out. */
 function valuesOf(controls) {

@@ -8,17 +8,14 @@ import { OpenedUnit, isUnit } from "./unit.js";
 export class CaseFiles {
   /**
    * @param {import("./design.js").Design} design
-   * @param {(name: string, unit: object) => Promise<void>} openScene of a gear unit
+   * @param {ConstructorParameters<typeof OpenedUnit>[1]} page of a gear unit
    */
-  constructor(design, openScene) {
+  constructor(design, page) {
     this.design = design;
-    this.unit = new OpenedUnit(design, openScene);
-    byId("export-json").addEventListener("click", () => {
-      save(`${JSON.stringify(design.case, null, 2)}\n`, "case.json", "application/json");
-    });
+    this.unit = new OpenedUnit(design, page);
     byId("export-toml").addEventListener("click", () => this.careful(async () => {
       const { toml } = await post("/v1/cases/to-toml", { inputs: { case: design.case } });
-      save(toml, "case.toml", "application/toml");
+      save(toml, `${design.name || "case"}.toml`, "application/toml");
     }));
     byId("import-file").addEventListener("change", (event) => this.careful(() => this.open(event.target)));
   }
@@ -34,7 +31,7 @@ export class CaseFiles {
     const text = await file.text();
     chosen.value = "";
     const content = file.name.endsWith(".json") ? parsed(text) : (await post("/v1/cases/from-toml", { toml: text })).case;
-    this.design.goTo(content, file.name);
+    this.design.goTo(content, file.name, { name: file.name.replace(/\.\w+$/, "") });
   }
 
   /** Do something that the service may refuse; say so at the form. */

@@ -27,6 +27,7 @@ export class Design {
     this.examples = [...examples, EMPTY];
     this.watchers = [];
     this.settled = () => {}; // called when nobody has typed for a moment
+    this.left = () => {}; // called when another design is put into the form
     this.stands = false; // whether the form holds what the address says, or what was typed since
     this.drawing = new Drawing();
     this.view = new View(byId("view"));
@@ -41,6 +42,11 @@ export class Design {
 
   get case() {
     return this.form.case;
+  }
+
+  /** What it is called. */
+  get name() {
+    return byId("name").value.trim();
   }
 
   /** Fields of the case, each with its words. */
@@ -59,7 +65,7 @@ export class Design {
     list.replaceChildren(opened, ...this.examples.map(({ name, title }) => make("option", { value: name }, title)));
     list.addEventListener("change", () => {
       const { name, note, case: content } = this.examples.find((example) => example.name === list.value);
-      this.goTo(content, note, name);
+      this.goTo(content, note, { example: name, name: "" });
     });
   }
 
@@ -85,10 +91,14 @@ export class Design {
    * Put another design into the form: a new entry of the history, so that the way back leads to the one that is replaced.
    * @param {object} content a case
    * @param {string} note where it comes from
-   * @param {string} [example] its name in the list
+   * @param {{example?: string, name?: string}} [as] its name in the list, and what it is called; left out: as before, and of the
+   *   same unit
    */
-  goTo(content, note, example = "") {
+  goTo(content, note, { example = "", name } = {}) {
     this.address.push({});
+    this.address.view(name === undefined ? { see: null } : { see: null, unit: null, name });
+    if (name !== undefined) byId("name").value = name;
+    this.left();
     const replaced = differences(this.fields, this.case, content).filter(({ field }) => field.path[0] !== "pair");
     this.show(content, { example, note, replaced: settingsReplaced(replaced) });
     this.settled();

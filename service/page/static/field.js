@@ -24,10 +24,12 @@ export function wordsOf(name) {
 const spokenChoice = (text) => ({ true: "yes", false: "no" })[text] ?? text.replaceAll("_", " ");
 
 /** A number as typed; text that is none passes as it is, for the service to refuse by name. */
-function typed(text) {
+export function numberIn(text) {
   const value = Number(text.replace(",", "."));
   return text !== "" && Number.isFinite(value) ? value : text;
 }
+
+export const numbersIn = (text) => text.split(/[,;\s]+/).filter(Boolean).map(numberIn);
 
 export class Field {
   constructor(leaf, label) {
@@ -105,9 +107,9 @@ export class Field {
   get value() {
     const text = this.input.value.trim();
     if (text === "") return undefined;
-    if (this.kind === "number") return typed(text);
+    if (this.kind === "number") return numberIn(text);
     if (this.kind === "switch") return text === "true";
-    if (this.kind === "list") return text.split(/[,;\s]+/).filter(Boolean).map(typed);
+    if (this.kind === "list") return numbersIn(text);
     if (this.kind === "json") {
       try {
         return JSON.parse(text);

@@ -12,10 +12,10 @@ const LONGEST_LOOK = 1000;
  * Submit a job, or take the equal one that is under way or done: so one whose answer was lost with the connection is submitted again.
  * @param {HTMLElement} target where it is said that the service is asked in vain
  * @param {string} process
- * @param {object} inputs
+ * @param {{inputs: object, title: string}} order what it is to compute, and what it is called
  */
-export async function submitted(target, process, inputs) {
-  const status = await patiently(() => post(`/v1/processes/${process}/execution`, { inputs, reuse: true }), (problem) => {
+export async function submitted(target, process, order) {
+  const status = await patiently(() => post(`/v1/processes/${process}/execution`, { ...order, reuse: true }), (problem) => {
     target.replaceChildren(...(problem ? [make("p", { class: "hint", role: "status" }, `${problem.message} ${AGAIN}`)] : []));
   });
   document.dispatchEvent(new Event("jobs-changed"));
@@ -124,11 +124,13 @@ export async function cancelled(id, line) {
   }
 }
 
+/** What is wrong, fault by fault. @param {Problem} problem */
+export function faultsOf(problem) {
+  const faults = problem.errors.map((fault) => make("li", {}, `${fault.field} must be ${fault.bound}. ${fault.suggestion || ""}`));
+  return faults.length ? make("ul", {}, ...faults) : make("p", {}, problem.message);
+}
+
 /** Say why there is no result. */
 export function showFailure(target, problem) {
-  const faults = problem.errors.map((fault) => make("li", {}, `${fault.field} must be ${fault.bound}. ${fault.suggestion || ""}`));
-  target.replaceChildren(make(
-    "div", { role: "alert" }, make("strong", {}, problem.facts.title || "It failed"),
-    faults.length ? make("ul", {}, ...faults) : make("p", {}, problem.message),
-  ));
+  target.replaceChildren(make("div", { role: "alert" }, make("strong", {}, problem.facts.title || "It failed"), faultsOf(problem)));
 }

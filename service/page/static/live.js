@@ -3,16 +3,15 @@
 import { Problem, pause, post } from "./api.js";
 import { byId, dataTable, figures, folded, make, number } from "./elements.js";
 import { SHOWN_HARMONICS, harmonicsFigure, sharingFigure, steFigure } from "./live_figures.js";
+import { faultsOf } from "./job.js";
 import { LiveFlanks } from "./live_flanks.js";
 import { mainFigures, numbersOf, sourcesOf } from "./live_numbers.js";
 import { LiveSound } from "./live_sound.js";
 import { figureBlock, plot } from "./plots.js";
-import { Reference } from "./reference.js";
 import { Sliders } from "./sliders.js";
 
 const STYLES = {
   before: { name: "as analyzed", color: "#767676", width: 1.8, dash: "dash" },
-  kept: { name: "reference", color: "#B34C00", width: 2, dash: "dot" },
   now: { name: "now", color: "#0072B2", width: 2.4, dash: "solid" },
   a: { name: "A", color: "#0072B2", width: 2.4, dash: "solid" },
   b: { name: "B", color: "#D55E00", width: 2.4, dash: "solid" },
@@ -25,17 +24,16 @@ const AWAY = 2; // seconds after which a service that does not answer is asked a
 export class Live {
   /**
    * @param {object} page
-   * @param {import("./address.js").Address} page.address keeps the reference
    * @param {import("./design.js").Design} page.design
+   * @param {import("./variants.js").Variants} page.variants
    * @param {string} page.caller by whom curves are asked for
    * @param {{take: (flanks: object) => void, inThreeDimensions: () => void}} actions
    */
-  constructor({ address, design, variants, caller }, actions) {
-    Object.assign(this, { address, design, variants, caller, actions });
+  constructor({ design, variants, caller }, actions) {
+    Object.assign(this, { design, variants, caller, actions });
     this.others = [];
     this.waiting = null;
     this.busy = false;
-    this.kept = null;
   }
 
   /**
@@ -72,14 +70,10 @@ export class Live {
     ]);
   }
 
-  /** The sliders and the reference stand where the address left them: draw that. */
+  /** The sliders stand where the address left them: draw that. */
   async restored() {
     this.others = await this.variants.others();
-    const { reference } = this.address.kept;
-    const same = JSON.stringify(reference) === JSON.stringify(this.kept && { known: this.kept.known, question: this.kept.question });
-    if (!same) this.kept = reference ? new Reference(reference.known, reference.question) : null;
     this.sliders.told();
-    this.sayKept();
     this.ask();
   }
 
@@ -90,64 +84,23 @@ export class Live {
       make("p", { class: "hint" }, "Computed in the plane: misalignment, crowning and all else that acts across the face need three dimensions."),
       make("button", { type: "button", onclick: () => this.actions.inThreeDimensions() }, "Analyze in three dimensions"),
     ) : null;
-    const button = (text, action, id) => make("button", { type: "button", id, onclick: action }, text);
+    const button = (text, action) => make("button", { type: "button", onclick: action }, text);
     byId("sliders").replaceChildren(
       ...this.sliders.blocks, note ?? "",
       make(
         "div", { class: "buttons" },
         button("As analyzed", () => this.sliders.reset()),
         button("Take these flanks into the case", () => this.actions.take(this.sliders.flanks)),
-        button("Keep as reference", () => this.keep(), "keep"),
-        button("Forget the reference", () => this.forget(), "forget"),
       ),
-      make("p", { class: "hint", id: "kept-words" }, make("span", { id: "kept-name", role: "status" }), " ", make("span", { id: "kept-differs" })),
     );
     byId("quick").replaceChildren();
     this.sliders.follow(byId("quick"));
-    this.sayKept();
-  }
-
-  /** Keep what is shown now, to draw it beside other flanks and other results. */
-  keep() {
-    this.reference(new Reference(this.known, this.question()));
-  }
-
-  forget() {
-    this.reference(null);
-    byId("keep").focus();
-  }
-
-  reference(kept) {
-    this.kept = kept;
-    this.address.keep({ reference: kept ? { known: kept.known, question: kept.question } : null });
-    this.sayKept();
-    this.ask();
-  }
-
-  sayKept() {
-    byId("forget").hidden = !this.kept;
-    const fields = [...this.design.fields];
-    said(byId("kept-name"), this.kept
-      ? `Reference: ${this.kept.words(fields)}. Changes in per cent are against it; it stays when another result is opened.`
-      : "A reference stays when another result is opened: two pairs on one pair of axes.");
-    said(byId("kept-differs"), this.kept ? this.keptDiffers(fields) : "");
-  }
-
-  /** In what the reference differs, and why it is not drawn if it is not. */
-  keptDiffers(fields) {
-    const changes = this.kept.differs(fields, this.known, this.question());
-    const differs = changes.length ? `It differs from what is shown: ${changes.join(", ")}.` : "It is what is shown.";
-    return this.kept.refusal ? `${differs} Not drawn: ${this.kept.refusal}` : differs;
-  }
-
-  question() {
-    return { misalignment_um: this.sliders.value("misalignment_um"), ...this.sliders.flanks };
   }
 
   /** Ask for where the sliders are now; while an answer is on its way only the newest wish is kept. */
   async ask() {
     if (!this.known) return;
-    this.waiting = { torque_n_m: [this.sliders.value("torque_n_m")], ...this.question() };
+    this.waiting = { ...this.sliders.moved, torque_n_m: [this.sliders.value("torque_n_m")] };
     if (this.busy) return;
     this.busy = true;
     try {
@@ -165,18 +118,16 @@ export class Live {
       const begin = performance.now();
       await this.baseline(waiting.torque_n_m, key);
       const others = [];
-      for (const { name, reference } of this.others) {
-        const curve = await reference.at(waiting.torque_n_m[0], `${this.caller}-${name}`);
-        if (curve) others.push({ ...STYLES[name], curve, known: reference.known });
+      for (const other of this.others) {
+        const curve = await other.at(waiting.torque_n_m[0], this.caller);
+        if (curve) others.push({ ...STYLES[other.name], curve, known: other.known });
       }
-      const kept = await this.kept?.at(waiting.torque_n_m[0], `${this.caller}-kept`) ?? null;
       const found = await post(`/v1/databases/${key}/ste`, { ...waiting, flanks: true, passage: true, caller: this.caller });
       const round = performance.now() - begin;
       if (key !== this.known?.key) return;
       this.roll(found.curves[0]);
-      await this.draw(found.curves[0], kept, others);
+      await this.draw(found.curves[0], others);
       this.timed(round, performance.now() - begin, found);
-      this.sayKept();
       byId("live-errors").hidden = true;
     } catch (problem) {
       if (!(problem instanceof Problem)) throw problem;
@@ -206,8 +157,7 @@ export class Live {
 
   refuse(problem) {
     const box = byId("live-errors");
-    const lines = problem.errors.map((fault) => make("li", {}, `${fault.field} must be ${fault.bound}. ${fault.suggestion || ""}`));
-    box.replaceChildren(lines.length ? make("ul", {}, ...lines) : make("p", {}, problem.message));
+    box.replaceChildren(faultsOf(problem));
     box.hidden = false;
   }
 
@@ -239,16 +189,13 @@ export class Live {
     byId(PLACES.flanks).replaceChildren(...this.flanks.blocks);
   }
 
-  async draw(now, kept, others) {
+  async draw(now, others) {
     const { before } = this;
-    const curves = Object.entries({ before, kept }).filter(([, curve]) => curve);
     const own = { ...STYLES[others.length ? this.variants.on : "now"], curve: now };
-    const shown = [...curves.map(([style, curve]) => ({ ...STYLES[style], curve })), ...others, own];
-    figures(byId("live-figures"), mainFigures(now, kept ?? others[0]?.curve ?? before));
-    this.sound.show(shown.map(({ name, curve, known }) => {
-      const { case: content } = known ?? (curve === kept ? this.kept.known : this.known);
-      return { name, teeth: content.pair.pinion.teeth, harmonics: curve.harmonics_um.filter(Number.isFinite) };
-    }));
+    const shown = [{ ...STYLES.before, curve: before }, ...others, own];
+    figures(byId("live-figures"), mainFigures(now, others[0]?.curve ?? before));
+    this.sound.show(shown.map(({ name, curve, known = this.known }) => (
+      { name, teeth: known.case.pair.pinion.teeth, harmonics: curve.harmonics_um.filter(Number.isFinite) })));
     await Promise.all([
       plot(this.blocks.ste.node, steFigure(shown)),
       plot(this.blocks.harmonics.node, harmonicsFigure(shown)),
@@ -270,9 +217,4 @@ export class Live {
     this.blocks.harmonics.node.setAttribute("aria-label", `Mesh harmonics 1 to ${SHOWN_HARMONICS}: ${tones} µm.`);
     this.blocks.sharing.node.setAttribute("aria-label", "Load share of each tooth pair over the base pitch.");
   }
-}
-
-/** Say something, if it is not said already: a screen reader hears changes only. */
-function said(node, text) {
-  if (node.textContent !== text) node.textContent = text;
 }

@@ -5,10 +5,9 @@ import { SHOWN_HARMONICS } from "./live_figures.js";
 
 const plusMinus = (error) => (Number.isFinite(error) ? `± ${number(error, 2)}` : "");
 
-function change(value, from) {
-  if (!from) return "";
-  return `${value >= from ? "+" : "−"}${number(Math.abs(100 * (value / from - 1)), 3)} %`;
-}
+const signed = (value, digits) => `${value < 0 ? "−" : "+"}${number(Math.abs(value), digits)}`;
+const change = (value, from) => (from ? `${signed(100 * (value / from - 1), 3)} %` : "");
+const decibels = (value, from) => (from && value ? `${signed(20 * Math.log10(value / from), 2)} dB` : "");
 
 /** Pressure at edges, apart from that of the flank; nothing where no contact reaches one. */
 export function edgeWords({ edge_pressure_mpa: edge }) {
@@ -32,18 +31,18 @@ export function sourcesOf({ bias, error_by_source_um: errors }) {
 /** Main figures of a curve, each with its error and its change from another. */
 export function mainFigures(now, from) {
   const remarks = (...words) => words.filter(Boolean).join("; ");
-  const entry = (name, value, error, other, source) => [
-    name, `${number(value, 3)} µm`, remarks(plusMinus(ownError(now, error, source)), change(value, other)),
+  const entry = (name, value, error, other, source, changed = change) => [
+    name, `${number(value, 3)} µm`, remarks(plusMinus(ownError(now, error, source)), changed(value, other)),
   ];
   const { k_h_beta: factor, largest_pressure_mpa: pressure } = now.flanks;
   const entries = [
     entry("peak to peak", now.peak_to_peak_um, now.peak_to_peak_error_um, from.peak_to_peak_um, "peak_to_peak"),
     entry("mean", now.mean_um, now.mean_error_um, from.mean_um, "mean"),
-    entry("first harmonic", now.harmonics_um[0], now.harmonics_error_um?.[0], from.harmonics_um[0], "first_harmonic"),
+    entry("first harmonic", now.harmonics_um[0], now.harmonics_error_um?.[0], from.harmonics_um[0], "first_harmonic", decibels),
     ["largest pressure", `${number(pressure, 4)} MPa`, remarks(edgeWords(now.flanks), change(pressure, from.flanks.largest_pressure_mpa))],
   ];
   if (factor !== null) entries.push(["K_Hbeta", number(factor, 4), change(factor, from.flanks.k_h_beta)]);
-  return now.bias ? [...entries, ["bias of the mean", `${now.bias.mean < 0 ? "−" : "+"}${number(Math.abs(100 * now.bias.mean), 2)} %`, now.bias.words]] : entries;
+  return now.bias ? [...entries, ["bias of the mean", `${signed(100 * now.bias.mean, 2)} %`, now.bias.words]] : entries;
 }
 
 /** Figures of every curve beside each other. @param {import("./live_figures.js").Shown[]} shown */

@@ -22,6 +22,7 @@ import { SceneEditor } from "./scene_editor.js";
 import { Slot } from "./slot.js";
 import { showResult, showStudies, studiesOf } from "./studies.js";
 import { Tabs, reveal } from "./tabs.js";
+import { Undo } from "./undo.js";
 import { Variants } from "./variants.js";
 
 const STARTS = ["/v1/examples", "/v1/processes/analyze", "/v1/effects", "/v1/processes", "/v1/"];
@@ -40,7 +41,7 @@ class Page {
     this.address = new Address([...PLACES, ...studies.map(({ process }) => process)], () => this.typed);
     this.caller = `page-${Math.random().toString(36).slice(2, 12)}`;
     this.design = new Design(analyze.inputs.case.schema, effects, examples, this);
-    this.files = new CaseFiles(this.design, (name, unit) => this.scenes.take(name, unit));
+    this.files = new CaseFiles(this.design, { scene: (name, unit) => this.scenes.take(name, unit), go: (views) => this.go(views) });
     /** @type {Map<string, Slot>} */
     this.slots = new Map();
     this.parts(studies);
@@ -52,6 +53,7 @@ class Page {
       this.render();
     });
     await this.render();
+    this.undo = new Undo(() => this.state, (state) => this.putBack(state));
     byId(this.address.section)?.focus();
     document.documentElement.dataset.ready = "yes";
   }
@@ -77,6 +79,7 @@ class Page {
     this.jobs = new Jobs((job) => this.reopen(job), (first, second) => this.compare(first, second));
     this.jobs.refresh();
     this.design.settled = () => this.carry();
+    this.design.left = () => this.unit();
   }
 
   slot(name, parts, show) {
@@ -88,29 +91,35 @@ class Page {
   /** Show what the address says, whatever was shown before: first what was computed, in the form, then its results. */
   async render() {
     const turn = (this.turn = (this.turn ?? 0) + 1);
-    const { kept, faults, empty } = this.address;
+    const { kept, faults, empty, views } = this.address;
     this.variants.offer();
+    byId("name").value = views.get("name") ?? "";
+    this.called();
+    this.design.view.stand(views.get("at"));
     this.more = false; // what was typed last belongs to the entry that is left
+    if (this.results.stands) this.results.retype();
     clearNotice();
     for (const fault of faults) sayMissing(`“${fault}”: the page has no such address.`);
     if (!this.address.get("database")) for (const name in OF_RESULT) this.address.settle(name, "job");
     this.design.stands = false;
     if (kept.fields) this.design.restore(kept);
     const orders = kept.fields ? [] : await ordersOf(this.address.names);
-    const pair = await pairOf(orders);
+    const first = await this.unit();
+    const pair = await pairOf(orders) ?? first;
     if (turn !== this.turn) return;
     this.base = pair;
     if (!kept.fields) this.beginWith(pair, orders);
     this.fill(orders.filter(({ name }) => !(name in OF_RESULT)));
     for (const [name, slot] of this.slots) slot.follow(this.address.get(name));
     const [newest] = [...this.address.names.keys()].reverse();
-    if (this.address.views.has("tab")) this.tabs.select(this.address.views.get("tab"));
+    if (views.has("tab")) this.tabs.select(views.get("tab"));
     else if (newest && newest !== "database") reveal(this.slots.get(newest).result);
     else this.tabs.select(USUAL_TAB);
     await this.results.show(this.address.get("database"));
     if (turn !== this.turn) return;
     this.fill(orders.filter(({ name }) => name in OF_RESULT)); // showing a result resets them
     if (empty) this.first();
+    this.undo?.begin();
   }
 
   /** Begin with the pair of the address; with none, if it names any other thing; else with the first example. */
@@ -124,6 +133,19 @@ class Page {
       this.design.empty();
       if (!orders.length) sayMissing("The fields of the gear pair are left empty.");
     }
+  }
+
+  /** Go on to an entry that shows a unit by itself. @param {Record<string, string | null>} views */
+  async go(views) {
+    this.address.turn({}, { case: null, live: null, at: null, a: null, b: null, c: null, on: null, ...views }, {});
+    await this.render();
+  }
+
+  /** Show the unit of the address, or a part of it. @returns {Promise<object | null>} the pair of its first mesh */
+  async unit() {
+    const first = await this.files.unit.follow(this.address.views.get("unit"));
+    this.files.unit.see(this.address.views.get("see"));
+    return first;
   }
 
   /** Let the address carry the design where it is not that of its result, its job or the first example. */
@@ -164,6 +186,8 @@ class Page {
     const keep = () => {
       this.more = Boolean(this.resting);
       if (this.more) return;
+      this.address.view({ live: this.results.moved, name: byId("name").value.trim(), at: this.design.view.at });
+      this.called();
       this.address.keep(this.typed);
       this.resting = setTimeout(rested, RESTING);
     };
@@ -177,12 +201,32 @@ class Page {
     return { fields: typedIn(byId("main")), ofResult: this.results.typed };
   }
 
+  /** What may be undone. */
+  get state() {
+    return { case: this.design.case, origin: this.address.kept.origin, ofResult: this.results.typed };
+  }
+
+  /** Show what was undone or is done anew. @param {import("./undo.js").State} state */
+  async putBack({ case: content, origin, ofResult }) {
+    this.design.show(content, origin);
+    this.design.settled();
+    this.address.keep({ ofResult });
+    await this.results.show(this.address.get("database"));
+    document.dispatchEvent(new Event("typed"));
+  }
+
+  /** Let the window be called as the design is. */
+  called() {
+    document.title = [byId("name").value.trim(), "lineofaction · transmission error of gear pairs"].filter(Boolean).join(" · ");
+  }
+
   analyze() {
     this.analysis.submit("analyze", { case: this.design.case }, { expected: this.design.expected });
   }
 
   /** A job has ended with a table: that is what the address names in its place from now on. */
   async tabled(name, { hash }) {
+    this.address.view({ live: null });
     this.address.settle(name, "database", hash);
     if (this.tabs.shown === "jobs") this.tabs.select(USUAL_TAB);
     this.address.replace(OF_RESULT);
@@ -197,8 +241,8 @@ class Page {
   }
 
   /** Show what came of an earlier job. */
-  async reopen({ jobID: job }) {
-    this.address.open("job", job);
+  async reopen({ jobID: job, title }) {
+    this.address.open("job", job, title);
     this.tabs.select("jobs");
     const before = document.activeElement;
     await this.render();

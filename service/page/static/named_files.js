@@ -1,6 +1,8 @@
 // @ts-check
 /** Files chosen together: a text in TOML, and the files that it names as a request carries them. */
 
+import { base64, deflated } from "./packed.js";
+
 /**
  * Return the TOML file whose text has a sign, or else the first, and what is chosen with it; no name: none is TOML.
  * @param {Iterable<File>} chosen
@@ -22,10 +24,4 @@ function isToml(file) {
 }
 
 /** The file compressed by zlib, in Base64. @param {File} file */
-async function packed(file) {
-  const stream = file.stream().pipeThrough(new CompressionStream("deflate"));
-  const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
-  let binary = "";
-  for (let at = 0; at < bytes.length; at += 32768) binary += String.fromCharCode(...bytes.subarray(at, at + 32768));
-  return { name: file.name, content: btoa(binary) };
-}
+const packed = async (file) => ({ name: file.name, content: base64(await deflated(new Uint8Array(await file.arrayBuffer()))) });

@@ -6,6 +6,7 @@ import { retype, typedIn } from "./controls.js";
 import { DesignNote } from "./design_note.js";
 import { byId } from "./elements.js";
 import { sayMissing } from "./notice.js";
+import { pack, unpack } from "./packed.js";
 import { fetchPlotly } from "./plotly.js";
 import { showReport } from "./report.js";
 
@@ -39,10 +40,22 @@ export class Results {
    */
   async show(key) {
     if (key !== this.key) await this.open(key);
-    if (this.shown === null || this.shown !== this.address.get("database")) return;
+    if (!this.stands) return;
+    this.retype();
+    document.dispatchEvent(new Event("opened"));
+    await this.live.restored();
+  }
+
+  /** Whether the result of the address is the one that is shown. */
+  get stands() {
+    return this.shown !== null && this.shown === this.address.get("database");
+  }
+
+  /** Put its controls where the address or its entry has them. */
+  retype() {
     const { ofResult } = this.address.kept;
     if (ofResult?.key === this.shown) retype(ofResult.fields, ...OWN.map(byId));
-    await this.live.restored();
+    else this.live.sliders.moved = unpack(this.address.views.get("live") ?? "");
   }
 
   /** @param {string | null} key */
@@ -119,6 +132,14 @@ export class Results {
     byId("results-none").hidden = false;
     this.unreport();
     this.offer(null);
+  }
+
+  /** Where its sliders stand, as a word of the address; null: as analyzed. */
+  get moved() {
+    if (this.shown === null) return this.address.views.get("live") ?? null;
+    const { torque_n_m: torque, misalignment_um: misaligned, pinion, wheel } = this.live.sliders.moved;
+    const same = torque === undefined && !misaligned && !Object.keys({ ...pinion, ...wheel }).length;
+    return same ? null : pack(this.live.sliders.moved);
   }
 
   /** What is typed in the parts of the result, to be kept with the address. */

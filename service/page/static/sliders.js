@@ -2,7 +2,7 @@
 
 import { folded, make } from "./elements.js";
 import { unitOf } from "./field.js";
-import { ofFlank } from "./schema.js";
+import { at, ofFlank } from "./schema.js";
 
 const MAIN = [ // the others are folded away
   "torque_n_m", "pinion.tip_relief_um", "pinion.tip_relief_length_mm", "wheel.tip_relief_um", "wheel.tip_relief_length_mm",
@@ -109,6 +109,17 @@ export class Sliders {
     for (const { knob, put } of this.controls) put(knob.value);
     document.dispatchEvent(new Event("typed"));
     this.changed();
+  }
+
+  /** Where they stand, if not as analyzed: flanks and misalignment, and the torque where it was moved. */
+  get moved() {
+    const torque = this.value("torque_n_m");
+    return { ...(torque === this.known.torque ? {} : { torque_n_m: torque }), misalignment_um: this.value("misalignment_um"), ...this.flanks };
+  }
+
+  /** Stand where they were moved. @param {any} moved */
+  set moved(moved) {
+    for (const { knob: { key, value }, put } of this.controls) put(at(moved, key.split(".")) ?? value);
   }
 
   /** Say the values anew, which were put there from outside. */

@@ -37,7 +37,8 @@ export class Slot {
   async submit(process, inputs, { expected } = {}) {
     const { signal } = this.begin(null);
     await this.guarded(signal, async () => {
-      const status = await submitted(this.progress, process, typeof inputs === "function" ? await inputs() : inputs);
+      const title = this.address.views.get("name") ?? "";
+      const status = await submitted(this.progress, process, { inputs: typeof inputs === "function" ? await inputs() : inputs, title });
       if (signal.aborted) return;
       this.job = status.jobID;
       this.address.push({ [this.name]: this.job });

@@ -1,8 +1,8 @@
 /** Jobs on the pair beside its analysis: a card for each process of the service that studies a case. */
 
+import { get, patiently } from "./api.js";
 import { card } from "./card.js";
-import { byId } from "./elements.js";
-import { showOptimization } from "./optimize.js";
+import { byId, make } from "./elements.js";
 import { showReport } from "./report.js";
 
 const TABS = { optimize: "ripple", sweep: "ripple", flank: "flank", "root-stress": "load", ablate: "errors", frontier: "errors" };
@@ -24,6 +24,15 @@ function fieldOf([name, schema]) {
   const list = kind.type === "array";
   const value = list ? (schema.default ?? []).join(", ") : String(schema.default ?? "");
   return { name, label: schema.title, value, list, ...(kind.enum ? { choices: kind.enum.map((choice) => [choice, choice.replaceAll("_", " ")]) } : {}) };
+}
+
+/** Show an optimization; `take` is given its flanks. */
+async function showOptimization(target, reference, { take, signal }) {
+  const found = await patiently(() => get(reference.href));
+  if (!(await showReport(target, reference, { making: true, signal }))) return;
+  for (const part of target.querySelectorAll(":scope > details")) part.open = true; // the design and its scatter
+  const button = make("button", { type: "button", onclick: () => take(found.optimum.values) }, "Take the optimum into the case");
+  target.querySelector(".headline").after(make("div", { class: "row" }, button));
 }
 
 /** Show a result of any kind but a table; `take` is given the flanks of an optimization. */

@@ -1,11 +1,15 @@
 // @ts-check
-/** A gear unit of another tool (REXS): its stages, each opened into the form, its shafts, and the account. */
+/** A gear unit of another tool (REXS): its tree in the rail, each mesh opened into the form, and the account. */
 
-import { post } from "./api.js";
-import { byId, dataTable, folded, make, number, save } from "./elements.js";
+import { Problem, patiently, post } from "./api.js";
+import { byId, folded, make, number, save } from "./elements.js";
+import { sayMissing } from "./notice.js";
+import { base64, packedFile, unpackedFile } from "./packed.js";
 
 const FATES = ["taken", "assumed", "derived", "defaulted", "ignored", "refused"];
 const ENDINGS = /\.(rexs|rexsj|rexsz|zip)$/i;
+const MOST = 1_000_000; // characters of a file that an address carries
+export const WHOLE = "unit"; // what is seen of a unit that is opened
 
 /** @param {string} name of a file */
 export const isUnit = (name) => ENDINGS.test(name);
@@ -13,53 +17,127 @@ export const isUnit = (name) => ENDINGS.test(name);
 export class OpenedUnit {
   /**
    * @param {import("./design.js").Design} design
-   * @param {(name: string, unit: {scene: object, load_cases: object[]}) => Promise<void>} openScene
+   * @param {object} page
+   * @param {(name: string, unit: object) => Promise<void>} page.scene opens the scene
+   * @param {(views: Record<string, string | null>) => Promise<void>} page.go goes on to an entry of the history that shows the unit
    */
-  constructor(design, openScene) {
-    this.design = design;
-    this.openScene = openScene;
+  constructor(design, page) {
+    Object.assign(this, { design, page });
+    /** @type {string | null} the word of the unit that is shown */
+    this.word = null;
+    this.unit = null;
     this.place = byId("unit");
   }
 
   /** @param {File} file */
   async open(file) {
-    this.place.replaceChildren(); // the buttons of an earlier unit would open that one
-    const body = { rexs_base64: await base64(file) };
-    this.show(file.name, await post("/v1/units/open", body));
+    const bytes = new Uint8Array(await file.arrayBuffer());
+    const unit = await post("/v1/units/open", { rexs_base64: base64(bytes) });
+    this.put(await packedFile(file.name, bytes), file.name, unit);
+    if (this.word.length > MOST) this.place.append(make("p", { class: "hint" }, "The file is too long for the address: a reload forgets it."));
+    await this.page.go({ unit: this.word.length > MOST ? null : this.word, see: WHOLE, name: file.name.replace(/\.\w+$/, "") });
+  }
+
+  /** Show the unit of an address, or none. @param {string | undefined} word @returns {Promise<any>} the pair of its first mesh */
+  async follow(word) {
+    try {
+      if (word && word !== this.word) {
+        const { name, bytes } = await unpackedFile(word);
+        this.put(word, name, await patiently(() => post("/v1/units/open", { rexs_base64: base64(bytes) })));
+      }
+    } catch (problem) {
+      if (problem instanceof Problem || problem instanceof TypeError) sayMissing(`The gear unit: ${problem.message}`);
+      else throw problem;
+    }
+    this.place.hidden = !word || word !== this.word;
+    return this.place.hidden ? null : this.meshes[0]?.case ?? null;
+  }
+
+  /** The meshes of its scene, or else its stages: each with a name and a case. */
+  get meshes() {
+    return this.unit.scene?.meshes.filter((mesh) => mesh.case) ?? this.unit.cases;
+  }
+
+  /** Mark what is seen, in the tree and in three dimensions; nothing: the pair is seen. @param {string | undefined} part */
+  see(part) {
+    const scene = this.place.hidden ? null : this.unit.scene;
+    for (const button of this.place.querySelectorAll("[data-part]")) button.setAttribute("aria-pressed", String(button.dataset.part === part));
+    const fact = this.place.querySelector("[role=status]");
+    if (fact) fact.textContent = this.facts?.get(part) ?? this.summary;
+    this.design.view.see(part ? scene : null, part, (mesh) => this.openMesh(mesh));
+  }
+
+  /** @param {string} part */
+  look(part) {
+    this.design.address.look("see", part);
+    this.see(part);
+  }
+
+  openMesh(mesh) {
+    this.design.goTo(mesh.case, `${this.name}, ${mesh.name}`);
   }
 
   /** Show what the service made of a file. */
-  show(name, unit) {
-    const stages = unit.cases.map((stage) => make(
-      "button", { type: "button", onclick: () => this.design.goTo(stage.case, `${name}, ${stage.name}`) }, stage.name,
-    ));
-    const scene = unit.scene ? [
-      make("button", { type: "button", onclick: () => this.openScene(name, unit) }, "Open scene"),
-      make("button", { type: "button", onclick: () => this.saveScene(unit.scene) }, "Save scene"),
+  put(word, name, unit) {
+    Object.assign(this, { word, name, unit });
+    const { scene } = unit;
+    this.facts = new Map();
+    const part = (text, fact) => {
+      this.facts.set(text, fact);
+      return make("li", {}, make("button", { type: "button", class: "part", "data-part": text, onclick: () => this.look(text) }, text));
+    };
+    const tree = scene ? [
+      make("li", {}, make("button", { type: "button", class: "part", "data-part": WHOLE, onclick: () => this.look(WHOLE) }, name)),
+      make("li", {}, ...branches(scene, part)),
     ] : [];
-    const account = make("button", {
-      type: "button", onclick: () => save(`${JSON.stringify(unit.lines, null, 1)}\n`, "import.json", "application/json"),
-    }, "Save report");
+    const meshes = this.meshes.map((mesh) => make("li", {}, make(
+      "button", { type: "button", class: "part", onclick: () => this.openMesh(mesh) }, `${mesh.name}, ${teeth(mesh.case)}`)));
+    const button = (text, action) => make("button", { type: "button", class: "small", onclick: action }, text);
+    const files = scene ? [button("Open scene", () => this.page.scene(name, unit)), button("Save scene", () => this.saveScene())] : [];
+    this.summary = summary(name, unit);
     this.place.replaceChildren(
-      ...unit.left_out.map((text) => make(
-        "p", { class: "alarm", role: "alert" }, `Left out of the scene: ${text}`,
-      )),
-      make("p", { role: "status" }, summary(name, unit)),
-      make("p", { class: "buttons" }, ...stages, ...scene, account),
-      ...(unit.scene ? [shafts(unit.scene)] : []),
-      ...(unit.load_cases.length ? [loads(unit.load_cases)] : []),
-      folded("What was refused, assumed, defaulted and derived", make(
-        "ul", {}, ...unit.summary.map((line) => make("li", {}, line)),
-      )),
+      ...unit.left_out.map((text) => make("p", { class: "alarm", role: "alert" }, `Left out of the scene: ${text}`)),
+      make("ul", { class: "parts" }, ...tree, make("li", {}, branch("Meshes", meshes))),
+      make("p", { class: "hint", role: "status" }, this.summary),
+      make("p", { class: "buttons" }, ...files, button("Save report", () => save(`${JSON.stringify(unit.lines, null, 1)}\n`, "import.json", "application/json"))),
+      ...(unit.load_cases.length ? [folded("Load cases", loads(unit.load_cases))] : []),
+      folded("What was refused, assumed, defaulted and derived", make("ul", {}, ...unit.summary.map((line) => make("li", {}, line)))),
     );
-    this.place.hidden = false;
-    this.design.view.unit(unit.scene, (mesh) => this.design.goTo(mesh.case, `${name}, ${mesh.name}`));
   }
 
-  async saveScene(scene) {
-    const { toml } = await post("/v1/scenes/to-toml", { inputs: { scene } });
+  async saveScene() {
+    const { toml } = await post("/v1/scenes/to-toml", { inputs: { scene: this.unit.scene } });
     save(toml, "scene.toml", "application/toml");
   }
+}
+
+/** @param {any} content a case */
+const teeth = ({ pair }) => `${pair.pinion.teeth}/${pair.wheel.teeth}`;
+
+/** @param {string} title @param {Node[]} items */
+function branch(title, items) {
+  const made = folded(title, make("ul", {}, ...items));
+  made.open = true;
+  return made;
+}
+
+/** The parts of a scene: shafts with what sits on them, and housings. @param {any} scene @param {(name: string, fact: string) => HTMLElement} part */
+function branches(scene, part) {
+  const bearings = [...(scene.rolling_bearings ?? []), ...(scene.bushings ?? [])];
+  const at = (item) => `on ${item.shaft}, at ${number(item.position_mm)} mm`;
+  const shafts = scene.shafts.flatMap((shaft) => {
+    const on = (items) => items.filter((item) => item.shaft === shaft.name);
+    const items = [
+      ...on(scene.gears).map((gear) => part(gear.name, `${gear.name}: gear ${at(gear)}.`)),
+      ...on(bearings).map((bearing) => part(bearing.name, `${bearing.name}: bearing ${at(bearing)}${bearing.catalog ? `, outside diameter ${number(bearing.catalog.outside_diameter_mm)} mm` : ""}.`)),
+    ];
+    const sections = shaft.sections ? `, ${shaft.sections.length} sections` : "";
+    const row = part(shaft.name, `${shaft.name}: ${number(shaft.length_mm)} mm long, from ${vector(shaft.origin_mm)} mm${sections}.`);
+    row.append(make("ul", {}, ...items));
+    return [row];
+  });
+  const housings = (scene.housings ?? []).map((housing) => part(housing.name, `${housing.name}: housing.`));
+  return [branch("Shafts", shafts), ...(housings.length ? [branch("Housing", housings)] : [])];
 }
 
 /** How many stages, and what became of the values. */
@@ -67,36 +145,15 @@ function summary(name, unit) {
   const count = (fate) => unit.lines.filter((line) => line.fate === fate).length;
   const fates = FATES.filter(count).map((fate) => `${count(fate)} ${fate}`).join(", ");
   const scene = unit.scene ? "" : " There is no scene: the report says why.";
-  return `${name}: ${unit.cases.length} different stages; open one below. Values: ${fates}.${scene}`;
-}
-
-function shafts(scene) {
-  const rows = scene.shafts.map((shaft) => [
-    shaft.name, number(shaft.length_mm), shaft.origin_mm.map((value) => number(value)).join(", "),
-    String(shaft.sections?.length ?? 0),
-  ]);
-  return dataTable({ caption: "Shafts", head: ["shaft", "length, mm", "x, y, z, mm", "sections"], rows });
+  return `${name}: ${unit.cases.length} different stages; open a mesh. Values: ${fates}.${scene}`;
 }
 
 function loads(cases) {
-  const rows = cases.map((load) => [
-    load.name, number(load.torque_n_m), number(load.speed_rpm), number(100 * load.share), load.direction,
-    load.forces.map((force) => `${force.name}: ${vector(force.force_n)}; ${vector(force.moment_n_m)}`).join(" | "),
-  ]);
-  const forces = "forces that differ: x, y, z, N; about x, y, z, N m";
-  const head = ["case", "torque, N m", "speed, rpm", "share, %", "flanks", forces];
-  return dataTable({ caption: "Load cases", head, rows });
+  return make("ul", {}, ...cases.map((load) => {
+    const forces = load.forces.map((force) => `${force.name} ${vector(force.force_n)} N, ${vector(force.moment_n_m)} N m`);
+    return make("li", {}, [`${load.name}: ${number(load.torque_n_m)} N m`, `${number(load.speed_rpm)} rpm`, `${number(100 * load.share)} % of the time`, load.direction, ...forces].join("; "));
+  }));
 }
 
 /** @param {number[]} values */
 const vector = (values) => values.map((value) => number(value)).join(", ");
-
-/** @param {File} file */
-async function base64(file) {
-  const bytes = new Uint8Array(await file.arrayBuffer());
-  let text = "";
-  for (let start = 0; start < bytes.length; start += 32_768) {
-    text += String.fromCharCode(...bytes.subarray(start, start + 32_768));
-  }
-  return btoa(text);
-}

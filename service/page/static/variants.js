@@ -2,14 +2,41 @@
 /** Variants of a design, A to C: each a copy of the fields or a result, all in the address; their curves stand side by side. */
 
 import { HASH, JOB } from "./address.js";
+import { Problem, post } from "./api.js";
 import { byId, make } from "./elements.js";
 import { caseOf } from "./orders.js";
-import { pack } from "./packed.js";
-import { Reference } from "./reference.js";
+import { pack, unpack } from "./packed.js";
 
 const LETTERS = ["a", "b", "c"];
 const FIRST = "first"; // the first example with the result that came with the program
 const UNMOVED = { misalignment_um: 0, pinion: {}, wheel: {} };
+
+/** @typedef {{key: string, case: any}} Known an analyzed pair */
+/** @typedef {{torque_n_m?: number, misalignment_um: number, pinion: object, wheel: object}} Moved where sliders stand */
+
+/** A result that is not on the sliders, with flanks of its own: its curve at the torque that is looked at. */
+export class Other {
+  /** @param {string} name @param {Known} known @param {Moved} moved */
+  constructor(name, known, moved) {
+    Object.assign(this, { name, known });
+    this.flanks = { ...moved, torque_n_m: undefined };
+    this.curve = null;
+  }
+
+  /** Its curve; null if it has none at that torque. @param {number} torque @param {string} caller */
+  async at(torque, caller) {
+    if (this.torque === torque) return this.curve;
+    try {
+      const body = { ...this.flanks, torque_n_m: [torque], flanks: true, caller: `${caller}-${this.name}` };
+      [this.curve] = (await post(`/v1/databases/${this.known.key}/ste`, body)).curves;
+      this.torque = torque;
+    } catch (problem) {
+      if (!(problem instanceof Problem) || problem.status === 0 || problem.retryAfter) throw problem;
+      this.curve = null;
+    }
+    return this.curve;
+  }
+}
 
 export class Variants {
   /**
@@ -28,7 +55,8 @@ export class Variants {
   get word() {
     const { names, views, empty } = this.address;
     if (empty) return FIRST;
-    return names.get("analyze") ?? views.get("case") ?? names.get("database") ?? pack(this.design.case);
+    const result = ["database", "live"].map((name) => names.get(name) ?? views.get(name)).filter(Boolean).join(".");
+    return names.get("analyze") ?? views.get("case") ?? (names.has("database") ? result : pack(this.design.case));
   }
 
   /** Offer the variants of this address. */
@@ -52,18 +80,19 @@ export class Variants {
   /** Show another variant. @param {string} letter */
   async choose(letter) {
     if (letter === this.on) return;
-    const word = this.address.views.get(letter);
+    const [word, live = null] = this.address.views.get(letter).split(".");
     const of = HASH.test(word) ? { database: word } : JOB.test(word) ? { analyze: word } : {};
-    const views = { [this.on]: this.word, [letter]: null, on: letter, case: Object.keys(of).length || word === FIRST ? null : word };
+    const views = { [this.on]: this.word, [letter]: null, on: letter, live, case: Object.keys(of).length || word === FIRST ? null : word };
     this.address.turn(of, views, {});
     await this.render();
     byId("variants").querySelector("[aria-pressed=true]").focus();
   }
 
-  /** The results of the other variants, to draw beside this one. @returns {Promise<{name: string, reference: Reference}[]>} */
+  /** The results of the other variants, to draw beside this one. @returns {Promise<Other[]>} */
   async others() {
-    const words = LETTERS.filter((letter) => letter !== this.on).map((letter) => ({ name: letter, key: this.address.views.get(letter) ?? "" }));
-    const known = await Promise.all(words.filter(({ key }) => HASH.test(key)).map(async ({ name, key }) => ({ name, key, case: await caseOf(key) })));
-    return known.map(({ name, ...of }) => ({ name, reference: new Reference(of, UNMOVED) }));
+    const words = LETTERS.filter((letter) => letter !== this.on).map((name) => [name, ...(this.address.views.get(name) ?? "").split(".")]);
+    const results = words.filter(([, key]) => HASH.test(key));
+    return Promise.all(results.map(async ([name, key, live]) => (
+      new Other(name, { key, case: await caseOf(key) }, unpack(live ?? "") ?? UNMOVED))));
   }
 }

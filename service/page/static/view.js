@@ -22,13 +22,16 @@ export class View {
     this.scale = make("span", { class: "view-scale", hidden: true });
     this.pair.told = (words, map) => this.words.replaceChildren(...(map ? [map] : []), words);
     const roll = make("button", { type: "button", class: "small", onclick: () => this.stage.roll(!this.stage.rolls) }, "");
-    const say = () => {
-      roll.textContent = this.stage.rolls ? "Stop" : "Roll";
-    };
-    this.stage.canvas.addEventListener("rolls", say);
+    const say = () => { roll.textContent = this.stage.rolls ? "Stop" : "Roll"; };
+    this.stopped = false;
+    this.stage.canvas.addEventListener("rolls", () => {
+      this.stopped = !this.stage.rolls;
+      say();
+      document.dispatchEvent(new Event("typed")); // the address says where it stands
+    });
     say();
     byId("roll").addEventListener("input", () => {
-      this.pair.position = Number(byId("roll").value);
+      this.stage.subject.position = this.pair.position = Number(byId("roll").value);
       this.stage.roll(false);
     });
     const choice = (text, checked, changed) => make("label", {}, make("input", { type: "checkbox", checked, "data-unkept": true, onchange: (event) => {
@@ -42,30 +45,43 @@ export class View {
     target.append(make("div", { class: "view-controls" }, roll, this.ofPair), this.words);
   }
 
-  /** Draw a gear unit in place of the pair, until another pair is shown. @param {any} scene @param {(mesh: any) => void} open a mesh that is clicked */
-  async unit(scene, open) {
-    if (!this.stage || !scene) return;
-    const gearbox = await gearboxOf(scene, (mesh) => {
-      this.back();
-      open(mesh);
-    });
-    this.back();
-    gearbox.begin(this.stage.gl);
-    this.stage.subject = gearbox;
-    this.ofPair.hidden = true;
-    this.words.textContent = "The unit of the scene: click a mesh to open its pair.";
-    this.stage.canvas.setAttribute("aria-label", `Gear unit with ${scene.shafts.length} shafts and ${scene.meshes.length} meshes, in motion. Drag or arrow keys turn the picture, wheel or + and − zoom, space stops and starts.`);
-    this.stage.frame();
+  /** Where it stands, in base pitches, as a word of the address; null: nobody stopped it. */
+  get at() {
+    const position = this.stage ? this.stage.subject.position % 1 : Number(byId("roll").value);
+    return (this.stage ? this.stopped : position) ? position.toFixed(2) : null;
   }
 
-  /** Draw the pair. */
-  back() {
-    if (this.stage.subject === this.pair) return;
-    this.stage.subject.end(this.stage.gl);
-    this.stage.subject = this.pair;
-    this.ofPair.hidden = false;
-    this.words.textContent = "";
-    this.stage.frame();
+  /** Stand there. @param {string | undefined} at as in an address */
+  stand(at) {
+    if (at === undefined) return;
+    byId("roll").value = at;
+    byId("roll").dispatchEvent(new Event("input"));
+  }
+
+  /**
+   * Draw a gear unit with one of its parts marked, or the pair.
+   * @param {any} scene null: the pair @param {string} [part] @param {(mesh: any) => void} [open] a mesh that is clicked
+   */
+  async see(scene, part = "", open = () => {}) {
+    if (!this.stage) return;
+    this.wanted = scene;
+    const gearbox = scene && (scene === this.gearbox?.scene ? this.gearbox : await gearboxOf(scene, open));
+    if (this.wanted !== scene) return;
+    this.gearbox = gearbox ?? this.gearbox;
+    gearbox?.mark(part);
+    if (!this.stage.rolls && gearbox) gearbox.position = this.pair.position;
+    this.stage.put(gearbox ?? this.pair);
+    this.ofPair.hidden = Boolean(gearbox);
+    this.words.textContent = gearbox ? "The unit of the scene: click a mesh to open its pair." : "";
+    this.label(scene);
+  }
+
+  /** Say in words what is drawn. @param {any} scene null: the pair */
+  label(scene) {
+    const { pinion, wheel, internal } = this.pair.outline ?? { pinion: {}, wheel: {} };
+    const what = scene ? `Gear unit with ${scene.shafts.length} shafts and ${scene.meshes.length} meshes, in motion`
+      : `${pinion.teeth} teeth drive ${internal ? "a ring gear with " : ""}${wheel.teeth}, rolling in three dimensions`;
+    this.stage.canvas.setAttribute("aria-label", `${what}. Drag or arrow keys turn the picture, wheel or + and − zoom, space stops and starts.`);
   }
 
   /** @param {any} outline answer of /v1/cases/outline, of the pair as typed */
@@ -73,10 +89,9 @@ export class View {
     if (!this.stage) return;
     if (outlined(outline) === outlined(this.pair.outline)) return;
     this.pair.show(this.stage.gl, outline);
-    this.back();
-    const { pinion, wheel, internal } = outline;
-    this.stage.canvas.setAttribute("aria-label", `${pinion.teeth} teeth drive ${internal ? "a ring gear with " : ""}${wheel.teeth}, rolling in three dimensions. Drag or arrow keys turn the picture, wheel or + and − zoom, space stops and starts.`);
     this.draw();
+    if (this.stage.subject !== this.pair) return;
+    this.label(null);
     this.stage.frame();
   }
 

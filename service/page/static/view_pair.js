@@ -8,7 +8,7 @@ import { BENT as BENDING, FLANK, PICK, STEEL, TOOTH } from "./view_shaders.js";
 import { toothMesh } from "./view_teeth.js";
 
 const SPEED = 0.4; // base pitches a second
-const COLORS = { pinion: [0.58, 0.70, 0.82], wheel: [0.82, 0.66, 0.52] };
+export const COLORS = { pinion: [0.58, 0.70, 0.82], wheel: [0.82, 0.66, 0.52] };
 const SEEN_THROUGH = 0.35; // opacity of the wheel
 export const GEARS = ["pinion", "wheel"];
 const LINE = 0.05; // half width of a contact line as drawn, base pitches
@@ -43,21 +43,29 @@ export class RollingPair {
     this.bent = 0;
     this.through = true;
     this.meshes = null;
+    this.colors = COLORS;
     this.told = (/** @type {string} */ _words, /** @type {HTMLElement | undefined} */ _map) => {};
   }
 
   /** @param {WebGL2RenderingContext} gl */
-  begin(gl, programs = programsOf(gl)) {
+  begin(gl, programs) {
     this.programs = programs;
     this.texture = gl.createTexture();
     this.meshes = null;
     this.press(gl, this.curve);
   }
 
+  /** Let go of what it holds. @param {WebGL2RenderingContext} gl */
+  end(gl) {
+    freed(gl, Object.values(this.meshes ?? {}));
+    gl.deleteTexture(this.texture);
+    this.meshes = this.texture = null;
+  }
+
   /** @param {any} outline answer of /v1/cases/outline */
   show(gl, outline) {
     this.outline = outline;
-    if (this.meshes) freed(gl, Object.values(this.meshes));
+    freed(gl, Object.values(this.meshes ?? {}));
     this.meshes = null;
   }
 
@@ -65,12 +73,13 @@ export class RollingPair {
   press(gl, curve) {
     this.curve = curve;
     const passage = curve?.passage;
-    tables(gl, this.texture, passage?.pressure_mpa ?? [[0]], passage?.apart_um ?? [[0]]);
+    if (this.texture) tables(gl, this.texture, passage?.pressure_mpa ?? [[0]], passage?.apart_um ?? [[0]]);
     if (passage) this.top = Math.max(this.top, scaleOf(most(passage.pressure_mpa)));
   }
 
   /** @param {import("./view_camera.js").Camera} camera */
   frame(camera) {
+    if (!this.outline) return;
     const { pinion, path_of_contact: { points_mm: { C } } } = this.outline;
     const [low, high] = pinion.face_mm;
     camera.look([C[0], C[1], 0.5 * (low + high)], Math.max(1.1 * pinion.radius_mm.tip, 0.7 * (high - low)), 0.95, 0.3);
@@ -124,7 +133,7 @@ export class RollingPair {
       gl.uniformMatrix4fv(at.view, false, view);
       gl.uniform3fv(at.back, back);
       gl.uniform1f(at.gear, code + GEARS.indexOf(name));
-      gl.uniform4f(at.color, ...COLORS[name], opacity);
+      gl.uniform4f(at.color, ...this.colors[name], opacity);
       this.place(gl, at, name);
       gl.drawElementsInstanced(gl.TRIANGLES, length, gl.UNSIGNED_INT, 4 * from, teeth);
     }

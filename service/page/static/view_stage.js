@@ -3,6 +3,7 @@
 
 import { make } from "./elements.js";
 import { Camera } from "./view_camera.js";
+import { programsOf } from "./view_pair.js";
 
 const SLOW = 40; // ms a frame, beyond which fewer pixels are drawn while it moves
 const LEAST = 0.5; // of the pixels across
@@ -12,8 +13,8 @@ const CALM = matchMedia("(prefers-reduced-motion: reduce)");
 
 /**
  * @typedef {object} Subject what is drawn
- * @property {(gl: WebGL2RenderingContext) => void} begin make what it needs of a new context
- * @property {(gl: WebGL2RenderingContext) => void} [end] let go of it
+ * @property {(gl: WebGL2RenderingContext, programs: any) => void} begin make what it needs
+ * @property {(gl: WebGL2RenderingContext) => void} end let go of it
  * @property {(gl: WebGL2RenderingContext, frame: {view: Float32Array, back: number[], moving: boolean, picking: boolean}) => void} draw
  * @property {(seconds: number) => void} advance
  * @property {(texel: Uint8Array | null) => void} picked what is drawn at a place that was clicked; null: nothing
@@ -51,7 +52,19 @@ export class Stage {
   }
 
   begin() {
-    this.subject.begin(this.gl);
+    this.programs = programsOf(this.gl);
+    this.subject.begin(this.gl, this.programs);
+    this.wake();
+  }
+
+  /** Draw a subject in place of another. @param {Subject} subject */
+  put(subject) {
+    if (subject !== this.subject) {
+      this.subject.end(this.gl);
+      this.subject = subject;
+      subject.begin(this.gl, this.programs);
+      this.frame();
+    }
     this.wake();
   }
 

@@ -3,11 +3,12 @@
 
 import { post } from "./api.js";
 import { freed, held, Meshing } from "./view_gl.js";
-import { GEARS, programsOf, RollingPair } from "./view_pair.js";
+import { COLORS as OF_PAIR, GEARS, RollingPair } from "./view_pair.js";
 
 const SIDES = 32; // of a body of revolution
 const SPEED = 0.5; // base pitches a second of the first mesh
 const COLORS = { shaft: [0.62, 0.64, 0.67], bearing: [0.42, 0.46, 0.52] };
+const MARKED = [0.90, 0.62, 0.0];
 const BUSHING = 1.7; // outside over shaft diameter where a scene has no catalog
 const WIDTH = 0.55; // of a bearing over its height twice
 
@@ -99,21 +100,31 @@ export class Gearbox {
     return { mesh, pair, place: placement(angle, to), ratio: turned / step };
   }
 
-  begin(gl) {
-    this.programs = programsOf(gl);
-    for (const { pair } of this.stages) pair.begin(gl, this.programs);
-    const bodies = this.scene.shafts.map((shaft) => ({ shaft, mesh: held(gl, shaftMesh(shaft)), color: COLORS.shaft }));
+  begin(gl, programs) {
+    this.programs = programs;
+    for (const { pair } of this.stages) pair.begin(gl, programs);
+    const bodies = this.scene.shafts.map((shaft) => ({ name: shaft.name, shaft, mesh: held(gl, shaftMesh(shaft)), color: COLORS.shaft }));
     const bearings = [...(this.scene.rolling_bearings ?? []), ...(this.scene.bushings ?? [])].filter(({ shaft }) => this.shafts.has(shaft));
     for (const bearing of bearings) {
       const shaft = this.shafts.get(bearing.shaft);
-      bodies.push({ shaft, mesh: held(gl, bearingMesh(bearing, shaft)), color: COLORS.bearing });
+      bodies.push({ name: bearing.name, shaft, mesh: held(gl, bearingMesh(bearing, shaft)), color: COLORS.bearing });
     }
     this.bodies = bodies;
   }
 
   /** Let go of what it holds. */
   end(gl) {
-    freed(gl, [...this.bodies.map(({ mesh }) => mesh), ...this.stages.flatMap(({ pair }) => Object.values(pair.meshes ?? {}))]);
+    freed(gl, this.bodies.map(({ mesh }) => mesh));
+    for (const { pair } of this.stages) pair.end(gl);
+  }
+
+  /** Color a shaft, bearing or gear. @param {string} name of none: all as they are */
+  mark(name) {
+    this.marked = name;
+    for (const { mesh, pair } of this.stages) {
+      const color = (gear, own) => (gear === name ? MARKED : own);
+      pair.colors = { pinion: color(mesh.driver, OF_PAIR.pinion), wheel: color(mesh.driven, OF_PAIR.wheel) };
+    }
   }
 
   frame(camera) {
@@ -130,24 +141,32 @@ export class Gearbox {
 
   draw(gl, frame) {
     gl.enable(gl.CULL_FACE);
-    const { program, at } = this.programs.straight.STEEL;
-    gl.useProgram(program);
-    gl.uniform3fv(at.back, frame.back);
-    for (const { shaft, mesh, color } of frame.picking ? [] : this.bodies) {
-      gl.uniformMatrix4fv(at.view, false, product(frame.view, placement(0, shaft.origin_mm)));
-      gl.uniform4f(at.turning, (this.turns.get(shaft.name) ?? 0) * this.position, 0, 0, 1);
-      gl.uniform4f(at.center, 0, 0, 0, 0);
-      gl.uniform4f(at.bend, 0, 0, 0, 1);
-      gl.uniform4f(at.color, ...color, 1);
-      gl.bindVertexArray(mesh.array);
-      gl.drawElements(gl.TRIANGLES, mesh.count, gl.UNSIGNED_INT, 0);
-    }
+    if (!frame.picking) this.revolved(gl, frame, this.bodies);
     this.stages.forEach(({ pair, place, ratio }, k) => {
       pair.position = ratio * this.position;
       pair.meshes ??= pair.made(gl);
       const own = { ...frame, view: product(frame.view, place), code: 8 * k + 1 };
       for (const name of GEARS) pair.gear(gl, name, frame.picking ? ["PICK"] : ["SMOOTH", "STEEL"], own, 1);
     });
+    if (frame.picking) return;
+    gl.depthFunc(gl.ALWAYS); // what is marked is seen through all else
+    this.revolved(gl, frame, this.bodies.filter(({ name }) => name === this.marked));
+  }
+
+  /** Draw shafts and bearings. */
+  revolved(gl, frame, bodies) {
+    const { program, at } = this.programs.straight.STEEL;
+    gl.useProgram(program);
+    gl.uniform3fv(at.back, frame.back);
+    gl.uniform4f(at.center, 0, 0, 0, 0);
+    gl.uniform4f(at.bend, 0, 0, 0, 1);
+    for (const { name, shaft, mesh, color } of bodies) {
+      gl.uniformMatrix4fv(at.view, false, product(frame.view, placement(0, shaft.origin_mm)));
+      gl.uniform4f(at.turning, (this.turns.get(shaft.name) ?? 0) * this.position, 0, 0, 1);
+      gl.uniform4f(at.color, ...(name === this.marked ? MARKED : color), 1);
+      gl.bindVertexArray(mesh.array);
+      gl.drawElements(gl.TRIANGLES, mesh.count, gl.UNSIGNED_INT, 0);
+    }
   }
 
   /** @param {Uint8Array | null} texel */

@@ -1,0 +1,122 @@
+"""Three tasks of a new user in the browser alone, action by action as the documentation has them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from page_visit import Visit, answered, answers, found_inaccessible, opened
+from playwright.sync_api import Browser, Locator, expect
+from running_service import until
+
+ROOT = Path(__file__).parents[2]
+UNIT = ROOT / "examples" / "two_stage_gearbox.rexs"
+TASKS = (ROOT / "docs" / "how-to" / "in-the-browser.md").read_text(encoding="utf-8").split("\n## ")
+MOST = 15
+PAIR = {
+    "normal_module_mm": "2", "center_distance_mm": "45", "pinion-teeth": "21", "wheel-teeth": "24",
+    "pinion-face_width_mm": "10", "wheel-face_width_mm": "10", "pinion-bore_diameter_mm": "20",
+    "wheel-bore_diameter_mm": "22",
+}  # fmt: skip
+
+
+class Hand:
+    """What a user does with the page; showing a part of the rail goes with what is done there."""
+
+    def __init__(self, seen: Visit) -> None:
+        self.page = seen.page
+        self.actions = 0
+
+    def show(self, title: str) -> None:
+        self.page.get_by_role("tab", name=title, exact=True).click()
+
+    def on(self, name: str | Locator) -> Locator:
+        self.actions += 1
+        return self.page.locator(name) if isinstance(name, str) else name
+
+    def press(self, name: str) -> None:
+        self.on(self.page.get_by_role("button", name=name)).first.click()
+
+    def analyze(self) -> None:
+        before = answers(self.page)
+        self.on("#analyze").click()
+        expect(self.page).to_have_url(re.compile("database="))
+        until(lambda: answers(self.page) > before)
+
+    def move(self, slider: str) -> None:
+        self.show("Flanks, live")
+        before = answers(self.page)
+        self.on(slider).press("End")
+        until(lambda: answers(self.page) > before)
+
+    def did(self, task: str) -> None:
+        """See that a task took the actions of the documentation, and few."""
+        (text,) = (part for part in TASKS if part.startswith(task))
+        assert self.actions == len(re.findall(r"^\d+\. ", text, re.MULTILINE)) < MOST
+
+
+@pytest.fixture
+def seen(browser: Browser, address: str) -> Iterator[Visit]:
+    visit = opened(browser, f"{address}/#")
+    yield visit
+    assert visit.complaints == []
+    visit.page.close()
+
+
+@pytest.mark.nightly
+def test_an_own_pair_is_typed_analyzed_relieved_and_sent(seen: Visit, browser: Browser) -> None:
+    page, hand = seen.page, Hand(seen)
+    hand.on("#example").select_option("empty")
+    for field, text in PAIR.items():
+        hand.on(f"#f-pair-{field}").fill(text)
+    hand.show("Loads")
+    hand.on("#f-load-torque_n_m").fill("40")
+    hand.analyze()
+    expect(page.locator("#live-figures")).to_contain_text(re.compile("peak to peak.*±"))
+    hand.move("#live-pinion-tip_relief_um")
+    expect(page.locator("#live-figures")).to_contain_text(re.compile(r"first harmonic.*[+−][\d.]+ dB"))
+    hand.on("#name").fill("own pair")
+    hand.did("My own pair")
+    expect(page).to_have_url(re.compile("live=.*name=own%20pair|name=own%20pair.*live="))
+    other = opened(browser, page.url).page
+    answered(other)
+    most = page.locator("#live-pinion-tip_relief_um").input_value()
+    expect(other.locator("#live-pinion-tip_relief_um")).to_have_value(most)
+    other.close()
+
+
+@pytest.mark.nightly
+def test_an_own_unit_is_opened_and_its_flanks_are_misaligned(seen: Visit) -> None:
+    page, hand = seen.page, Hand(seen)
+    hand.on("#import-file").set_input_files(UNIT)
+    hand.on(page.locator("#unit [data-part]").nth(2)).click()
+    assert not found_inaccessible(page, "#unit")
+    hand.on(page.locator("#unit details").filter(has_text="Meshes").get_by_role("button").first).click()
+    hand.show("Accuracy")
+    hand.on("#f-accuracy-level").select_option("draft")
+    hand.analyze()
+    hand.on(page.get_by_role("tab", name="Flank", exact=True)).click()
+    expect(page.locator("[data-figure=live_pressure] .plot")).to_have_attribute("data-drawn", "yes")
+    hand.move("#live-misalignment_um")
+    expect(page.locator("#live-figures")).to_contain_text("K_Hbeta")
+    hand.did("My own unit")
+
+
+@pytest.mark.nightly
+def test_a_search_brings_three_decibels_that_are_heard(seen: Visit) -> None:
+    page, hand = seen.page, Hand(seen)
+    hand.analyze()
+    hand.press("Another variant")
+    hand.press("Search better flanks")
+    hand.press("Take the optimum into the case")
+    hand.analyze()
+    tone = page.locator("#live-figures > div").filter(has_text="first harmonic")
+    expect(tone).to_contain_text("dB")
+    change = re.search(r"([+−][\d.]+) dB", tone.inner_text())
+    assert change is not None and float(change[1].replace("−", "-")) < -3.0
+    hand.on(page.get_by_role("tab", name="Sound", exact=True)).click()
+    for letter in "AB":
+        hand.press(f"Play {letter}")
+    hand.did("What brings 3 dB?")
