@@ -56,8 +56,13 @@ OUTSIDE = """() => [...document.querySelectorAll(":is(#results-body, .report) .p
 })"""
 
 
-def test_labels_at_lines_stay_within_plots_on_a_narrow_screen(visit: Visit) -> None:
+def test_a_phone_has_slider_and_curve_together_and_labels_within_plots(visit: Visit) -> None:
     page = visit.page
+    page.set_viewport_size({"width": 400, "height": 660})
+    curve, slider = (page.locator(name).bounding_box() for name in ("#live-ripple .plot", "#quick .slider"))
+    assert curve is not None and slider is not None
+    assert curve["height"] > 140.0
+    assert curve["y"] + curve["height"] <= slider["y"] <= 660.0 - slider["height"]
     page.set_viewport_size({"width": 400, "height": 900})
     expect(page.locator("#results-body[aria-busy=false]")).to_have_count(1)
     unfold(page)

@@ -72,8 +72,9 @@ export class Address {
   /** Change views, to be kept with what comes next. @param {Record<string, string | null>} views null: as usual */
   view(views) {
     for (const [name, value] of Object.entries(views)) {
+      if (value === this.views.get(name)) continue;
+      this.views.delete(name);
       if (value) this.views.set(name, value);
-      else this.views.delete(name);
     }
   }
 
