@@ -176,11 +176,11 @@ def test_the_address_of_an_analysis_shows_its_design_and_its_result(
     sender = opened(browser, address).page
     choose_case(sender, tmp_path)
     sender.locator("#analyze").press("Enter")
-    expect(sender).to_have_url(re.compile(f"#database={analyzed}$"))
+    expect(sender).to_have_url(re.compile(f"#database={analyzed}(&name=case)?$"))
     answered(sender)
     for name in (f"analyze={job}", f"job={job}", sender.url.partition("#")[2]):
         with other_browser(browser, f"{address}/#{name}") as page:
-            expect(page).to_have_url(re.compile(f"#database={analyzed}$"))
+            expect(page).to_have_url(re.compile(f"#database={analyzed}(&name=case)?$"))
             answered(page)
             shows_the_same(page, sender)
             assert page.locator(".design-note").count() == 0

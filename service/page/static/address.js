@@ -8,6 +8,8 @@ const DESIGN = /^[\w-]+$/; // typed (see packed.js), a job or a result
 const VARIANT = /^[\w.-]+$/; // a design, a result and its moved flanks, or a file
 const VIEWS = { tab: /^[a-z]+$/, case: DESIGN, live: DESIGN, name: /./, at: /^\d(\.\d+)?$/, unit: VARIANT, see: /./, on: /^[abc]$/, a: VARIANT, b: VARIANT, c: VARIANT };
 const LEFT = "left";
+/** Views of one design and its result. */
+export const OF_DESIGN = { case: null, live: null, at: null, unit: null, see: null, name: null };
 
 /**
  * @typedef {object} Kept what the entry of the history holds; it goes with the tab, not with the address
@@ -96,21 +98,6 @@ export class Address {
   replace(changes, kept = {}) {
     this.name(changes);
     this.keep(kept);
-  }
-
-  /**
-   * Go on to an entry that shows one thing alone, with the design that it was computed from.
-   * @param {string} name
-   * @param {string} value
-   * @param {string} title what it is called
-   */
-  open(name, value, title) {
-    this.keep(this.typed());
-    this.names = new Map([[name, value]]);
-    this.view({ case: null, live: null, at: null, unit: null, see: null, name: title || null });
-    this.kept = {};
-    this.faults = [];
-    history.pushState(this.kept, "", this.text);
   }
 
   /**

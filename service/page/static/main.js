@@ -1,7 +1,7 @@
 // @ts-check
 /** The page: what its address says is shown, what is typed is kept with it. */
 
-import { Address } from "./address.js";
+import { Address, OF_DESIGN } from "./address.js";
 import { Problem, get, patiently } from "./api.js";
 import { watchService } from "./away.js";
 import { layOut } from "./bench.js";
@@ -137,7 +137,7 @@ class Page {
 
   /** Go on to an entry that shows a unit by itself. @param {Record<string, string | null>} views */
   async go(views) {
-    this.address.turn({}, { case: null, live: null, at: null, a: null, b: null, c: null, on: null, ...views }, {});
+    this.address.turn({}, { ...OF_DESIGN, a: null, b: null, c: null, on: null, ...views }, {});
     await this.render();
   }
 
@@ -242,7 +242,7 @@ class Page {
 
   /** Show what came of an earlier job. */
   async reopen({ jobID: job, title }) {
-    this.address.open("job", job, title);
+    this.address.turn({ job }, { ...OF_DESIGN, name: title }, {});
     this.tabs.select("jobs");
     const before = document.activeElement;
     await this.render();

@@ -31,6 +31,8 @@ export class OpenedUnit {
 
   /** @param {File} file */
   async open(file) {
+    this.word = null;
+    this.place.replaceChildren(); // the buttons of an earlier unit would open that one
     const bytes = new Uint8Array(await file.arrayBuffer());
     const unit = await post("/v1/units/open", { rexs_base64: base64(bytes) });
     this.put(await packedFile(file.name, bytes), file.name, unit);
