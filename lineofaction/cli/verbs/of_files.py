@@ -422,7 +422,7 @@ def _report(
         typer.Option(help="File with a table [report]: the title block.", show_default="of the folder"),
     ] = None,
     still: Annotated[
-        bool, typer.Option("--still", help="Pictures in place of plots to work with: a tenth of the bytes.")
+        bool, typer.Option("--still", help="Pictures in place of plots to work with: a fifth of the bytes.")
     ] = False,
     flank: Annotated[
         bool,
