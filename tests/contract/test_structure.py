@@ -14,7 +14,7 @@ BUDGETS = {
     ("fe_contact",): (41_155, 741),
     ("dynamics",): (43_159, 832),
     ("lineofaction.gearbox",): (26_548, 538),
-    ("lineofaction.report",): (11_749, 226),
+    ("lineofaction.report",): (11_759, 226),
     ("service",): (14_799, 339),
     ("lineofaction.client",): (2_713, 53),
     ("lineofaction.cli",): (5_461, 80),
