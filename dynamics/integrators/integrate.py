@@ -16,7 +16,7 @@ from dynamics.integrators.march import (
     march_on,
     start_march,
 )
-from dynamics.integrators.start_value import StartValue, Trail
+from dynamics.integrators.start_value import Trail
 from dynamics.integrators.state_sink import MemorySink
 from dynamics.integrators.static import StaticSolution
 from dynamics.motion.sampled_states import States
@@ -59,20 +59,19 @@ def integrate(
     velocity: FloatArray | None = None,
     cancel: Cancel | None = None,
     trail: Trail | None = None,
-    taken: StartValue | None = None,
     whole: IntArray = NO_SAMPLES,
 ) -> Trajectory:
     """Run `system` over its scene's duration, from rest in `start` or from the `velocity` (n,) there.
 
     At rest means without any deviation from the kinematic motion: the shafts turn with the drive. `cancel` is
-    polled about fifty times or more. `trail` saves the states of the run; `taken`
-    is where it goes on for another run. Samples `whole` (W,) keep all freedoms.
+    polled about fifty times or more. `trail` saves the states of the run, and may say where it goes on for
+    another one. Samples `whole` (W,) keep all freedoms.
     """
     began = TimeTaken.now()
     march = start_march(system, start, integration, velocity, whole)
     sink = MemorySink(march.samples, march.widths)
-    if taken is not None:
-        taken.into(march, sink)
+    if trail is not None and trail.taken is not None:
+        trail.taken.into(march, sink)
     status = march_on(march, sink, progress, cancel, None if trail is None else trail.watch(march))
     end = ending(march, sink, status, TimeTaken.now().since(began))
     time = np.arange(end.samples) / system.sampling.rate

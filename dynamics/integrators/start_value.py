@@ -71,10 +71,11 @@ def _figures(ring: SampleRing) -> tuple[FloatArray, ...]:
 
 
 class Trail:
-    """The saved states of a march of `system` after its blocks."""
+    """The saved states of a march of `system` after its blocks; `taken`: where it goes on for another run."""
 
     def __init__(self, system: System) -> None:
         self.system = system
+        self.taken: StartValue | None = None
         self._saved: list[_SavedState] = []
 
     def watch(self, march: March) -> Callable[[], None]:

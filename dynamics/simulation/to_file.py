@@ -258,12 +258,13 @@ def _run(
     describe: Description,
 ) -> _Run:
     """Run a scene once; `before` says what of the run `earlier` it repeats."""
-    start, taken = _Start.of(decided), None
+    start = _Start.of(decided)
     system = start.system
     if earlier is not None:
         states_of = earlier.trajectory.states.rows
         taken = taken_over(earlier.result.effect_ledger, earlier.trail, states_of, system)
         before = before if taken is None else replace(before, since=taken.at.time)
+        start.trail.taken = taken
     trajectory = integrate(
         system,
         start.rest,
@@ -271,7 +272,6 @@ def _run(
         progress,
         cancel=cancel,
         trail=start.trail,
-        taken=taken,
         whole=window_starts(system),
     )
     start.clock.book("integration", trajectory.taken)

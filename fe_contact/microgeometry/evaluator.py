@@ -121,7 +121,9 @@ class Evaluator:
     def evaluate(self, values: Mapping[str, float]) -> Evaluation:
         """Solve the contact of one design, ``gear.quantity`` to m, at every node and load."""
         solved = self.solved(values, range(self.nodes.weight.size))
-        return self.evaluation(LoadFigures.of(*contact, self.roots) for _, *contact in solved)
+        return self.evaluation(
+            LoadFigures.of(problem, solution, self.roots) for _, problem, solution in solved
+        )
 
     @cached_property
     def runs(self) -> tuple[tuple[int, ...], ...]:
