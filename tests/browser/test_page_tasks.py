@@ -95,6 +95,7 @@ def test_an_own_unit_is_opened_and_its_flanks_are_misaligned(seen: Visit) -> Non
     assert not found_inaccessible(page, "#unit")
     hand.on(page.locator("#unit details").filter(has_text="Meshes").get_by_role("button").first).click()
     hand.show("Accuracy")
+    hand.on("#f-accuracy-tolerance").fill("")
     hand.on("#f-accuracy-level").select_option("draft")
     hand.analyze()
     hand.on(page.get_by_role("tab", name="Flank", exact=True)).click()
