@@ -34,10 +34,17 @@ def test_the_error_of_the_reference_is_forgiven_and_no_ratio_is_taken_to_less() 
     assert np.all(np.isfinite(Assessed("spur", "", VALUE, TRUE, 0.0 * TRUE).ratio))
 
 
-def test_the_page_shows_every_table_and_marks_what_is_missed(tmp_path, monkeypatch) -> None:
+@pytest.fixture
+def page(tmp_path, monkeypatch):
+    """A page, and tables in full that nobody computes."""
     page = tmp_path / "accuracy.md"
-    page.write_text(f"before\n{MARKS[0]}\nstale figures\n{MARKS[1]}\nafter\n")
     monkeypatch.setattr(error_coverage, "PAGE", page)
+    monkeypatch.setattr(error_coverage, "in_full", lambda: (COVERED, MISSED))
+    return page
+
+
+def test_the_page_shows_every_table_and_marks_what_is_missed(page) -> None:
+    page.write_text(f"before\n{MARKS[0]}\nstale figures\n{MARKS[1]}\nafter\n")
     publish([COVERED, MISSED], {"lineofaction": "1", "numpy": "2", "scipy": "3"})
     text = page.read_text()
     assert text.startswith("before\n") and text.endswith("after\n") and "stale" not in text
@@ -47,10 +54,8 @@ def test_the_page_shows_every_table_and_marks_what_is_missed(tmp_path, monkeypat
     assert "| missed | 2 | 0 %, 0.5 |" in coverage_table({"missed": [MISSED], "none": []})
 
 
-def test_a_page_without_the_section_is_refused(tmp_path, monkeypatch) -> None:
-    page = tmp_path / "accuracy.md"
+def test_a_page_without_the_section_is_refused(page) -> None:
     page.write_text("nothing to replace\n")
-    monkeypatch.setattr(error_coverage, "PAGE", page)
     with pytest.raises(ValueError, match="no section"):
         publish([COVERED], {"lineofaction": "1", "numpy": "2", "scipy": "3"})
 
