@@ -16,7 +16,18 @@ from fe_contact import SteDatabase
 from lineofaction.cli.commands import app
 from lineofaction.gearbox.problems import EXIT_BAD_INPUT, EXIT_WARNINGS
 
-NOT_COMPUTING = {"new", "cache", "hardcases", "serve", "keys", "database", "store", "jobs", "dismiss"}
+NOT_COMPUTING = {
+    "new",
+    "measured",
+    "cache",
+    "hardcases",
+    "serve",
+    "keys",
+    "database",
+    "store",
+    "jobs",
+    "dismiss",
+}
 LOA = get_command(app)  # loads its verbs when asked: the application itself lists none
 VERBS = LOA.list_commands(Context(LOA))
 CASE = spur_case("{relief}", torques=[100.0], model="plane_strain", receipt="minimal", positions=8)
