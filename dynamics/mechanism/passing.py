@@ -86,13 +86,12 @@ def excitations(scene: Scene, kinematics: Kinematics, shaft: str, harmonics: int
     InputError
         The shaft is at rest.
     """
-    law = proportional_speeds(scene)
-    turns = kinematics.float_ratio @ law
+    rates, turns = _rates(scene, kinematics)
     unit = abs(float(turns[scene.shaft_index(shaft)]))
     if unit <= SAME * float(np.max(np.abs(turns))):
         moving = ", ".join(s.name for s, turn in zip(scene.shafts, turns, strict=True) if turn)
         raise InputError("shaft", shaft, f"a shaft that turns: {moving}")
-    rates = np.abs(kinematics.float_mesh_rate @ law) / unit
+    rates = rates / unit
     parts = [
         *(
             Excitation(MESH, mesh.name, "", float(rate), harmonics)
@@ -110,9 +109,15 @@ def excitations(scene: Scene, kinematics: Kinematics, shaft: str, harmonics: int
 
 def shaft_rates(scene: Scene, kinematics: Kinematics, shaft: str) -> dict[str, float]:
     """Return the revolutions of every shaft per revolution of `shaft`, without senses, by name."""
-    turns = np.abs(kinematics.float_ratio @ proportional_speeds(scene))
+    turns = np.abs(_rates(scene, kinematics)[1])
     unit = float(turns[scene.shaft_index(shaft)])
     return {part.name: float(turn) / unit for part, turn in zip(scene.shafts, turns, strict=True)}
+
+
+def _rates(scene: Scene, kinematics: Kinematics) -> tuple[FloatArray, FloatArray]:
+    """Return how fast meshes pass (m,) and shafts turn (s,) with their senses, in one unit."""
+    law = proportional_speeds(scene)
+    return np.abs(kinematics.float_mesh_rate @ law), np.asarray(kinematics.float_ratio @ law)
 
 
 def turning_orders(scene: Scene, kinematics: Kinematics) -> dict[str, dict[str, float]]:
@@ -121,18 +126,18 @@ def turning_orders(scene: Scene, kinematics: Kinematics) -> dict[str, dict[str, 
     ``{"mesh": {name: order}, "shaft": {name: order}}``, what is at rest left out. Orders count by the first
     mesh that turns, or by the leading shaft without one. The turns of a gear are those against its carrier.
     """
-    law = proportional_speeds(scene)
-    rates, turns = np.abs(kinematics.float_mesh_rate @ law), np.abs(kinematics.float_ratio @ law)
+    rates, turns = _rates(scene, kinematics)
     meshes = {mesh.name: float(rate) for mesh, rate in zip(scene.meshes, rates, strict=True)}
     gears = {
         name: float(rate) / scene.gear(name).teeth
         for mesh, rate in zip(scene.meshes, rates, strict=True)
         for name in (mesh.driver, mesh.driven)
     }
-    shafts = {part.name: float(turn) for part, turn in zip(scene.shafts, turns, strict=True)}
+    shafts = {part.name: abs(float(turn)) for part, turn in zip(scene.shafts, turns, strict=True)}
     turning = gears | {name: turn for name, turn in shafts.items() if name not in gears}
-    least = SAME * float(np.max(turns))
-    unit = next((rate for rate in (*meshes.values(), *np.abs(law)) if rate > least), 1.0)
+    least = SAME * float(np.max(np.abs(turns)))
+    driven = (abs(float(turns[shaft])) for shaft in kinematics.law_shaft)
+    unit = next((rate for rate in (*meshes.values(), *driven) if rate > least), 1.0)
     return {
         kind: {name: rate / unit for name, rate in own.items() if rate > least}
         for kind, own in (("mesh", meshes), ("shaft", turning))

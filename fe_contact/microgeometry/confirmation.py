@@ -373,18 +373,7 @@ def confirm(
         error=error,
         weight=nodes.weight,
     )
-    counted_figures = Evaluation(
-        figures.ste[:, :, counted],
-        *(
-            each[:, counted]
-            for each in (
-                figures.pressure,
-                figures.face_load_factor,
-                figures.edge_load_share,
-                figures.root_stress,
-            )
-        ),
-    )
+    counted_figures = figures.at_loads(counted)
     rule = _scatter_error(problem, values)
     own = problem.objective.of(harris.expected_error[counted])
     objective = Estimate(problem.objective.of(harris.expected[counted]), own + rule, "m")

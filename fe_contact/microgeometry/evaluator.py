@@ -57,6 +57,10 @@ class Evaluation:
         default_factory=lambda: np.full((1, 1), np.nan), metadata=in_unit("pa", "node", "torque")
     )
 
+    def at_loads(self, some: BoolArray) -> Evaluation:
+        """Return the same at some of the loads."""
+        return Evaluation(**{name: values[..., some] for name, values in vars(self).items()})
+
     @property
     def peak_to_peak(self) -> FloatArray:
         """Over the positions (S, L), m; NaN where one of them was not solved."""

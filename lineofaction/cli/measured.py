@@ -8,6 +8,7 @@ from pathlib import Path
 from bounds import engineering
 from bounds.types import Json
 from fe_contact.geometry import Toothing
+from lineofaction.cli.guard import warn
 from lineofaction.cli.output import check_writable, console, print_json, print_written, table
 from lineofaction.gearbox.convert.case import case_json, gear_pair
 from lineofaction.gearbox.input_file import InputFile
@@ -17,6 +18,7 @@ from lineofaction.gearbox.inspection.sheet import FIELD, Flank, read_sheet, shee
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.files import read_text
+from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.toml import toml_text
 from lineofaction.gearbox.units import MM, UM
 
@@ -51,6 +53,7 @@ def run_measured(
     cutoff = None if of.cutoff_mm is None else of.cutoff_mm * MM
     found = measured_gear(read_sheet(text, gear, str(sheet)), chart, str(sheet), cutoff)
     changed = _with_fields(case, of.gear, found)
+    warn(left_out_warnings(found.left_out, "case"))
     written = [] if output is None else [output]
     if output is not None:
         output.write_text(toml_text(case_json(changed)), encoding="utf-8")

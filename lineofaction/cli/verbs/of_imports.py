@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lineofaction.cli.guard import computing, guarded
+from lineofaction.cli.guard import computing
 from lineofaction.cli.options import AsJson, CaseFile, to_file
 from lineofaction.cli.verbs import Later
 
@@ -62,7 +62,7 @@ class _Flank(StrEnum):
     rich_help_panel="pair",
     epilog="Example: loa measured case.toml pinion.csv --gear pinion --loaded right -o measured.toml",
 )
-@guarded
+@computing
 def _measured(
     case: CaseFile,
     sheet: Annotated[

@@ -16,6 +16,8 @@ from lineofaction.gearbox.inspection.sheet import FIELD, PITCHES, Flank, Point, 
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.units import MM, UM
 
+LEFT_OUT = "left out: "
+OTHER_FLANK = f"{LEFT_OUT}not the loaded flank"
 _LISTED = 61
 """Points of a trace that is written."""
 
@@ -39,13 +41,12 @@ class Chart:
         return (1 if self.loaded == "right" else -1) * self.gear.sign
 
     def meshing(self, tooth: int) -> int:
-        """Return the number from 1 in the order of meshing of a tooth of the sheet; tooth 1 is the first."""
+        """Return the number from 1 in the order of meshing of a tooth of the sheet, or the other way round.
+
+        Tooth 1 is the first.
+        """
         step = -self.facing if self.drives else self.facing
         return (tooth - 1) * step % self.gear.teeth + 1
-
-    def on_sheet(self, tooth: int) -> int:
-        """Return the number on the sheet of a tooth in the order of meshing; the same rule back."""
-        return self.meshing(tooth)
 
 
 @dataclass(frozen=True)
@@ -66,6 +67,16 @@ class MeasuredGear:
     account: Mapping[str, int]
     splits: Mapping[tuple[int, str], Split]
 
+    @property
+    def left_out(self) -> list[str]:
+        """Return which points of the loaded flanks are left out."""
+        counts = (
+            (fate.removeprefix(LEFT_OUT), count)
+            for fate, count in self.account.items()
+            if fate.startswith(LEFT_OUT) and fate != OTHER_FLANK
+        )
+        return [f"{why} (points: {count})" for why, count in counts]
+
 
 def measured_gear(sheet: Sheet, chart: Chart, name: str, cutoff: float | None = None) -> MeasuredGear:
     """Return what a sheet says of the loaded flanks of a gear; `cutoff` in m as of `split`.
@@ -78,9 +89,9 @@ def measured_gear(sheet: Sheet, chart: Chart, name: str, cutoff: float | None = 
     for point in sheet.points:
         fate = _taken(point, chart)
         if fate in ("profile", "helix") and point.tooth in over_flank:
-            fate = "left out: the tooth has a topography"
+            fate = f"{LEFT_OUT}the tooth has a topography"
         account[fate] += 1
-        if not fate.startswith("left out"):
+        if not fate.startswith(LEFT_OUT):
             traces[point.tooth, point.trace].append(point)
     try:
         pitches = _pitches(traces, chart)
@@ -101,12 +112,12 @@ def _taken(point: Point, chart: Chart) -> str:
     """Return the trace that a point belongs to, or why it is left out."""
     gear = chart.gear
     if point.flank != chart.loaded:
-        return "left out: not the loaded flank"
+        return OTHER_FLANK
     ends = sorted((gear.form_roll_length, gear.tip_roll_length))
     if point.roll is not None and not ends[0] - 1e-9 <= point.roll <= ends[1] + 1e-9:
-        return "left out: beyond the usable profile"
+        return f"{LEFT_OUT}beyond the usable profile"
     if point.face is not None and abs(point.face) > 0.5 * gear.face_width + 1e-9:
-        return "left out: beyond the face width"
+        return f"{LEFT_OUT}beyond the face width"
     return point.trace
 
 
@@ -125,7 +136,7 @@ def _pitches(traces: Mapping[tuple[int, str], list[Point]], chart: Chart) -> dic
     values = np.array([traces[tooth, name][0].deviation for tooth in range(1, teeth + 1)])
     if name == "pitch":
         values = np.cumsum(values - values.mean())
-    order = [chart.on_sheet(tooth) - 1 for tooth in range(1, teeth + 1)]
+    order = [chart.meshing(tooth) - 1 for tooth in range(1, teeth + 1)]
     return {"pitch_deviation_um": _um(chart.facing * values[order])}
 
 
@@ -203,7 +214,7 @@ def inspected(chart: Chart) -> Iterator[Point]:
     faces = np.linspace(-0.5, 0.5, _LISTED) * gear.face_width
     middle = np.full(_LISTED, rolls.mean())
     for flank in gear.tooth_flanks:
-        tooth = chart.on_sheet(flank.tooth)
+        tooth = chart.meshing(flank.tooth)
         for roll, value in zip(rolls, flank.excess(gear, rolls, np.zeros(_LISTED)), strict=True):
             yield Point(0, tooth, chart.loaded, "profile", float(roll), None, float(value))
         for face, value in zip(faces, flank.excess(gear, middle, faces), strict=True):

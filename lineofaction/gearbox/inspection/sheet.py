@@ -12,7 +12,7 @@ from typing import Literal
 
 from fe_contact.geometry import Toothing
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.schemas.files import csv_cells
+from lineofaction.gearbox.schemas.csv_rows import Cells, csv_rows, number_in
 from lineofaction.gearbox.units import DEGREE, MM, UM
 
 Flank = Literal["left", "right"]
@@ -90,21 +90,13 @@ def _written(value: float | None, unit: float) -> str:
 
 
 def _sheet(text: str, gear: Toothing) -> Sheet:
-    lines = text.removeprefix("\ufeff").splitlines()
-    rows = [
-        (n, line) for n, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")
-    ]
-    if not rows:
-        raise ValueError("a CSV file with a heading and a row per point; it is empty")
-    if len(rows) > MOST_POINTS:
-        raise ValueError(f"at most {MOST_POINTS} points")
-    heading = csv_cells(rows[0][1])
-    _check_heading(heading)
-    points = tuple(_point(number, dict(_row(heading, line, number)), gear) for number, line in rows[1:])
+    file = csv_rows(text, MOST_POINTS)
+    _check_heading(file.heading)
+    points = tuple(_point(number, row, gear) for number, row in file.rows())
     if not points:
         raise ValueError("a file with a row per point; it has a heading alone")
     _refuse_repeated(points)
-    return Sheet(points, len(lines), len(lines) - len(rows))
+    return Sheet(points, file.lines, file.silent)
 
 
 def _check_heading(heading: list[str]) -> None:
@@ -121,14 +113,7 @@ def _check_heading(heading: list[str]) -> None:
             raise ValueError(f"a file with one of the columns {', '.join(several)}; its heading is {heading}")
 
 
-def _row(heading: list[str], line: str, number: int) -> Iterable[tuple[str, str]]:
-    cells = csv_cells(line)
-    if len(cells) != len(heading):
-        raise ValueError(f"a file with {len(heading)} values in each row; line {number} has {len(cells)}")
-    return zip(heading, cells, strict=True)
-
-
-def _point(line: int, row: dict[str, str], gear: Toothing) -> Point:
+def _point(line: int, row: Cells, gear: Toothing) -> Point:
     tooth, flank, trace = row["tooth"], row["flank"], row["trace"]
     if not _TOOTH.fullmatch(tooth) or not 1 <= int(tooth) <= gear.teeth:
         raise ValueError(f"a file of teeth from 1 to {gear.teeth}; line {line} has {tooth!r}")
@@ -138,20 +123,20 @@ def _point(line: int, row: dict[str, str], gear: Toothing) -> Point:
         raise ValueError(f"a file of the traces {', '.join(TRACES)}; line {line} has {trace!r}")
     roll = _roll(row, gear, line) if trace in ("profile", "topography") else None
     face = _face(row, gear, line) if trace in ("helix", "topography") else None
-    deviation = _number(row["deviation_um"], "deviation_um", line)
+    deviation = number_in(row, "deviation_um", line)
     if abs(deviation) > _LARGEST:
         raise ValueError(f"a file of deviations up to {_LARGEST:g} µm; line {line} has {deviation:g}")
     side: Flank = "left" if flank == "left" else "right"
     return Point(line, int(tooth), side, trace, roll, face, deviation * UM)
 
 
-def _roll(row: dict[str, str], gear: Toothing, line: int) -> float:
+def _roll(row: Cells, gear: Toothing, line: int) -> float:
     column = next((name for name in PROFILE if name in row), None)
     if column is None:
         raise ValueError(
             f"a file with one of the columns {', '.join(PROFILE)}: line {line} is along the profile"
         )
-    value = _number(row[column], column, line)
+    value = number_in(row, column, line)
     if column == "roll_length_mm":
         return value * MM
     if column == "roll_angle_deg":
@@ -164,23 +149,12 @@ def _roll(row: dict[str, str], gear: Toothing, line: int) -> float:
     return math.sqrt(radius**2 - gear.base_radius**2)
 
 
-def _face(row: dict[str, str], gear: Toothing, line: int) -> float:
+def _face(row: Cells, gear: Toothing, line: int) -> float:
     column = next((name for name in FACE if name in row), None)
     if column is None:
         raise ValueError(f"a file with one of the columns {', '.join(FACE)}: line {line} is along the face")
-    value = _number(row[column], column, line) * MM
+    value = number_in(row, column, line) * MM
     return value if column == "face_position_mm" else value - 0.5 * gear.face_width
-
-
-def _number(cell: str, column: str, line: int) -> float:
-    try:
-        value = float(cell)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        shown = f"{cell[:40]!r}" if cell else "nothing"
-        raise ValueError(f"a file of finite numbers; line {line} holds {shown} in {column}")
-    return value
 
 
 def _refuse_repeated(points: Iterable[Point]) -> None:

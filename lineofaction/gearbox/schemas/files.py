@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import base64
 import binascii
-import csv
-import math
 import re
 import zlib
 from collections.abc import Callable, Collection
@@ -18,6 +16,7 @@ from pydantic import Field
 from dynamics.solid_housing import MESH_SUFFIXES, STEP_SUFFIXES
 from host import MissingExtra
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.csv_rows import Nodes, csv_rows, number_in, whole_grid
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.units import MM, as_typed
 
@@ -253,69 +252,29 @@ def flank_grid(text: str, field: str, name: str) -> Table:
         Another heading, something that is no number, a node given twice or not at all.
     """
     try:
-        nodes = _nodes(text)
-        rolls, faces = (sorted({node[axis] for node in nodes}) for axis in (0, 1))
-        missing = [(roll, face) for roll in rolls for face in faces if (roll, face) not in nodes]
-        if missing:
-            roll, face = missing[0]
-            where = f"roll_length_mm = {roll:.12g}, face_position_mm = {face:.12g}"
-            raise ValueError(
-                f"a complete grid: {len(missing)} of {len(rolls) * len(faces)} nodes are missing, "
-                f"the first at {where}"
-            )
+        axes = whole_grid(_nodes(text), (COLUMNS[0], COLUMNS[1]))
     except ValueError as fault:
         raise BadInput.of(field, name, str(fault), _HELP) from None
-    removed = [[nodes[roll, face] for face in faces] for roll in rolls]
-    return dict(zip(COLUMNS, (rolls, faces, removed), strict=True))
+    return dict(zip(COLUMNS, axes, strict=True))
 
 
-def _nodes(text: str) -> dict[tuple[float, float], float]:
+def _nodes(text: str) -> Nodes:
     """Material removed by roll length and face position; `ValueError` says what the file must hold."""
-    lines = ((number, line) for number, line in enumerate(text.removeprefix("\ufeff").splitlines(), 1))
-    rows = [(n, line) for n, line in lines if line.strip() and not line.lstrip().startswith("#")]
-    if not rows:
-        raise ValueError(f"a CSV file with the columns {', '.join(COLUMNS)}; it is empty")
-    heading = csv_cells(rows[0][1])
-    if sorted(heading) != sorted(COLUMNS):
+    file = csv_rows(text, _MOST_NODES)
+    if sorted(file.heading) != sorted(COLUMNS):
         raise ValueError(
-            f"a CSV file whose heading is {','.join(COLUMNS)} in any order, with commas; it is {heading}"
+            f"a CSV file whose heading is {','.join(COLUMNS)} in any order, with commas; it is {file.heading}"
         )
-    order = [heading.index(column) for column in COLUMNS]
-    nodes: dict[tuple[float, float], float] = {}
-    for number, line in rows[1:]:
-        roll, face, removed = _row(csv_cells(line), order, number)
+    nodes: Nodes = {}
+    for number, row in file.rows():
+        roll, face, removed = (number_in(row, column, number) for column in COLUMNS)
         if (roll, face) in nodes:
             raise ValueError(f"a file that gives each node once; line {number} repeats one")
         nodes[roll, face] = removed
     return nodes
 
 
-def csv_cells(line: str) -> list[str]:
-    """Return the cells of a line of CSV without spaces around them; raises ValueError: it is none."""
-    try:
-        return [cell.strip() for cell in next(csv.reader([line]))]
-    except csv.Error as fault:
-        raise ValueError(f"a CSV file: {fault}") from None
-
-
-def _row(cells: list[str], order: list[int], number: int) -> list[float]:
-    if len(cells) != len(COLUMNS):
-        raise ValueError(f"a file with {len(COLUMNS)} values in each row; line {number} has {len(cells)}")
-    return [_number(cells[index], column, number) for index, column in zip(order, COLUMNS, strict=True)]
-
-
-def _number(cell: str, column: str, line: int) -> float:
-    try:
-        value = float(cell)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        shown = f"{cell!r}" if cell else "nothing"
-        raise ValueError(f"a file of finite numbers; line {line} holds {shown} in {column}")
-    return value
-
-
-_LARGEST_FILE = 16_000_000
+_LARGEST_FILE, _MOST_NODES = 16_000_000, 1_000_000
 
 
 def read_text(path: Path, name: str) -> str:

@@ -23,15 +23,15 @@ class InputWarning(BaseModel):
     message: str = Field(description="All of it as a sentence")
 
 
-def left_out_warnings(texts: Iterable[str]) -> list[dict[str, Any]]:
-    """Return what an import left out of a scene as warnings."""
+def left_out_warnings(texts: Iterable[str], of: str = "scene") -> list[dict[str, Any]]:
+    """Return what an import left out of a scene or a case as warnings."""
     nothing = {"value": None, "unit": "", "low": None, "high": None, "reason": "", "source": "", "whole": ""}
     return [
         {
             "check": "left_out",
             "field": f"left_out[{index}]",
             **nothing,
-            "message": f"left out of the scene: {text}",
+            "message": f"left out of the {of}: {text}",
         }
         for index, text in enumerate(texts)
     ]

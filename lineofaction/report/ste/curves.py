@@ -247,7 +247,7 @@ def ste_curves(database: SteDatabase) -> Figure:
         f"conjugate motion; drawn less its mean. {_bands(ripple)}{_carriers(database)}"
     )
     if database.period > 1:
-        caption += f" The teeth have pitch errors: the curve repeats after {database.period} base pitches."
+        caption += f" The teeth differ: the curve repeats after {database.period} base pitches."
     return Figure(
         key="ste",
         title=f"Static transmission error over {'two' if shown == 2 else shown} base pitches",

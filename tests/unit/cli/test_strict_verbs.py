@@ -18,7 +18,6 @@ from lineofaction.gearbox.problems import EXIT_BAD_INPUT, EXIT_WARNINGS
 
 NOT_COMPUTING = {
     "new",
-    "measured",
     "cache",
     "hardcases",
     "serve",

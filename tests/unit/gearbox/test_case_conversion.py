@@ -383,6 +383,7 @@ def test_a_client_cannot_name_a_file() -> None:
             [HEADING, *ROWS[:-1]],
             "1 of 9 nodes are missing, the first at roll_length_mm = 19, face_position_mm",
         ),
+        ([HEADING, *(f"{n},{n},1" for n in range(20_000))], "399980000 of 400000000 nodes are missing"),
         ([HEADING, *ROWS, ROWS[0]], "line 11 repeats"),
         ([HEADING, *ROWS[:-1], "19,12.5,"], "line 10 holds nothing in removed_um"),
         ([HEADING, *ROWS[:-1], "19,nan,1"], "line 10 holds 'nan' in face_position_mm"),

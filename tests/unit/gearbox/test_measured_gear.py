@@ -20,7 +20,7 @@ from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.inspection.evaluation import gaussian, split
 from lineofaction.gearbox.inspection.measured_gear import Chart, MeasuredGear, inspected, measured_gear
 from lineofaction.gearbox.inspection.sheet import Flank, read_sheet, sheet_text
-from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.problems import EXIT_WARNINGS, BadInput
 from lineofaction.gearbox.schemas import Case, read_model
 
 TEETH = 20
@@ -239,6 +239,20 @@ def test_the_verb_writes_a_sheet_and_takes_it_back(tmp_path: Path) -> None:
     assert second.tooth_flanks[0].profile_slope == pytest.approx(4e-6, rel=1e-6)
     said = loa("measured", case, sheet, *of)
     assert "cumulative_pitch" in said.stdout and "cut-off" in said.stdout
+
+
+def test_what_a_sheet_leaves_out_comes_first_and_decides_the_exit_code_if_asked(tmp_path: Path) -> None:
+    """Points of the loaded flank; those of the other one are of no use to the case."""
+    case, sheet = tmp_path / "case.toml", tmp_path / "sheet.csv"
+    case.write_text(spur_case(torques=[100.0]), encoding="utf-8")
+    of = "--gear", "pinion", "--loaded", "right", "--strict"
+    helix = [f"1,right,helix,,{z / 10},0.5" for z in range(-100, 101)]
+    for extra, code in (("1,left,profile,5,,1", 0), ("1,right,helix,,900,0.5", EXIT_WARNINGS)):
+        sheet.write_text("\n".join([HEAD, *helix, extra]) + "\n")
+        done = loa("measured", case, sheet, *of)
+        assert done.exit_code == code
+        said = "warning (left_out): left out of the case: beyond the face width (points: 1)"
+        assert done.stdout.startswith(said) == bool(code)
 
 
 def test_the_verb_names_a_sheet_that_is_not_there(tmp_path: Path) -> None:

@@ -114,9 +114,8 @@ def heard_optimum(
     with clock.stage("search"):
         own, sample = dict(zip(heard.problem.names, request.own, strict=True)), heard.sample
         problem = _scaled(heard.problem if question.quantile is None or sample is None else sample, own)
-        expected = _expected_seconds(problem, own, request.search)
+        expected, cancel = _expected_seconds(problem, own, request.search), means.cancel or never
         announce(means.report, "search", expected)
-        cancel = means.cancel or never
         runs = search_all(problem, request.search, request.own, run, cancel)
     best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
     designs = own, problem.values(runs[best].place)
@@ -126,6 +125,7 @@ def heard_optimum(
         rough = None if sample is None or cancel() else sample.at(request.search.exploration)
         pairs = [np.zeros(0) if rough is None else rough.levels(values, means.workers) for values in designs]
     run.progress("confirmation", 1.0)
+    spent = {"evaluations": sum(each.evaluations for each in runs), "search_expected_cpu_seconds": expected}
     quantity = quantity_of(subject, question)
     return HeardOptimization(
         mesh.name,
@@ -146,8 +146,7 @@ def heard_optimum(
         question.tolerances.tolerance_class,
         np.stack(pairs),
         mesh.case.model_dump(mode="json", exclude_unset=True),
-        clock.to_json()
-        | {"evaluations": sum(each.evaluations for each in runs), "search_expected_cpu_seconds": expected},
+        clock.to_json() | spent,
     )
 
 

@@ -1,0 +1,94 @@
+"""Rows of a CSV file from outside: a heading, then one row per point; what is wrong is named by its line.
+
+Every function raises `ValueError`, which says what the file must hold and which line does not.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+Cells: TypeAlias = dict[str, str]
+Nodes: TypeAlias = dict[tuple[float, float], float]
+_SHOWN = 40
+"""Characters of a cell that a message shows."""
+
+
+@dataclass(frozen=True)
+class CsvRows:
+    """The lines of a file.
+
+    Attributes
+    ----------
+    heading : list of str
+    held : list of (int, str)
+        The others that are neither blank nor comments, which start with #, after their number from 1.
+    lines : int
+        All of them.
+    """
+
+    heading: list[str]
+    held: list[tuple[int, str]]
+    lines: int
+
+    @property
+    def silent(self) -> int:
+        """Blank lines and comments."""
+        return self.lines - len(self.held) - 1
+
+    def rows(self) -> Iterator[tuple[int, Cells]]:
+        """Yield number and cells of each row, by the heading and without spaces around them."""
+        for number, line in self.held:
+            cells = _cells(line)
+            if len(cells) != len(self.heading):
+                count = len(self.heading)
+                raise ValueError(f"a file with {count} values in each row; line {number} has {len(cells)}")
+            yield number, dict(zip(self.heading, cells, strict=True))
+
+
+def csv_rows(text: str, most: int) -> CsvRows:
+    """Return the rows of a file of at most so many."""
+    lines = text.removeprefix("\ufeff").splitlines()
+    held = [
+        (n, line) for n, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")
+    ]
+    if not held:
+        raise ValueError("a CSV file with a heading and a row per point; it is empty")
+    if len(held) > most + 1:
+        raise ValueError(f"a file of at most {most} points")
+    return CsvRows(_cells(held[0][1]), held[1:], len(lines))
+
+
+def number_in(row: Cells, column: str, line: int) -> float:
+    """Return the finite number in a column of a row."""
+    cell = row[column]
+    try:
+        value = float(cell)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        shown = f"{cell[:_SHOWN]!r}" if cell else "nothing"
+        raise ValueError(f"a file of finite numbers; line {line} holds {shown} in {column}")
+    return value
+
+
+def whole_grid(nodes: Nodes, names: tuple[str, str]) -> tuple[list[float], list[float], list[list[float]]]:
+    """Return the axes of values at nodes, by `names` in messages, and the values in rows."""
+    first, second = (sorted({node[axis] for node in nodes}) for axis in (0, 1))
+    missing = len(first) * len(second) - len(nodes)
+    if missing:
+        place = next((a, b) for a in first for b in second if (a, b) not in nodes)
+        where = ", ".join(f"{name} = {value:.12g}" for name, value in zip(names, place, strict=True))
+        of = len(first) * len(second)
+        raise ValueError(f"a complete grid: {missing} of {of} nodes are missing, the first at {where}")
+    return first, second, [[nodes[a, b] for b in second] for a in first]
+
+
+def _cells(line: str) -> list[str]:
+    try:
+        return [cell.strip() for cell in next(csv.reader([line]))]
+    except csv.Error as fault:
+        raise ValueError(f"a CSV file: {fault}") from None
