@@ -11,18 +11,18 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (41_157, 741),
-    ("dynamics",): (43_159, 832),
-    ("lineofaction.gearbox",): (26_548, 538),
+    ("fe_contact",): (41_150, 741),
+    ("dynamics",): (43_164, 832),
+    ("lineofaction.gearbox",): (26_585, 541),
     ("lineofaction.report",): (11_759, 226),
     ("service",): (14_799, 339),
     ("lineofaction.client",): (2_713, 53),
-    ("lineofaction.cli",): (5_461, 80),
+    ("lineofaction.cli",): (5_464, 80),
     ("lineofaction.hardcases",): (3_844, 35),
     ("bounds", "host", "model_studies"): (4_522, 155),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 819
+MOST_FILES = 820
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
