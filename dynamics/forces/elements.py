@@ -91,10 +91,7 @@ class Elements(NamedTuple):
 
     @classmethod
     def packed(cls, elements: Sequence[Element], laws: ElementLaws, motions: int) -> Elements:
-        """Lay out `elements`, their rows one after the other, in a kinematic motion of that many laws.
-
-        What their laws are compiled from is compiled, too.
-        """
+        """Lay out `elements`, their rows one after the other, in a kinematic motion of that many laws."""
         sizes = [element.offset.size for element in elements]
         drift = [
             np.zeros((size, motions)) if element.drift is None else element.drift
@@ -109,7 +106,7 @@ class Elements(NamedTuple):
             np.flatnonzero(np.any(np.concatenate([np.empty((0, motions)), *drift]), axis=1)), sum(sizes)
         )
         turned = np.append(np.flatnonzero([np.any(each) for each in speed]), len(sizes))
-        packed = by_address(
+        return by_address(
             cls(
                 np.array([int(element.law) for element in elements], dtype=np.int64),
                 np.array([element.entry for element in elements], dtype=np.int64),
@@ -124,15 +121,17 @@ class Elements(NamedTuple):
                 laws,
             )
         )
-        present = (Law(law) for law in np.unique(packed.law))
-        apart = [(law, each) for law in present for each in COMPILED[law].routines]
+
+    def prepare(self, addressed: Elements) -> None:
+        """Compile the routines that its laws call; `addressed` are these elements as they take them."""
+        present = (Law(law) for law in np.unique(self.law))
+        apart = [(law, each) for law in present for each in COMPILED[law].routines if not each.prepared]
         common = [each for each in (evaluate_all, potential) if not each.prepared]
-        local = by_address(make_local(packed, 0)) if apart or common else None
+        local = by_address(make_local(self, 0)) if apart or common else None
         for law, each in apart:
-            each.prepare(by_address(getattr(packed.laws, law.name.lower())), local)
+            each.prepare(by_address(getattr(self.laws, law.name.lower())), local)
         for each in common:
-            each.prepare(packed, local)
-        return packed
+            each.prepare(addressed, local)
 
 
 def make_local(elements: Elements, meshes: int) -> LocalState:

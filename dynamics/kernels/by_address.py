@@ -64,6 +64,8 @@ class _Addressed:
         self._address = _address_of(self._words)
         self.value = value
         vars(self).update(zip(value._fields, value, strict=True))
+        if prepare := getattr(value, "prepare", None):
+            prepare(self)
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self.value, name)
@@ -76,7 +78,8 @@ def by_address(value: Tuple) -> Tuple:
     """Return `value`, a named tuple of C-contiguous arrays, numbers and such tuples, for compiled functions.
 
     Numbers are frozen in it; arrays are shared, so what either side writes into them the other sees. All
-    tuples of a class have arrays of the same types and dimensions, or compiled functions would not fit.
+    tuples of a class have arrays of the same types and dimensions, or compiled functions would not fit. A
+    class that calls routines has `prepare`, which gets the tuple by address in each process it comes to.
 
     Raises
     ------

@@ -79,6 +79,7 @@ rejected.expected_statuses = [*rejected.expected_statuses, "413"]  # too large b
 feasible = FeasibleBodies(DESCRIPTION, EXAMPLES)
 right = HookDispatcher(scope=HookScope.TEST)
 sent: Counter[str] = Counter()
+asked: set[str] = set()
 refused: Counter[str] = Counter()
 
 
@@ -167,6 +168,7 @@ def test_a_request_is_answered_as_documented(operation: Operation) -> None:
         checked(case)
 
     answered()
+    asked.add(operation.label)
 
 
 @pytest.mark.drawn
@@ -180,16 +182,20 @@ def test_a_body_that_breaks_its_schema_is_answered_as_documented(operation: Oper
     answered()
 
 
-def accepted(*processes: str) -> float:
+EXECUTIONS = [f"POST /v1/processes/{process}/execution" for process in default_registry()]
+
+
+def accepted(*labels: str) -> float:
     """Return the share of accepted bodies, right and wrong ones."""
-    labels = [f"POST /v1/processes/{process}/execution " for process in processes]
-    count = sum(number for name, number in sent.items() if name.startswith(tuple(labels)))
-    return sum(sent[f"{label}201"] for label in labels) / count
+    count = sum(number for name, number in sent.items() if name.rpartition(" ")[0] in labels)
+    return sum(sent[f"{label} 201"] for label in labels) / count
 
 
 def test_at_least_half_of_the_bodies_are_accepted() -> None:
-    assert accepted(*default_registry()) >= 0.5
-    few = {process: accepted(process) for process in default_registry() if BODIES}
+    if left := set(EXECUTIONS) - asked:
+        pytest.skip(f"{len(left)} processes are left to the night, and with them their right bodies")
+    assert accepted(*EXECUTIONS) >= 0.5
+    few = {label: accepted(label) for label in EXECUTIONS if BODIES}
     assert all(share >= 0.5 for share in few.values()), few
 
 

@@ -271,11 +271,24 @@ def about(example: Json, case: Json) -> Json:
     if "case" in inputs:
         inputs["case"] = case
         inputs.pop("variables", None)  # their lengths are those of another module
+    if "frequency_hz" in inputs:  # which its teeth pass
+        inputs["frequency_hz"] = case["pair"]["pinion"]["teeth"] * inputs["speed_rpm"] / 60.0
+    if "after" in inputs:
+        inputs["after"] = _relieved(case)
     if "scene" in inputs:
         _put_in(inputs["scene"], case)
     if "toml" in body and "shafts" not in body["toml"]:
         body["toml"] = toml_text(case)
     return body
+
+
+def _relieved(case: Json) -> Json:
+    """Return the same pair with tip relief."""
+    relieved = copy.deepcopy(case)
+    for name in ("pinion", "wheel"):
+        module = case["pair"]["normal_module_mm"]
+        relieved["pair"][name] |= {"tip_relief_um": 4.0 * module, "tip_relief_length_mm": 0.3 * module}
+    return relieved
 
 
 def _put_in(scene: Json, case: Json) -> None:

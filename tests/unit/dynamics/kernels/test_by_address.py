@@ -128,6 +128,8 @@ def test_a_scene_prepares_the_laws_it_has_and_no_others(monkeypatch):
     prepared = []
 
     class Noted:
+        prepared = False
+
         def __init__(self, law):
             self.law = law
 
@@ -141,3 +143,10 @@ def test_a_scene_prepares_the_laws_it_has_and_no_others(monkeypatch):
     assert prepared == []
     assemble(replace(scene, speed_torques=(SpeedTorque("fan", "output", SpeedCurve.quadratic(1.0, 100.0)),)))
     assert prepared == [(Law.SPEED_TORQUE, SpeedTorqueLaws)]
+
+
+def test_a_scene_that_comes_to_another_process_prepares_its_laws_there(monkeypatch):
+    system = pickle.dumps(assemble(gear_pair_scene(square_wave_table())))
+    monkeypatch.setattr(element_laws.evaluate_all, "_slot", np.zeros(1, dtype=np.int64))
+    pickle.loads(system)
+    assert element_laws.evaluate_all.prepared
