@@ -76,10 +76,8 @@ class _Blocks:
     def of(cls, system: System) -> _Blocks:
         """Cut the run of `system` into blocks of equal time.
 
-        Raises
-        ------
-        InputError
-            The run turns its first mesh by less than `LEAST_PITCHES`, or has too few samples a period.
+        Raises `InputError`: the run turns its first mesh by less than `LEAST_PITCHES`, or has too few samples
+        a period.
         """
         rate, scene = system.sampling.rate, system.scene
         samples = math.floor(scene.duration * rate * (1.0 + 1e-12)) + 1
@@ -130,12 +128,7 @@ class _Fidelity(model_studies.Fidelity[Scene], Protocol):
     def run(self, scene: Scene, blocks: _Blocks) -> _Vibration:
         """Compute the vibration.
 
-        Raises
-        ------
-        SolveError
-            It ended early.
-        InputError
-            The scene has what this model cannot hold.
+        Raises `SolveError`: it ended early; `InputError`: the scene has what this model cannot hold.
         """
 
 

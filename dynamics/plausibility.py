@@ -163,10 +163,7 @@ ROLLING = (1e7, 1e10)
 def scene_findings(scene: Scene) -> tuple[Finding, ...]:
     """Return what is implausible about a scene that can move.
 
-    Raises
-    ------
-    InputError
-        The parts of the scene do not fit each other.
+    Raises `InputError`: the parts of the scene do not fit each other.
     """
     mechanism = mechanism_of(scene)
     return (

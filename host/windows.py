@@ -52,12 +52,8 @@ def most_open_files() -> float:
 def lock(file: int, *, wait: bool = False) -> None:
     """Lock the first byte of an open file until its descriptor is closed.
 
-    Raises
-    ------
-    BlockingIOError
-        Another process has the lock.
-    Unavailable
-        We would `wait`: only the service does.
+    Raises `BlockingIOError`: another process has the lock; `Unavailable`: we would `wait`: only the service
+    does.
     """
     if wait or sys.platform != "win32":
         raise Unavailable("locks that are waited for" if wait else "locks on files")

@@ -144,11 +144,8 @@ class Hull:
     def require_closed(self) -> None:
         """Refuse a hull that does not enclose a volume with its normals outwards.
 
-        Raises
-        ------
-        InputError
-            An edge does not join exactly two panels that run through it in opposite directions, or the
-            normals point inwards.
+        Raises `InputError`: an edge does not join exactly two panels that run through it in opposite
+        directions, or the normals point inwards.
         """
         if not self.closed:
             suggestion = "Join nodes at the same position and close the openings of the outer hull."
@@ -162,10 +159,7 @@ class Hull:
     ) -> None:
         """Refuse a frequency whose waves the panels do not resolve.
 
-        Raises
-        ------
-        InputError
-            If fewer of the longest edges than `edges` fit in a wavelength.
+        Raises `InputError`: fewer of the longest edges than `edges` fit in a wavelength.
         """
         highest = self.highest_wavenumber * PANELS_PER_WAVELENGTH / edges
         if wavenumber > highest:

@@ -152,10 +152,7 @@ class LevelBand:
     def with_error(self, name: str, below: float, above: float) -> LevelBand:
         """Return the band with one more contribution, e.g. the error of the radiation model, dB.
 
-        Raises
-        ------
-        InputError
-            A deviation is negative.
+        Raises `InputError`: a deviation is negative.
         """
         if not (below >= 0.0 and above >= 0.0):
             raise InputError(name, min(below, above), "deviations of at least 0 dB")

@@ -66,10 +66,7 @@ class ElementalRadiators:
     def resistance(self, hull: Hull, frequency: float, shapes: ComplexArray, air: Air) -> ComplexArray:
         """Return rho c k^2 / (2 pi or 4 pi) Q^H [sin(kr)/(kr)] Q with the volume velocities Q = S v_n.
 
-        Raises
-        ------
-        InputError
-            The panels are too large for the wavelength.
+        Raises `InputError`: the panels are too large for the wavelength.
         """
         wavenumber = self._resolved(hull, frequency, air)
         volume_velocity = hull.areas[:, None] * shapes
@@ -100,10 +97,7 @@ class ElementalRadiators:
     ) -> FloatArray:
         """Return the power that each panel gives to the sound of all, (T,), W.
 
-        Raises
-        ------
-        InputError
-            The panels are too large for the wavelength.
+        Raises `InputError`: the panels are too large for the wavelength.
         """
         wavenumber = self._resolved(hull, frequency, air)
         flow = (hull.areas * normal_velocity)[:, None]

@@ -84,10 +84,7 @@ class ModalResistance:
     def alone(self, frequency: FloatArray, shapes: FloatArray) -> FloatArray:
         """Return the resistance of each of K vectors of shapes (M, K) by itself, (B, K), at frequencies (B,).
 
-        Raises
-        ------
-        InputError
-            A frequency lies outside of those computed.
+        Raises `InputError`: a frequency lies outside of those computed.
         """
         frequency = np.atleast_1d(np.asarray(frequency, dtype=float))
         own = np.einsum("mk,fmn,nk->fk", shapes.conj(), self.matrix, shapes, optimize=True).real
@@ -113,10 +110,7 @@ class ModalResistance:
     def weights(self, frequency: float) -> tuple[tuple[float, float], ...]:
         """Return the computed frequencies, Hz, and by how much each enters the matrix at another one.
 
-        Raises
-        ------
-        InputError
-            The frequency lies outside of those computed.
+        Raises `InputError`: the frequency lies outside of those computed.
         """
         hats = (
             (float(self.frequency[knot]), float(share[0]))
@@ -130,10 +124,7 @@ def modal_resistance(
 ) -> ModalResistance:
     """Compute the radiation resistance of shapes (T, M) at at least two increasing frequencies (F,), Hz.
 
-    Raises
-    ------
-    InputError
-        Fewer than two frequencies, or not increasing; or as `radiation.resistance` does.
+    Raises `InputError`: fewer than two frequencies, or not increasing; or as `radiation.resistance` does.
     """
     knots = np.asarray(frequency, dtype=float)
     if knots.ndim != 1 or knots.size < 2:

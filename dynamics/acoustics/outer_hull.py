@@ -183,14 +183,10 @@ class OuterHull:
 def outer_hull(housing: ReducedHousing) -> OuterHull:
     """Return the outer hull of a housing.
 
-    Outside are the faces that see at least half of their sky (`_free_sky`), and those joined to them that
-    see at least 15 % of theirs, with pockets between them that see 5 % on average. Each opening that is left,
-    e.g. in a bore, gets a cap, which moves as its rim does: bearings, covers and shaft ends are there.
-
-    Raises
-    ------
-    InputError
-        The housing has no surface, or no face of it sees the sky.
+    Outside are the faces that see at least half of their sky (`_free_sky`), and those joined to them that see
+    at least 15 % of theirs, with pockets between them that see 5 % on average. Each opening that is left,
+    e.g. in a bore, gets a cap, which moves as its rim does: bearings, covers and shaft ends are there. Raises
+    `InputError`: the housing has no surface, or no face of it sees the sky.
     """
     if housing.surface is None:
         advice = "Reduce its mesh or STEP file: matrices alone do not say what the air touches."

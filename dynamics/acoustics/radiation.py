@@ -84,10 +84,8 @@ def resistance(
 ) -> ComplexArray:
     """Check what a model is given and return its radiation resistance, (M, M), as `RadiationModel` has it.
 
-    Raises
-    ------
-    InputError
-        The frequency is not above zero, `shapes` are not (T, M) finite numbers, or the model refuses.
+    Raises `InputError`: the frequency is not above zero, `shapes` are not (T, M) finite numbers, or the model
+    refuses.
     """
     return model.resistance(hull, frequency, _checked(hull, frequency, shapes), air)
 
@@ -163,12 +161,8 @@ def radiation_efficiency(
 def sphere_efficiency(order: int, ka: float) -> float:
     """Return the radiation efficiency of a sphere in spherical harmonics of an order, 1/abs(ka h_n'(ka))^2.
 
-    (ka)^2/(1 + (ka)^2) for order 0, (ka)^4/(4 + (ka)^4) for order 1.
-
-    Raises
-    ------
-    InputError
-        If the order is not from 0 to 50, or ka not above zero.
+    (ka)^2/(1 + (ka)^2) for order 0, (ka)^4/(4 + (ka)^4) for order 1. Raises `InputError`: the order is not
+    from 0 to 50, or ka not above zero.
     """
     integer("order", order, 0, 50)
     positive("ka", ka)

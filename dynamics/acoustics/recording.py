@@ -242,10 +242,7 @@ COMMENT = ("quantity", "unit", "full_scale")
 def common_full_scale(*recordings: Recording) -> float:
     """Return the largest magnitude of several recordings, for files that are compared by ear.
 
-    Raises
-    ------
-    InputError
-        Their units differ, or all are silent.
+    Raises `InputError`: their units differ, or all are silent.
     """
     units = {recording.unit for recording in recordings}
     if len(units) != 1:

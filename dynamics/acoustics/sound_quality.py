@@ -75,13 +75,8 @@ class _SoundQuality:
 def sound_quality(recording: Recording) -> _SoundQuality:
     """Return the metrics of a sound that does not change over the recording.
 
-    Raises
-    ------
-    InputError
-        It is no sound pressure in Pa at 48 kHz (loudness is no linear quantity, a force has none), or shorter
-        than `SHORTEST`.
-    MissingExtra
-        MoSQITo is not installed.
+    Raises `InputError`: it is no sound pressure in Pa at 48 kHz (loudness is no linear quantity, a force has
+    none), or shorter than `SHORTEST`; `MissingExtra`: MoSQITo is not installed.
     """
     metrics = _metrics(recording)
     loudness, specific, _ = metrics.loudness_zwst(recording.samples, recording.sample_rate)

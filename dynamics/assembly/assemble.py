@@ -332,12 +332,8 @@ def assemble(scene: Scene) -> System:
     """Assemble `scene`; where it cannot have the laws of bearings, by their tangents at the load.
 
     That is where no effect may add them, and where a housing without mass carries one: no equation of motion
-    says where its seats are between the bodies.
-
-    Raises
-    ------
-    InputError
-        If parts do not fit each other, or a free direction has no inertia.
+    says where its seats are between the bodies. Raises `InputError`: parts do not fit each other, or a free
+    direction has no inertia.
     """
     massless, resting = under_laws(scene), scene
     if massless:

@@ -127,12 +127,8 @@ def linear_scene(
 
     They have the tangent stiffness and damping, and by their preload the force, of where the bodies rest on
     the bearings under the forces `push` (n,) of the meshes and the loads at t = 0. `bearings` are the last
-    elements with the names of their bearings, `supports` these with their dampings filled in.
-
-    Raises
-    ------
-    SolveError
-        If they do not rest.
+    elements with the names of their bearings, `supports` these with their dampings filled in. Raises
+    `SolveError`: they do not rest.
     """
     arrays = at_mean_loads(arrays)
     torque = np.array([float(load.torque(0.0)) for load in scene.loads])

@@ -29,10 +29,7 @@ class Model(LoadedTrain):
 def decide_model(scene: Scene, registry: tuple[Effect, ...]) -> Model:
     """Decide the effects of rotors, which give the freedoms, and then those of meshes, which look at them.
 
-    Raises
-    ------
-    InputError
-        If a choice is unknown, parts do not fit each other, or a free direction has no inertia.
+    Raises `InputError`: a choice is unknown, parts do not fit each other, or a free direction has no inertia.
     """
     mechanism = mechanism_of(scene, registry)
     flanks = flank_laws(mechanism)

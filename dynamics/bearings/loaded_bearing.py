@@ -125,12 +125,7 @@ class LoadedBearing:
 
         Damped Newton steps reduce energy less work of the load. Where the bearing does not resist, it stays
         at `start`, and so do the coordinates that are `held`, as (3, 4) by a shaft that does not tilt; their
-        load is of no account.
-
-        Raises
-        ------
-        SolveError
-            If no displacement carries the load.
+        load is of no account. Raises `SolveError`: no displacement carries the load.
         """
         wanted, d = np.asarray(load, dtype=float), np.array(start, dtype=float)
         free = np.setdiff1d(np.arange(SEAT), held)
@@ -191,10 +186,7 @@ def element_passing(
 ) -> _ElementPassing:
     """Return the motion of `bearing` under `load` (5,), N and N m, at evenly spaced angles of the cage.
 
-    Raises
-    ------
-    SolveError
-        If the bearing does not carry the load.
+    Raises `SolveError`: the bearing does not carry the load.
     """
     loaded = LoadedBearing(bearing)
     pitch = 2.0 * math.pi / bearing.count

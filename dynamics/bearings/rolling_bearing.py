@@ -91,10 +91,7 @@ class _Row:
     def check_row(self) -> None:
         """Refuse what is no row.
 
-        Raises
-        ------
-        InputError
-            A field out of its bounds, or more elements than their circle holds.
+        Raises `InputError`: a field out of its bounds, or more elements than their circle holds.
         """
         declared_fields(self)
         least = self.diameter / math.sin(math.pi / self.count)
@@ -374,10 +371,8 @@ HELD = {BOTH: ALONG | AGAINST, POSITIVE: ALONG, NEGATIVE: AGAINST, NONE: 0}
 def check_locating(row: BallBearing | RollerBearing, locating: str) -> None:
     """Refuse a row with a contact angle of which a ring slides: it would carry nothing at all.
 
-    Raises
-    ------
-    InputError
-        `locating` is none of the choices, or the row has a contact angle and not both directions are held.
+    Raises `InputError`: `locating` is none of the choices, or the row has a contact angle and not both
+    directions are held.
     """
     one_of("locating", locating, list(HELD))
     if locating != BOTH and row.contact_angle != 0.0:

@@ -56,12 +56,8 @@ class _RowLaw:
     def shift(self) -> float:
         """Displacement of the inner ring against the outer, along z, where the shaft is not displaced, m.
 
-        What makes the axial preload, and what temperatures add.
-
-        Raises
-        ------
-        SolveError
-            If no displacement makes it.
+        What makes the axial preload, and what temperatures add. Raises `SolveError`: no displacement makes
+        it.
         """
         if self.bearing.axial_preload == 0.0:
             return self.bearing.axial_shift

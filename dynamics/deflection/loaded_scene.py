@@ -85,10 +85,7 @@ def leader_of(scene: Scene) -> _Leader:
 def loaded_scene(scene: Scene, case: LoadCase) -> Scene:
     """Return `scene` under the constant loads and speeds of `case`, with everything that statics follows.
 
-    Raises
-    ------
-    InputError
-        If the case has no speed, or its torque cannot be had from the loads of the scene.
+    Raises `InputError`: the case has no speed, or its torque cannot be had from the loads of the scene.
     """
     leader = leader_of(scene)
     speed = _speed(leader, case)

@@ -143,13 +143,7 @@ def _user_functions(mesh: PlanarMesh, drive: Drive | None = None) -> tuple[Force
 
 
 def _exudyn() -> Any:
-    """Return the package.
-
-    Raises
-    ------
-    InputError
-        If it is not installed.
-    """
+    """Return the package; raises `InputError`: it is not installed."""
     try:
         import exudyn as package  # noqa: PLC0415 - an extra
         import exudyn.itemInterface  # noqa: PLC0415

@@ -89,12 +89,8 @@ def mesh_element(scene: Scene, mesh: str) -> MeshElement:
     """Return a mesh of a scene with the damping and the table that a run of the scene uses.
 
     A table with axes keeps them with the variable-torque technique. The constant-torque technique has one
-    place on them. The coast flank comes with it where the scene's effect `backlash` is on.
-
-    Raises
-    ------
-    InputError
-        If the scene has no such mesh, or its parts do not fit each other.
+    place on them. The coast flank comes with it where the scene's effect `backlash` is on. Raises
+    `InputError`: the scene has no such mesh, or its parts do not fit each other.
     """
     names = [part.name for part in scene.meshes]
     if mesh not in names:

@@ -66,13 +66,7 @@ class _Freedoms:
 
 
 def _independent_freedoms(points: FloatArray, faces: tuple[_RigidFace, ...]) -> _Freedoms:
-    """Eliminate the nodes of rigid faces.
-
-    Raises
-    ------
-    InputError
-        Two faces share nodes.
-    """
+    """Eliminate the nodes of rigid faces; raises `InputError`: two faces share nodes."""
     owner = np.full(len(points), -1)
     for number, face in enumerate(faces):
         shared = owner[face.nodes]
@@ -155,13 +149,7 @@ class AssembledHousing:
 
 
 def assemble(housing: MeshedHousing) -> AssembledHousing:
-    """Assemble a housing.
-
-    Raises
-    ------
-    InputError
-        A seat, foot or point is not on the mesh.
-    """
+    """Assemble a housing; raises `InputError`: a seat, foot or point is not on the mesh."""
     mesh = housing.mesh
     _check_faces(housing)
     frames = tuple(seat.frame for seat in housing.seats)
@@ -342,12 +330,7 @@ class FreeModes:
 def free_modes(housing: AssembledHousing, count: int) -> FreeModes:
     """Find the lowest elastic modes by shift-invert Lanczos, and the deflections by the same factor.
 
-    What did not converge is in the status.
-
-    Raises
-    ------
-    SolveError
-        The stiffness is singular.
+    What did not converge is in the status. Raises `SolveError`: the stiffness is singular.
     """
     loose = housing.loose.shape[1]
     squares = housing.stiffness.diagonal() / housing.mass.diagonal() if loose else np.zeros(1)

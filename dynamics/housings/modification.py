@@ -22,10 +22,7 @@ RAISED = 30.0
 def with_damping(housing: ReducedHousing, factor: float) -> ReducedHousing:
     """Return a housing with its damping, but for that of the mounts, times a factor.
 
-    Raises
-    ------
-    InputError
-        The factor is not above zero.
+    Raises `InputError`: the factor is not above zero.
     """
     positive("factor", factor)
     _, mounts = _mounts(housing)
@@ -41,12 +38,8 @@ def with_damping(housing: ReducedHousing, factor: float) -> ReducedHousing:
 def with_frequencies(housing: ReducedHousing, factor: float) -> ReducedHousing:
     """Return a housing whose natural frequencies, but for its mounts, are times a factor.
 
-    Its stiffness is times the square; damping ratios stay as they are.
-
-    Raises
-    ------
-    InputError
-        The factor is not above zero.
+    Its stiffness is times the square; damping ratios stay as they are. Raises `InputError`: the factor is not
+    above zero.
     """
     positive("factor", factor)
     springs, dampers = _mounts(housing)
@@ -58,13 +51,8 @@ def with_mounts(housing: ReducedHousing, factor: float) -> ReducedHousing:
     """Return a housing with stiffness and damping of all its mounts times a factor.
 
     By Galerkin's method over the reduced coordinates: exact where the modes kept span the change; natural
-    frequencies are upper bounds.
-
-    Raises
-    ------
-    InputError
-        The factor is not above zero, or no mounts are known: none of its feet has any, or it is given by
-        matrices.
+    frequencies are upper bounds. Raises `InputError`: the factor is not above zero, or no mounts are known:
+    none of its feet has any, or it is given by matrices.
     """
     positive("factor", factor)
     if housing.mount_stiffness is None:
@@ -78,12 +66,8 @@ def with_modes(housing: ReducedHousing, count: int) -> ReducedHousing:
     """Return a housing of which modes behind the first `count` follow statically.
 
     Statics and rigid motions stay as they are. The inertia of the other modes is hardly any (`RAISED`), so
-    that the mass stays positive definite.
-
-    Raises
-    ------
-    InputError
-        `count` is not from 1 to the number of modes kept.
+    that the mass stays positive definite. Raises `InputError`: `count` is not from 1 to the number of modes
+    kept.
     """
     integer("count", count, 1, len(housing.frequency))
     impulse = housing.mass @ housing.modes[1][:, count:]

@@ -207,10 +207,7 @@ class ReducedHousing:
     def from_netcdf(cls, path: str | Path) -> ReducedHousing:
         """Read what `to_netcdf` wrote, bit by bit the same.
 
-        Raises
-        ------
-        ResultError
-            The file is missing, damaged, or no reduced housing.
+        Raises `ResultError`: the file is missing, damaged, or no reduced housing.
         """
         from model_studies.netcdf import UnreadableFile  # noqa: PLC0415 (start-up time)
         from model_studies.record_file import read_record  # noqa: PLC0415

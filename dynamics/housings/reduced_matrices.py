@@ -112,10 +112,7 @@ class MeshedHousing:
     def nodes_of_points(self) -> IntArray:
         """Return the nodes next to the points.
 
-        Raises
-        ------
-        InputError
-            A point is farther from all nodes than the longest edge of an element.
+        Raises `InputError`: a point is farther from all nodes than the longest edge of an element.
         """
         corner = self.mesh.points[self.mesh.tetrahedra[:, :4]]
         reach = float(np.max(np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2)))

@@ -65,13 +65,8 @@ def reduce_housing(housing: MeshedHousing) -> ReducedHousing:
     the seats (Craig and Chang, AIAA paper 77-405; Rubin, AIAA Journal 13 (1975) 995-1006), projected by
     Galerkin's method: natural frequencies kept are those of the mesh, static motion is exact, and so are
     rigid motions. The coordinates are those of Craig and Bampton (AIAA Journal 6 (1968) 1313-1319) there.
-
-    Raises
-    ------
-    InputError
-        A seat, foot or point is not on the mesh, or two seats are one.
-    SolveError
-        The stiffness is singular or the modes do not converge.
+    Raises `InputError`: a seat, foot or point is not on the mesh, or two seats are one; `SolveError`: the
+    stiffness is singular or the modes do not converge.
     """
     assembled = assemble(housing)
     modes = free_modes(assembled, housing.modes)

@@ -85,10 +85,7 @@ class Face(Protocol):
     def triangles(self, mesh: TetrahedralMesh) -> IntArray:
         """Return those of `mesh.surface` that are on the face, (t, 6).
 
-        Raises
-        ------
-        InputError
-            There are none.
+        Raises `InputError`: there are none.
         """
 
 

@@ -26,12 +26,8 @@ def with_common_base_pitches(scene: Scene) -> tuple[Scene, Corrections]:
     """Return `scene` with one base pitch per train of meshing gears, and what was corrected.
 
     Radii are printed to one digit after the point, so the pitch of a train is that of least squares of all
-    its base radii: each counts in proportion to its teeth.
-
-    Raises
-    ------
-    InputError
-        If the base pitches of two gears that mesh differ by more than `PRINTED`.
+    its base radii: each counts in proportion to its teeth. Raises `InputError`: the base pitches of two gears
+    that mesh differ by more than `PRINTED`.
     """
     corrected = _corrections(scene)
     if not corrected:

@@ -173,13 +173,8 @@ def solve_kinematics(scene: Scene) -> Kinematics:
 
     A mesh of gears a and b on the carrier c (none: w_c = 0) requires (w_a - w_c) z_a = -(w_b - w_c) z_b, with
     + for a ring gear and its pinion; a coupling that joins rotations for equal speeds. What they leave open,
-    drives and free rotations set.
-
-    Raises
-    ------
-    InputError
-        If a mesh requires another ratio than the rest of the train, two drives set the same train, or
-        nothing sets a shaft's speed.
+    drives and free rotations set. Raises `InputError`: a mesh requires another ratio than the rest of the
+    train, two drives set the same train, or nothing sets a shaft's speed.
     """
     speeds = _TrainSpeeds(len(scene.shafts))
     for index in range(len(scene.meshes)):
@@ -296,13 +291,9 @@ def _sense(row: tuple[Fraction, ...], course: FloatArray, limit: float) -> int:
 def check_motion(scene: Scene) -> Kinematics:
     """Return the kinematic motion of a scene that can move.
 
-    Nothing here reads the tables of the meshes, so that it may be called before they exist.
-
-    Raises
-    ------
-    InputError
-        If gears cannot mesh, a train is locked or not driven, a load acts on a shaft at rest, or one
-        pulls flanks apart that have no coast flank behind them.
+    Nothing here reads the tables of the meshes, so that it may be called before they exist. Raises
+    `InputError`: gears cannot mesh, a train is locked or not driven, a load acts on a shaft at rest, or one
+    pulls flanks apart that have no coast flank behind them.
     """
     scene, _ = with_common_base_pitches(scene)
     kinematics = solve_kinematics(scene)

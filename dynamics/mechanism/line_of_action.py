@@ -68,12 +68,8 @@ def line_of_action(scene: Scene, index: int, sense: int) -> LineOfAction:
     With e from the driver's center to the pitch point and alpha the working pressure angle, the driver
     rotating in +z pushes along n = sin(alpha) e + cos(alpha) (z x e); a ring gear that drives pushes inwards,
     along n = -sin(alpha) e + cos(alpha) (z x e). The other `sense` is the coast flank. A right-hand driver
-    (beta_b > 0) pushed on by F feels the axial force sense F tan(beta_b).
-
-    Raises
-    ------
-    InputError
-        If the gears cannot mesh: hand, faces or center distance do not fit.
+    (beta_b > 0) pushed on by F feels the axial force sense F tan(beta_b). Raises `InputError`: the gears
+    cannot mesh: hand, faces or center distance do not fit.
     """
     mesh = scene.meshes[index]
     driver, driven = scene.gear(mesh.driver), scene.gear(mesh.driven)

@@ -44,13 +44,8 @@ def _nominal_forces(scene: Scene, kinematics: Kinematics, inertia: FloatArray, *
 
     `inertia` (shafts,) in kg m^2 is that of each shaft about its axis and, on a carrier, of the planets about
     the carrier's: a train without a drive accelerates where its torques do not balance. `coasts`: whether the
-    coast flanks that are given carry load.
-
-    Raises
-    ------
-    InputError
-        If the balance does not determine a force that is needed, or a load pulls flanks apart that have no
-        coast flank behind them.
+    coast flanks that are given carry load. Raises `InputError`: the balance does not determine a force that
+    is needed, or a load pulls flanks apart that have no coast flank behind them.
     """
     stated = [mesh.nominal_force for mesh in scene.meshes]
     if all(force is not None for force in stated):
@@ -291,10 +286,7 @@ class Mechanism:
 def gather_mechanism(scene: Scene, additions: Additions) -> Mechanism:
     """Gather bodies, kinematic motion and loads of `scene`, to which effects may make `additions`.
 
-    Raises
-    ------
-    InputError
-        If parts do not fit each other, or a shaft free to turn has no moment of inertia.
+    Raises `InputError`: parts do not fit each other, or a shaft free to turn has no moment of inertia.
     """
     scene, corrected = with_common_base_pitches(scene)
     kinematics = solve_kinematics(scene)

@@ -150,10 +150,7 @@ def _speeds(scene: Scene, duration: float) -> FloatArray:
 def choose_sampling(scene: Scene, kinematics: Kinematics, mode: float) -> Sampling:
     """Return how to sample the run of `scene`; `mode` is its highest resolved mode, Hz.
 
-    Raises
-    ------
-    InputError
-        If the run would have too many samples.
+    Raises `InputError`: the run would have too many samples.
     """
     mesh, outputs = top_mesh_frequency(scene, kinematics), scene.outputs
     load = top_load_frequency(scene, kinematics)

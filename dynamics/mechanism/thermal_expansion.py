@@ -33,10 +33,7 @@ from dynamics.types import FloatArray
 def warmed_bearings(scene: Scene) -> Scene:
     """Return `scene` with its bearings as temperatures leave them; itself if they are so or it has none.
 
-    Raises
-    ------
-    InputError
-        A row or a curve of a bearing is none any more.
+    Raises `InputError`: a row or a curve of a bearing is none any more.
     """
     warm = scene.temperatures
     if warm is None or warm.bearings is not None:
@@ -145,10 +142,8 @@ def _pushed(bushing: Bushing, growth: float) -> Bushing:
 def warmed_meshes(scene: Scene) -> Scene:
     """Return `scene` with its meshes as temperatures leave them; itself if they are so or it has none.
 
-    Raises
-    ------
-    InputError
-        Flanks bind, or the table does not reach the change of the center distance or the misalignment.
+    Raises `InputError`: flanks bind, or the table does not reach the change of the center distance or the
+    misalignment.
     """
     warm = scene.temperatures
     if warm is None or warm.meshes is not None:

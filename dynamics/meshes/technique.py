@@ -39,10 +39,7 @@ class PlainTable:
 def table_at(table: MeshTable, misalignment: float, center_distance_change: float) -> PlainTable:
     """Return `table` at one misalignment and center-distance change, linear between their knots.
 
-    Raises
-    ------
-    InputError
-        If the operating point is outside the table, or not the table's only one.
+    Raises `InputError`: the operating point is outside the table, or not the table's only one.
     """
     weight_m = _weights("misalignment", table.misalignment, misalignment)
     weight_d = _weights("center_distance_change", table.center_distance_change, center_distance_change)
@@ -71,10 +68,7 @@ def table_at(table: MeshTable, misalignment: float, center_distance_change: floa
 def secant_table(table: PlainTable, force: float) -> PlainTable:
     """Return the two-level table of F = k(x) d with k(x) = force / STE(x), both at the knots of `table`.
 
-    Raises
-    ------
-    InputError
-        If the static transmission error at that force is not above zero everywhere.
+    Raises `InputError`: the static transmission error at that force is not above zero everywhere.
     """
     packed = pack_tables([table])
     position = table.position

@@ -131,12 +131,8 @@ class RadiatedSound(ArrayFile):
     def of_all(cls, sounds: Sequence[RadiatedSound]) -> RadiatedSound:
         """Return the sound of housings under one response: powers add up, without interference between them.
 
-        The efficiency is that of all surfaces together.
-
-        Raises
-        ------
-        InputError
-            There is none, or their speeds and orders differ.
+        The efficiency is that of all surfaces together. Raises `InputError`: there is none, or their speeds
+        and orders differ.
         """
         if not sounds:
             raise InputError("sounds", len(sounds), at_least(1))

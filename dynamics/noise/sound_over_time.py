@@ -57,10 +57,7 @@ class SoundOverTime:
     def of_all(cls, sounds: Sequence[SoundOverTime]) -> SoundOverTime:
         """Return the sound of several housings in one run: powers add up.
 
-        Raises
-        ------
-        InputError
-            There is none, or their times and bands differ.
+        Raises `InputError`: there is none, or their times and bands differ.
         """
         if not sounds:
             raise InputError("sounds", len(sounds), at_least(1))

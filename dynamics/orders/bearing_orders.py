@@ -20,10 +20,7 @@ from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray, Json
 def bearing_signals(result: RunResult) -> FloatArray:
     """Return forces on bearings over time, (b, 3, T) in N, with moments (b, 6, T) in N m where there are any.
 
-    Raises
-    ------
-    InputError
-        The run holds no bearing forces.
+    Raises `InputError`: the run holds no bearing forces.
     """
     if not len(result.bearing_force):
         advice = "Run the scene with bearing forces among its outputs."

@@ -47,10 +47,7 @@ def highest_valid_order(result: RunResult, mesh: int = 0) -> int:
 def checked_order(result: RunResult, field: str, value: int | None, mesh: int = 0, usual: int = USUAL) -> int:
     """Return the order `value`, or what is valid of the usual ones.
 
-    Raises
-    ------
-    InputError
-        If the run's output does not hold that order at its highest speed.
+    Raises `InputError`: the run's output does not hold that order at its highest speed.
     """
     valid = highest_valid_order(result, mesh)
     if value is None:
@@ -133,12 +130,8 @@ def resample_to_position(
 
     Interpolated to four times the result's rate by a filter that passes what is below 0.42 of that rate
     (outputs hold 0.39), then cubic between the four nearest values: the error of a sinusoid is at most 0.4 %
-    of its amplitude at 2.56 samples per period and 2e-5 at 10.
-
-    Raises
-    ------
-    InputError
-        If a mesh moves by half a base pitch or more between two samples, or less than one pitch in all.
+    of its amplitude at 2.56 samples per period and 2e-5 at 10. Raises `InputError`: a mesh moves by half a
+    base pitch or more between two samples, or less than one pitch in all.
     """
     integer("per_pitch", per_pitch, 2, 4096)
     wrapped = result.position[mesh]
@@ -183,11 +176,5 @@ def _cubic(values: FloatArray, index: IntArray, part: FloatArray) -> FloatArray:
 
 
 def unit_of(series: str) -> str:
-    """Return the unit of a series over time.
-
-    Raises
-    ------
-    InputError
-        If there is no such series.
-    """
+    """Return the unit of a series over time; raises `InputError`: there is no such series."""
     return OVER_TIME[one_of("series", series, OVER_TIME)].units

@@ -64,12 +64,8 @@ def spectrum(values: FloatArray, sample_rate: float, unit: str = "", window: str
     """Return the amplitude spectrum of `values` (..., N), uniformly sampled.
 
     The lines of a sinusoid that falls between two of them read low by the window's scalloping: up to 1.4 dB
-    (15 %) for Hann, 3.9 dB for rectangular, 0.01 dB for flat top.
-
-    Raises
-    ------
-    InputError
-        If there are fewer than 4 samples or the window is unknown.
+    (15 %) for Hann, 3.9 dB for rectangular, 0.01 dB for flat top. Raises `InputError`: there are fewer than 4
+    samples or the window is unknown.
     """
     values = np.asarray(values, dtype=float)
     samples = values.shape[-1]
@@ -94,10 +90,7 @@ def window_spectrum(
 ) -> Spectrum:
     """Return the spectrum of one series of `result`, e.g. ``"bearing_force"``, between two times in s.
 
-    Raises
-    ------
-    InputError
-        If the run has no such series over time, or not those times.
+    Raises `InputError`: the run has no such series over time, or not those times.
     """
     unit = unit_of(series)
     values = getattr(result, series)[..., result.window(start, end)]
@@ -136,10 +129,7 @@ def find_peaks(
 ) -> tuple[_Peak, ...]:
     """Return the `count` highest peaks between `low` and `high` (Hz), highest first; the mean is none.
 
-    Raises
-    ------
-    InputError
-        If the spectrum holds more than one signal.
+    Raises `InputError`: the spectrum holds more than one signal.
     """
     lines = spectrum.amplitude
     if lines.ndim != 1:

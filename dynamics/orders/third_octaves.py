@@ -46,10 +46,7 @@ class Waterfall:
     def cut(self, line: float) -> FloatArray:
         """Return the amplitude over the run at one line, (..., B): an order cut where lines are orders.
 
-        Raises
-        ------
-        InputError
-            If there is no such line.
+        Raises `InputError`: there is no such line.
         """
         fraction = line / self.line[1]
         nearest = round(fraction)
@@ -72,12 +69,8 @@ def order_waterfall(
 
     Blocks overlap by that share of their length. Orders are 1/`pitches` apart. A multiple of a gear's teeth
     puts the orders of its shaft on lines. Without `highest` they reach to the tenth mesh order, or as far as
-    the output holds.
-
-    Raises
-    ------
-    InputError
-        If the run is shorter than one block, has no such series, or its output does not hold the order.
+    the output holds. Raises `InputError`: the run is shorter than one block, has no such series, or its
+    output does not hold the order.
     """
     unit = unit_of(series)
     integer("pitches", pitches, 1, 1_000_000)
@@ -100,12 +93,8 @@ def order_track(
 ) -> Waterfall:
     """Return the amplitudes of the mesh orders 0 to `highest` in blocks of `pitches` base pitches.
 
-    The lines of `order_waterfall` at multiples of the mesh frequency.
-
-    Raises
-    ------
-    InputError
-        If the run is shorter than one block, or its output does not hold the order.
+    The lines of `order_waterfall` at multiples of the mesh frequency. Raises `InputError`: the run is shorter
+    than one block, or its output does not hold the order.
     """
     whole = order_waterfall(result, series, pitches, highest, mesh)
     orders = np.arange((whole.line.size - 1) // pitches + 1)
@@ -122,10 +111,7 @@ def frequency_waterfall(
 ) -> Waterfall:
     """Return the spectra over frequency of blocks of `block` seconds that overlap by that share.
 
-    Raises
-    ------
-    InputError
-        If the run is shorter than one block, or has no such series.
+    Raises `InputError`: the run is shorter than one block, or has no such series.
     """
     unit = unit_of(series)
     length = round(block * result.sample_rate)
@@ -214,10 +200,7 @@ def nominal_center(band: IntArray) -> FloatArray:
 def third_octaves(blocks: Waterfall, top: float) -> ThirdOctaves:
     """Add up the lines of spectra over frequency in the bands that end at or below `top`, Hz.
 
-    Raises
-    ------
-    InputError
-        If no band below `top` holds three lines.
+    Raises `InputError`: no band below `top` holds three lines.
     """
     power = 0.5 * blocks.amplitude[..., 1:] ** 2 / blocks.noise_bandwidth
     band, edges, within = band_sums(float(blocks.line[1]), power, top)

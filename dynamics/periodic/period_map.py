@@ -146,12 +146,8 @@ class _PeriodGrid:
         """Return steps of at most `largest` common periods, an equal number of them between any two knots.
 
         Tables have a kink in their second derivative at each knot (a jump of stiffness is a narrow interval
-        between two of them): steps that end there keep the method's order.
-
-        Raises
-        ------
-        InputError
-            If that takes more than a million steps.
+        between two of them): steps that end there keep the method's order. Raises `InputError`: that takes
+        more than a million steps.
         """
         knots = _knots(system, period)
         counts = np.maximum(np.ceil(np.diff(knots) / largest * (1.0 - 1e-9)), 1.0)
@@ -305,12 +301,8 @@ def periodic_problem(
 ) -> PeriodicProblem:
     """Prepare `system` for speeds from `slowest` (rad/s) up.
 
-    Raises
-    ------
-    InputError
-        If there is nothing to vibrate, or the meshes have no common period.
-    SolveError
-        If there is no static equilibrium.
+    Raises `InputError`: there is nothing to vibrate, or the meshes have no common period; `SolveError`: there
+    is no static equilibrium.
     """
     integer("repeat", repeat, 1, 1000)
     integer("steps_per_cycle", steps_per_cycle, 4, 100_000)

@@ -191,13 +191,8 @@ def sweep(
 
     It stays on its branch up to the fold and jumps there, as a slow run does: rising and falling speeds give
     the two sides of a hysteresis. Where it settles on no motion of the period sought (a longer period, chaos)
-    the status says so, and the sweep goes on from there. `progress` is called with the fraction done; what
-    it raises ends the sweep.
-
-    Raises
-    ------
-    InputError
-        If a speed is zero or of the other sense.
+    the status says so, and the sweep goes on from there. `progress` is called with the fraction done; what it
+    raises ends the sweep. Raises `InputError`: a speed is zero or of the other sense.
     """
     state, orbits = problem.rest, []
     for speed in speeds:

@@ -57,10 +57,7 @@ class ArrayFile:
     def from_netcdf(cls, path: str | Path) -> Self:
         """Read what `to_netcdf` wrote, bit by bit the same.
 
-        Raises
-        ------
-        ResultError
-            If the file is missing, no netCDF-4 file, of another schema, or damaged.
+        Raises `ResultError`: the file is missing, no netCDF-4 file, of another schema, or damaged.
         """
         try:
             _, arrays, rest = read_arrays(Path(path), (cls.SCHEMA,))

@@ -54,10 +54,7 @@ class _DynamicFactor:
 def dynamic_factor(result: RunResult, pitches: int = 16, mesh: int = 0) -> _DynamicFactor:
     """Return the dynamic factor of a mesh in blocks of `pitches` base pitches.
 
-    Raises
-    ------
-    InputError
-        If the run is shorter than one block, or nothing loads the mesh.
+    Raises `InputError`: the run is shorter than one block, or nothing loads the mesh.
     """
     integer("pitches", pitches, 1, 1_000_000)
     integer("mesh", mesh, 0, len(result.mesh) - 1)

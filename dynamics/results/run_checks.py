@@ -325,10 +325,7 @@ def _force_checks(scene: Scene, largest: FloatArray, beyond: FloatArray | None =
 def checked_ledger(system: System, largest: FloatArray) -> Json:
     """Return the effect ledger of a study whose largest mesh forces are `largest` (m,), N, with its checks.
 
-    Raises
-    ------
-    SolveError
-        If a force is beyond its table and the scene's ``on_violation`` does not let that pass.
+    Raises `SolveError`: a force is beyond its table and the scene's ``on_violation`` does not let that pass.
     """
     checks = _force_checks(system.scene, largest)
     entries = [check.to_json() for check in checks]

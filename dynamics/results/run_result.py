@@ -194,10 +194,7 @@ class RunResult:
     def window(self, start: float, end: float) -> slice:
         """Return the samples with start <= time <= end (s).
 
-        Raises
-        ------
-        InputError
-            If fewer than 2 samples lie there.
+        Raises `InputError`: fewer than 2 samples lie there.
         """
         first, last = np.searchsorted(self.time, [start, end * (1.0 + 1e-12)])
         if last - first < 2:
@@ -235,10 +232,7 @@ class RunResult:
     def from_netcdf(cls, path: str | Path) -> RunResult:
         """Read a file of `to_netcdf`; equal to the last bit.
 
-        Raises
-        ------
-        ResultError
-            If the file is no run result of this schema.
+        Raises `ResultError`: the file is no run result of this schema.
         """
         path = Path(path)
         try:

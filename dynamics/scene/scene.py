@@ -436,13 +436,7 @@ NAMED, ON_A_SHAFT = (
 
 
 def check_samples(duration: float, rate: float) -> None:
-    """Refuse a run of too many samples.
-
-    Raises
-    ------
-    InputError
-        Naming its duration.
-    """
+    """Refuse a run of too many samples; raises `InputError` naming its duration."""
     if duration * rate > SAMPLE_LIMIT:
         bound = at_most(SAMPLE_LIMIT / rate, "s", note=f", {SAMPLE_LIMIT:g} samples at {rate:g} Hz")
         suggestion = "Shorten the run, or lower outputs.mesh_orders or outputs.sample_rate."

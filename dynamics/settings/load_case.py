@@ -101,10 +101,7 @@ class LoadCase:
 def check_forces(cases: Iterable[LoadCase], names: Sequence[str]) -> None:
     """Refuse load cases that state a force which is not one of the scene's, by their names.
 
-    Raises
-    ------
-    InputError
-        Naming the load case and its force.
+    Raises `InputError` naming the load case and its force.
     """
     for number, case in enumerate(cases):
         for index, part in enumerate(case.forces):

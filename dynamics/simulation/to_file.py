@@ -230,10 +230,7 @@ class _Start:
     def of(cls, decided: Decided) -> _Start:
         """Assemble a scene and find its equilibrium.
 
-        Raises
-        ------
-        SolveError
-            There is none; ``partial`` shows where the search for it ended.
+        Raises `SolveError`: there is none; ``partial`` shows where the search for it ended.
         """
         clock = StageClock()
         with clock.stage("assembly_and_equilibrium"):

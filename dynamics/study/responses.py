@@ -47,10 +47,7 @@ class _Window:
     def of(cls, run: RunResult, start: float, highest_order: int, bearings: tuple[int, ...]) -> _Window:
         """Look at a run from `start` (s) on.
 
-        Raises
-        ------
-        InputError
-            The run ends before, or its output does not hold the order.
+        Raises `InputError`: the run ends before, or its output does not hold the order.
         """
         end = float(run.time[-1])
         return cls(run, run.window(within("start", start, 0.0, end), end), highest_order, bearings)
@@ -185,10 +182,7 @@ def responses_of(
 ) -> tuple[list[float], list[float]]:
     """Return values and errors of `responses` from the time `start` (s) of a run on.
 
-    Raises
-    ------
-    InputError
-        No such part, an order that the output does not hold, or a `start` behind the end.
+    Raises `InputError`: no such part, an order that the output does not hold, or a `start` behind the end.
     """
     bearings = {row for each in responses if each.kind.of == "bearing" for row in each.rows(run)}
     highest = max((response.order for response in responses), default=0)

@@ -165,10 +165,7 @@ class Scenes(Protocol):
     def scene(self, values: Mapping[str, float]) -> Scene:
         """Return the scene at values of the factors, by name.
 
-        Raises
-        ------
-        LeftOut, DynamicsError
-            There is no such scene, and why.
+        Raises `LeftOut`, `DynamicsError`: there is no such scene, and why.
         """
         ...
 

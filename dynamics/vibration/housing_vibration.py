@@ -82,10 +82,7 @@ def overall(rms: ArrayLike, axis: int = -1) -> FloatArray:
 def named_points(housing: ReducedHousing, names: Sequence[str] | None = None) -> tuple[PointMotion, ...]:
     """Return points by their names, by default all.
 
-    Raises
-    ------
-    InputError
-        The housing has no such point, or none at all.
+    Raises `InputError`: the housing has no such point, or none at all.
     """
     if not housing.points:
         raise InputError(
@@ -108,12 +105,8 @@ def surface_weight(housing: ReducedHousing) -> FloatArray:
     """Return the mean over the outer hull of the products of normal motions, (r, r).
 
     Walls of cavities are left out and openings capped (`outer_hull`): with the hull's area and rho c of the
-    air a mean square velocity gives the equivalent radiated power.
-
-    Raises
-    ------
-    InputError
-        The housing has no surface.
+    air a mean square velocity gives the equivalent radiated power. Raises `InputError`: the housing has no
+    surface.
     """
     outer = outer_hull(housing)
     return outer.surface / outer.hull.area

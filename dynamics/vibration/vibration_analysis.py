@@ -203,10 +203,7 @@ def operating_deflection(housing: ReducedHousing, motion: ComplexArray) -> Surfa
 def mode_shape(housing: ReducedHousing, number: int) -> SurfaceShape:
     """Return a natural mode of the housing with its seats free; `number` counts from 1, rigid motions first.
 
-    Raises
-    ------
-    InputError
-        There is no such mode, or the housing has no surface.
+    Raises `InputError`: there is no such mode, or the housing has no surface.
     """
     integer("number", number, 1, len(housing.frequency))
     shape = operating_deflection(housing, housing.modes[1][:, number - 1].astype(complex))

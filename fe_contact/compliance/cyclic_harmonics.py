@@ -35,10 +35,7 @@ class TurningLoads:
     def solve(self, number: int) -> ComplexArray:
         """Return the left cut of sector 0 under harmonic `number`, (nc, p).
 
-        Raises
-        ------
-        SolveError
-            The harmonic is not positive definite.
+        Raises `SolveError`: the harmonic is not positive definite.
         """
         turn = np.exp(2j * np.pi * number / self.teeth)
         matrix = np.empty(self.across.shape, dtype=complex, order="F")

@@ -162,10 +162,7 @@ class FreeTurn:
 def hold_sector(matrix: FloatArray, flank: int) -> HeldSector:
     """Eliminate the first `flank` freedoms of a condensed stiffness, whose lower triangle is given.
 
-    Raises
-    ------
-    SolveError
-        The flank block is not positive definite.
+    Raises `SolveError`: the flank block is not positive definite.
     """
     factor, info = lapack.dpotrf(np.asfortranarray(matrix[:flank, :flank]), lower=1, clean=1)
     if info:

@@ -185,10 +185,7 @@ Checked = TypeVar("Checked", bound=_HasChecks)
 def refuse_broken_laws(compliance: Checked) -> Checked:
     """Return a compliance whose checks keep their limits.
 
-    Raises
-    ------
-    SolveError
-        Naming the check, its value and the limit; ``partial`` is the compliance.
+    Raises `SolveError` naming the check, its value and the limit; ``partial`` is the compliance.
     """
     checks = compliance.checks
     if not checks.energy_rounding <= LARGEST_ROUNDING:
@@ -278,10 +275,8 @@ class FlankCompliance3D:
     def block(self, tooth: int, other: int) -> FloatArray:
         """Return the (nf, nf) compliance of flank `tooth` under forces on flank `other`, both tooth numbers.
 
-        Raises
-        ------
-        KeyError
-            The teeth are further apart than `reach`, or beside a key further than s from tooth 0.
+        Raises `KeyError`: the teeth are further apart than `reach`, or beside a key further than s from tooth
+        0.
         """
         if len(self.key_rows) == 0:
             return self._apart(tooth, other)

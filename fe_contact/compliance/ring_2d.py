@@ -22,12 +22,8 @@ def factorise(matrix: sp.csc_array, block: int) -> Solve:
     """Factorise a symmetric positive definite matrix once, for many right-hand sides.
 
     SciPy's SuperLU without pivoting, on METIS' nested dissection of the graph of the nodes, which hold
-    `block` consecutive freedoms. Returns x(b) for b (n, m), dense.
-
-    Raises
-    ------
-    SolveError
-        The matrix is singular.
+    `block` consecutive freedoms. Returns x(b) for b (n, m), dense. Raises `SolveError`: the matrix is
+    singular.
     """
     order = _nested_dissection(matrix, block)
     permuted = sp.csc_array(matrix[order][:, order])

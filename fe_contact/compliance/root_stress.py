@@ -101,10 +101,7 @@ class UnitRootStress:
 def refuse_broken_stress(stress: UnitRootStress) -> UnitRootStress:
     """Return a root stress whose checks keep their limits.
 
-    Raises
-    ------
-    SolveError
-        Naming the check, its value and the limit; ``partial`` is the root stress.
+    Raises `SolveError` naming the check, its value and the limit; ``partial`` is the root stress.
     """
     limits = {"residual": RESIDUAL_LIMIT, "recovery": RECOVERY_LIMIT}
     for name, limit in limits.items():

@@ -72,12 +72,8 @@ def gradients(mesh: MeshHex, at: FloatArray) -> FloatArray:
 def _stiffness_of(nodes: FloatArray, lame: tuple[float, float]) -> FloatArray:
     """Return the stiffness (m, 60, 60) of hexahedra with `nodes` (m, 20, 3) in m as in `REFERENCE`, N/m.
 
-    Freedom 3 i + c is the Cartesian component c of node i; `lame` are lambda and mu, Pa.
-
-    Raises
-    ------
-    MeshError
-        An element is folded.
+    Freedom 3 i + c is the Cartesian component c of node i; `lame` are lambda and mu, Pa. Raises `MeshError`:
+    an element is folded.
     """
     mesh = hexahedra(nodes)
     least = determinants(mesh, get_quadrature(ElementHexS2, QUADRATURE_ORDER)[0]).min(axis=1)

@@ -92,14 +92,8 @@ def unit_root_stress_3d(
 ) -> UnitRootStress:
     """Return the unit-load root stress over the face; parameters are those of `flank_compliance_3d`.
 
-    Gears of opposite hand are mirror images to the last bit: the left-hand one is made from the other.
-
-    Raises
-    ------
-    MeshError
-        No acceptable mesh.
-    SolveError
-        The stiffness is singular, or the result breaks a law.
+    Gears of opposite hand are mirror images to the last bit: the left-hand one is made from the other. Raises
+    `MeshError`: no acceptable mesh; `SolveError`: the stiffness is singular, or the result breaks a law.
     """
     recipe, support = recipe or SectorRecipe.standard(gear), support or bore_support(gear.right_handed())
     distance = usual_reach(gear) if reach is None else reach

@@ -51,10 +51,8 @@ def base_circle_backlash(pinion: Toothing, wheel: Toothing, working_pressure_ang
 def tight_center_distance(pinion: Toothing, wheel: Toothing) -> float:
     """Center distance in m at which the teeth, as thick as they are, have no backlash.
 
-    Raises
-    ------
-    InfeasibleGeometry
-        "profile shift sum": teeth too thin (internal: too thick) to touch both flanks at any distance.
+    Raises `InfeasibleGeometry`: "profile shift sum": teeth too thin (internal: too thick) to touch both
+    flanks at any distance.
     """
     radii = base_radius_sum(pinion, wheel)
     teeth = pinion.base_tooth_thickness + wheel.base_tooth_thickness
@@ -64,12 +62,8 @@ def tight_center_distance(pinion: Toothing, wheel: Toothing) -> float:
 def reference_center_distance(pinion: Toothing, wheel: Toothing) -> float:
     """Center distance in m without backlash if neither gear had a thickness allowance.
 
-    inv(alpha_wt) = inv(alpha_t) + 2 tan(alpha_n) (x_1 + x_2) / (z_1 + z_2).
-
-    Raises
-    ------
-    InfeasibleGeometry
-        "profile shift sum": no such distance.
+    inv(alpha_wt) = inv(alpha_t) + 2 tan(alpha_n) (x_1 + x_2) / (z_1 + z_2). Raises `InfeasibleGeometry`:
+    "profile shift sum": no such distance.
     """
     shift = 2.0 * math.tan(pinion.normal_pressure_angle) * shift_sum(pinion, wheel)
     involute = involute_function(pinion.transverse_pressure_angle)

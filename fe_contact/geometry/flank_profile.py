@@ -107,10 +107,7 @@ class FlankProfile:
     def flank(self, s: ArrayLike) -> FloatArray:
         """Points in m, shape (..., 2), at flank coordinates `s` from `s_space` to `s_tip`.
 
-        Raises
-        ------
-        InputError
-            A coordinate outside the profile.
+        Raises `InputError`: a coordinate outside the profile.
         """
         where = self._checked(s)
         points = np.empty((*where.shape, 2))

@@ -90,13 +90,7 @@ class ParallelAxes:
     shafts: Shafts = (None, None)
 
     def at_center_distance(self, center_distance: float) -> Self:
-        """Return the same gears at another distance in m.
-
-        Raises
-        ------
-        InputError
-            They do not mesh there.
-        """
+        """Return the same gears at another distance in m; raises `InputError`: they do not mesh there."""
         return replace(self, center_distance=center_distance)
 
     # Kinematics

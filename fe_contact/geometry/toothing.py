@@ -86,11 +86,7 @@ class PitchDeviation:
 
         Entry i is that of the pitch from the tooth before to tooth i, the first from the last tooth on. Its
         mean over the gear, which a full circle does not have, is taken out: F_pi counts from the last tooth.
-
-        Raises
-        ------
-        InputError
-            A deviation that is no number, or larger than 1 mm.
+        Raises `InputError`: a deviation that is no number, or larger than 1 mm.
         """
         values = [
             within(f"single_pitch_deviation[{tooth}]", value, -LARGEST, LARGEST, _IN_M)

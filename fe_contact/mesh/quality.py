@@ -122,10 +122,7 @@ def _shape_derivatives(at: FloatArray) -> FloatArray:
 def refuse_poor_elements(part: str, points: FloatArray, elements: IntArray, limits: QualityLimits) -> None:
     """Refuse six-node triangles or eight-node quadrilaterals that miss their limits; `part` names the mesh.
 
-    Raises
-    ------
-    MeshError
-        Naming the worst element, where it is, its value and the limit.
+    Raises `MeshError` naming the worst element, where it is, its value and the limit.
     """
     triangles = elements.shape[1] == len(_NODES)
     corners, angle, recipe = (3, "least angle", "mesh") if triangles else (4, "corner angle", "sector")

@@ -80,14 +80,10 @@ def _triangulate(
 ) -> list[_Triangulation]:
     """Fill each region with triangles that keep the edges of its loops undivided.
 
-    The size of the triangles grows from that of the boundary edges by `growth` per unit distance. All
-    regions are meshed in one child process, killed after `seconds`: the gmsh worker, or `command`.
-    `scale` is the length in m of which gmsh works in multiples (its tolerances are absolute).
-
-    Raises
-    ------
-    MeshError
-        The child failed, was killed, ran out of time or answered nonsense; the message says which.
+    The size of the triangles grows from that of the boundary edges by `growth` per unit distance. All regions
+    are meshed in one child process, killed after `seconds`: the gmsh worker, or `command`. `scale` is the
+    length in m of which gmsh works in multiples (its tolerances are absolute). Raises `MeshError`: the child
+    failed, was killed, ran out of time or answered nonsense; the message says which.
     """
     loops = [[(loop / scale).tolist() for loop in r.loops] for r in regions]
     answer = ask_gmsh({"regions": loops, "growth": growth}, seconds, command)
@@ -147,11 +143,7 @@ def quadratic_meshes(
     """Fill each part, named for messages, with checked triangles; its first outline is the outer one.
 
     `scale`, `growth` and `seconds` are those of `_triangulate`, which does all parts in one child process.
-
-    Raises
-    ------
-    MeshError
-        gmsh failed, was killed or ran out of time, or an element misses its quality limit.
+    Raises `MeshError`: gmsh failed, was killed or ran out of time, or an element misses its quality limit.
     """
     regions = [_Region(tuple(outline.corners for outline in outlines)) for outlines in parts.values()]
     meshes = []
@@ -166,12 +158,8 @@ def quadratic_meshes(
 def _quadratic_mesh(outlines: Sequence[Outline], straight: _Triangulation) -> QuadraticMesh:
     """Add mid-side nodes to a triangulation of the polygons through the corners of outlines.
 
-    Inner sides get their middle, sides on an outline the outline's own mid-side node.
-
-    Raises
-    ------
-    MeshError
-        An edge of an outline is no side of the triangulation.
+    Inner sides get their middle, sides on an outline the outline's own mid-side node. Raises `MeshError`: an
+    edge of an outline is no side of the triangulation.
     """
     count = len(straight.points)
     sides = np.sort(np.concatenate([straight.triangles[:, side] for side in SIDES]), axis=1)

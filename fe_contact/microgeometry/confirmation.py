@@ -57,11 +57,8 @@ class DesignLoads:
     def of(cls, torques: Levels, misalignment: Misalignments) -> DesignLoads:
         """Return the loads of torques in N m and of their misalignments in m.
 
-        Raises
-        ------
-        InputError
-            No torque, torques that fall, one load twice, or another number of misalignments than one or one
-            for each torque.
+        Raises `InputError`: no torque, torques that fall, one load twice, or another number of misalignments
+        than one or one for each torque.
         """
         torque = np.array([finite(f"torques[{i}]", value) for i, value in enumerate(torques)])
         if not torque.size:

@@ -153,12 +153,8 @@ class _Choice:
 def _posed(study: DesignStudy, request: OptimizationRequest, memory: Path | None) -> DesignProblem:
     """Return the problem of the search, its scale the start inside the bounds.
 
-    `memory` is a directory of designs that were assessed before.
-
-    Raises
-    ------
-    SolveError
-        Its contact cannot be solved.
+    `memory` is a directory of designs that were assessed before. Raises `SolveError`: its contact cannot be
+    solved.
     """
     problem = DesignProblem(
         study.evaluator, request.variables, request.limits, 1.0, objective=request.objective

@@ -59,12 +59,8 @@ class Method(Protocol):
     ) -> None:
         """Search from `start` (d,) until converged; the merits remember the best.
 
-        `rough` costs less and only ranks designs; its designs may end before those of `merit`.
-
-        Raises
-        ------
-        BudgetUsed, Cancelled
-            By the merit: the search is over.
+        `rough` costs less and only ranks designs; its designs may end before those of `merit`. Raises
+        `BudgetUsed`, `Cancelled` by the merit: the search is over.
         """
 
     def to_json(self) -> Json:

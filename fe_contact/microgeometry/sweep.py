@@ -122,10 +122,8 @@ class SweepRequest:
     def checked(self) -> Checked:
         """The request of the design that acts most: everything is checked, nothing computed.
 
-        Raises
-        ------
-        InputError
-            No axis, more than two or one twice, too many points, or a value that cannot be used.
+        Raises `InputError`: no axis, more than two or one twice, too many points, or a value that cannot be
+        used.
         """
         self._check_axes()
         variables = [

@@ -70,10 +70,7 @@ class DesignVariable:
 def gear_and_quantity(field: str, name: str) -> tuple[str, str]:
     """Split ``gear.quantity``.
 
-    Raises
-    ------
-    InputError
-        It is neither; `field` names where it was given.
+    Raises `InputError`: it is neither; `field` names where it was given.
     """
     gear, _, quantity = name.partition(".")
     if gear not in GEARS or quantity not in QUANTITIES:

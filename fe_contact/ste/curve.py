@@ -45,10 +45,8 @@ def operating_point(
 ) -> OperatingPoint:
     """Resolve a question to one point inside the table.
 
-    Raises
-    ------
-    InputError
-        If not exactly one of `torque` and `force` is given, or a value lies outside what is stored.
+    Raises `InputError`: not exactly one of `torque` and `force` is given, or a value lies outside what is
+    stored.
     """
     return OperatingPoint(
         _normal_force(database, torque, force),
@@ -289,12 +287,7 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
     The errors of mean, peak-to-peak and harmonics are those of all stored sources together
     (`curve_errors.all_sources`). Of a table without them they are bounds for any error inside the pointwise
     bands: of the mean the mean of the band, of peak-to-peak the sum of the bands at the two extremes, of an
-    order twice the mean band.
-
-    Raises
-    ------
-    InputError
-        If `at` is no list of finite positions within 1000 periods.
+    order twice the mean band. Raises `InputError`: `at` is no list of finite positions within 1000 periods.
     """
     position = database.position if at is None else _positions(at, _FARTHEST * database.period)
     even = even_positions(database.period)

@@ -62,10 +62,7 @@ class Repair:
 def _without_failed(table: Table) -> Table:
     """Leave out the fewest rows (of any axis, greedily) so that no failed point remains.
 
-    Raises
-    ------
-    SolveError
-        If nothing remains.
+    Raises `SolveError`: nothing remains.
     """
     if not table.n_failed:
         return table
@@ -86,12 +83,8 @@ def _monotone_repaired(table: Table) -> tuple[Table, Repair]:
 
     Only the load series that fall somewhere are touched. The change is added to their error bands, from which
     the errors of mean, peak-to-peak and harmonics then follow, and the report to the receipt, as
-    ``monotone_repair``. Support loads are dropped: beside mended ones they might fall.
-
-    Raises
-    ------
-    SolveError
-        If any point failed.
+    ``monotone_repair``. Support loads are dropped: beside mended ones they might fall. Raises `SolveError`:
+    any point failed.
     """
     table.require_complete()
     loaded = np.moveaxis(table.static_transmission_error, 1, -1)
@@ -203,16 +196,11 @@ class SteDatabase(SteFields):
     ) -> FloatArray:
         """Transmission error in m at normal forces F_bn in N: the exact inverse of `force_at`.
 
-        The arguments broadcast. Stored loads give the stored values at the knots. Below the smallest load
-        the law of the first interval holds, above the highest the curve goes on straight; misalignment and
-        center-distance change are held at the ends of their axes (`force_at` flags all three).
-
-        Raises
-        ------
-        InputError
-            If an argument is not finite, or a force is below zero.
-        SolveError
-            If any stored point failed.
+        The arguments broadcast. Stored loads give the stored values at the knots. Below the smallest load the
+        law of the first interval holds, above the highest the curve goes on straight; misalignment and
+        center-distance change are held at the ends of their axes (`force_at` flags all three). Raises
+        `InputError`: an argument is not finite, or a force is below zero; `SolveError`: any stored point
+        failed.
         """
         return self._mesh_force.deflection_at(
             position,
@@ -230,12 +218,7 @@ class SteDatabase(SteFields):
     ) -> ForceSample:
         """Transverse mesh force F_bt with its tangent at a transmission error `deflection` in m.
 
-        Raises
-        ------
-        InputError
-            If an argument is not finite.
-        SolveError
-            If any stored point failed.
+        Raises `InputError`: an argument is not finite; `SolveError`: any stored point failed.
         """
         return self._mesh_force.force_at(
             position, deflection, *self._alignment(misalignment, center_distance_change)
@@ -253,12 +236,8 @@ class SteDatabase(SteFields):
     ) -> Curve:
         """One curve at a torque on gear 1 in N m or a normal force in N.
 
-        Raises
-        ------
-        InputError
-            If the load or the alignment lies outside what is stored.
-        SolveError
-            If any stored point failed, unless `allow_failed`.
+        Raises `InputError`: the load or the alignment lies outside what is stored; `SolveError`: any stored
+        point failed, unless `allow_failed`.
         """
         table = _without_failed(self) if allow_failed else self
         point = operating_point(table, torque, force, misalignment, center_distance_change)

@@ -169,14 +169,9 @@ def force_table(database: SteFields) -> ForceTable:
 
     Level 0 is lift-off: the no-load transmission error with zero stiffness. Every stored load is a level,
     with the inverse of the stored tangent compliance as stiffness; between loads where a further pair comes
-    into contact there are more (`_refined`). Normal forces become transverse, F_bt = F_bn cos(beta_b).
-
-    Raises
-    ------
-    SolveError
-        If any point of the database failed.
-    DatabaseError
-        If the transmission error does not increase with load everywhere.
+    into contact there are more (`_refined`). Normal forces become transverse, F_bt = F_bn cos(beta_b). Raises
+    `SolveError`: any point of the database failed; `DatabaseError`: the transmission error does not increase
+    with load everywhere.
     """
     database.require_complete()
     _, order = _all_loads(database)

@@ -23,11 +23,7 @@ def content_hash(case: Json, solver_version: str, schema_version: int) -> str:
     """SHA-256, in hex, of the canonical JSON (RFC 8785) of the case with solver and schema version.
 
     Equal content gives equal hashes whatever the order of keys or the spelling of numbers (1, 1.0, 1e0).
-
-    Raises
-    ------
-    InputError
-        If the case is not JSON: a foreign type, NaN or infinity, or an integer beyond 2^53.
+    Raises `InputError`: the case is not JSON: a foreign type, NaN or infinity, or an integer beyond 2^53.
     """
     identity: Json = {"case": case, "solver_version": solver_version, "schema_version": schema_version}
     try:

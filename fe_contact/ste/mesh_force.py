@@ -100,10 +100,7 @@ class MeshForce:
     ) -> ForceSample:
         """Force, stiffness, position slope and validity; the arguments broadcast.
 
-        Raises
-        ------
-        InputError
-            If an argument is not finite.
+        Raises `InputError`: an argument is not finite.
         """
         shape, (x, d, m, c) = _queries(
             position=position,
@@ -134,12 +131,8 @@ class MeshForce:
     ) -> tuple[FloatArray, NDArray[np.int8]]:
         """Deflection in m that gives the transverse force `force` * `to_transverse` in N, and validity.
 
-        The exact inverse of `force_at`.
-
-        Raises
-        ------
-        InputError
-            If an argument is not finite, or a force is below zero.
+        The exact inverse of `force_at`. Raises `InputError`: an argument is not finite, or a force is below
+        zero.
         """
         shape, (x, f, m, c) = _queries(
             position=position,

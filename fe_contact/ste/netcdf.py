@@ -25,10 +25,7 @@ from model_studies.netcdf import NetcdfContent, UnreadableFile, Variable, opened
 def _read_variables(path: Path) -> tuple[dict[str, Any], Json]:
     """Return all variables and global attributes of a netCDF-4 file, undecoded.
 
-    Raises
-    ------
-    DatabaseError
-        The file is missing or no netCDF-4.
+    Raises `DatabaseError`: the file is missing or no netCDF-4.
     """
     import h5netcdf  # noqa: PLC0415 - needed for files only
 
@@ -72,10 +69,8 @@ class FileFormat:
     def read(self, path: Path, before: Callable[[Json], str] = lambda _: "") -> tuple[dict[str, Any], Json]:
         """Return the arrays and the attributes of a file; the checksum is over `before` of these, too.
 
-        Raises
-        ------
-        DatabaseError
-            The file is missing, no netCDF-4, of another kind, of a newer schema, or damaged.
+        Raises `DatabaseError`: the file is missing, no netCDF-4, of another kind, of a newer schema, or
+        damaged.
         """
         arrays, attributes = _read_variables(path)
         if attributes.get("format") != self.name:
@@ -174,10 +169,7 @@ def content(database: SteFields) -> NetcdfContent:
 def read(path: Path) -> dict[str, Any]:
     """Read the arrays, facts and metadata of a file, by the names of `SteFields`.
 
-    Raises
-    ------
-    DatabaseError
-        If the file is missing, no netCDF-4, no STE database, of a newer schema, or damaged.
+    Raises `DatabaseError`: the file is missing, no netCDF-4, no STE database, of a newer schema, or damaged.
     """
     content, attributes = FILES.read(path, lambda attributes: _before(_period(path, attributes)))
     if content.get("curve_error", np.empty(0)).shape[0] == len(SOURCES) - 1:  # of schema version 1

@@ -204,14 +204,9 @@ Work = Callable[[], None]
 def _serve_in_processes(settings: Settings, serve: Work, announce: Work) -> None:
     """Let `settings.processes` processes `serve` until SIGTERM or SIGINT, with their scheduler here.
 
-    `announce` is called when the first of them are started.
-
-    Raises
-    ------
-    BadInput, DatabaseUnavailable, StoreUnavailable
-        As `job_machinery`, before a process is started.
-    Unexpected
-        The scheduler died: the service has to be started again.
+    `announce` is called when the first of them are started. Raises `BadInput`, `DatabaseUnavailable`,
+    `StoreUnavailable` as `job_machinery`, before a process is started; `Unexpected`: the scheduler died: the
+    service has to be started again.
     """
     stopped = _until_stopped()
     lock = DirectoryLock(settings.data_directory)

@@ -85,15 +85,9 @@ class _SceneCalls(Surface):
         """Return a scene in SI on tables of the service, for a local run by `dynamics.simulation.simulate`.
 
         Its meshes take their tables by ``case``, ``case_file``, ``database_hash`` or ``database_file``,
-        unless they state their ``stiffness``; those
-        of cases are as from `analyze`, those of files are read here. Housings by their solids are reduced
-        here.
-
-        Raises
-        ------
-        BadInput
-            Named by the fields of the scene.
-        JobFailed, NotFound, Unreachable, ServiceError
+        unless they state their ``stiffness``; those of cases are as from `analyze`, those of files are read
+        here. Housings by their solids are reduced here. Raises `BadInput` named by the fields of the scene;
+        `JobFailed`, `NotFound`, `Unreachable`, `ServiceError`.
         """
         # what declares the fields of a scene is loaded with the first call
         from lineofaction.gearbox.subjects import MeshTables, scene_of  # noqa: PLC0415

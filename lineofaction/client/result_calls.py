@@ -189,13 +189,9 @@ class ResultCalls(Surface):
     ) -> Steps[schemas.QueryOutput]:
         """Return force, tangent stiffness and validity of a stored database at many points.
 
-        Every column (a list, an array) has a value for each point, or one for all. Nothing is rounded.
-
-        Raises
-        ------
-        BadInput
-            Columns of different lengths, too many points, a value that is not finite or out of bounds.
-        NotFound, Unreachable, ServiceError
+        Every column (a list, an array) has a value for each point, or one for all. Nothing is rounded. Raises
+        `BadInput`: columns of different lengths, too many points, a value that is not finite or out of
+        bounds; `NotFound`, `Unreachable`, `ServiceError`.
         """
         from lineofaction.gearbox.schemas.query import QueryInput  # noqa: PLC0415 (start-up time)
 

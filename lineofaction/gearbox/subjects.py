@@ -180,12 +180,7 @@ class MeshTables:
     def of(self, index: int, mesh: MeshInput) -> Steps[SteDatabase]:
         """Return the database of a mesh, the `index`-th of its scene.
 
-        Raises
-        ------
-        BadInput
-            Named by the field of the scene.
-        DatabaseError
-            Its file is no database.
+        Raises `BadInput` named by the field of the scene; `DatabaseError`: its file is no database.
         """
         field = f"meshes[{index}]"
         if mesh.database_file is not None:

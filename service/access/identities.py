@@ -61,12 +61,8 @@ class Issuer:
     async def key(self, identifier: str) -> Json:
         """Return a key (RFC 7517).
 
-        Raises
-        ------
-        Unauthorised
-            The issuer has none of this identifier.
-        IssuerUnavailable
-            It does not answer, and no key is at hand.
+        Raises `Unauthorised`: the issuer has none of this identifier; `IssuerUnavailable`: it does not
+        answer, and no key is at hand.
         """
         if not self._good(identifier):
             await self._renew(identifier)

@@ -84,10 +84,7 @@ class _LiveWorker:
     def ask(self, order: LiveOrder, limit_s: float) -> tuple[str, bytes]:
         """Return kind and bytes of the answer.
 
-        Raises
-        ------
-        _WorkerGone
-            The process ended or took longer than `limit_s`; it is of no more use.
+        Raises `_WorkerGone`: the process ended or took longer than `limit_s`; it is of no more use.
         """
         end = time.monotonic() + limit_s
         assert self._process.stdin is not None
@@ -199,10 +196,7 @@ class LivePool:
     def ask(self, order: LiveOrder, caller: str | None = None) -> Future[bytes]:
         """Enter a question; the future holds the bytes of its JSON answer, or the error.
 
-        Raises
-        ------
-        QueueFull
-            Too many wait.
+        Raises `QueueFull`: too many wait.
         """
         name = caller or uuid.uuid4().hex
         question = _Question(order)

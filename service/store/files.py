@@ -109,12 +109,7 @@ class ResultFiles(Protocol):
     def local(self, name: str, sha256: str) -> Path:
         """Return a path with the bytes of this digest, read and compared now.
 
-        Raises
-        ------
-        FileNotFoundError
-            There is no file of this name.
-        WrongContent
-            Its bytes are others.
+        Raises `FileNotFoundError`: there is no file of this name; `WrongContent`: its bytes are others.
         """
 
     def digest(self, name: str) -> str:

@@ -249,12 +249,9 @@ def result_store(
 ) -> ResultStore:
     """Return the store whose index is in a database; parameters of `result_files`.
 
-    Raises
-    ------
-    BadInput
-        As `result_files`, or the files are not those of the database: see `service.store.deployment`.
-    StoreUnavailable, DatabaseUnavailable
-        The place, or the database, does not answer.
+    Raises `BadInput` as `result_files`, or the files are not those of the database: see
+    `service.store.deployment`; `StoreUnavailable`, `DatabaseUnavailable`: the place, or the database, does
+    not answer.
     """
     store = ResultStore(engine, result_files(data_directory, results_url, cache_mb, keys))
     Deployment(engine, store).open_place()

@@ -250,10 +250,7 @@ def _binary_folder() -> tuple[str, str] | None:
 def _find_compiler() -> list[str]:
     """Return the command of the C compiler: ``CC`` from the environment, or the first of cc, gcc, clang.
 
-    Raises
-    ------
-    InputError
-        If there is none.
+    Raises `InputError`: there is none.
     """
     requested = shlex.split(os.environ.get("CC", ""))
     for command in [requested] if requested else [[name] for name in COMPILERS]:

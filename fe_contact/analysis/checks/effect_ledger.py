@@ -107,10 +107,7 @@ def _price(entry: LedgerEntry, influence: Influence | None, seconds: float | Non
 def toggled(checked: Checked, name: str, choice: str) -> Checked:
     """Return the request with one effect on or off and all others as they were decided.
 
-    Raises
-    ------
-    InputError
-        The model cannot be had, as a plane with what acts across the face.
+    Raises `InputError`: the model cannot be had, as a plane with what acts across the face.
     """
     request = checked.request
     choices = flipped(request.registry, checked.decided, name, choice)

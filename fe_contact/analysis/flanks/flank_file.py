@@ -131,10 +131,7 @@ def content(results: LoadDistribution) -> NetcdfContent:
 def read(path: Path) -> dict[str, Any]:
     """Read what makes a `LoadDistribution`, by its fields.
 
-    Raises
-    ------
-    DatabaseError
-        The file is missing, no netCDF-4, of another kind, of a newer schema, or damaged.
+    Raises `DatabaseError`: the file is missing, no netCDF-4, of another kind, of a newer schema, or damaged.
     """
     content, attributes = FILES.read(path)
     scene, metadata = (json_attribute(path, attributes, name) for name in _DOCUMENTS)

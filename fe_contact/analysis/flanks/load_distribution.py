@@ -215,10 +215,7 @@ class LoadDistribution:
     def from_netcdf(cls, path: Path) -> LoadDistribution:
         """Read a file of `to_netcdf`; equal to the last bit.
 
-        Raises
-        ------
-        DatabaseError
-            The file is missing, damaged, newer than this release, or of another kind.
+        Raises `DatabaseError`: the file is missing, damaged, newer than this release, or of another kind.
         """
         from fe_contact.analysis.flanks.flank_file import read  # noqa: PLC0415
 

@@ -71,12 +71,8 @@ def solve_operating_point(
     """Solve the one load and the one alignment of a request at positions (P,).
 
     Beyond the first base pitch pairs are counted from the one that is then at the place of pair 0. All teeth
-    have their own deviations, however few `pitches` of the request a table would cover.
-
-    Raises
-    ------
-    MeshError, SolveError
-        No acceptable mesh, or positions without a solution.
+    have their own deviations, however few `pitches` of the request a table would cover. Raises `MeshError`,
+    `SolveError`: no acceptable mesh, or positions without a solution.
     """
     if checked.request.pitches is not None:
         request = replace(checked.request, pitches=None)
@@ -101,13 +97,7 @@ def solve_operating_point(
 
 
 def checked_positions(at: ArrayLike) -> FloatArray:
-    """Return the positions requested.
-
-    Raises
-    ------
-    InputError
-        They are no numbers, or none.
-    """
+    """Return the positions requested; raises `InputError`: they are no numbers, or none."""
     position = np.atleast_1d(np.asarray(at, dtype=float))
     if position.ndim != 1 or position.size == 0:
         raise InputError("at", at, "a list of positions in base pitches")

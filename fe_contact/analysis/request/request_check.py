@@ -126,12 +126,7 @@ def as_checked(
 ) -> Checked:
     """Check the inputs of a table or of one point, as `check_request` does; what is checked stays as it is.
 
-    Raises
-    ------
-    InputError
-        A value that cannot be used, by field name.
-    TypeError
-        A pair alone.
+    Raises `InputError`: a value that cannot be used, by field name; `TypeError`: a pair alone.
     """
     if isinstance(pair, Checked):
         return pair

@@ -71,10 +71,7 @@ class _Fidelity(model_studies.Fidelity[Checked], Protocol):
     def as_computed(self, checked: Checked) -> Checked:
         """Return the request as this fidelity computes it: with its model and mesh.
 
-        Raises
-        ------
-        InputError
-            The fidelity is not valid for it.
+        Raises `InputError`: the fidelity is not valid for it.
         """
 
     def run(self, checked: Checked) -> SteDatabase:

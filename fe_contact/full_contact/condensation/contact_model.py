@@ -146,13 +146,7 @@ class _CondensedBody:
 
 
 def _condensed_body(body: PlacedBody, material: Material) -> _CondensedBody:
-    """Assemble, factorise, condense.
-
-    Raises
-    ------
-    SolveError
-        The stiffness is singular.
-    """
+    """Assemble, factorise, condense; raises `SolveError`: the stiffness is singular."""
     matrix = _plane_strain_stiffness(body.points, body.triangles, material)
     nodes = np.unique(np.concatenate([strip.nodes for strip in body.strips.values()]))
     columns = {ahead: np.searchsorted(nodes, strip.nodes) for ahead, strip in body.strips.items()}

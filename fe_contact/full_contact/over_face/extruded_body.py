@@ -68,13 +68,7 @@ class _ColumnMatrix:
 
 
 def _schur_complement(matrix: _ColumnMatrix, kept: int) -> FloatArray:
-    """Eliminate all nodes but the last `kept`.
-
-    Raises
-    ------
-    SolveError
-        The matrix is not positive definite.
-    """
+    """Eliminate all nodes but the last `kept`; raises `SolveError`: the matrix is not positive definite."""
     left: dict[int, list[tuple[IntArray, FloatArray]]] = defaultdict(list)
     row = np.zeros(matrix.starts[-1], dtype=np.int64)
     count = len(matrix.starts) - 1
@@ -209,13 +203,7 @@ class ExtrudedBody:
 
 
 def extruded_body(body: PlacedBody, layers: Layers, material: Material) -> ExtrudedBody:
-    """Assemble, eliminate, condense.
-
-    Raises
-    ------
-    SolveError
-        The stiffness is not positive definite.
-    """
+    """Assemble, eliminate, condense; raises `SolveError`: the stiffness is not positive definite."""
     stiffness = extruded_stiffness(body.points, body.triangles, layers, material)
     nodes = np.unique(np.concatenate([strip.nodes for strip in body.strips.values()]))
     columns = {ahead: np.searchsorted(nodes, strip.nodes) for ahead, strip in body.strips.items()}

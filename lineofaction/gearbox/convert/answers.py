@@ -28,12 +28,8 @@ def curve_json(
 ) -> Json:
     """Return one curve: position in base pitches by the driving gear, 0 = reference pair at the pitch point.
 
-    Raises
-    ------
-    BadInput
-        The load or the alignment is outside what is stored.
-    JobFailed
-        The table has failed points.
+    Raises `BadInput`: the load or the alignment is outside what is stored; `JobFailed`: the table has failed
+    points.
     """
     with boundary_errors():
         curve = database.curve(

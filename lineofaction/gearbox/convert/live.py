@@ -151,12 +151,8 @@ _PLACES = ("pair.", "load.", "errors.")
 def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> tuple[Case, CondensedPair]:
     """Return the case of a stored table, and its gears with the compliance that it was computed with.
 
-    Raises
-    ------
-    NotFound
-        The table was removed since it was requested.
-    NotAnalyzed
-        The compliance is not in the cache, and is not to be computed.
+    Raises `NotFound`: the table was removed since it was requested; `NotAnalyzed`: the compliance is not in
+    the cache, and is not to be computed.
     """
     if not file.exists():
         raise NotFound("The database was removed from the store during the request. Submit its case again.")

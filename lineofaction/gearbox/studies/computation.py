@@ -164,12 +164,8 @@ class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):
     def compute(self, subject: Subject, inputs: Inputs, means: Means) -> Result:
         """Return the result.
 
-        Raises
-        ------
-        BadInput
-            No such pair, scene, part or request.
-        JobFailed
-            No mesh, no equilibrium, or points without a solution.
+        Raises `BadInput`: no such pair, scene, part or request; `JobFailed`: no mesh, no equilibrium, or
+        points without a solution.
         """
 
     def figures(self, result: Result) -> Json:

@@ -21,14 +21,8 @@ from lineofaction.gearbox.units import MM, UM, as_typed
 def flanks_of(checked: CheckedCase, run: Run) -> LoadDistribution:
     """Return what happens on the flanks of a case of one load and one alignment, over a mesh cycle.
 
-    Its warnings are in the fields and units of the case.
-
-    Raises
-    ------
-    BadInput
-        No such pair, or a request that no plan can meet.
-    JobFailed
-        No mesh, or positions without a solution.
+    Its warnings are in the fields and units of the case. Raises `BadInput`: no such pair, or a request that
+    no plan can meet; `JobFailed`: no mesh, or positions without a solution.
     """
     case, point = checked.case, checked.at_point
     with boundary_errors():
