@@ -11,15 +11,15 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (41_150, 741),
-    ("dynamics",): (43_166, 832),
-    ("lineofaction.gearbox",): (26_585, 541),
+    ("fe_contact",): (40_968, 741),
+    ("dynamics",): (42_875, 832),
+    ("lineofaction.gearbox",): (26_562, 541),
     ("lineofaction.report",): (11_759, 226),
-    ("service",): (14_799, 339),
-    ("lineofaction.client",): (2_713, 53),
-    ("lineofaction.cli",): (5_464, 80),
+    ("service",): (14_781, 339),
+    ("lineofaction.client",): (2_703, 53),
+    ("lineofaction.cli",): (5_459, 80),
     ("lineofaction.hardcases",): (3_844, 35),
-    ("bounds", "host", "model_studies"): (4_522, 155),
+    ("bounds", "host", "model_studies"): (4_518, 155),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 820
