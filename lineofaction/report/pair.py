@@ -149,12 +149,19 @@ _WIDTH = 3.4
 
 
 def pair_drawing(pair: ParallelAxes) -> Figure:
-    """Return the section of the mesh; where flanks are modified, also their profiles and leads."""
+    """Return the section of the mesh; where flanks are modified or as made, also profiles and leads."""
     gears = {"pinion": pair.pinion, "wheel": pair.wheel}
+    made = {name: _made(gear) for name, gear in gears.items()}
     profiles = [
-        _profile(name, pair) for name, gear in gears.items() if gear.modification.varies_along_profile
+        _profile(name, pair)
+        for name, gear in gears.items()
+        if gear.modification.varies_along_profile or made[name]
     ]
-    leads = {name: gear for name, gear in gears.items() if gear.modification.varies_along_face}
+    leads = {
+        name: gear
+        for name, gear in gears.items()
+        if gear.modification.varies_along_face or any(flank.varies_along_face for flank in made[name])
+    }
     panels = (_section(pair), *profiles, *([_lead(leads)] if leads else ()))
     caption = (
         f"Section at the pinion's mid-face; the pinion drives clockwise. The wheel's center is "
@@ -162,6 +169,8 @@ def pair_drawing(pair: ParallelAxes) -> Figure:
     )
     if len(panels) > 1:
         caption += " Material removed along the line of action; 0 is the involute."
+    if any(made.values()):
+        caption += " Thin: the teeth as made, without their pitch deviations."
     return Figure(
         key="pair_drawing",
         title="The pair in mesh" if len(panels) == 1 else "The pair in mesh and its flank modifications",
@@ -169,6 +178,11 @@ def pair_drawing(pair: ParallelAxes) -> Figure:
         alternative=" ".join(_finding(name, gear) for name, gear in gears.items()),
         content=panels,
     )
+
+
+def _made(gear: Toothing) -> list[ToothFlank]:
+    """Return the flanks of the teeth that deviate from the design."""
+    return [flank for flank in gear.tooth_flanks if not flank.neutral]
 
 
 def _section(pair: ParallelAxes) -> Panel:
@@ -215,7 +229,7 @@ def _profile(name: str, pair: ParallelAxes) -> Panel:
     lines = tuple(
         Line(f"{name}, {place}" if twisted else name, angle, _removed(gear, roll, face), _SIDES[name], dash)
         for place, face, dash in faces[: 3 if twisted else 1]
-    )
+    ) + _teeth_as_made(name, gear, angle, roll, np.zeros(_POINTS))
     pitch_point = pair.path_of_contact.pitch_point
     at_pitch = pitch_point if name == "pinion" else float(pair.mating_roll_length(pitch_point))
     mark = Reference("C", at_pitch / gear.base_radius / DEGREE)
@@ -233,10 +247,22 @@ def _lead(gears: dict[str, Toothing]) -> Panel:
     lines = []
     for name, gear in gears.items():
         face = np.linspace(-0.5, 0.5, _POINTS) * gear.face_width
-        removed = _removed(gear, np.full(_POINTS, _usable(gear).mean()), face)
-        lines.append(Line(name, face / MM, removed, _SIDES[name]))
+        roll = np.full(_POINTS, _usable(gear).mean())
+        lines.append(Line(name, face / MM, _removed(gear, roll, face), _SIDES[name]))
+        lines += _teeth_as_made(name, gear, face / MM, roll, face)
     x = Axis("face position, mm (0 = mid-face; left: datum face)")
     return Panel(x, Axis("removed, µm"), tuple(lines), title="Lead at the middle of the profile")
+
+
+def _teeth_as_made(
+    name: str, gear: Toothing, x: FloatArray, roll: FloatArray, face: FloatArray
+) -> tuple[Line, ...]:
+    """Return the traces of the teeth that deviate as one line with gaps, over `x`; none: no line."""
+    traces = [_removed(gear, roll, face) - flank.excess(gear, roll, face) / UM for flank in _made(gear)]
+    if not traces:
+        return ()
+    y = np.concatenate([np.append(trace, np.nan) for trace in traces])
+    return (Line(f"{name}, as made", np.tile(np.append(x, np.nan), len(traces)), y, _SIDES[name], width=0.6),)
 
 
 def _removed(gear: Toothing, roll: FloatArray, face: FloatArray | float) -> FloatArray:
@@ -244,10 +270,11 @@ def _removed(gear: Toothing, roll: FloatArray, face: FloatArray | float) -> Floa
 
 
 def _finding(name: str, gear: Toothing) -> str:
+    made = f" {len(_made(gear))} of its teeth are drawn as made." if _made(gear) else ""
     if gear.modification.neutral:
-        return f"The {name} is not modified."
+        return f"The {name} is not modified.{made}"
     roll, face = np.meshgrid(_usable(gear), np.linspace(-0.5, 0.5, _POINTS) * gear.face_width)
-    return f"At most {number(_removed(gear, roll, face).max(), 3)} µm are removed from the {name}."
+    return f"At most {number(_removed(gear, roll, face).max(), 3)} µm are removed from the {name}.{made}"
 
 
 _UNITS: Mapping[str, float] = {"": 1.0, "mm": MM, "um": UM, "deg": DEGREE}

@@ -195,6 +195,19 @@ def test_charts_show_what_is_removed_and_only_of_modified_flanks(tmp_path: Path)
     assert along.y[[0, 100, 200]] == pytest.approx((8.0, 0.0, 8.0))
 
 
+def test_charts_show_teeth_as_made_beside_the_design() -> None:
+    """A slope of the profile lifts the tip by half of it, one of the helix the end of larger z."""
+    case = read_model(Case, SPUR).model_dump(exclude_unset=True)
+    sloping = [{"tooth": 3, "profile_slope_um": 6.0}, {"tooth": 7, "helix_slope_um": -4.0}]
+    case["pair"]["wheel"] |= {"tooth_flanks": sloping}
+    _, profile, lead = pair_drawing(gear_pair(Case.model_validate(case))).content
+    design, made = profile.lines
+    assert set(design.y) == {0.0}
+    assert made.y[[0, 100, 200]] == pytest.approx((3.0, 0.0, -3.0), abs=1e-6)
+    assert np.isnan(made.y[[201, 403]]).all() and set(made.y[202:403]) == {0.0}
+    assert lead.lines[1].y[[202, 302, 402]] == pytest.approx((-2.0, 0.0, 2.0), abs=1e-6)
+
+
 @pytest.mark.parametrize(("hand", "corner"), [(1.0, "non-datum face"), (-1.0, "datum face")])
 def test_a_triangular_relief_is_drawn_at_the_face_that_lines_of_contact_leave_last(
     hand: float, corner: str
