@@ -14,7 +14,7 @@ BUDGETS = {
     ("fe_contact",): (40_968, 741),
     ("dynamics",): (42_875, 832),
     ("lineofaction.gearbox",): (26_562, 541),
-    ("lineofaction.report",): (11_759, 226),
+    ("lineofaction.report",): (11_786, 226),
     ("service",): (14_781, 339),
     ("lineofaction.client",): (2_703, 53),
     ("lineofaction.cli",): (5_459, 80),
