@@ -21,7 +21,7 @@ from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 from host.directories import cache_home
 from lineofaction.cli.guard import warn
-from lineofaction.cli.output import check_writable, console, print_json, progress_bar, table
+from lineofaction.cli.output import check_writable, console, print_json, print_written, progress_bar, table
 from lineofaction.cli.ste import open_ste, positions
 from lineofaction.cli.subjects import assessed_case
 from lineofaction.gearbox.convert.case import boundary_errors
@@ -122,7 +122,7 @@ def _show_deformed(pairs: tuple[DeformedPair, ...], written: list[Path]) -> None
     out = console()
     out.print(table(columns, rows))
     for path in written:
-        out.print(f"written to {path}", soft_wrap=True)
+        print_written([path])
 
 
 # ``loa export RUN.nc``: a run for other programs.
@@ -150,7 +150,7 @@ def _export_run(
         return
     if "functions" in facts:
         console().print(f"{facts['functions']} functions of dataset 58")
-    console().print(f"written to {output}", soft_wrap=True)
+    print_written([output])
 
 
 # ``loa export STE.nc -o MESH.fmu``.
@@ -232,7 +232,7 @@ def _show_fmu(facts: dict[str, Any]) -> None:
     out.print(
         f"damping {facts['damping_n_s_per_m']:.4g} N s/m, in full from {facts['damping_reach_n']:.4g} N on"
     )
-    out.print(f"written to {facts['file']}", soft_wrap=True)
+    print_written([Path(facts["file"])])
 
 
 # ``loa export STE.nc | DEFLECTION.nc --rexs UNIT.rexs -o OUT.rexs``.
@@ -267,7 +267,7 @@ def _export_rexs(file: Path, rexs: Path, output: Path, point: Point, *, as_json:
         console().print(line, soft_wrap=True)
     if facts.get("left_out"):
         console().print(f"left out, no component of their own: {', '.join(facts['left_out'])}")
-    console().print(f"written to {output}", soft_wrap=True)
+    print_written([output])
 
 
 def _lines(calculated: dict[str, list[str]]) -> list[str]:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import typer
 
-from lineofaction.cli.output import check_writable, console, print_json, progress_bar, table
+from lineofaction.cli.output import check_writable, console, print_json, print_written, progress_bar, table
 from lineofaction.gearbox.problems import EXIT_FAILED, BadInput
 from lineofaction.hardcases import HARD_SCENES, HardScene, Outcome, run_scenes
 from lineofaction.hardcases.page import hardcases_page
@@ -64,5 +64,4 @@ def _show(outcomes: Sequence[Outcome], output: Path | None) -> None:
     busy = sum(outcome.cpu_seconds for outcome in outcomes)
     summary = f"{passed} of {len(outcomes)} scenes passed in {seconds:.1f} s ({busy:.1f} s of CPU time)"
     out.print(summary)
-    if output is not None:
-        out.print(f"written to {output}", soft_wrap=True)
+    print_written([] if output is None else [output])

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from lineofaction.cli.guard import warn
 from lineofaction.cli.options import PairWishes
-from lineofaction.cli.output import check_writable, console, print_json
+from lineofaction.cli.output import check_writable, console, print_json, print_written
 from lineofaction.cli.pair_sketch import (
     LOAD,
     PLANETS,
@@ -364,7 +364,7 @@ def run_new(kinds: Mapping[str, bool], wanted: PairWishes, output: Path | None) 
     out.print(text.partition("\n")[0].removeprefix("# "))
     ending = " -o run.nc" if verb == "simulate" else ""
     out.print(f"next: loa {verb} {output}{ending}", soft_wrap=True)
-    out.print(f"written to {output}", soft_wrap=True)
+    print_written([output])
 
 
 def _new_text(kind: str, wanted: PairWishes) -> str:
@@ -448,4 +448,4 @@ def _show_unit(unit: OpenedUnit, counts: Counter[str], written: list[Path]) -> N
             for force in load.forces
         )
         out.print(f"{load.name}: {words}{others}", soft_wrap=True)
-    out.print(f"written to {', '.join(map(str, written))}", soft_wrap=True)
+    print_written(written)

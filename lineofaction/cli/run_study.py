@@ -16,7 +16,6 @@ from bounds.types import Json
 from fe_contact.solver_version import SOLVER_VERSION
 from host import cpu_seconds
 from host.directories import cache_home
-from lineofaction.cli.costs import study_seconds
 from lineofaction.cli.guard import messages, until_interrupted, warn, warnings_so_far
 from lineofaction.cli.output import (
     Report,
@@ -29,7 +28,7 @@ from lineofaction.cli.output import (
     print_written,
     progress_bar,
 )
-from lineofaction.cli.subjects import assessed_scene, tabled_scene
+from lineofaction.cli.subjects import assessed_scene, study_seconds, tabled_scene
 from lineofaction.gearbox.convert.case import CheckedCase, case_json
 from lineofaction.gearbox.convert.complaint import marks_of_case
 from lineofaction.gearbox.convert.plausibility import case_warnings

@@ -8,6 +8,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import cache, partial
 from pathlib import Path
+from typing import Any
 
 from fe_contact.errors import DatabaseError
 from fe_contact.solver_version import SOLVER_VERSION, software_versions
@@ -26,7 +27,8 @@ from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.reading import located
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.subjects import MeshTables, finished, scene_of
+from lineofaction.gearbox.study import Study
+from lineofaction.gearbox.subjects import MeshTables, finished, scene_of, with_own_cases
 from lineofaction.gearbox.tabled_scene import ComputedTables
 from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
 from model_studies.kept_file import kept_in
@@ -56,6 +58,12 @@ def assessed_scene(file: Path | InputFile) -> tuple[SceneInput, Path]:
     scene, folder = scene_of(file)
     warn(left_out_warnings(scene.left_out))
     return scene, folder
+
+
+def study_seconds(study: Study, subject: CheckedCase | SceneInput, folder: Path, inputs: Any) -> float | None:
+    """Return predicted CPU seconds of a study, without the tables of a scene; None: not predicted."""
+    written = with_own_cases(subject, folder) if isinstance(subject, SceneInput) else subject
+    return study.run.predicted(written, inputs, cache_home() / "compliance")
 
 
 # Tables of cases are kept in the cache, under the name of all that decides them: this very program included.

@@ -26,23 +26,15 @@ from lineofaction.cli.verbs import Later
 from lineofaction.gearbox.input_file import InputFile, number_list
 
 if TYPE_CHECKING:
-    from lineofaction.cli import (
-        analyze,
-        costs,
-        export,
-        hardcases,
-        listen,
-        new,
-        pages,
-        simulate,
-        ste,
-    )
+    from lineofaction.cli import analyze, export, hardcases, listen, new, pages, simulate, status, ste
     from lineofaction.report.run import view as views
 else:
-    analyze, costs, export, hardcases, listen = map(
-        Later, ("cli.analyze", "cli.costs", "cli.export", "cli.hardcases", "cli.listen")
+    analyze, export, hardcases, listen = map(
+        Later, ("cli.analyze", "cli.export", "cli.hardcases", "cli.listen")
     )
-    new, pages, simulate, ste = map(Later, ("cli.new", "cli.pages", "cli.simulate", "cli.ste"))
+    new, pages, simulate, status, ste = map(
+        Later, ("cli.new", "cli.pages", "cli.simulate", "cli.status", "cli.ste")
+    )
     views = Later("report.run.view")
 
 verbs = typer.Typer()
@@ -80,7 +72,7 @@ def _status(
     json: AsJson = False,
 ) -> None:
     """Say which results of a folder are fresh, stale or missing, which verb makes them, and what it costs."""
-    costs.run_status(folder, as_json=json)
+    status.run_status(folder, as_json=json)
 
 
 @verbs.command(

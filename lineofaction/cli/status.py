@@ -1,16 +1,15 @@
-"""What verbs are predicted to cost before they run; ``loa status``: results of a folder with it."""
+"""``loa status``: the results of a folder, and what the verbs that make them are predicted to cost."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
 from bounds import engineering
 from host.directories import cache_home
 from lineofaction.cli.output import console, print_json, table
-from lineofaction.cli.subjects import is_kept
+from lineofaction.cli.subjects import is_kept, study_seconds
 from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.convert.live import plan_of
 from lineofaction.gearbox.input_file import InputFile
@@ -18,15 +17,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import ResultState, file_of, inputs_in, status_of
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
-from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.subjects import scene_of, with_own_cases
-
-
-def study_seconds(study: Study, subject: CheckedCase | SceneInput, folder: Path, inputs: Any) -> float | None:
-    """Return predicted CPU seconds of a study, without the tables of a scene; None: not predicted."""
-    written = with_own_cases(subject, folder) if isinstance(subject, SceneInput) else subject
-    return study.run.predicted(written, inputs, cache_home() / "compliance")
 
 
 def _table_seconds(case: Case) -> float:
@@ -72,9 +63,6 @@ def tables_seconds(project: Path) -> float:
     scene = with_own_cases(*scene_of(file))
     cases = {case.model_dump_json(): case for mesh in scene.meshes if isinstance(case := mesh.case, Case)}
     return sum(_table_seconds(case) for case in cases.values() if not is_kept(case))
-
-
-# ``loa status``.
 
 
 _STATES, _HEAD = ("fresh", "stale", "missing"), ("state", "result", "made by")
