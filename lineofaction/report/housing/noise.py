@@ -39,7 +39,6 @@ from lineofaction.report.housing.forces import (
     third_octaves_over_time,
     total_line,
 )
-from lineofaction.report.housing.microphone import pressure_headline, pressure_table
 from lineofaction.report.housing.sound_bands import ends, narrowest, uncertainty_tables
 from lineofaction.report.presentation import Presentation, dynamics_page, model_text
 from lineofaction.report.response.excitations import excitation_figures, excitation_table
@@ -264,12 +263,42 @@ def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
         for point, words in zip(points, _sentences(sound), strict=True)
     ]
     if (pressure := sound.facts.get("pressure")) is not None:
-        shown.append(pressure_headline(pressure, sound.facts))
+        shown.append(_pressure_headline(pressure, sound.facts))
     parting = sound.speed[~sound.in_contact] / RPM
     if parting.size:
         first = f"from {number(parting[0], 4)} rpm on"
         shown.append(Headline("flanks part at", f"{parting.size} of {sound.speed.size} speeds", first))
     return tuple(shown)
+
+
+def _pressure_headline(pressure: Json, facts: Json) -> Headline:
+    """Say the level of the complaint's order, without one of the loudest, at the microphone."""
+    asked_for = facts.get("complaint", {}).get("order", np.nan)
+    own = [row for row in pressure["orders"] if np.isclose(row["order"], asked_for, rtol=1e-6)]
+    row = own[0] if own else max(pressure["orders"], key=lambda row: row["level_db_a"])
+    words = f"order {order_words(row['order'], facts)} at {number(row['speed_rpm'], 4)} rpm"
+    if row["low_db_a"] is not None:
+        words += f"; {row['low_db_a']:.1f} to {row['high_db_a']:.1f}, the band of its sound power"
+    name = f"sound pressure level at {_microphone(pressure)}"
+    return Headline(name, f"{row['level_db_a']:.1f} dB(A)", words)
+
+
+def _microphone(pressure: Json) -> str:
+    return f"({', '.join(f'{value:g}' for value in pressure['microphone_mm'])}) mm"
+
+
+def _pressure_table(pressure: Json, facts: Json) -> Table:
+    """List the orders, each where it is loudest."""
+    columns = {
+        "order": lambda row: order_words(row["order"], facts),
+        "dB(A)": lambda row: f"{row['level_db_a']:.1f}",
+        "from": lambda row: "" if row["low_db_a"] is None else f"{row['low_db_a']:.1f}",
+        "to": lambda row: "" if row["high_db_a"] is None else f"{row['high_db_a']:.1f}",
+        "speed, rpm": lambda row: number(row["speed_rpm"], 5),
+    }
+    return Table.of(
+        f"Largest sound pressure level of each order at {_microphone(pressure)}", pressure["orders"], columns
+    )
 
 
 def _model_tables(sound: RadiatedSound) -> Iterator[Table]:
@@ -392,7 +421,7 @@ def _text(sound: RadiatedSound) -> Iterator[Table | str]:
     yield from uncertainty_tables(sound.facts)
     yield from narrowest(sound.facts)
     if (pressure := sound.facts.get("pressure")) is not None:
-        yield pressure_table(pressure, sound.facts)
+        yield _pressure_table(pressure, sound.facts)
     left_out = sound.facts["sensitivities_left_out"]
     yield from (f"no sensitivity to {name}: {why}" for name, why in left_out.items())
     yield from model_text(sound.facts)
@@ -405,7 +434,7 @@ def _page(sound: RadiatedSound) -> Page:
         tables += (Table("No sensitivity", ("to", "because"), tuple(missing.items())),)
     bands = (Section("Bands, and what 1 dB costs", tables=tables),) if tables else ()
     if (pressure := sound.facts.get("pressure")) is not None:
-        heard = Section("Sound pressure", tables=(pressure_table(pressure, sound.facts),))
+        heard = Section("Sound pressure", tables=(_pressure_table(pressure, sound.facts),))
         bands = (heard, *bands)
     rests = Table("Radiation models, and what the levels do not hold", ("what", "how"), tuple(_limits(sound)))
     accuracy = Section("Accuracy of the levels", tables=(rests, *_model_tables(sound)), part=Part.ACCURACY)

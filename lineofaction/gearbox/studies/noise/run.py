@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from dynamics.acoustics import (
     outer_hull,
     sound_power_level,
 )
+from dynamics.acoustics.levels import FLOOR, REFERENCE_PRESSURE
 from dynamics.acoustics.model_comparison import WORK
 from dynamics.acoustics.recording import LOWEST
 from dynamics.housings import ReducedHousing, write_surface
@@ -36,6 +38,7 @@ from dynamics.noise import (
     loudest,
     models_at,
     panel_sound,
+    pressure_transfer,
     radiated_sound,
     regions,
     sound_over_time,
@@ -47,7 +50,7 @@ from dynamics.noise.housing_radiation import resolved_frequency
 from dynamics.noise.sound_over_time import BLOCK
 from dynamics.results import RunResult
 from dynamics.types import FloatArray
-from dynamics.vibration import BearingHarmonics
+from dynamics.vibration import BearingHarmonics, seat_forces
 from dynamics.work_cost import on_this_host
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.housings import FOLDER
@@ -69,7 +72,6 @@ from lineofaction.gearbox.studies.noise import (
     PressureFigures,
     SoundOverTimeFigures,
 )
-from lineofaction.gearbox.studies.noise.microphone import SoundSource, pressure_at
 from lineofaction.gearbox.studies.noise.uncertainty import uncertainty
 from lineofaction.gearbox.units import MM
 from model_studies.workers import spent
@@ -136,9 +138,9 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
         whole = replace(whole, facts=known)
         known |= uncertainty(subject, whole, radiation, off, inputs, means)
         if (place := _microphone(subject.inputs, inputs)) is not None:
-            sources = [SoundSource(each.body, each.bearings, each.cheap) for each in housings]
+            sources = [_SoundSource(each.body, each.bearings, each.cheap) for each in housings]
             with boundary_errors():
-                heard_there = pressure_at(response, sources, np.array(place) * MM, known["band"])
+                heard_there = _pressure_at(response, sources, np.array(place) * MM, known["band"])
             known["pressure"] = figures_of(PressureFigures, heard_there)
         return replace(whole, facts=known)
 
@@ -363,6 +365,56 @@ def _joined_error(
             off = np.broadcast_to(np.reshape(stated, (2, 1, 1)), true.shape)
         power, true = power + sound.power, true + sound.power * 10.0 ** (-off / 10.0)
     return np.asarray(-10.0 * np.log10(np.maximum(true, LEAST) / np.maximum(power, LEAST)))
+
+
+# Sound pressure of the orders at a microphone, beside the sound power.
+
+
+class _SoundSource(NamedTuple):
+    """A housing, the bearings in its seats, and its radiation."""
+
+    body: ReducedHousing
+    bearings: tuple[str, ...]
+    radiation: HousingRadiation
+
+
+def _pressure_at(
+    response: BearingHarmonics, sources: Iterable[_SoundSource], microphone: FloatArray, band: Json | None
+) -> Json:
+    """Return the sound pressure levels at a microphone (3,), m: by order, then by speed, dB(A) re 20 uPa.
+
+    Housings add up by their phases, in the free field. Where an order is loudest it has the band of its sound
+    power, as what is guessed moves both alike; what a single direction may add to it is not known.
+
+    Raises `InputError`: the microphone is not in the air.
+    """
+    hertz = response.frequency
+    pressure = np.zeros(hertz.shape, dtype=complex)
+    for source in sources:
+        estimate = source.radiation if isinstance(source.radiation, EstimatedRadiation) else None
+        path = pressure_transfer(source.body, microphone, hertz.ravel(), estimate=estimate)
+        force = seat_forces(response, source.body, source.bearings)
+        pressure += np.sum(force * path.reshape(force.shape), axis=-1)
+    weighted = 0.5 * np.abs(pressure) ** 2 * 10.0 ** (a_weighting(hertz) / 10.0)
+    level = _decibels(weighted)
+    at = np.argmax(level, axis=0)
+    rows = []
+    for h, s in enumerate(at):
+        of_power = None if band is None else band["orders"][h]["largest"]
+        own: Json = {"order": float(response.order[h]), "speed": float(response.speed[s])}
+        own["level_db_a"] = float(level[s, h])
+        for end in ("low_db_a", "high_db_a"):
+            off = None if of_power is None else of_power[end] - of_power["level_db_a"]
+            own[end] = None if off is None else own["level_db_a"] + off
+        rows.append(own)
+    total = _decibels(np.sum(weighted, axis=1))
+    return {"microphone": microphone.tolist(), "level": level.T, "total_level": total, "orders": rows}
+
+
+def _decibels(square: FloatArray) -> FloatArray:
+    """Return the level of mean squares, Pa^2, at least `FLOOR`."""
+    least = 10.0 ** (FLOOR / 10.0)
+    return np.asarray(10.0 * np.log10(np.maximum(square / REFERENCE_PRESSURE**2, least)))
 
 
 RUN = _NoiseStudy()
