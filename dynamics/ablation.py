@@ -162,6 +162,9 @@ def ablate(
 ) -> Ablation:
     """Toggle each effect of a scene in all its parts and report the change.
 
+    Raises `InputError`: no mesh, an unknown effect, or a run shorter than a few base pitches; `SolveError`:
+    the scene itself has no equilibrium or stops early.
+
     Parameters
     ----------
     scene : Scene
@@ -178,13 +181,6 @@ def ablate(
     Ablation
         Figures of the second half of each run: of a run at constant speed the steady state, of a run-up the
         largest order amplitudes along it.
-
-    Raises
-    ------
-    InputError
-        No mesh, an unknown effect, or a run shorter than a few base pitches.
-    SolveError
-        The scene itself has no equilibrium or stops early.
     """
     names = chosen("only", only, [effect.name for effect in EFFECTS])
     scene.require_meshes()

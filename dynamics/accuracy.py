@@ -365,6 +365,9 @@ def frontier(
 ) -> Frontier:
     """Run every fidelity that says something about `scene`, and compare each to the finest.
 
+    Raises `InputError`: no mesh, no such fidelity, or a run too short to compare; `SolveError`: fewer than
+    two fidelities came to their end.
+
     Parameters
     ----------
     scene : Scene
@@ -373,13 +376,6 @@ def frontier(
         Names of fidelities to run; default all.
     progress : callable, optional
         Called with "ladder" and the fraction done.
-
-    Raises
-    ------
-    InputError
-        No mesh, no such fidelity, or a run too short to compare.
-    SolveError
-        Fewer than two fidelities came to their end.
     """
     scene.require_meshes()
     system = assemble(scene)

@@ -171,7 +171,8 @@ def write_universal_file(
 
     Units (dataset 164), positions of bearings and meshes (2411), a dataset 58 per component. Directions 1, 2,
     3 are x, y, z of the fixed frame (of a planet bearing: of its carrier's), 4, 5, 6 moments about them, 0 a
-    scalar. The format keeps six digits of the abscissa's increment and thirteen of every ordinate.
+    scalar. The format keeps six digits of the abscissa's increment and thirteen of every ordinate. Raises
+    `InputError`: the function is unknown, or the stretch too short for it.
 
     Parameters
     ----------
@@ -187,11 +188,6 @@ def write_universal_file(
     -------
     int
         Number of functions written.
-
-    Raises
-    ------
-    InputError
-        If the function is unknown, or the stretch too short for it.
     """
     one_of("function", function, FUNCTIONS)
     path = Path(path)

@@ -94,15 +94,12 @@ def mesh_text(content: bytes) -> TextIOWrapper:
 def check_mesh_content(name: str, content: bytes) -> None:
     """Refuse a mesh that names further files, or on which a reader does not end.
 
+    Raises `InputError` naming ``mesh_file``.
+
     Parameters
     ----------
     name : str
         Of the file; its suffix says the format.
-
-    Raises
-    ------
-    InputError
-        Naming ``mesh_file``.
     """
     find = _FAULTS.get(PurePath(name).suffix.lower())  # other formats name no files
     if find and (fault := find(content)):

@@ -91,6 +91,8 @@ def ask_child(
 ) -> dict[str, Any]:
     """Run a child on one request and return its answer.
 
+    Raises `ChildOutOfMemory`, `ChildFailed`: also if the answer is an ``error``: its text.
+
     Parameters
     ----------
     request : dict
@@ -101,11 +103,6 @@ def ask_child(
         Program and arguments. It finds Python modules where this process does.
     folder : Path, optional
         Where it works; default: where this process does.
-
-    Raises
-    ------
-    ChildOutOfMemory, ChildFailed
-        Also if the answer is an ``error``: its text.
     """
     answer = _ask(json.dumps(request | {"seconds": seconds}), seconds, command, folder)
     if "error" in answer:

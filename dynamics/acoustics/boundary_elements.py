@@ -283,7 +283,8 @@ def exterior_pressure(
     """Return the sound pressure around a hull by boundary elements, its own scattering included.
 
     The Kirchhoff-Helmholtz integral of the pressure on the hull and its normal derivative. Points lie
-    outside, a few of the longest edges away.
+    outside, a few of the longest edges away. Raises `InputError`, `MissingExtra`, `SolveError` as
+    `surface_pressure` does.
 
     Parameters
     ----------
@@ -296,11 +297,6 @@ def exterior_pressure(
     -------
     (P, M) complex array
         Pa per m/s, peak amplitudes of e^{+i omega t}.
-
-    Raises
-    ------
-    InputError, MissingExtra, SolveError
-        As `surface_pressure` does.
     """
     wavenumber = 2.0 * np.pi * frequency / air.sound_speed
     pressure = surface_pressure(hull, frequency, shapes, air).pressure

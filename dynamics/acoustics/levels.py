@@ -28,15 +28,12 @@ POLES = (20.598997, 107.65265, 737.86223, 12194.217)  # Hz, of [1]_: twofold, si
 def sound_power_level(power: ArrayLike) -> FloatArray:
     """Return the sound power level re 1e-12 W, dB, at least `FLOOR`.
 
+    Raises `InputError`: a power is negative or no number.
+
     Parameters
     ----------
     power : array
         W, any shape.
-
-    Raises
-    ------
-    InputError
-        If a power is negative or no number.
     """
     values = np.asarray(power, dtype=float)
     if not np.all(values >= 0.0):
@@ -168,6 +165,7 @@ def level_bands(
     independent; the nominal level always lies inside. The contribution of a parameter is what it changes
     alone between the same quantiles of its range. Where squares of contributions add up to less than the
     band, as where one resonance meets another, the rest is `JOINTLY`; where to more, each is reduced alike.
+    Raises `InputError`: no case, or more than 4096.
 
     Parameters
     ----------
@@ -175,11 +173,6 @@ def level_bands(
         From the values of all parameters by name to levels in dB, (L,).
     cases : int
         Joint cases, spread evenly; best a power of two.
-
-    Raises
-    ------
-    InputError
-        No case, or more than 4096.
     """
     integer("cases", cases, 1, 4096)
     nominal = {name: span.nominal for name, span in ranges.items()}

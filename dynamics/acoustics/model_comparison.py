@@ -205,7 +205,8 @@ def compare_models(
 ) -> ModelComparison:
     """Compute the sound power of a vibration (T,) in m/s at a frequency in Hz by several models.
 
-    A model that refuses the hull or the frequency, or whose extra is not installed, is left out.
+    A model that refuses the hull or the frequency, or whose extra is not installed, is left out. Raises
+    `InputError`: nothing moves.
 
     Parameters
     ----------
@@ -215,11 +216,6 @@ def compare_models(
         Of which cost and error are stated, too; they are not computed.
     cache : Path, optional
         Directory of what is known of the host, see `work_cost.on_this_host`.
-
-    Raises
-    ------
-    InputError
-        Nothing moves.
     """
     moving = positive("normal_velocity", mean_square_velocity(hull, normal_velocity), "Nothing moves.")
     plane, wavenumber = air.impedance * hull.area * moving, 2.0 * np.pi * frequency / air.sound_speed

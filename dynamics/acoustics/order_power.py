@@ -42,17 +42,14 @@ class ModalResistance:
     def power(self, frequency: FloatArray, velocity: ComplexArray) -> FloatArray:
         """Return the sound power v^H R v / 2 at every sample, (B,), W.
 
+        Raises `InputError`: a frequency lies outside of those computed, or the shapes of arrays differ.
+
         Parameters
         ----------
         frequency : (B,) array
             Hz.
         velocity : (B, M) array
             Complex peak amplitudes of the shapes, m/s.
-
-        Raises
-        ------
-        InputError
-            A frequency lies outside of those computed, or the shapes of arrays differ.
         """
         velocity = np.asarray(velocity)
         flow = np.sum(velocity.conj() * self.reaction(frequency, velocity), axis=1)
@@ -62,16 +59,12 @@ class ModalResistance:
         """Return the part R v of the air's force that takes power from the shapes, (B, M), N.
 
         Re(u^H R v) / 2 is the power that goes by a part u of the velocity; parts of v add up to the whole.
+        Raises `InputError` as `power` does.
 
         Parameters
         ----------
         frequency, velocity : arrays
             As of `power`.
-
-        Raises
-        ------
-        InputError
-            As `power` does.
         """
         frequency, velocity = np.atleast_1d(np.asarray(frequency, dtype=float)), np.asarray(velocity)
         if velocity.shape != (frequency.size, self.matrix.shape[1]):
@@ -205,17 +198,14 @@ class OrderPower:
 def order_power(resistance: ModalResistance, frequency: FloatArray, velocity: ComplexArray) -> OrderPower:
     """Return the sound power of orders that move a hull in the shapes of a modal resistance.
 
+    Raises `InputError` as `ModalResistance.power` does.
+
     Parameters
     ----------
     frequency : (K, B) array
         Hz, within those of the resistance.
     velocity : (K, B, M) array
         Complex peak amplitudes of the M shapes.
-
-    Raises
-    ------
-    InputError
-        As `ModalResistance.power` does.
     """
     orders = zip(np.asarray(frequency), np.asarray(velocity), strict=True)
     return OrderPower(frequency, np.stack([resistance.power(at, moving) for at, moving in orders]))

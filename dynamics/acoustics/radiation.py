@@ -104,15 +104,12 @@ def sound_power(
 ) -> float:
     """Return the radiated sound power of one vibration, W.
 
+    Raises `InputError` as `resistance` does.
+
     Parameters
     ----------
     normal_velocity : (T,) array
         Complex peak amplitudes, m/s.
-
-    Raises
-    ------
-    InputError
-        As `resistance` does.
     """
     matrix = resistance(model, hull, frequency, np.asarray(normal_velocity)[:, None], air)
     return 0.5 * float(matrix[0, 0].real)
@@ -123,7 +120,8 @@ def panel_power(
 ) -> FloatArray:
     """Return the sound power of every panel, (T,), W, as `PanelModel` has it; the sum is `sound_power`.
 
-    Over the areas it is the active intensity normal to the hull, W/m^2.
+    Over the areas it is the active intensity normal to the hull, W/m^2. Raises `InputError` as `sound_power`
+    does.
 
     Parameters
     ----------
@@ -131,11 +129,6 @@ def panel_power(
         Hz.
     normal_velocity : (T,) array
         Complex peak amplitudes, m/s.
-
-    Raises
-    ------
-    InputError
-        As `sound_power` does.
     """
     shapes = _checked(hull, frequency, np.asarray(normal_velocity)[:, None])
     return model.panel_power(hull, frequency, shapes[:, 0], air)

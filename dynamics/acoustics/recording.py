@@ -96,7 +96,8 @@ def order_recording(
 ) -> Recording:
     """Return the sum of abs(a) cos(2 pi integral f dt + arg a) over the orders of a run.
 
-    Frequencies, magnitudes and phases are linear between the given times.
+    Frequencies, magnitudes and phases are linear between the given times. Raises `InputError`: shapes differ,
+    times do not increase, or a frequency is too high.
 
     Parameters
     ----------
@@ -106,11 +107,6 @@ def order_recording(
         Hz, at most `PASSED` times the sample rate.
     amplitude : (K, B) array
         Complex or real peak amplitudes, in `unit`.
-
-    Raises
-    ------
-    InputError
-        Shapes differ, times do not increase, or a frequency is too high.
     """
     time, frequency, amplitude = increasing("time", time), np.asarray(frequency), np.asarray(amplitude)
     if frequency.ndim != 2 or frequency.shape != amplitude.shape or frequency.shape[1] != time.size:
@@ -144,17 +140,13 @@ FADE = 0.01  # s at both ends
 def audible(values: FloatArray, sample_rate: float) -> FloatArray:
     """Return a series (..., T) without its trend and what is slower than `LOWEST`, without phase shift.
 
-    The level falls by 3 dB at 20 Hz and by less than 0.1 dB above 36 Hz.
+    The level falls by 3 dB at 20 Hz and by less than 0.1 dB above 36 Hz. Raises `InputError`: the sample rate
+    is too low, or there are fewer than 4 samples.
 
     Parameters
     ----------
     sample_rate : float
         Hz, above 40.
-
-    Raises
-    ------
-    InputError
-        The sample rate is too low, or there are fewer than 4 samples.
     """
     if not sample_rate > 2.0 * LOWEST:
         raise InputError("sample_rate", sample_rate, above(2.0 * LOWEST, "Hz"), "It holds nothing audible.")
@@ -206,16 +198,14 @@ def force_recording(
 ) -> Recording:
     """Return the force on a bearing over a run along a direction, in N: no sound pressure.
 
+    Raises `InputError`: the run holds no force on that bearing, the direction is zero, or as
+    `series_recording`.
+
     Parameters
     ----------
     direction : (3,) array, optional
         In the frame of `RunResult.bearing_force`, of any length above zero; by default the
         `principal_direction`.
-
-    Raises
-    ------
-    InputError
-        The run holds no force on that bearing, the direction is zero, or as `series_recording`.
     """
     if not run.bearing_force.shape[0]:
         advice = "Run with outputs.bearing_forces = true."
@@ -259,17 +249,12 @@ def wav_file(recording: Recording, full_scale: float) -> bytes:
     """Return the content of a WAV file whose sample 1.0 is `full_scale` in the recording's unit.
 
     Quantity, unit and full scale stand in the file as JSON (RIFF comment ICMT). Files of the same full scale
-    play at their true relative level.
+    play at their true relative level. Raises `InputError`: the recording would be clipped.
 
     Parameters
     ----------
     full_scale : float
         At least the recording's peak; `common_full_scale` of those to compare.
-
-    Raises
-    ------
-    InputError
-        The recording would be clipped.
     """
     positive("full_scale", full_scale)
     if full_scale < recording.peak:

@@ -34,17 +34,14 @@ def with_decimated_tables(system: System, every: int = 2) -> System:
 def with_flank(system: System, mesh: int, table: MeshTable) -> System:
     """Return `system` with another table of a driving flank; which effects act is not decided anew.
 
+    Raises `InputError`: the table has several operating points, or cannot have the technique of the mesh.
+
     Parameters
     ----------
     mesh : int
         Its index in the scene.
     table : MeshTable
         At one misalignment and center distance.
-
-    Raises
-    ------
-    InputError
-        The table has several operating points, or cannot have the technique of the mesh.
     """
     if np.size(table.misalignment) > 1 or np.size(table.center_distance_change) > 1:
         raise InputError("table", "several operating points", "a table at one of them")

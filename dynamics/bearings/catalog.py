@@ -43,7 +43,8 @@ def from_catalog(
 ) -> BallBearing:
     """Return the deep groove ball bearing that a line of a catalog most likely describes.
 
-    Grooves are those of ISO/TS 16281, 0.52 and 0.53; see `BAND` for how far the rest may be off.
+    Grooves are those of ISO/TS 16281, 0.52 and 0.53; see `BAND` for how far the rest may be off. Raises
+    `InputError`: a value is out of its bounds, or no number of balls fits rating and section.
 
     Parameters
     ----------
@@ -53,11 +54,6 @@ def from_catalog(
         C_0, N.
     clearance : float
         Radial internal clearance, m; no catalog line states it.
-
-    Raises
-    ------
-    InputError
-        A value is out of its bounds, or no number of balls fits rating and section.
     """
     CatalogLine(bore, outside_diameter, static_rating, clearance)
     pitch, largest = (bore + outside_diameter) / 2.0, WALL * (outside_diameter - bore) / 2.0

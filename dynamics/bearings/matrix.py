@@ -26,6 +26,8 @@ def check_matrix(
 ) -> FloatArray:
     """Return the matrix of `rows` if it is square of one of `sizes`, symmetric and positive semidefinite.
 
+    Raises `InputError` naming `field`.
+
     Parameters
     ----------
     field : str
@@ -35,11 +37,6 @@ def check_matrix(
     precision : float
         Relative precision of the entries. In units in which every diagonal entry is 1 that many times the
         number of rows is how far below zero an eigenvalue of n such rows may be (Weyl).
-
-    Raises
-    ------
-    InputError
-        Naming `field`.
     """
     allowed = " or ".join(f"{size} by {size}" for size in sizes)
     if len({len(row) for row in rows}) > 1:

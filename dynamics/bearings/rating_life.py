@@ -45,6 +45,8 @@ def rating_life(
 ) -> _RatingLife:
     """Return the life of `bearing` under constant loads of its elements.
 
+    Raises `InputError`: the rating is not positive.
+
     Parameters
     ----------
     load : (Z, L) array
@@ -53,11 +55,6 @@ def rating_life(
         Basic dynamic load rating C, N.
     inner_turns : bool
         Whether the load turns against the inner ring; False: against the outer.
-
-    Raises
-    ------
-    InputError
-        If the rating is not positive.
     """
     positive("rating", rating)
     ball = isinstance(bearing, BallBearing)

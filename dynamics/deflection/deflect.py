@@ -295,7 +295,9 @@ def deflect(
 
     All effects of the scene that act at rest are on unless it switches them off: freedoms, elastic shafts,
     laws of bearings, and where tables have what it takes, the misalignment and the center distance at which
-    they are read and the arm at which they press. Mesh and bodies are in balance at once.
+    they are read and the arm at which they press. Mesh and bodies are in balance at once. Raises
+    `InputError`: by field name: a case that the scene cannot have, meshes that it does not press, no common
+    period.
 
     Parameters
     ----------
@@ -308,11 +310,6 @@ def deflect(
         Called with the fraction done.
     workers : Workers
         They take a load case each.
-
-    Raises
-    ------
-    InputError
-        By field name: a case that the scene cannot have, meshes that it does not press, no common period.
     """
     distinct("load_cases", [case.name for case in cases])
     check_forces(cases, [force.name for force in scene.forces])

@@ -78,6 +78,8 @@ class PlanarMesh:
 def add_gear_mesh(mbs: Any, mesh: PlanarMesh, nodes: tuple[Any, Any], drive: Drive | None = None) -> Any:
     """Add the mesh to an Exudyn system as an object on the nodes of two bodies.
 
+    Raises `InputError`: exudyn is not installed.
+
     Parameters
     ----------
     nodes : (node index, node index)
@@ -89,11 +91,6 @@ def add_gear_mesh(mbs: Any, mesh: PlanarMesh, nodes: tuple[Any, Any], drive: Dri
     -------
     exudyn.ObjectIndex
         An `ObjectGenericODE2` without mass, with the force and its derivatives as user functions.
-
-    Raises
-    ------
-    InputError
-        If Exudyn is not installed.
     """
     items = _exudyn().itemInterface
     force, jacobian = _user_functions(mesh, drive)
@@ -206,6 +203,9 @@ class _PlanarRun:
 def run_in_exudyn(scene: Scene, *, solver: str = "GeneralizedAlpha", step: float = 5e-6) -> _PlanarRun:
     """Run `scene` in Exudyn from its static equilibrium at constant speed.
 
+    Raises `InputError`: exudyn is not installed, or the scene holds what is not rebuilt; `SolveError`: there
+    is no equilibrium to start from, or Exudyn gives up.
+
     Parameters
     ----------
     scene : Scene
@@ -220,13 +220,6 @@ def run_in_exudyn(scene: Scene, *, solver: str = "GeneralizedAlpha", step: float
     -------
     PlanarRun
         On the scene's output grid as far as whole steps meet it.
-
-    Raises
-    ------
-    InputError
-        If Exudyn is not installed, or the scene holds what is not rebuilt.
-    SolveError
-        If there is no equilibrium to start from, or Exudyn gives up.
     """
     package = _exudyn()
     if solver not in SOLVERS:

@@ -89,7 +89,8 @@ def read_mesh(path: str | Path, unit: str) -> TetrahedralMesh:
 
     Linear tetrahedra get mid-side nodes in the middle of their straight edges: their own strain is constant
     and far too stiff. Named physical groups of triangles, node sets, element sets of triangles and Nastran
-    properties of triangles (by number) are kept as groups of nodes.
+    properties of triangles (by number) are kept as groups of nodes. Raises `InputError`: no such file, no
+    mesh, other solid elements than tetrahedra, or a bad mesh (see `_check_quality`).
 
     Parameters
     ----------
@@ -98,11 +99,6 @@ def read_mesh(path: str | Path, unit: str) -> TetrahedralMesh:
         ``.vtk``.
     unit : str
         Of its coordinates, "m" or "mm": files do not say it.
-
-    Raises
-    ------
-    InputError
-        No such file, no mesh, other solid elements than tetrahedra, or a bad mesh (see `_check_quality`).
     """
     scale = UNITS[one_of("unit", unit, list(UNITS))]
     return _checked(_content(Path(path)), scale)
@@ -181,6 +177,9 @@ def mesh_step(
 ) -> TetrahedralMesh:
     """Mesh a STEP file with one solid by quadratic tetrahedra, whose nodes are on its curved surface.
 
+    Raises `InputError`: no such file, no solid or several, or a mesh that is bad at this size; `SolveError`:
+    the mesher failed, ran out of time or memory.
+
     Parameters
     ----------
     path : str or Path
@@ -191,13 +190,6 @@ def mesh_step(
         Time limit of the mesher.
     command : sequence of str, optional
         Program to run in place of the mesher.
-
-    Raises
-    ------
-    InputError
-        No such file, no solid or several, or a mesh that is bad at this size.
-    SolveError
-        The mesher failed, ran out of time or memory.
     """
     file = Path(path)
     one_of("step_file.suffix", file.suffix.lower(), STEP_SUFFIXES)

@@ -228,6 +228,8 @@ def receptance(
 ) -> FloatArray:
     """Return the motion under unit harmonic forces on the seats.
 
+    Raises `InputError`: a frequency is negative or no number.
+
     Parameters
     ----------
     frequency : (n,) array
@@ -241,11 +243,6 @@ def receptance(
     (n, r, s) complex array
         Reduced coordinates per force (m/N) or moment on the seats; the first s rows are the seats' motions.
         `SurfaceMotion.motion @` it and `PointMotion.motion @` it are displacements.
-
-    Raises
-    ------
-    InputError
-        A frequency is negative or no number.
     """
     hertz = np.asarray(frequency, dtype=float)
     for index, value in enumerate(hertz):
@@ -276,6 +273,9 @@ PARALLEL = 1e-3
 def scene_housing(housing: ReducedHousing, name: str, bushings: tuple[str, ...] | None = None) -> Housing:
     """Return a reduced housing for a scene; its mesh stands in the scene's frame, shafts along z.
 
+    Raises `InputError`: a bore is not along z, the seats have different numbers of motions, or what `Housing`
+    refuses.
+
     Parameters
     ----------
     housing : ReducedHousing
@@ -284,11 +284,6 @@ def scene_housing(housing: ReducedHousing, name: str, bushings: tuple[str, ...] 
         Of the housing in the scene.
     bushings : tuple of str, optional
         Names of the bearings, in the order of the seats; by default those of the seats.
-
-    Raises
-    ------
-    InputError
-        A bore is not along z, the seats have different numbers of motions, or what `Housing` refuses.
     """
     counts = {len(seat.motions) for seat in housing.seats}
     if len(counts) > 1:

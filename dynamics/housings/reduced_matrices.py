@@ -164,19 +164,14 @@ class ReducedMatrices:
 def read_reduced_matrices(path: str | Path) -> ReducedMatrices:
     """Read matrices from one file.
 
+    Raises `InputError`: no such file, not readable, no stiffness, or a matrix that is not symmetric or has a
+    negative eigenvalue; `MissingExtra`: a Nastran file, and pyyeti is not installed.
+
     Parameters
     ----------
     path : str or Path
         ``.npz`` (arrays ``stiffness``, ``mass``, ``damping``), ``.op4``, or DMIG in ``.pch``, ``.bdf``,
         ``.dat`` (``KAA`` or ``KAAX``, ``MAA`` ...; the extra ``nastran``).
-
-    Raises
-    ------
-    InputError
-        No such file, not readable, no stiffness, or a matrix that is not symmetric or has a negative
-        eigenvalue.
-    MissingExtra
-        A Nastran file, and pyyeti is not installed.
     """
     file = Path(path)
     archive = partial(read_archive, field=FIELD)
@@ -207,17 +202,14 @@ def housing_of_matrices(
 ) -> ReducedHousing:
     """Return a housing by its matrices.
 
+    Raises `InputError`: the matrices have fewer rows than the seats' motions.
+
     Parameters
     ----------
     seats : tuple of SeatFrame
         In the order of the matrices' first rows.
     damping : Damping, optional
         By mode, where the matrices have none and there is mass. Default: `USUAL_DAMPING`.
-
-    Raises
-    ------
-    InputError
-        The matrices have fewer rows than the seats' motions.
     """
     rows, motions = len(matrices.stiffness), sum(len(seat.motions) for seat in seats)
     if not 0 < motions <= rows:

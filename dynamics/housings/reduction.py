@@ -303,6 +303,9 @@ def reduced_housing(
 ) -> ReducedHousing:
     """Return a housing's reduction with what it cost, from the cache if it is there.
 
+    Raises `InputError` as `reduce_housing`, or the predicted cost is above the limit; `SolveError` as
+    `reduce_housing`.
+
     Parameters
     ----------
     cache : Path, optional
@@ -312,13 +315,6 @@ def reduced_housing(
         What computing it may cost. Default: 600 CPU s and 8 GB.
     expected : callable, optional
         Called with the predicted cost before it is computed; not where it is in the cache.
-
-    Raises
-    ------
-    InputError
-        As `reduce_housing`, or the predicted cost is above the limit.
-    SolveError
-        As `reduce_housing`.
     """
     file = None if cache is None else cache / f"housing-{_content_key(housing)}.nc"
 

@@ -36,17 +36,14 @@ def _read_csv(file: Path, field: str) -> FloatArray:
 def read_archive(file: Path, field: str) -> dict[str, FloatArray]:
     """Return the arrays of an archive by their names.
 
+    Raises `InputError`: it is none, is too large unpacked, or holds something else than numbers.
+
     Parameters
     ----------
     file : Path
         A file of `numpy.savez`.
     field : str
         What names it, for errors.
-
-    Raises
-    ------
-    InputError
-        It is none, is too large unpacked, or holds something else than numbers.
     """
     try:
         with ZipFile(file) as archive:
@@ -207,6 +204,8 @@ def _require_definite(field: str, rows: Matrix, advice: str) -> None:
 def read_housing(path: str | Path, name: str, bushings: tuple[str, ...]) -> Housing:
     """Read a housing's matrix from a file, SI units.
 
+    Raises `InputError` naming ``stiffness_file``, or the matrix's fault.
+
     Parameters
     ----------
     path : str or Path
@@ -214,11 +213,6 @@ def read_housing(path: str | Path, name: str, bushings: tuple[str, ...]) -> Hous
         ``.npz``: an array ``stiffness`` and, if given, ``damping`` and ``mass``.
     bushings : tuple of str
         In the order of the matrix.
-
-    Raises
-    ------
-    InputError
-        Naming ``stiffness_file``, or the matrix's fault.
     """
     matrices = {
         part: tuple(tuple(float(value) for value in np.ravel(row)) for row in np.atleast_2d(matrix))

@@ -32,6 +32,8 @@ def with_planets(
 ) -> Scene:
     """Return `scene` with `number` copies of the planet on `shaft`, with exact phases of all meshes.
 
+    Raises `InputError`: the shaft is no planet, or its teeth do not fit the central gears at an angle.
+
     Parameters
     ----------
     scene : Scene
@@ -45,11 +47,6 @@ def with_planets(
         Of all planets from the first about +z, rad, the first one 0. Left out: equally spaced.
     pin_errors : sequence of (radial, tangential), optional
         Of all pins, m, instead of those of the first planet's bearings.
-
-    Raises
-    ------
-    InputError
-        If the shaft is no planet, or its teeth do not fit the central gears at an angle.
     """
     integer("number", number, 1, 100)
     carrier = _carrier(scene, shaft)

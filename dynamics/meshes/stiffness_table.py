@@ -84,7 +84,8 @@ class PeriodicCurve:
 def stiffness_table(stiffness: PeriodicCurve, error: PeriodicCurve | None = None) -> PlainTable:
     """Return the table of F = k(x) (d - e(x)), 0 below d = e(x); x in base pitches of the driving gear.
 
-    Exact at the knots of both curves; between them F is that of cubic pieces of k, e and 1/k.
+    Exact at the knots of both curves; between them F is that of cubic pieces of k, e and 1/k. Raises
+    `InputError`: the stiffness is not above 0 at a knot.
 
     Parameters
     ----------
@@ -92,11 +93,6 @@ def stiffness_table(stiffness: PeriodicCurve, error: PeriodicCurve | None = None
         k along the transverse line of action, N/m.
     error : PeriodicCurve, optional
         e, transmission error without load, m; left out: none.
-
-    Raises
-    ------
-    InputError
-        If the stiffness is not above 0 at a knot.
     """
     error = error or PeriodicCurve.constant(0.0)
     position = np.union1d(stiffness.position, error.position)
@@ -120,14 +116,11 @@ def stiffness_table(stiffness: PeriodicCurve, error: PeriodicCurve | None = None
 def straight_table(stiffness: float) -> PlainTable:
     """Return the table of a flank of the same stiffness at all positions: F = stiffness d, in contact only.
 
+    Raises `InputError`: it is not above 0.
+
     Parameters
     ----------
     stiffness : float
         Along the transverse line of action, N/m.
-
-    Raises
-    ------
-    InputError
-        If it is not above 0.
     """
     return stiffness_table(PeriodicCurve.constant(positive("stiffness", stiffness)))

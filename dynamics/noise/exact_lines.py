@@ -96,6 +96,8 @@ def corrected_radiation(
 ) -> CorrectedRadiation:
     """Return the estimate, in usual air, corrected line by line, each time at that which may be the loudest.
 
+    Raises `InputError`, `SolveError` as `radiated_sound` and `surface_pressure` do.
+
     Parameters
     ----------
     response, housing, bearings
@@ -106,11 +108,6 @@ def corrected_radiation(
         As of `kept_radiation`.
     budget : float
         Predicted CPU seconds on the reference host: the lines are the same on every host.
-
-    Raises
-    ------
-    InputError, SolveError
-        As `radiated_sound` and `surface_pressure` do.
     """
     exact: list[HousingRadiation] = []
     lines: list[ExactLine] = []

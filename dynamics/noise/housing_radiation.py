@@ -271,8 +271,9 @@ def housing_radiation(
     """Return the radiation resistance of a housing from the lowest to the highest of some frequencies.
 
     Frequencies at which it is computed lie closer until the power of every mode is interpolated within about
-    0.1 dB (`knots`). Panels are as coarse as each octave allows. Above the frequency that the mesh
-    resolves (six edges of a panel in a wavelength) equivalent radiated power takes the model's place.
+    0.1 dB (`knots`). Panels are as coarse as each octave allows. Above the frequency that the mesh resolves
+    (six edges of a panel in a wavelength) equivalent radiated power takes the model's place. Raises
+    `InputError`: the housing has no surface, a frequency is not above zero, or what the model refuses.
 
     Parameters
     ----------
@@ -288,11 +289,6 @@ def housing_radiation(
         Directory of what is known of the host, see `work_cost.on_this_host`.
     workers : Workers
         They compute a frequency each.
-
-    Raises
-    ------
-    InputError
-        The housing has no surface, a frequency is not above zero, or what the model refuses.
     """
     air, requested = air or Air(), np.asarray(frequencies, dtype=float)
     if not requested.size:
@@ -372,6 +368,8 @@ def kept_radiation(
 ) -> HousingRadiation:
     """Return `housing_radiation`, from the cache if it is there.
 
+    Raises `InputError` as `housing_radiation` does.
+
     Parameters
     ----------
     cache : Path, optional
@@ -381,11 +379,6 @@ def kept_radiation(
         Called as progress("radiation", fraction), before costly work with its predicted cost behind it.
     workers : Workers
         As of `housing_radiation`.
-
-    Raises
-    ------
-    InputError
-        As `housing_radiation` does.
     """
     ends = float(np.min(frequencies)), float(np.max(frequencies))
     file = (

@@ -96,17 +96,14 @@ def sound_paths(
 ) -> _SoundPaths:
     """Return the paths from a hull that moves in shapes to a microphone.
 
+    Raises `InputError`: the microphone is no point of the air: inside a closed hull, or too near to a panel.
+
     Parameters
     ----------
     shapes : (T, r) array
         Mean outward displacement of the panels per coordinate.
     microphone : (3,) array
         m, in the frame of the hull.
-
-    Raises
-    ------
-    InputError
-        The microphone is no point of the air: inside a closed hull, or too near to a panel.
     """
     at = np.asarray(microphone, dtype=float)
     if at.shape != (3,) or not np.all(np.isfinite(at)):
@@ -147,6 +144,8 @@ def pressure_transfer(
 ) -> ComplexArray:
     """Return the sound pressure at a microphone per force on the seats.
 
+    Raises `InputError` as `outer_hull`, `sound_paths` and `modal_amplitudes` do.
+
     Parameters
     ----------
     housing : ReducedHousing
@@ -164,11 +163,6 @@ def pressure_transfer(
     -------
     (N, s) complex array
         By the seats' motions, Pa/N and Pa/(N m).
-
-    Raises
-    ------
-    InputError
-        As `outer_hull`, `sound_paths` and `modal_amplitudes` do.
     """
     hertz = np.asarray(frequency, dtype=float)
     paths = _paths(housing, microphone, model, air)
@@ -192,7 +186,7 @@ def pressure_signal(
 
     The modes follow the forces as in `motion_pieces`, and each panel is heard r/c later. Nothing wraps: the
     modes are integrated, and the paths are a finite impulse response. The housing starts at rest: silence
-    comes before the first sound.
+    comes before the first sound. Raises `InputError` as `outer_hull`, `sound_paths` and `motion_pieces` do.
 
     Parameters
     ----------
@@ -202,11 +196,6 @@ def pressure_signal(
         s, uniform. Delays are exact within 1e-4 up to a quarter of its rate.
     force : (T, s) array
         On the motions of the seats, N and N m (`run_seat_forces`).
-
-    Raises
-    ------
-    InputError
-        As `outer_hull`, `sound_paths` and `motion_pieces` do.
     """
     paths = _paths(housing, microphone, model, air)
     rows = housing.modes[1].T @ housing.mass
@@ -282,7 +271,8 @@ def velocity_recording(
 
     Its orders are those of the forces through the transfer functions within 0.1 dB, up to the pass frequency
     of the run's output. The housing may be one that the scene of the run does not have; the forces of its
-    bearings then lack what it does to them.
+    bearings then lack what it does to them. Raises `InputError` as `run_seat_forces`, `point_signal` and
+    `series_recording`; or the direction is zero.
 
     Parameters
     ----------
@@ -294,11 +284,6 @@ def velocity_recording(
         In the frame of the housing's mesh, of any length above zero; by default the `principal_direction`.
     bearings : sequence of str, optional
         In the order of the seats; by default those with the names of the seats.
-
-    Raises
-    ------
-    InputError
-        As `run_seat_forces`, `point_signal` and `series_recording`; or the direction is zero.
     """
     rate = FINER * run.sample_rate
     time, force = finer_seat_forces(run, housing, bearings, FINER)
@@ -323,8 +308,9 @@ def pressure_recording(
 
     Its orders are those of the forces through `pressure_transfer` within 0.1 dB, delayed by the way through
     the air. It holds nothing above `sound_limit`, where modes or panels are missing, nor above the pass
-    frequency of the run's output; its quantity states the lower. As in `velocity_recording`, the run may
-    have moved in another housing.
+    frequency of the run's output; its quantity states the lower. As in `velocity_recording`, the run may have
+    moved in another housing. Raises `InputError` as `run_seat_forces`, `pressure_signal` and
+    `series_recording`; or the housing has no modes.
 
     Parameters
     ----------
@@ -336,11 +322,6 @@ def pressure_recording(
         As of `pressure_transfer`, by `heard_estimate`.
     bearings : sequence of str, optional
         In the order of the seats; by default those with the names of the seats.
-
-    Raises
-    ------
-    InputError
-        As `run_seat_forces`, `pressure_signal` and `series_recording`; or the housing has no modes.
     """
     rate, valid = FINER * run.sample_rate, positive("valid_frequency", sound_limit(housing, air))
     limit = min(valid, float(run.receipt["sampling"]["pass_frequency"]))
@@ -376,7 +357,8 @@ def scattered_pressure_transfer(
 ) -> ComplexArray:
     """Return the sound pressure at microphones per force on the seats, scattering of the housing included.
 
-    What `pressure_transfer` neglects. Each frequency takes 10 to 60 CPU s.
+    What `pressure_transfer` neglects. Each frequency takes 10 to 60 CPU s. Raises `InputError`,
+    `MissingExtra`, `SolveError` as `outer_hull`, `modal_amplitudes` and `exterior_pressure` do.
 
     Parameters
     ----------
@@ -391,11 +373,6 @@ def scattered_pressure_transfer(
     -------
     (P, s) complex array
         By the seats' motions, Pa/N and Pa/(N m).
-
-    Raises
-    ------
-    InputError, MissingExtra, SolveError
-        As `outer_hull`, `modal_amplitudes` and `exterior_pressure` do.
     """
     air = air or Air()
     hull = radiating_hull(outer_hull(housing), frequency, air.sound_speed)

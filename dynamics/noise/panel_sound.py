@@ -42,6 +42,8 @@ def models_at(
 ) -> ModelComparison:
     """Compute the sound power at one speed and order by several radiation models, on one hull in usual air.
 
+    Raises `InputError` as `radiated_sound` does, or nothing moves.
+
     Parameters
     ----------
     response, housing, bearings
@@ -52,11 +54,6 @@ def models_at(
         From coarse to fine.
     progress, offered, cache
         As of `compare_models`.
-
-    Raises
-    ------
-    InputError
-        As `radiated_sound` does, or nothing moves.
     """
     air, hertz = Air(), float(response.frequency[at])
     hull = radiating_hull(outer_hull(housing), hertz, air.sound_speed)
@@ -117,7 +114,7 @@ def panel_sound(
 
     Between the frequencies of the radiation resistance powers of panels are interpolated as it is: their sum
     is the power that `radiated_sound` has there. At lines that boundary elements correct, shares of panels
-    are those of the model.
+    are those of the model. Raises `InputError` as `radiated_sound` does.
 
     Parameters
     ----------
@@ -127,11 +124,6 @@ def panel_sound(
         Numbers of speed and order.
     model, air
         Those of the radiation.
-
-    Raises
-    ------
-    InputError
-        As `radiated_sound` does.
     """
     air, outer = air or Air(), outer_hull(housing)
     velocity, hertz = _coordinate_velocity(response, housing, bearings, at), float(response.frequency[at])

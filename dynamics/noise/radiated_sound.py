@@ -189,6 +189,9 @@ def radiated_sound(
 ) -> RadiatedSound:
     """Return the sound power of a housing under the bearing forces of a linear response or a run.
 
+    Raises `InputError` as `seat_forces` and `modal_amplitudes` do, or the radiation is of another housing or
+    range.
+
     Parameters
     ----------
     response : BearingHarmonics
@@ -201,11 +204,6 @@ def radiated_sound(
         Of this housing, over the frequencies of the response.
     name : str
         Of the housing.
-
-    Raises
-    ------
-    InputError
-        As `seat_forces` and `modal_amplitudes` do, or the radiation is of another housing or range.
     """
     names = tuple(seat.name for seat in housing.seats) if bearings is None else tuple(bearings)
     if radiation.matrix.shape[1] != len(housing.stiffness):

@@ -98,7 +98,9 @@ def sound_over_time(
 
     The modes of the housing follow the forces exactly in time. Blocks of their velocities overlap by half; a
     Hann window makes them spectra, whose lines radiate as steady vibrations: the power of a block is its mean
-    under the squared window. Shorter blocks follow a fast run-up, longer ones have lower bands.
+    under the squared window. Shorter blocks follow a fast run-up, longer ones have lower bands. Raises
+    `InputError`: the run is shorter than a block, no band lies in the range, or as `run_seat_forces` and
+    `motion_pieces`.
 
     Parameters
     ----------
@@ -113,12 +115,6 @@ def sound_over_time(
         above the pass frequency of the run's output.
     block : float
         s.
-
-    Raises
-    ------
-    InputError
-        The run is shorter than a block, no band lies in the range, or as `run_seat_forces` and
-        `motion_pieces`.
     """
     samples, rate = round(block * result.sample_rate), result.sample_rate
     if not 4 * LEAKAGE <= samples <= result.time.size:

@@ -194,7 +194,9 @@ def bearing_orders(result: RunResult, orders: int | None = None, pitches: int | 
     """Return the mesh orders of the forces on the bearings of a run, window by window.
 
     Least squares under Hann weights: an order of constant amplitude is found exactly at any sweep. What
-    changes within the window is averaged: see `_smearing`.
+    changes within the window is averaged: see `_smearing`. Raises `InputError`: the run holds no bearing
+    forces or not those orders, no mesh turns, windows are too short to tell orders apart, or the run is too
+    short or too fast for any window.
 
     Parameters
     ----------
@@ -205,12 +207,6 @@ def bearing_orders(result: RunResult, orders: int | None = None, pitches: int | 
         output holds.
     pitches : int, optional
         Base pitches of a window; default: 16, or as many as tell the orders of several meshes apart.
-
-    Raises
-    ------
-    InputError
-        The run holds no bearing forces or not those orders, no mesh turns, windows are too short to tell
-        orders apart, or the run is too short or too fast for any window.
     """
     mesh, signals = _counting_mesh(result), bearing_signals(result)
     harmonics = _mesh_harmonics(result, checked_order(result, "orders", orders, mesh))

@@ -212,7 +212,8 @@ def band_sums(
 ) -> tuple[IntArray, FloatArray, FloatArray]:
     """Return bands (J,), their edges (J + 1,) in Hz and the sums (..., J) of lines of a spectrum in them.
 
-    A line's power is spread evenly over its width, so that a band edge divides it.
+    A line's power is spread evenly over its width, so that a band edge divides it. Raises `InputError`: no
+    band between them holds three lines.
 
     Parameters
     ----------
@@ -222,11 +223,6 @@ def band_sums(
         Of the lines at 1, 2, ... K times it.
     top, bottom : float
         Edges that no band crosses, Hz.
-
-    Raises
-    ------
-    InputError
-        If no band between them holds three lines.
     """
     least = max(LEAST_LINES * width / SHARE, bottom * 10.0**0.05)
     low = int(np.ceil(10.0 * np.log10(least / REFERENCE)))

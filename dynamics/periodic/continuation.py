@@ -101,8 +101,8 @@ def follow_branch(
 ) -> Branch:
     """Follow the periodic motions from the speed `first` until they leave the range `first` to `last`.
 
-    The unknowns are state and speed together, so the branch is followed through folds and along its
-    unstable parts.
+    The unknowns are state and speed together, so the branch is followed through folds and along its unstable
+    parts. Raises `InputError`: a speed is zero or of the wrong sense, or a value out of range.
 
     Parameters
     ----------
@@ -122,11 +122,6 @@ def follow_branch(
     -------
     Branch
         With the status; nothing is raised where it ends early.
-
-    Raises
-    ------
-    InputError
-        If a speed is zero or of the wrong sense, or a value out of range.
     """
     positive("largest_step", largest_step)
     integer("points", points, 2, 1_000_000)

@@ -114,6 +114,8 @@ class Orbit:
 def find_orbit(problem: PeriodicProblem, speed: float, guess: FloatArray | None = None) -> Orbit:
     """Return the periodic motion at `speed` that Newton's method with step halving finds from `guess`.
 
+    Raises `InputError`: the speed is zero or of the other sense.
+
     Parameters
     ----------
     speed : float
@@ -125,11 +127,6 @@ def find_orbit(problem: PeriodicProblem, speed: float, guess: FloatArray | None 
     -------
     Orbit
         With the status of the search; nothing is raised where it fails.
-
-    Raises
-    ------
-    InputError
-        If the speed is zero or of the other sense.
     """
     over_period = PeriodMap(problem, speed)
     y = np.array(problem.rest if guess is None else guess, dtype=float)

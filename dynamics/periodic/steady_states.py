@@ -293,6 +293,10 @@ def steady_states(
 ) -> SteadyStates:
     """Return the steady states of `system` at rising and falling speeds, and the branch between them.
 
+    Raises `InputError`: a value is out of range, there is nothing to vibrate, or the meshes have no common
+    period; `SolveError`: there is no static equilibrium, or a motion beyond the table (`STRAIGHT_ON`) is not
+    accepted.
+
     Parameters
     ----------
     system : System
@@ -310,13 +314,6 @@ def steady_states(
         Called with the curve (`CURVES`) and the fraction of it done; an exception in it ends the study.
     workers : Workers
         They take a sweep each.
-
-    Raises
-    ------
-    InputError
-        If a value is out of range, there is nothing to vibrate, or the meshes have no common period.
-    SolveError
-        If there is no static equilibrium, or a motion beyond the table (`STRAIGHT_ON`) is not accepted.
     """
     speeds = checked_speeds(np.asarray(speed, dtype=float), above_zero=True)
     if not speeds.size:

@@ -25,7 +25,7 @@ def pair_scene(
 
     The driver's shaft lies on the z axis from z = 0, the driven shaft beside it at x = `center_distance`.
     Both have their gear at mid-length. The mesh is named "mesh", the drive "drive", the load "load". Change
-    other fields with `dataclasses.replace`.
+    other fields with `dataclasses.replace`. Raises `InputError`: a value cannot be used.
 
     Parameters
     ----------
@@ -45,11 +45,6 @@ def pair_scene(
         Of each shaft without its gear; default: none.
     bushing_stiffness : float
         Radial and axial, of the bushings "<shaft>.left" and "<shaft>.right" at the shafts' ends, N/m.
-
-    Raises
-    ------
-    InputError
-        If a value cannot be used.
     """
     shafts = tuple(
         Shaft(gear.shaft, 2.0 * gear.position, (x, 0.0, 0.0), shaft_inertia or Inertia())

@@ -68,17 +68,14 @@ def hollow_cylinder(
 ) -> Inertia:
     """Return the inertia of a hollow (or, with bore 0, solid) cylinder.
 
+    Raises `InputError`: a size is not positive, or the bore is not smaller than the outer diameter.
+
     Parameters
     ----------
     outer_diameter, length, bore_diameter : float
         m. For a gear use reference diameter and face width.
     density : float
         kg/m^3.
-
-    Raises
-    ------
-    InputError
-        If a size is not positive, or the bore is not smaller than the outer diameter.
     """
     outer, bore = (
         positive("outer_diameter", outer_diameter) / 2.0,

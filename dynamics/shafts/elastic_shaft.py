@@ -37,9 +37,10 @@ def craig_bampton(
 ) -> _ReducedBody:
     """Reduce a body (Craig and Bampton, AIAA Journal 6 (1968) 1313-1319).
 
-    The motion inside is what the interface imposes statically plus the modes with the interface held, up to
-    a frequency. Static motion under forces on the interface is exact, and so are rigid motions; natural
-    frequencies are bounded from below by the exact ones and fall to them as modes are added.
+    The motion inside is what the interface imposes statically plus the modes with the interface held, up to a
+    frequency. Static motion under forces on the interface is exact, and so are rigid motions; natural
+    frequencies are bounded from below by the exact ones and fall to them as modes are added. Raises
+    `InputError`: the interface repeats freedoms or does not hold the body, or `highest` is not above zero.
 
     Parameters
     ----------
@@ -49,11 +50,6 @@ def craig_bampton(
         Freedoms where forces act; without repeats, enough to hold the body.
     highest : float
         Hz; modes up to it are kept.
-
-    Raises
-    ------
-    InputError
-        If the interface repeats freedoms or does not hold the body, or `highest` is not above zero.
     """
     from scipy.linalg import eigh  # noqa: PLC0415 (start-up time)
 

@@ -191,7 +191,8 @@ def timoshenko_beam(
     deflections under forces at nodes are exact. Shear is constant in an element, so natural frequencies
     converge with the square of its length in their part that shear makes, with the fourth power in the rest.
     Rotary inertia and shear are in the consistent mass (Przemieniecki, Theory of Matrix Structural Analysis,
-    1968).
+    1968). Raises `InputError`: without a section, for a station off the beam, or for a `longest` that is not
+    above zero.
 
     Parameters
     ----------
@@ -199,11 +200,6 @@ def timoshenko_beam(
         Positions where forces act, m from the left end; each becomes a node.
     longest : float
         No element is longer, m.
-
-    Raises
-    ------
-    InputError
-        Without a section, for a station off the beam, or for a `longest` that is not above zero.
     """
     if not sections:
         raise InputError("sections", 0, "at least one section")

@@ -282,7 +282,8 @@ def study(
     """Run all points of a design and take the responses of each.
 
     Figures are those of `dynamics.simulate` of each scene alone, to the last bit, whoever does the tasks.
-    Runs themselves are not kept: memory does not grow with their length.
+    Runs themselves are not kept: memory does not grow with their length. Raises `InputError`: a design that
+    is not of these factors, or figures out of bounds.
 
     Parameters
     ----------
@@ -297,11 +298,6 @@ def study(
         Of the bounds of quantiles.
     keep_worst : int
         How many points of the largest first response to name in `Study.worst`; see `keep_runs`.
-
-    Raises
-    ------
-    InputError
-        A design that is not of these factors, or figures out of bounds.
     """
     if task.factors != design.names:
         raise InputError("design.factors", design.names, f"those of the task: {', '.join(task.factors)}")

@@ -78,6 +78,8 @@ def seat_forces(
 ) -> ComplexArray:
     """Return the forces on the seats of a housing by speed and order.
 
+    Raises `InputError`: a bearing is not in the response, or their number is not that of the seats.
+
     Parameters
     ----------
     response : BearingForces
@@ -90,11 +92,6 @@ def seat_forces(
     -------
     (S, H, ..., s) array
         Complex peak amplitudes by the seats' motions, along their own axes, N and N m.
-
-    Raises
-    ------
-    InputError
-        A bearing is not in the response, or their number is not that of the seats.
     """
     force = _on_seats(response.bearing_force, response.bearing, housing, bearings)
     return np.moveaxis(force, 0, -1)
@@ -153,6 +150,8 @@ BLOCK = 64
 def modal_amplitudes(housing: ReducedHousing, frequency: FloatArray, force: ComplexArray) -> ComplexArray:
     """Return amplitudes of `ReducedHousing.modes`, with damping between modes.
 
+    Raises `InputError`: the housing has no mass, or it resonates there without damping.
+
     Parameters
     ----------
     housing : ReducedHousing
@@ -166,11 +165,6 @@ def modal_amplitudes(housing: ReducedHousing, frequency: FloatArray, force: Comp
     -------
     (N, e, m) array
         Complex peak amplitudes; modes have unit modal mass.
-
-    Raises
-    ------
-    InputError
-        The housing has no mass, or it resonates there without damping.
     """
     if not np.any(housing.mass):
         raise InputError("mass", 0.0, "a housing with mass", "Reduce its mesh, or give its mass matrix.")
@@ -210,6 +204,8 @@ def _coupled(
 def housing_motion(housing: ReducedHousing, frequency: FloatArray, force: ComplexArray) -> ComplexArray:
     """Return the displacements of a housing by harmonics.
 
+    Raises `InputError`: the shapes differ, the housing has no mass, or it resonates there without damping.
+
     Parameters
     ----------
     housing : ReducedHousing
@@ -224,11 +220,6 @@ def housing_motion(housing: ReducedHousing, frequency: FloatArray, force: Comple
     (..., r) array
         Complex peak amplitudes of the reduced coordinates, m, rad; times 2 pi i frequency: velocities.
         `SurfaceMotion.motion @` and `PointMotion.motion @` them move the surface and points.
-
-    Raises
-    ------
-    InputError
-        The shapes differ, the housing has no mass, or it resonates there without damping.
     """
     hertz = np.asarray(frequency, dtype=float)
     if np.shape(force) != (*hertz.shape, housing.motions):

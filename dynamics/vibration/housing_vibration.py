@@ -58,15 +58,12 @@ REFERENCE = {
 def vibration_level(rms: ArrayLike, quantity: MotionQuantity = MotionQuantity.VELOCITY) -> FloatArray:
     """Return the level of root mean square values, dB re 1 nm/s for velocities, at least `FLOOR`.
 
+    Raises `InputError`: a value is negative or no number.
+
     Parameters
     ----------
     rms : array
         m, m/s or m/s^2, any shape; 1/sqrt(2) of a peak amplitude.
-
-    Raises
-    ------
-    InputError
-        If a value is negative or no number.
     """
     values = np.asarray(rms, dtype=float)
     if not np.all(values >= 0.0):
@@ -189,6 +186,8 @@ def housing_vibration(
 ) -> HousingVibration:
     """Return the vibration of a housing under its bearings by speed and order.
 
+    Raises `InputError` as `seat_forces`, `point_rows` and `housing_motion`.
+
     Parameters
     ----------
     response : BearingHarmonics
@@ -199,11 +198,6 @@ def housing_vibration(
         Bearings in the order of the seats; by default those with the names of the seats.
     points : sequence of str, optional
         By default all, which may be none.
-
-    Raises
-    ------
-    InputError
-        As `seat_forces`, `point_rows` and `housing_motion`.
     """
     force = seat_forces(response, housing, bearings)
     motion = housing_motion(housing, response.frequency, force)

@@ -54,7 +54,8 @@ def point_signal(
 ) -> FloatArray:
     """Return the motion of points of a housing under forces over time.
 
-    As `motion_pieces` does, of named points along the axes of the mesh.
+    As `motion_pieces` does, of named points along the axes of the mesh. Raises `InputError` as
+    `motion_pieces` does, or the housing has no such point.
 
     Parameters
     ----------
@@ -67,11 +68,6 @@ def point_signal(
     -------
     (T, k, 3) array
         m, m/s or m/s^2.
-
-    Raises
-    ------
-    InputError
-        As `motion_pieces` does, or the housing has no such point.
     """
     motion = np.stack([point.motion for point in named_points(housing, points)])
     rows = motion.reshape(-1, motion.shape[2])
@@ -93,8 +89,9 @@ def motion_pieces(
     sinc(1/n)^4 3/(2 + cos(2 pi/n)), 1 - (2 pi/n)^4/720 for large n: 0.02 % low at 10 samples a period, 0.3 %
     at 6, 1.5 % at 4, and with images about multiples of the sampling rate, (n - 1)^-4 of it.
 
-    The housing starts at rest, deflected by the first force; motions that nothing holds start at zero.
-    What is held beside the force does not grow with its length.
+    The housing starts at rest, deflected by the first force; motions that nothing holds start at zero. What
+    is held beside the force does not grow with its length. Raises `InputError`: shapes differ, times are not
+    uniform, a force is no number, or the housing has no mass.
 
     Parameters
     ----------
@@ -113,11 +110,6 @@ def motion_pieces(
     ------
     (P, q) array
         At most `PIECE` samples, one after the other; m, m/s or m/s^2 for rows of points.
-
-    Raises
-    ------
-    InputError
-        Shapes differ, times are not uniform, a force is no number, or the housing has no mass.
     """
     times, forces = np.asarray(time, dtype=float), np.asarray(force, dtype=float)
     step = _checked_step(times, forces, housing)

@@ -77,16 +77,12 @@ class Parts:
         """Return contributions to a mean square, (p,): they add up to 1, and some may be negative.
 
         Each is the part of its motion that is in phase and in shape with the sum: Re(x^H W x_p)/(x^H W x).
+        Raises `InputError`: nothing moves.
 
         Parameters
         ----------
         weight : (r, r) array
             Symmetric: `surface_weight`, or m^T m of the rows m of a point's motion.
-
-        Raises
-        ------
-        InputError
-            Nothing moves.
         """
         whole = self.motion.sum(axis=0)
         felt = (whole.conj() @ weight) @ self.motion.T
@@ -109,7 +105,8 @@ def transfer_functions(
 
     Rows are motions per reduced coordinate, such as `PointMotion.motion`. They are reciprocal: exchanging
     response and excitation transposes the result. Forces on seats act with the residual flexibility of the
-    modes left out; forces elsewhere act through the reduced coordinates alone.
+    modes left out; forces elsewhere act through the reduced coordinates alone. Raises `InputError`: a
+    frequency is negative, or as `modal_amplitudes`.
 
     Parameters
     ----------
@@ -125,11 +122,6 @@ def transfer_functions(
     -------
     (n, q, e) complex array
         m/N, m/(N s) or m/(N s^2) for rows of points; rad and N m for those of rotations.
-
-    Raises
-    ------
-    InputError
-        A frequency is negative, or as `modal_amplitudes`.
     """
     hertz = np.asarray(frequency, dtype=float)
     for index, value in enumerate(hertz):
@@ -294,6 +286,8 @@ def analyze_vibration(
 ) -> VibrationAnalysis:
     """Return vibration, transfer functions and contributions of a housing.
 
+    Raises `InputError`: nothing of the housing can be looked at, nothing moves, or as `housing_vibration`.
+
     Parameters
     ----------
     response : ReportedHarmonics
@@ -307,11 +301,6 @@ def analyze_vibration(
     speed, order : float, optional
         Whose parts are wanted, the nearest ones, rad/s; by default where the motion is largest
         (`HousingVibration.largest`).
-
-    Raises
-    ------
-    InputError
-        Nothing of the housing can be looked at, nothing moves, or as `housing_vibration`.
     """
     if housing.surface is None and not housing.points:
         advice = "Reduce it from its mesh or STEP file: matrices alone do not say what moves."

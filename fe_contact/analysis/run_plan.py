@@ -94,6 +94,8 @@ def plan_run(
 ) -> RunPlan:
     """Predict time by stage, memory and error of `analyze`, and list its effects.
 
+    Raises `InputError`: a value that cannot be used, by field name.
+
     Parameters
     ----------
     pair : GearPair, InternalGearPair or Checked
@@ -103,11 +105,6 @@ def plan_run(
         level fits the time.
     cache : Path, optional
         Of flank compliances: what is in it costs nothing.
-
-    Raises
-    ------
-    InputError
-        A value that cannot be used, by field name.
     """
     checked = as_checked(pair, axes, options)
     options = checked.request.options

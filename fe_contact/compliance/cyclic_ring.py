@@ -200,6 +200,8 @@ def close_ring(
 ) -> RingSolution:
     """Join `teeth` copies of a sector.
 
+    Raises `SolveError`: a harmonic is not positive definite.
+
     Parameters
     ----------
     teeth : int
@@ -212,11 +214,6 @@ def close_ring(
         The ring may turn: its mean turn is restrained, and unit forces on the bore are answered too.
     report : callable
         Called after each solved harmonic with the fraction of them done.
-
-    Raises
-    ------
-    SolveError
-        A harmonic is not positive definite.
     """
     even, count = even_sector(held), probes.shape[1]
     flank = len(held.flank) if free is None else free.flank

@@ -166,6 +166,8 @@ def deformed_solids(
 ) -> tuple[DeformedGear, ...]:
     """Solve for each set of loads; the gear is condensed once, which costs what its compliance costs.
 
+    Raises `InputError`: a bore with a key: its sectors do not bend alike.
+
     Parameters
     ----------
     recipe
@@ -178,11 +180,6 @@ def deformed_solids(
     seen_from_behind : bool
         The loads, and the flank displacements returned, are in the freedoms of the mirrored compliance, as
         the contact of a ring gear has them.
-
-    Raises
-    ------
-    InputError
-        A bore with a key: its sectors do not bend alike.
     """
     if gear.seat.key is not None:
         advice = "Leave the key out: under it every tooth bends in another way."

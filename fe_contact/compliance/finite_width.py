@@ -75,6 +75,9 @@ def finite_width_compliances(
 ) -> tuple[FiniteWidthCompliance, ...]:
     """Return the compliance of each gear beyond plane strain; gears alike are computed once.
 
+    Raises `InputError`: a helical gear, whose load is not even across the face; `MeshError`, `SolveError`: no
+    acceptable mesh, a singular stiffness or a broken law.
+
     Parameters
     ----------
     gears : sequence of Toothing
@@ -85,13 +88,6 @@ def finite_width_compliances(
         Number of neighboring teeth that can carry load at once.
     cache : Path, optional
         Directory of kept compliances; None: neither read nor written.
-
-    Raises
-    ------
-    InputError
-        A helical gear, whose load is not even across the face.
-    MeshError, SolveError
-        No acceptable mesh, a singular stiffness or a broken law.
     """
     for gear in gears:
         if gear.helix_angle != 0.0:

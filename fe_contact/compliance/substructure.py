@@ -59,6 +59,8 @@ def condense(
 ) -> tuple[FloatArray, Condensation]:
     """Eliminate all freedoms but those `tree` keeps.
 
+    Raises `SolveError`: the stiffness is not positive definite.
+
     Parameters
     ----------
     freedoms : (e, 60) int array
@@ -70,11 +72,6 @@ def condense(
     -------
     (k, k) array, Condensation
         Stiffness condensed on the kept freedoms, N/m, whose lower triangle is valid, and how others follow.
-
-    Raises
-    ------
-    SolveError
-        The stiffness is not positive definite.
     """
     factors: list[_FrontFactor] = []
     done, whole = 0.0, tree.operations

@@ -78,6 +78,8 @@ class _Touch(NamedTuple):
 def corner_contact(pair: ParallelAxes, side: Side, overshoot: ArrayLike) -> CornerContact:
     """Exact rigid corner contact of one tooth pair.
 
+    Raises `InputError`: an unknown side, or a negative overshoot.
+
     Parameters
     ----------
     pair : GearPair or InternalGearPair
@@ -93,11 +95,6 @@ def corner_contact(pair: ParallelAxes, side: Side, overshoot: ArrayLike) -> Corn
     -------
     CornerContact
         Arrays of the shape of `overshoot`.
-
-    Raises
-    ------
-    InputError
-        An unknown side, or a negative overshoot.
     """
     beyond = np.asarray(overshoot, dtype=float)
     if not np.all(beyond >= 0.0):

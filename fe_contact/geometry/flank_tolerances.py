@@ -125,6 +125,8 @@ def misalignment_range(
     angle, one out of it with the cosine. Over the face width the span of the bearings cancels: F_beta sin and
     F_beta cos / 2, with the larger F_beta of the gears. The slope of a helix opens the flanks along the face
     as a tilt does at the pitch point. A shaft in bearings with a clearance tilts by it over their span.
+    Raises `InputError`: no such class, a gear beyond the range of the standard, or a clearance without a
+    shaft.
 
     Parameters
     ----------
@@ -132,11 +134,6 @@ def misalignment_range(
         1 (finest) to 11, of both gears and of the axes.
     clearances : (float, float)
         Radial internal clearance of the bearings of each shaft, m; `pair.shafts` has the shaft.
-
-    Raises
-    ------
-    InputError
-        No such class, a gear beyond the range of the standard, or a clearance without a shaft.
     """
     integer("tolerance_class", tolerance_class, 1, 11)
     gears = {"pinion": pair.pinion, "wheel": pair.wheel}

@@ -31,6 +31,8 @@ def write_cells(
 ) -> None:
     """Write quadratic cells with values as VTU (binary, compressed), whole or not at all.
 
+    Raises `InputError`: the suffix is another one.
+
     Parameters
     ----------
     path : Path
@@ -41,11 +43,6 @@ def write_cells(
         Triangles or hexahedra, numbered as in VTK.
     point_data, cell_data : mapping
         Values by name, of shape (n,), (n, 3) or (n, 6), and (m,).
-
-    Raises
-    ------
-    InputError
-        The suffix is another one.
     """
     import meshlane  # noqa: PLC0415 - only who exports needs it
 

@@ -297,6 +297,8 @@ def mesh_gear(
 ) -> GearMesh:
     """Mesh the transverse section of one gear.
 
+    Raises `MeshError`: gmsh failed, was killed or ran out of time, or an element misses its quality limit.
+
     Parameters
     ----------
     gear : Gear or RingGear
@@ -305,11 +307,6 @@ def mesh_gear(
         Element sizes; default `MeshRecipe.standard(gear)`.
     limits : QualityLimits, optional
         Least acceptable element quality.
-
-    Raises
-    ------
-    MeshError
-        gmsh failed, was killed or ran out of time, or an element misses its quality limit.
     """
     recipe, limits = recipe or MeshRecipe.standard(gear), limits or QualityLimits()
     profile = tooth_profile(gear)

@@ -25,6 +25,9 @@ WORKER = Path(__file__).with_name("gmsh_worker.py")
 def ask_gmsh(request: Json, seconds: float, command: Sequence[str] | None = None) -> Json:
     """Run the child on one request and return its answer.
 
+    Raises `MeshError`: the child failed, was killed, ran out of time or answered nonsense; the message says
+    which.
+
     Parameters
     ----------
     request : dict
@@ -33,11 +36,6 @@ def ask_gmsh(request: Json, seconds: float, command: Sequence[str] | None = None
         Time limit; the child is killed after it.
     command : sequence of str, optional
         Program to run in place of the gmsh worker.
-
-    Raises
-    ------
-    MeshError
-        The child failed, was killed, ran out of time or answered nonsense; the message says which.
     """
     try:
         return ask_child(request, seconds, command or (sys.executable, "-P", str(WORKER)))

@@ -164,15 +164,12 @@ class DesignSpace:
     def check(self, torques: Levels, further_torques: Levels = ()) -> Checked:
         """Check the request of a design in which everything acts that may act in any; computes nothing.
 
+        Raises `InputError`: a value that cannot be used, or something is varied whose effect is off.
+
         Parameters
         ----------
         torques, further_torques : sequence of float
             Those that count, each with its misalignment, and others that the table has, N m.
-
-        Raises
-        ------
-        InputError
-            A value that cannot be used, or something is varied whose effect is off.
         """
         integer("positions", self.positions, 8, 4096, "64 resolve a spur pair.")
         loads = DesignLoads.of(torques, self.misalignment)
@@ -201,6 +198,8 @@ def design_study(
 ) -> DesignStudy:
     """Choose the model and condense the gears.
 
+    Raises `InputError` as `DesignSpace.check`.
+
     Parameters
     ----------
     torques, further_torques : sequence of float
@@ -211,11 +210,6 @@ def design_study(
         Of `DesignSpace.check`, where that is done.
     limits : Limits
         One of the root stress has its unit loads solved.
-
-    Raises
-    ------
-    InputError
-        As `DesignSpace.check`.
     """
     own = DesignLoads.of(torques, space.misalignment)
     loads, counted = own.with_torques(further_torques)

@@ -144,6 +144,9 @@ def curve_derivatives(
 ) -> CurveDerivatives:
     """Solve the curves of flanks on condensed bodies, and the arms of the load, with their derivatives.
 
+    Raises `InputError` as `CondensedPair.table`, or a name whose effect is off, or a relief without its
+    length; `SolveError`: the contact of a position cannot be solved.
+
     Parameters
     ----------
     pair : GearPair or InternalGearPair
@@ -156,13 +159,6 @@ def curve_derivatives(
         A figure that is zero and cannot be negative is given its derivative to the one side.
     misalignment, center_distance_change : float
         m.
-
-    Raises
-    ------
-    InputError
-        As `CondensedPair.table`, or a name whose effect is off, or a relief without its length.
-    SolveError
-        The contact of a position cannot be solved.
 
     Notes
     -----

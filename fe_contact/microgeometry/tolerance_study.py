@@ -98,6 +98,8 @@ def iso1328_tolerances(
 ) -> Tolerances:
     """Return tolerances of profile and helix slope of both gears by ISO 1328-1:2013.
 
+    Raises `InputError`: no such class, or a gear beyond the range of the standard.
+
     Parameters
     ----------
     tolerance_class : int
@@ -106,11 +108,6 @@ def iso1328_tolerances(
         Of the assembly, m; the standard has none.
     across_face : bool
         Whether helix slopes deviate too; a plane model cannot have it.
-
-    Raises
-    ------
-    InputError
-        No such class, or a gear beyond the range of the standard.
     """
     integer("tolerance_class", tolerance_class, 1, 11)
     widths = {}
@@ -257,6 +254,9 @@ def scatter(
 ) -> ToleranceStudy:
     """Sample pairs within their tolerances and compute the peak-to-peak transmission error of each.
 
+    Raises `InputError`: a value that cannot be used, by field name; `MeshError`, `SolveError`: no acceptable
+    mesh, or the contact of a pair cannot be solved.
+
     Parameters
     ----------
     pair : GearPair or InternalGearPair
@@ -272,13 +272,6 @@ def scatter(
         Its workers run tasks of 25 pairs.
     misalignment : float
         As designed, m.
-
-    Raises
-    ------
-    InputError
-        A value that cannot be used, by field name.
-    MeshError, SolveError
-        No acceptable mesh, or the contact of a pair cannot be solved.
     """
     return sampled(ToleranceRequest(pair, torques, tolerances, sampling, options, misalignment), run)
 

@@ -169,18 +169,14 @@ class _LookupCalls(Surface):
     def open_unit(self, file: Path, assume: Sequence[str] = ()) -> Steps[UnitBody]:
         """Return the gear unit in a REXS file (.rexs, .rexsj, .rexsz) as cases, scene and account.
 
-        Its `left_out` says what the file has and the scene has not.
+        Its `left_out` says what the file has and the scene has not. Raises `BadInput`: the file cannot be
+        read, is no sound REXS file, or has no such component; the message names it.
 
         Parameters
         ----------
         file : Path
         assume : sequence of str
             Values over the file's, ``"14.helix_angle_reference_diameter=-12"``.
-
-        Raises
-        ------
-        BadInput
-            The file cannot be read, is no sound REXS file, or has no such component; the message names it.
         """
         try:
             data = Path(file).read_bytes()

@@ -134,15 +134,12 @@ class Exchange:
     def download(self, path: str, media_type: str, into: BinaryIO) -> Steps[tuple[str, Mapping[str, str]]]:
         """Write the file that a path answers with, piece by piece.
 
+        Raises `Unreachable`, `ServiceError` as `request`.
+
         Returns
         -------
         tuple of str and mapping
             SHA-256 of what was written, hexadecimal, and the headers of the answer.
-
-        Raises
-        ------
-        Unreachable, ServiceError
-            As `request`.
         """
 
         def once() -> Steps[tuple[str, Mapping[str, str]]]:

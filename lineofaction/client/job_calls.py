@@ -137,7 +137,8 @@ class JobCalls(Surface):
     ) -> Steps[JobState]:
         """Enter a job; equal work is done once, whoever asks for it.
 
-        However often the network makes it be sent, it is one job: it carries an ``Idempotency-Key``.
+        However often the network makes it be sent, it is one job: it carries an ``Idempotency-Key``. Raises
+        `BadInput`: the inputs cannot be used; `QueueFull`, `Unreachable`, `ServiceError`.
 
         Parameters
         ----------
@@ -145,12 +146,6 @@ class JobCalls(Surface):
             As JSON.
         idempotency_key : str, optional
             Name of this submission: a later one of the same name is the same job. Default: a new name.
-
-        Raises
-        ------
-        BadInput
-            The inputs cannot be used.
-        QueueFull, Unreachable, ServiceError
         """
         path = f"/v1/processes/{process}/execution"
         headers = {"Idempotency-Key": idempotency_key or str(uuid.uuid4())}
@@ -167,18 +162,15 @@ class JobCalls(Surface):
     ) -> Steps[JobState]:
         """Enter many jobs of a process at once, all or none; return the state of the batch, a job itself.
 
+        Raises `BadInput`: with the faults of all jobs, by their index: ``jobs[3].pair.pinion.teeth``;
+        `QueueFull`, `Unreachable`, `ServiceError`.
+
         Parameters
         ----------
         jobs : sequence of dict
             For each job its inputs, or their differences from what all share, as a JSON merge patch.
         inputs : dict, optional
             Inputs that all share.
-
-        Raises
-        ------
-        BadInput
-            With the faults of all jobs, by their index: ``jobs[3].pair.pinion.teeth``.
-        QueueFull, Unreachable, ServiceError
         """
         body = {**self.session.terms, "process": process, "inputs": inputs or {}, "jobs": list(jobs)}
         sent = {"json": body, "headers": {"Idempotency-Key": str(uuid.uuid4())}}

@@ -144,7 +144,8 @@ class Process(_Calls[P, T, F]):
         """Yield the ended job of every subject, in order.
 
         What the cache holds is not asked for again while the service has the version that gave it. A loop
-        that is left early dismisses the jobs under way; an error notes which of them continue.
+        that is left early dismisses the jobs under way; an error notes which of them continue. Raises
+        `BadInput`: a subject cannot be used; that of a job which failed is raised by its `result`.
 
         Parameters
         ----------
@@ -154,11 +155,6 @@ class Process(_Calls[P, T, F]):
             Jobs that are entered and not yet yielded, at most.
         **options
             Of the process, the same for all.
-
-        Raises
-        ------
-        BadInput
-            A subject cannot be used; that of a job which failed is raised by its `result`.
         """
         mapping, driver = _Mapping(self._client, self._offer, self._job), self._client.driver
         try:

@@ -156,6 +156,9 @@ class ResultCalls(Surface):
     ) -> Steps[bytes]:
         """Return a run as a WAV file, as ``loa listen`` writes it; it states quantity and full scale.
 
+        Raises `BadInput`: the run does not hold that, it is silent, or longer than five minutes; `NotFound`,
+        `QueueFull`, `LiveUnavailable`, `Unreachable`, `ServiceError`.
+
         Parameters
         ----------
         key : str
@@ -164,12 +167,6 @@ class ResultCalls(Surface):
             As the options of ``loa listen``; empty: chosen as there.
         against : str, optional
             Another run, whose sound is then on the same full scale.
-
-        Raises
-        ------
-        BadInput
-            The run does not hold that, it is silent, or longer than five minutes.
-        NotFound, QueueFull, LiveUnavailable, Unreachable, ServiceError
         """
         named = {"quantity": quantity, "bearing": bearing, "mesh": mesh, "direction": direction}
         parameters = {name: value for name, value in (named | {"against": against or ""}).items() if value}

@@ -204,6 +204,8 @@ class StudyOf(Study, Offered[P, T, F]):
     ) -> T:
         """Study a case, a scene or a unit.
 
+        Raises `BadInput`, `JobFailed`.
+
         Parameters
         ----------
         inputs, fields
@@ -221,10 +223,6 @@ class StudyOf(Study, Offered[P, T, F]):
         -------
         object
             The result of the study, with errors and cost; `lineofaction.report` draws it.
-
-        Raises
-        ------
-        BadInput, JobFailed
         """
         with LOADING:
             studied = import_module("lineofaction.gearbox.workbench").studied

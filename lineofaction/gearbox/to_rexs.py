@@ -149,6 +149,9 @@ def exported(
 ) -> Document:
     """Return the document, in the newest version of REXS, with the results of stages as calculated.
 
+    Raises `BadInput`: a table of no stage's pair, a torque outside what is stored, or a document that cannot
+    be upgraded; `JobFailed`: a table with failed points.
+
     Parameters
     ----------
     document : Document
@@ -157,13 +160,6 @@ def exported(
         Of the document; a database belongs to the stage whose pair its case has, and to those equal to it.
     torque : float, optional
         On gear 1, N m; each table's largest by default.
-
-    Raises
-    ------
-    BadInput
-        A table of no stage's pair, a torque outside what is stored, or a document that cannot be upgraded.
-    JobFailed
-        A table with failed points.
     """
     results: dict[int, tuple[Attribute, ...]] = {}
     for database in databases:
@@ -420,7 +416,8 @@ def deflected(document: Document, unit: OpenedUnit, result: GearboxDeflection) -
     """Return the document, in the newest version of REXS, with the results of a deflection as calculated.
 
     Results stand in the load cases of the document's first spectrum, of a document without one at the
-    components themselves.
+    components themselves. Raises `BadInput`: the result is of another scene or of other load cases, or a case
+    was not found.
 
     Parameters
     ----------
@@ -430,11 +427,6 @@ def deflected(document: Document, unit: OpenedUnit, result: GearboxDeflection) -
         What it opens to.
     result : GearboxDeflection
         Of the unit's scene under all or some of its load cases.
-
-    Raises
-    ------
-    BadInput
-        The result is of another scene or of other load cases, or a case was not found.
     """
     _check_same_scene(unit, result)
     numbers = {case.name: case.number for case in unit.load_cases}

@@ -48,6 +48,8 @@ def open_unit(
 ) -> OpenedUnit:
     """Open the gear unit of a REXS file.
 
+    Raises `BadInput`: the file is none, or one of its values has the wrong type or unit.
+
     Parameters
     ----------
     file : path
@@ -63,11 +65,6 @@ def open_unit(
     OpenedUnit
         Its stages as `cases`, the whole as `scene`, `load_cases`, and `lines`: what became of every value.
         What the scene leaves out is `left_out`, and warned of.
-
-    Raises
-    ------
-    BadInput
-        The file is none, or one of its values has the wrong type or unit.
     """
     unit = OpenedUnit.of(read_rexs(Path(file)), [Assumption.of(text) for text in assume])
     if overrides and unit.scene is not None:
@@ -80,16 +77,14 @@ def open_unit(
 def read(file: Path | str, overrides: Mapping[str, object] | None = None) -> Case | SceneInput:
     """Read a case or a scene file.
 
+    Raises `BadInput`.
+
     Parameters
     ----------
     file : path
         TOML or JSON; what has shafts is a scene. The files that it names are relative to its folder.
     overrides : mapping of str to object, optional
         Values over those of the file by their paths, as ``{"loads.brake.torque_n_m": 40}``.
-
-    Raises
-    ------
-    BadInput
     """
     path = Path(file)
     source = _over(overrides or {}, path)
@@ -105,15 +100,13 @@ def _over(overrides: Mapping[str, object], path: Path) -> InputFile:
 def analyze(subject: ParallelAxes | Subject, **options: Any) -> SteDatabase:
     """Compute the static transmission error of a gear pair or a case.
 
+    Raises `BadInput`, `InputError`, `InfeasibleGeometry`.
+
     Parameters
     ----------
     subject : GearPair, InternalGearPair, Case, mapping or path
         A pair takes the keywords of `fe_contact.analyze`; a case states all of it, and takes `progress` and
         `workers`.
-
-    Raises
-    ------
-    BadInput, InputError, InfeasibleGeometry
     """
     if isinstance(subject, ParallelAxes):
         return analyze_pair(subject, **options)

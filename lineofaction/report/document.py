@@ -327,6 +327,8 @@ def _table(table: Table) -> Json:
 def write_report(inputs: Path | Sequence[Path], output: Path, images: Path | None = None) -> list[Path]:
     """Write one HTML page that needs no network, and its plots as PNG; return the files, the page first.
 
+    Raises `BadInput`: a file is none of them, is damaged, or there are two of a kind.
+
     Parameters
     ----------
     inputs : Path or sequence of Path
@@ -335,11 +337,6 @@ def write_report(inputs: Path | Sequence[Path], output: Path, images: Path | Non
         The page; as PDF by its ending, without what is folded; case and receipt are a file in it.
     images : Path, optional
         Folder for the PNG files, made if missing; left out: none are written.
-
-    Raises
-    ------
-    BadInput
-        A file is none of them, is damaged, or there are two of a kind.
     """
     read = read_inputs([inputs] if isinstance(inputs, Path) else list(inputs))
     return write_whole(page_of(read), output, images)
@@ -391,17 +388,14 @@ def facts(result: Any) -> dict[str, Any]:
 def write(result: Any, file: Path | str) -> Path:
     """Write a result: netCDF (.nc), figures (.json), the plot (.png) or the report (.html).
 
+    Raises `BadInput`: the result has no file of this ending.
+
     Parameters
     ----------
     result : object
         Of `analyze`, `simulate` or a study.
     file : path
         Its ending says as what.
-
-    Raises
-    ------
-    BadInput
-        The result has no file of this ending.
     """
     path = Path(file)
     if hasattr(result, "to_netcdf") and path.suffix == ".nc":

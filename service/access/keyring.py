@@ -207,17 +207,14 @@ class KeyFile:
     def add(self, name: str, *, expires: str | None = None, **rights: Any) -> str:
         """Enter a new key and return it: the only time that it is seen.
 
+        Raises `BadInput`: the name is taken or no name, or a right is none.
+
         Parameters
         ----------
         expires : str, optional
             Duration for which it is good, such as ``90d``.
         **rights
             Other fields of `Holder`.
-
-        Raises
-        ------
-        BadInput
-            The name is taken or no name, or a right is none.
         """
         if _NAME.fullmatch(name) is None:
             bound = "1 to 64 letters, digits, dots, dashes or underscores, the first a letter or a digit"
@@ -234,17 +231,14 @@ class KeyFile:
     def rotate(self, name: str, *, overlap: str = "0h", expires: str | None = None) -> str:
         """Enter another key of this name and return it; those there are end after `overlap`.
 
+        Raises `BadInput`: there is no key of this name, or a duration is none.
+
         Parameters
         ----------
         overlap : str
             Duration for which the old key is good beside the new one; ``0h``: not at all.
         expires : str, optional
             Duration for which the new key is good; default: that for which the old one was made.
-
-        Raises
-        ------
-        BadInput
-            There is no key of this name, or a duration is none.
         """
         known = self.read()
         old = [key for key in known if key.name == name]

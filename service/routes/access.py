@@ -41,6 +41,9 @@ class Admission:
     def admitted(self, scope: Scope, receive: Receive, name: str, most: int | None) -> Iterator[Receive]:
         """Hold a place among bodies until there is no more of it to come, then one among requests.
 
+        Raises `TooManyHeld`, `TooManyRequests`: the caller has as many as it may, or all together have;
+        nothing was read then.
+
         Parameters
         ----------
         scope, receive : Scope, Receive
@@ -54,11 +57,6 @@ class Admission:
         ------
         Receive
             What the request is to be read with.
-
-        Raises
-        ------
-        TooManyHeld, TooManyRequests
-            The caller has as many as it may, or all together have; nothing was read then.
         """
         self._answered.refuse_beyond(name, most)
         headers = dict(scope["headers"])  # whether a body follows the head: RFC 9112, section 6.3

@@ -165,20 +165,16 @@ _DRIVERS = {"sqlite": "sqlite", "postgresql": "postgresql+psycopg"}
 def open_database(where: Path | str, *, pooled: bool = True) -> Engine:
     """Return an engine on the database, its schema of this program.
 
+    Raises `BadInput`: the URL is none, its driver is not installed, or the schema is another program's: a
+    SQLite file is brought up to date by this call, a server by ``loa database upgrade``;
+    `DatabaseUnavailable`: the server does not answer.
+
     Parameters
     ----------
     where : Path or str
         A SQLite file, made if it does not exist, or a URL: ``sqlite:///FILE`` or ``postgresql://...``.
     pooled : bool
         Keep connections for the next transaction, where opening one costs much.
-
-    Raises
-    ------
-    BadInput
-        The URL is none, its driver is not installed, or the schema is another program's: a SQLite file is
-        brought up to date by this call, a server by ``loa database upgrade``.
-    DatabaseUnavailable
-        The server does not answer.
     """
     engine = database_engine(where, pooled=pooled)
     try:

@@ -358,7 +358,9 @@ def export_fmu(
     """Write `element` as an FMU: FMI 2.0, co-simulation, the table inside.
 
     The file holds the C sources and, compiled now with the system's C compiler, the binary for this machine.
-    The same element gives the same bytes with the same compiler.
+    The same element gives the same bytes with the same compiler. Raises `InputError`: the path or the name
+    cannot be used, there is no C compiler, or FMI 2.0 has no folder for this machine's binaries;
+    `CompilerError`: the compiler refuses the sources.
 
     Parameters
     ----------
@@ -372,14 +374,6 @@ def export_fmu(
     Returns
     -------
     Path
-
-    Raises
-    ------
-    InputError
-        If the path or the name cannot be used, there is no C compiler, or FMI 2.0 has no folder for this
-        machine's binaries.
-    CompilerError
-        If the compiler refuses the sources.
     """
     target = Path(path)
     if target.suffix != ".fmu" or not target.parent.is_dir():

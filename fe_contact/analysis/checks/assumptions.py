@@ -298,7 +298,8 @@ def settled(
     """Check what a run took for granted; where that is wrong, do as the caller chose.
 
     An automatic effect that turns out to be needed is switched on and the run made `repeat` with the effects
-    and reasons given. What was requested by name is only reported.
+    and reasons given. What was requested by name is only reported. Raises `SolveError`: an assumption does
+    not hold and `on_violation` is "fail".
 
     Returns
     -------
@@ -308,11 +309,6 @@ def settled(
         Of the last one.
     repeated : list of dict
         What was turned on each time, and the CPU seconds it took.
-
-    Raises
-    ------
-    SolveError
-        An assumption does not hold and `on_violation` is "fail".
     """
     repeated: list[Json] = []
     while True:

@@ -178,6 +178,8 @@ def compute_pass(
 ) -> _Computed:
     """Compute the table of a checked request once.
 
+    Raises `SolveError`: an assumption of the run does not hold and `on_violation` is "fail".
+
     Parameters
     ----------
     case : dict
@@ -186,11 +188,6 @@ def compute_pass(
         Model and discretization; default: those that the accuracy asks for.
     clock : StageClock, optional
         That of the workers' cost, with what was spent on this pass before it began; default: a new one.
-
-    Raises
-    ------
-    SolveError
-        An assumption of the run does not hold and `on_violation` is "fail".
     """
     clock, before = clock or StageClock(run.workers.cost), replace(run.workers.cost)
     planned = solve_table(checked, clock, run, decided=decided)

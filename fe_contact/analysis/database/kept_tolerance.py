@@ -344,6 +344,9 @@ class _Passes:
 def kept_tolerance(checked: Checked, case: Json, run: Run, on_draft: OnDraft | None) -> SteDatabase:
     """Compute the table of a request with a tolerance, in at most `MOST_PASSES` passes.
 
+    Raises `MeshError`, `SolveError`, `WorkersLost` of the first pass; a later one that fails keeps the table
+    before it.
+
     Parameters
     ----------
     checked : Checked
@@ -360,11 +363,6 @@ def kept_tolerance(checked: Checked, case: Json, run: Run, on_draft: OnDraft | N
     SteDatabase
         That of the pass that uses least of the tolerance, the last one if all goes well. `passes` of its
         receipt lists all of them, its cost is theirs, and `tolerance` says why there are no more.
-
-    Raises
-    ------
-    MeshError, SolveError, WorkersLost
-        Of the first pass; a later one that fails keeps the table before it.
     """
     if run.cache is not None:
         return _refined(checked, _Passes(case, run, on_draft))

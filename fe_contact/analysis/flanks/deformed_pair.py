@@ -87,7 +87,8 @@ def deformed_pairs(
     """Solve the contact at some positions and expand it to the finite elements of both gears.
 
     A plane model gives the whole transverse section, three dimensions give the loaded teeth and their
-    neighbors. The bending of shafts is not included.
+    neighbors. The bending of shafts is not included. Raises `InputError`: a value that cannot be used, by
+    field name; `MeshError`, `SolveError`: no acceptable mesh, or positions without a solution.
 
     Parameters
     ----------
@@ -108,13 +109,6 @@ def deformed_pairs(
     -------
     tuple of DeformedPair
         One per position.
-
-    Raises
-    ------
-    InputError
-        A value that cannot be used, by field name.
-    MeshError, SolveError
-        No acceptable mesh, or positions without a solution.
     """
     checked = as_checked(pair, point, options)
     integer("beside", beside, 0, 100)

@@ -196,6 +196,9 @@ def flank_results(
 ) -> LoadDistribution:
     """Solve the contact of one load and alignment, and return load, pressure and gap on the flanks.
 
+    Raises `InputError`: a value that cannot be used, by field name; `MeshError`, `SolveError`: no acceptable
+    mesh, positions without a solution, or a violated assumption if `on_violation` is "fail".
+
     Parameters
     ----------
     pair : GearPair, InternalGearPair or Checked
@@ -210,14 +213,6 @@ def flank_results(
         with pitch deviations are those that mesh there: the first ones of the lists in 0 to 1.
     case : dict, optional
         The case as the caller phrased it, echoed and hashed; default: the request in SI units.
-
-    Raises
-    ------
-    InputError
-        A value that cannot be used, by field name.
-    MeshError, SolveError
-        No acceptable mesh, positions without a solution, or a violated assumption if `on_violation` is
-        "fail".
     """
     checked = as_checked(pair, point, options)
     solved, receipt = solved_point(checked, at, StageClock(run.workers.cost), run)

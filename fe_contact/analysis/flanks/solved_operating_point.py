@@ -31,6 +31,9 @@ def solved_point(
 ) -> tuple[SolvedOperatingPoint, Json]:
     """Solve an operating point at positions, check what that took for granted, and repeat it if needed.
 
+    Raises `InputError`: a value that cannot be used, by field name; `MeshError`, `SolveError` as
+    `solve_operating_point`, or an assumption does not hold and `on_violation` is "fail".
+
     Parameters
     ----------
     checked : Checked
@@ -44,13 +47,6 @@ def solved_point(
         Its request is that of the last run, with the effects that the first showed to be needed.
     dict
         Receipt: times, the plan, `assumptions`, `repeated`.
-
-    Raises
-    ------
-    InputError
-        A value that cannot be used, by field name.
-    MeshError, SolveError
-        As `solve_operating_point`, or an assumption does not hold and `on_violation` is "fail".
     """
     position = np.arange(POSITIONS) / POSITIONS if at is None else checked_positions(at)
 

@@ -195,6 +195,9 @@ class CondensedPair:
     ) -> SteDatabase:
         """Solve the contact of the same bodies with other flanks.
 
+        Raises `InputError`: other bodies, loads beyond those of the table, flanks that its model cannot hold,
+        or a center distance at which more teeth meet than are condensed.
+
         Parameters
         ----------
         pair : GearPair or InternalGearPair
@@ -213,12 +216,6 @@ class CondensedPair:
             no support loads, so no forces for dynamics, and between its loads no errors. The receipt has the
             errors by source, CPU time by stage, what was taken for granted, and the number of points at
             which a contact strip outgrew its load patch.
-
-        Raises
-        ------
-        InputError
-            Other bodies, loads beyond those of the table, flanks that its model cannot hold, or a center
-            distance at which more teeth meet than are condensed.
         """
         return self.solve_table(pair, torques, misalignment, center_distance_change)[0]
 

@@ -97,6 +97,8 @@ def _as_computed(
 def condense(pair: ParallelAxes, acting: Checked, cache: Path | None) -> CondensedPair:
     """Choose model and mesh for a request, and condense both gears with them, coarse meshes too.
 
+    Raises `MeshError`, `SolveError`: no acceptable mesh.
+
     Parameters
     ----------
     pair : GearPair or InternalGearPair
@@ -106,11 +108,6 @@ def condense(pair: ParallelAxes, acting: Checked, cache: Path | None) -> Condens
         chosen, and the highest load decides the load patches.
     cache : Path, optional
         Directory of flank compliances.
-
-    Raises
-    ------
-    MeshError, SolveError
-        No acceptable mesh.
     """
     decided = decide(acting, cache)
     request, choices = decided.checked.request, decided.checked.decided

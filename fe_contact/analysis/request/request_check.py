@@ -98,6 +98,8 @@ def check_request(
 ) -> Checked:
     """Check all inputs of a table, without computing anything.
 
+    Raises `InputError`: a value that cannot be used, by field name.
+
     Parameters
     ----------
     whole_table : bool
@@ -110,11 +112,6 @@ def check_request(
     -----
     PlausibilityWarning
         Once for each thing about the request that is far from practice.
-
-    Raises
-    ------
-    InputError
-        A value that cannot be used, by field name.
     """
     checked = checked_request(Request.over(pair, axes, options), whole_table=whole_table, neglect=neglect)
     warn_of(checked.request.findings)

@@ -120,6 +120,9 @@ def ablate(
 ) -> Ablation:
     """Toggle each effect of a case and report the change.
 
+    Raises `InputError`: a value that cannot be used, by field name; `MeshError`, `SolveError`: the case
+    itself cannot be computed.
+
     Parameters
     ----------
     pair : GearPair, InternalGearPair or Checked
@@ -139,13 +142,6 @@ def ablate(
     -------
     Ablation
         Of every effect of the scene that can be toggled.
-
-    Raises
-    ------
-    InputError
-        A value that cannot be used, by field name.
-    MeshError, SolveError
-        The case itself cannot be computed.
     """
     checked = Ablation.request(pair, axes, options)
     names = chosen("only", only, [effect.name for effect in EFFECTS])

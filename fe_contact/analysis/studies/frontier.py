@@ -377,7 +377,8 @@ def frontier(
 ) -> Frontier:
     """Run every fidelity of the accuracy study that is valid for a case, and compare each to the finest.
 
-    The cache is not used, so times are those of a first run; compiled loops are warm.
+    The cache is not used, so times are those of a first run; compiled loops are warm. Raises `InputError`: a
+    value that cannot be used, by field name; `SolveError`: fewer than two fidelities gave a whole table.
 
     Parameters
     ----------
@@ -392,13 +393,6 @@ def frontier(
         Positions, 1 to 64, at which full finite-element contact is run beside it, under all loads: of
         solid spur and internal pairs in plane strain, about 2.5 CPU s each; of external spur pairs in three
         dimensions where `model` is "3d" or flanks vary or are inclined across the face, 70 CPU s each.
-
-    Raises
-    ------
-    InputError
-        A value that cannot be used, by field name.
-    SolveError
-        Fewer than two fidelities gave a whole table.
     """
     checked = Frontier.request(pair, axes, options)
     if full_contact is not None:

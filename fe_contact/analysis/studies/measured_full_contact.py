@@ -231,6 +231,8 @@ def measure_full_contact(
 ) -> MeasuredFullContact:
     """Run the condensed peer on the case under all its loads; points that fail are kept with their reasons.
 
+    Raises `SolveError`: no point has a solution.
+
     Parameters
     ----------
     checked : Checked
@@ -239,11 +241,6 @@ def measure_full_contact(
         Equally spaced over one base pitch, the first at the pitch point.
     report : callable
         Called as report("full contact", fraction).
-
-    Raises
-    ------
-    SolveError
-        No point has a solution.
     """
     request, fractions = checked.request, [count / positions for count in range(positions)]
     torques = [float(torque) for torque in request.torque]

@@ -64,6 +64,9 @@ def study_sensitivity(
 ) -> tuple[Sensitivity, Sensitivity]:
     """Vary misalignment and center distance, one at a time, without and with corner contact.
 
+    Raises `InputError`: a value that cannot be used, by field name; `MeshError`, `SolveError`: no acceptable
+    mesh, or points without a solution.
+
     Parameters
     ----------
     pair : GearPair, InternalGearPair or Checked
@@ -80,13 +83,6 @@ def study_sensitivity(
     -------
     tuple of Sensitivity
         Without and with corner contact.
-
-    Raises
-    ------
-    InputError
-        A value that cannot be used, by field name.
-    MeshError, SolveError
-        No acceptable mesh, or points without a solution.
     """
     checked = Sensitivity.request(pair, axes, options)
     return Sensitivity(False, *_curves(checked, "off", run)), Sensitivity(True, *_curves(checked, "on", run))

@@ -242,17 +242,14 @@ def placed_bodies(
 ) -> tuple[PlacedBody, PlacedBody]:
     """Mesh both gears and put them into the conjugate position.
 
+    Raises `MeshError`: gmsh failed, or an element misses its quality limit.
+
     Parameters
     ----------
     position : float
         Base pitches; the reference pair touches there on the line of action.
     sites : sequence of ContactSite
         Pairs that may touch there.
-
-    Raises
-    ------
-    MeshError
-        gmsh failed, or an element misses its quality limit.
     """
     gears = (pair.pinion, pair.wheel)
     boundaries = [

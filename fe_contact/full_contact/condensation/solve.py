@@ -196,7 +196,8 @@ def solve_full_contact(
     """Solve the contact of a spur pair in plane strain with all teeth, bodies and the contact strip resolved.
 
     Each position has its own mesh of both gears and one factorisation of each, from which all torques are
-    solved: no penalty, no law of Hertz. The contact is re-evaluated on the deformed bodies.
+    solved: no penalty, no law of Hertz. The contact is re-evaluated on the deformed bodies. Raises
+    `InputError`: a pair that plane strain or the meshes do not hold, or a torque that is not positive.
 
     Parameters
     ----------
@@ -216,11 +217,6 @@ def solve_full_contact(
     -------
     FullContactTable
         Every point with its status, residual and iterations.
-
-    Raises
-    ------
-    InputError
-        A pair that plane strain or the meshes do not hold, or a torque that is not positive.
     """
     if (reason := refusal(pair)) is not None:
         raise InputError("pair", "this pair", f"one that full contact in the plane holds; {reason}")

@@ -174,7 +174,9 @@ def solve_full_contact_helical(
     Each gear is condensed once, in a frame that turns with its helix, to the flanks of the teeth that may
     touch. Pressure follows the contact lines on hats of its own; what the mesh over the face gives way too
     little under them is that of a fine section in which nothing varies along the line. No penalty, no law of
-    Hertz, no law of tip edges. Displacements are small: gaps are those of the undeformed gears.
+    Hertz, no law of tip edges. Displacements are small: gaps are those of the undeformed gears. Raises
+    `InputError`: a pair that it does not hold, a torque that is not positive, a misalignment that is no
+    number; `MeshError`, `SolveError`: a section cannot be meshed or condensed.
 
     Parameters
     ----------
@@ -194,13 +196,6 @@ def solve_full_contact_helical(
     -------
     tuple of FullContactTable
         One for each misalignment, which share CPU seconds evenly.
-
-    Raises
-    ------
-    InputError
-        A pair that it does not hold, a torque that is not positive, a misalignment that is no number.
-    MeshError, SolveError
-        A section cannot be meshed or condensed.
     """
     if (reason := refusal_helical(pair)) is not None:
         raise InputError("pair", "this pair", f"one that helical full contact holds; {reason}")

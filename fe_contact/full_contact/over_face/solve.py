@@ -342,7 +342,8 @@ def solve_full_contact_over_face(
 
     The plane mesh of a position, extruded: 15-node wedges over half the face, the halves joined by an even
     and an odd problem. One condensation of each gear serves all torques and misalignments, which enter with
-    the modification of the flanks through the gap.
+    the modification of the flanks through the gap. Raises `InputError`: a pair that it does not hold, a
+    torque that is not positive, a misalignment that is no number.
 
     Parameters
     ----------
@@ -363,11 +364,6 @@ def solve_full_contact_over_face(
     -------
     tuple of FullContactTable
         One for each misalignment, which share CPU seconds evenly.
-
-    Raises
-    ------
-    InputError
-        A pair that it does not hold, a torque that is not positive, a misalignment that is no number.
     """
     if (reason := refusal_over_face(pair)) is not None:
         raise InputError("pair", "this pair", f"one that full contact over the face holds; {reason}")

@@ -38,6 +38,8 @@ def scene_warnings(
 ) -> list[Json]:
     """Return what is implausible about a scene, and about the tables of its meshes.
 
+    Raises `BadInput`: the parts of the scene do not fit each other.
+
     Parameters
     ----------
     inputs : SceneInput
@@ -46,11 +48,6 @@ def scene_warnings(
         The same with all its planets.
     tables : mapping of str to list of dict
         Warnings of the table of each mesh, by the name of the mesh.
-
-    Raises
-    ------
-    BadInput
-        The parts of the scene do not fit each other.
     """
     with named(""):
         findings = [finding.to_json() for finding in scene_findings(scene)]

@@ -56,6 +56,9 @@ def reduced_housings(
 ) -> dict[str, ReducedHousing]:
     """Mesh and reduce the housings of a scene that are given by their solids, or take them from the cache.
 
+    Raises `BadInput`: a file is no solid, a bore, foot or point is not there, or the reduction costs too
+    much; `JobFailed`: the mesher failed, or the modes do not converge.
+
     Parameters
     ----------
     cache : Path or None
@@ -67,13 +70,6 @@ def reduced_housings(
     -------
     dict of str to ReducedHousing
         By name of the housing.
-
-    Raises
-    ------
-    BadInput
-        A file is no solid, a bore, foot or point is not there, or the reduction costs too much.
-    JobFailed
-        The mesher failed, or the modes do not converge.
     """
     solid = [(index, part) for index, part in enumerate(scene.housings) if part.is_solid]
     parts = by_cost(lambda fraction: progress(STAGE, fraction), {part.name: 1.0 for _, part in solid})

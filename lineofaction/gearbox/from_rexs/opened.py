@@ -157,7 +157,8 @@ class OpenedUnit:
     def of(document: Document, assumptions: Iterable[Assumption] = ()) -> OpenedUnit:
         """Return the cases and the scene of a gear unit.
 
-        The scene runs at the load case of the largest share of the time.
+        The scene runs at the load case of the largest share of the time. Raises `BadInput`: a value has the
+        wrong type or unit, or a place, a section, the version or an assumption is none.
 
         Parameters
         ----------
@@ -165,11 +166,6 @@ class OpenedUnit:
             Of any version of REXS.
         assumptions : iterable of Assumption
             Values over those of the file.
-
-        Raises
-        ------
-        BadInput
-            A value has the wrong type or unit, or a place, a section, the version or an assumption is none.
         """
         newest, changes = upgrade(document.model)
         model = assumed(newest, assumptions)

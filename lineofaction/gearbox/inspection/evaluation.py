@@ -48,17 +48,15 @@ class Split:
 def split(place: FloatArray, values: FloatArray, cutoff: float | None = None) -> Split:
     """Filter a trace and split it.
 
+    Raises `ValueError`: too few or too many points, points further apart than the cut-off, or one that is too
+    short.
+
     Parameters
     ----------
     place, values : ndarray, shape (n,)
         Places in order and deviations, m.
     cutoff : float, optional
         m; left out: a thirtieth of the length.
-
-    Raises
-    ------
-    ValueError
-        Too few or too many points, points further apart than the cut-off, or one that is too short.
     """
     if not 3 <= place.size <= _MOST_POINTS:
         raise ValueError(f"a trace of 3 to {_MOST_POINTS} points; it has {place.size}")

@@ -47,6 +47,8 @@ def units() -> dict[str, _SiUnit]:
 def si_value(value: float, unit: str | None, expected: str, place: str) -> float:
     """Return a value in SI.
 
+    Raises `BadInput`: the unit is none of REXS, or of another quantity.
+
     Parameters
     ----------
     value, unit : float, str or None
@@ -55,11 +57,6 @@ def si_value(value: float, unit: str | None, expected: str, place: str) -> float
         A unit of the value's quantity, as the schema has it.
     place : str
         Component and attribute, for the error.
-
-    Raises
-    ------
-    BadInput
-        The unit is none of REXS, or of another quantity.
     """
     written = units().get("none" if unit is None else unit)
     wanted = units()[expected]
@@ -77,6 +74,8 @@ def listed_unit(name: str) -> str | None:
 def quantity(component: Component, name: str, place: str) -> float | None:
     """Return a number of a component in SI, None where the file gives none.
 
+    Raises `BadInput`: the value is no number, is given twice, or its unit belongs to another quantity.
+
     Parameters
     ----------
     component : Component
@@ -85,11 +84,6 @@ def quantity(component: Component, name: str, place: str) -> float | None:
         An attribute of `quantities.toml`.
     place : str
         The component, for the error.
-
-    Raises
-    ------
-    BadInput
-        The value is no number, is given twice, or its unit belongs to another quantity.
     """
     attribute = _only(component, name, place)
     return None if attribute is None else _number(attribute.value, attribute, f"{place}, {name}")

@@ -233,6 +233,8 @@ def _joined(prefix: str, key: str) -> str:
 def flank_grid(text: str, field: str, name: str) -> Table:
     """Return the grid that the text of a CSV file holds.
 
+    Raises `BadInput`: another heading, something that is no number, a node given twice or not at all.
+
     Parameters
     ----------
     text : str
@@ -245,11 +247,6 @@ def flank_grid(text: str, field: str, name: str) -> Table:
     -------
     dict
         Of the form of `FlankGridInput`.
-
-    Raises
-    ------
-    BadInput
-        Another heading, something that is no number, a node given twice or not at all.
     """
     try:
         axes = whole_grid(_nodes(text), (COLUMNS[0], COLUMNS[1]))
@@ -293,14 +290,11 @@ def read_text(path: Path, name: str) -> str:
 def written_out(table: dict[str, Any], find: Find, housings: Collection[str]) -> dict[str, Any]:
     """Return a table with the content of the flank grids and housings that it names as files.
 
+    Raises `BadInput`: a file is missing, or holds something else.
+
     Parameters
     ----------
     housings : collection of str
         The fields of housings whose files are read, see `_with_housing_files`.
-
-    Raises
-    ------
-    BadInput
-        A file is missing, or holds something else.
     """
     return _with_housing_files(_with_flank_grids(table, find, read_text), find, housings)

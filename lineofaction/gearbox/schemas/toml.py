@@ -20,16 +20,14 @@ _LONG_KEY = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{_MOST_P
 def toml_table(text: str, field: str) -> dict[str, Any]:
     """Return the table of a TOML text.
 
+    Raises `BadInput`: it is not well formed, nested deeper than the reader's stack, has a number of thousands
+    of digits, or a key of more than 32 parts: reading such a key takes time and memory with the square of its
+    length.
+
     Parameters
     ----------
     field : str
         What the text is called in an error.
-
-    Raises
-    ------
-    BadInput
-        It is not well formed, nested deeper than the reader's stack, has a number of thousands of digits, or
-        a key of more than 32 parts: reading such a key takes time and memory with the square of its length.
     """
     if _LONG_KEY.search(text) is not None:
         raise BadInput.of(

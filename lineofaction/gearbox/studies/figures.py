@@ -46,7 +46,8 @@ def figures_of(model: type[Part], *sources: Any, **own: Any) -> Json:
     ``speed``, which is in SI; or what its `Source` says. A name without unit that several figures share is
     none of theirs. A part is made of its own source, or of several and a mapping of its own members as a
     tuple. A number that is not finite is None where None may stand; a figure that may be missing is left out
-    where it is None.
+    where it is None. Raises `AttributeError`: no source has a figure; `TypeError`: a member of `own` is none
+    of the model's figures, or might be several.
 
     Parameters
     ----------
@@ -54,13 +55,6 @@ def figures_of(model: type[Part], *sources: Any, **own: Any) -> Json:
         Results, and documents of them.
     **own
         Members before those of the sources.
-
-    Raises
-    ------
-    AttributeError
-        No source has a figure.
-    TypeError
-        A member of `own` is none of the model's figures, or might be several.
     """
     if unknown := ", ".join(sorted(own.keys() - _names(model))):
         raise TypeError(f"not the name of one figure of {model.__name__}: {unknown}")

@@ -9,17 +9,14 @@ import zlib
 def attached(pdf: bytes, name: str, content: bytes) -> bytes:
     """Return a PDF file with one more file in it.
 
+    Raises `ValueError`: the PDF file is built otherwise.
+
     Parameters
     ----------
     pdf : bytes
         With a table of references at its end, no stream of them, and a catalog without names.
     name : str
         Of the file, in ASCII without brackets.
-
-    Raises
-    ------
-    ValueError
-        The PDF file is built otherwise.
     """
     last, size, root = _end(pdf)
     catalogs = re.findall(rb"\n%d 0 obj\n<<(.*?)>>\nendobj" % root, pdf, re.S)

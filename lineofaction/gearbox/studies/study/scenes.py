@@ -43,17 +43,14 @@ FLANKS = tuple(figure.field for figure in figures(FlankModification))
 def places_of(scene: SceneInput, field: str, path: str) -> tuple[Place, ...]:
     """Return the places that a path names.
 
+    Raises `BadInput`: there is no such field or part, or it is no number; the nearest names are suggested.
+
     Parameters
     ----------
     field : str
         What the path is called in an error.
     path : str
         ``KIND.NAME.FIELD`` of a part, where ``*`` names every part of its kind, or ``TABLE.FIELD``.
-
-    Raises
-    ------
-    BadInput
-        There is no such field or part, or it is no number; the nearest names are suggested.
     """
     kind, _, rest = path.partition(".")
     parts = getattr(scene, kind, None)
