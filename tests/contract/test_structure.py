@@ -11,18 +11,18 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (40_968, 741),
-    ("dynamics",): (42_875, 832),
-    ("lineofaction.gearbox",): (26_562, 541),
-    ("lineofaction.report",): (11_786, 226),
-    ("service",): (14_781, 339),
-    ("lineofaction.client",): (2_703, 53),
-    ("lineofaction.cli",): (5_459, 80),
+    ("fe_contact",): (40_841, 741),
+    ("dynamics",): (42_615, 832),
+    ("lineofaction.gearbox",): (26_490, 539),
+    ("lineofaction.report",): (11_765, 224),
+    ("service",): (14_766, 339),
+    ("lineofaction.client",): (2_681, 53),
+    ("lineofaction.cli",): (5_445, 80),
     ("lineofaction.hardcases",): (3_844, 35),
-    ("bounds", "host", "model_studies"): (4_518, 155),
+    ("bounds", "host", "model_studies"): (4_499, 155),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 820
+MOST_FILES = 818
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
