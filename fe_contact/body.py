@@ -36,12 +36,8 @@ _STIFFNESS = Declared(
 class Shaft:
     """A round shaft of constant diameter on two radial bearings, with the gear between or beside them.
 
-    A gear whose position is negative or beyond the length overhangs; +z is along the pinion's axis.
-
-    Raises
-    ------
-    InputError
-        A value out of its bounds.
+    A gear whose position is negative or beyond the length overhangs; +z is along the pinion's axis. Raises
+    `InputError`: a value out of its bounds.
     """
 
     length: float = required(_LENGTH)
@@ -103,10 +99,7 @@ class Web:
 class GearBlank:
     """A rim as wide as the face, a web, and a hub as wide as the face.
 
-    Raises
-    ------
-    InputError
-        A value out of its bounds.
+    Raises `InputError`: a value out of its bounds.
     """
 
     rim_thickness: float = required(Declared(Kind.LENGTH, "m", up_to(20.0), _RIM, 0.012))
@@ -156,10 +149,7 @@ _SEAT_OFFSET = "Middle of the seat towards +z from mid-face; the seat stays with
 class Key:
     """One parallel key along the axis.
 
-    Raises
-    ------
-    InputError
-        A value out of its bounds.
+    Raises `InputError`: a value out of its bounds.
     """
 
     width: float = required(Declared(Kind.LENGTH, "m", up_to(5.0), _ACROSS, 0.012))
@@ -176,12 +166,8 @@ class BoreSeat:
 
     Foundation moduli are traction per displacement, in tension and compression, as of a fit until it opens.
     With a key the tangential foundation is that of the key, acts over its width only and must be given (about
-    G / h for a key of height h); elsewhere the bore slides around the shaft.
-
-    Raises
-    ------
-    InputError
-        A value out of its bounds.
+    G / h for a key of height h); elsewhere the bore slides around the shaft. Raises `InputError`: a value out
+    of its bounds.
     """
 
     radial_foundation: float | None = declared(None, _foundation("Radial", 2e13))

@@ -26,6 +26,8 @@ Levels = Sequence[float] | FloatArray
 class TableAxes:
     """The axes of a table of transmission error.
 
+    Raises `InputError`: a value that cannot be used, by field name.
+
     Attributes
     ----------
     torques, normal_forces : sequence of float
@@ -36,11 +38,6 @@ class TableAxes:
     pitches : int, optional
         Base pitches that the table covers if gears have pitch deviations; default: the full period. A smaller
         number closes the table on itself: at its seam teeth are adjacent that never mesh.
-
-    Raises
-    ------
-    InputError
-        A value that cannot be used, by field name.
     """
 
     torques: Levels | None = None
@@ -168,7 +165,8 @@ CHOICES = {
 class AnalysisOptions:
     """Accuracy, model and effects of an analysis: a tolerance, a time budget, both, or a level.
 
-    None of them means the level "standard".
+    None of them means the level "standard". Raises `InputError`: a value that cannot be used, by field name,
+    or a level together with a tolerance or a time budget.
 
     Attributes
     ----------
@@ -194,11 +192,6 @@ class AnalysisOptions:
     on_violation : str
         What to do if the solution violates an assumption (`receipt["assumptions"]`): "repeat" enables the
         automatic effect that is needed and solves again, "fail" raises, "report" reports it.
-
-    Raises
-    ------
-    InputError
-        A value that cannot be used, by field name, or a level together with a tolerance or a time budget.
     """
 
     tolerance: AllowedError | None = None

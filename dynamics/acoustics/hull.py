@@ -25,17 +25,14 @@ FLAT = 1e-9
 class Hull:
     """A surface of plane triangles (panels), closed or open.
 
+    Raises `InputError`: shapes are others, a node does not exist or is not finite, or a triangle has no area.
+
     Attributes
     ----------
     nodes : (N, 3) array
         m.
     triangles : (T, 3) int array
         Nodes of each panel, counterclockwise as seen from the air.
-
-    Raises
-    ------
-    InputError
-        Shapes are others, a node does not exist or is not finite, or a triangle has no area.
     """
 
     nodes: FloatArray

@@ -132,7 +132,8 @@ def modal_resistance(
 class OrderPower:
     """Sound power of K orders at B operating points, e.g. the speeds of a run-up, each as in a steady state.
 
-    Orders of different frequency add up in power.
+    Orders of different frequency add up in power. Raises `InputError`: shapes differ, a frequency is not
+    above zero, or a power is negative.
 
     Attributes
     ----------
@@ -140,11 +141,6 @@ class OrderPower:
         Hz, above zero.
     power : (K, B) array
         W.
-
-    Raises
-    ------
-    InputError
-        Shapes differ, a frequency is not above zero, or a power is negative.
     """
 
     frequency: FloatArray

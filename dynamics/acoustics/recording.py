@@ -31,6 +31,9 @@ PASSED = 0.45
 class Recording:
     """A signal over time.
 
+    Raises `InputError`: samples are no finite row of at least two, or the sample rate is no integer above
+    zero.
+
     Attributes
     ----------
     samples : (N,) array
@@ -39,11 +42,6 @@ class Recording:
         Hz.
     quantity, unit : str
         What it is, e.g. ``"sound pressure at 1 m"`` in ``"Pa"``. A bearing force is no sound pressure.
-
-    Raises
-    ------
-    InputError
-        Samples are no finite row of at least two, or the sample rate is no integer above zero.
     """
 
     samples: FloatArray

@@ -65,6 +65,8 @@ class Reaction:
 class LoadedBearing:
     """A bearing laid out for compiled evaluation.
 
+    Raises `InputError`: a ring of a row with a contact angle slides.
+
     Parameters
     ----------
     copies : int
@@ -73,11 +75,6 @@ class LoadedBearing:
     locating : str
         Directions along z in which the rings are held in their seats: both, positive, negative, none. A ring
         that is not held slides to where it carries no axial force.
-
-    Raises
-    ------
-    InputError
-        If a ring of a row with a contact angle slides.
     """
 
     def __init__(self, bearing: BallBearing | RollerBearing, copies: int = 1, locating: str = BOTH) -> None:

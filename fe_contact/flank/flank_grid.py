@@ -25,6 +25,10 @@ _MOST_UNLIKE = 3.0
 class FlankGrid:
     """Material removed at the nodes of a grid; sequences are stored as tuples.
 
+    Raises `InputError`: axes that do not increase, rows of another length, values that are no numbers or
+    above 1 cm; nodes between which the surface would leave them by more than 0.1 um beyond what curvature
+    makes it.
+
     Attributes
     ----------
     roll_length : tuple of float
@@ -33,12 +37,6 @@ class FlankGrid:
         Distances of the nodes from mid-face in m, increasing, at least two.
     removed : tuple of tuple of float
         Material removed in m, normal to the involute in the transverse plane: one row per roll length.
-
-    Raises
-    ------
-    InputError
-        Axes that do not increase, rows of another length, values that are no numbers or above 1 cm; nodes
-        between which the surface would leave them by more than 0.1 um beyond what curvature makes it.
 
     Notes
     -----

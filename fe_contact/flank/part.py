@@ -97,13 +97,9 @@ SHORTEST = 1e-9
 class FlankPart:
     """One departure of a gear's flanks from the involute helicoid.
 
-    A modification is a dataclass of declared fields (`fe_contact.flank.relief`) that says what it
-    removes. All of it is neutral while its amounts, slopes and edges are zero.
-
-    Raises
-    ------
-    InputError
-        A value out of its bound, or an amount ``x`` without the ``x_length`` over which it acts.
+    A modification is a dataclass of declared fields (`fe_contact.flank.relief`) that says what it removes.
+    All of it is neutral while its amounts, slopes and edges are zero. Raises `InputError`: a value out of its
+    bound, or an amount ``x`` without the ``x_length`` over which it acts.
     """
 
     def __post_init__(self) -> None:

@@ -104,10 +104,7 @@ _LENGTHS = SiNote("Lengths are in m: 1 mm is 0.001.")
 class _Relief(FlankPart):
     """Amount, length and shape, declared in this order; a crowning has no shape and is a parabola.
 
-    Raises
-    ------
-    InputError
-        An arc of a circle that is deeper than long.
+    Raises `InputError`: an arc of a circle that is deeper than long.
     """
 
     def __post_init__(self) -> None:

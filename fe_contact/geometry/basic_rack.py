@@ -36,12 +36,8 @@ ROOT_RADIUS = Declared(
 class BasicRack:
     """Standard basic rack tooth profile; its root radius is the tip rounding of the tool.
 
-    Raises
-    ------
-    InputError
-        A value out of its bounds.
-    InfeasibleGeometry
-        "root radius": the rounding does not fit between the two flanks of the tooth space.
+    Raises `InputError`: a value out of its bounds; `InfeasibleGeometry` "root radius": the rounding does not
+    fit between the two flanks of the tooth space.
     """
 
     normal_module: float = required(NORMAL_MODULE)

@@ -21,15 +21,9 @@ class GearPair(ParallelAxes):
     """Gear 1 (`pinion`) drives gear 2 (`wheel`).
 
     Both gears are external; `InternalGearPair` has a ring gear. `ParallelAxes` lists the properties of a
-    pair. Both have equal normal module and pressure angle, and opposite helix angles.
-
-    Raises
-    ------
-    InputError
-        A center distance that is no positive number.
-    InfeasibleGeometry
-        No such pair: "normal module", "pressure angle", "helix angle", "profile shift sum", "contact ratio",
-        "interference", "tip clearance".
+    pair. Both have equal normal module and pressure angle, and opposite helix angles. Raises `InputError`: a
+    center distance that is no positive number; `InfeasibleGeometry`: no such pair: "normal module", "pressure
+    angle", "helix angle", "profile shift sum", "contact ratio", "interference", "tip clearance".
     """
 
     wheel: Gear
@@ -59,16 +53,10 @@ class InternalGearPair(ParallelAxes):
     are the same, and the position falls with time. Both have equal normal module, pressure angle and helix
     angle, so the hand is the same. The center distance is positive (the standard's -a); backlash falls as it
     grows. With `radial_assembly` the pinion is mounted radially, which "trimming interference" may prevent;
-    otherwise it is mounted along the axis.
-
-    Raises
-    ------
-    InputError
-        A center distance that is no positive number.
-    InfeasibleGeometry
-        No such pair: "normal module", "pressure angle", "helix angle", "tooth number difference", "face
-        overlap", "center distance", "profile shift sum", "contact ratio", "tip clearance", "interference",
-        "tip interference", "trochoidal interference", "trimming interference".
+    otherwise it is mounted along the axis. Raises `InputError`: a center distance that is no positive number;
+    `InfeasibleGeometry`: no such pair: "normal module", "pressure angle", "helix angle", "tooth number
+    difference", "face overlap", "center distance", "profile shift sum", "contact ratio", "tip clearance",
+    "interference", "tip interference", "trochoidal interference", "trimming interference".
     """
 
     wheel: RingGear

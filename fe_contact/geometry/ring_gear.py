@@ -312,15 +312,9 @@ class RingGear(Toothing):
     profile shift keeps the standard's sign: x > 0 thickens the teeth and moves them inwards, so x_1 + x_2 = 0
     keeps the center distance; d_f = d + 2 m_n (h_fP - x). It has the hand of its pinion. The tip diameter of
     the cutter follows from the root circle. Besides what is declared: `modification`, `material` and
-    `pitch_deviation` (see `Toothing`).
-
-    Raises
-    ------
-    InputError
-        A value out of its bounds.
-    InfeasibleGeometry
-        No such gear: "rim", "tip diameter", "root radius", "profile shift sum", "interference" and "trimming
-        interference" (with the cutter), "pointed tooth".
+    `pitch_deviation` (see `Toothing`). Raises `InputError`: a value out of its bounds; `InfeasibleGeometry`:
+    no such gear: "rim", "tip diameter", "root radius", "profile shift sum", "interference" and "trimming
+    interference" (with the cutter), "pointed tooth".
     """
 
     teeth: int = required(counted(12, 4000))

@@ -48,6 +48,8 @@ _IN_M = SiNote("In m: 5 µm is 5e-6.")
 class PitchDeviation:
     """Deviation of the loaded flank of every tooth from its position.
 
+    Raises `InputError`: a deviation that is no number, or larger than 1 mm.
+
     Attributes
     ----------
     cumulative : tuple of float
@@ -55,11 +57,6 @@ class PitchDeviation:
         reference circle in the transverse section; empty: none. > 0: the flank lies nearer to its mate than
         it should (material in excess), so that it touches early. In the order in which the teeth come into
         mesh, whichever gear; the first tooth is that of pair 0 at position 0.
-
-    Raises
-    ------
-    InputError
-        A deviation that is no number, or larger than 1 mm.
 
     Notes
     -----

@@ -61,6 +61,8 @@ INTEGER_TYPES: dict[str, type[np.signedinteger[Any]]] = {
 class SteFields:
     """Arrays on the grid position P x force F x misalignment M x center-distance change D; all read-only.
 
+    Raises `DatabaseError`: shapes, order, signs or magnitudes contradict what follows.
+
     Attributes
     ----------
     position : (P,) array
@@ -117,11 +119,6 @@ class SteFields:
     load_arm_error : (3, 23, F, M, D) array
         Errors of the same quantities of it in m, >= 0, by source (`ste.curve.OF_LOAD_ARM`); NaN: not
         estimated. Empty for tables without.
-
-    Raises
-    ------
-    DatabaseError
-        If shapes, order, signs or magnitudes contradict the above.
     """
 
     position: FloatArray

@@ -244,6 +244,8 @@ def _host(base_url: str) -> str:
 class Client(Studies, JobCalls, ResultCalls, _LookupCalls, _SceneCalls):
     """All calls of a client.
 
+    Raises `BadInput`: the address is none.
+
     Parameters
     ----------
     base_url : str, optional
@@ -263,11 +265,6 @@ class Client(Studies, JobCalls, ResultCalls, _LookupCalls, _SceneCalls):
         Access key of the service; default: the environment variable ``LOA_KEY``.
     progress : callable, optional
         Called with every state seen of any job that is waited for; see `progress_bars`.
-
-    Raises
-    ------
-    BadInput
-        The address is none.
     """
 
     analyze: Offered[[CaseLike], SteDatabase, TableFigures] = Offered()

@@ -341,10 +341,8 @@ _Stamp = tuple[int, int, int] | None
 class Keyring:
     """The keys of a file, read again whenever the file changes.
 
-    Raises
-    ------
-    BadInput
-        At the start: the file cannot be used. Later that is logged, and the keys read last stay in force.
+    Raises `BadInput` at the start: the file cannot be used. Later that is logged, and the keys read last
+    stay in force.
     """
 
     def __init__(self, file: KeyFile) -> None:

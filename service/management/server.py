@@ -100,17 +100,14 @@ class _Answer(NamedTuple):
 class ManagementServer:
     """Answers on the port while the context lasts.
 
+    Raises `BadInput`: the port is taken, or the address is none of this machine's.
+
     Parameters
     ----------
     host, port : str, int
         Where it listens; port 0: a free one.
     metrics : callable
         Returns the text exposition.
-
-    Raises
-    ------
-    BadInput
-        The port is taken, or the address is none of this machine's.
     """
 
     def __init__(self, host: str, port: int, vitals: Vitals, metrics: Callable[[], bytes]) -> None:
