@@ -76,12 +76,8 @@ def _left_out(kind: Any) -> frozenset[str]:
 class Checks:
     """The checks of a library.
 
-    Every one takes the name of the field, the value in SI and what to try if it is refused.
-
-    Attributes
-    ----------
-    refused : type
-        The library's error of a value that is refused.
+    Every one takes the name of the field, the value in SI and what to try if it is refused. `refused`: the
+    library's error of a value that is refused.
     """
 
     refused: type[RefusedValue]

@@ -14,10 +14,7 @@ from bounds.unit import DIGITS, Unit
 class Reader:
     """A caller from Python, who knows the libraries' names and SI; others derive from it.
 
-    Attributes
-    ----------
-    field : str
-        The field that the message is about, by its name in the library; empty for none.
+    `field`: the field that the message is about, by its name in the library; empty for none.
     """
 
     field: str = ""
@@ -112,10 +109,7 @@ class SiNote:
 class Text:
     """Words and quantities in a row.
 
-    Attributes
-    ----------
-    parts : tuple of Words
-        Plain words, `Quantity`, `SiNote`, `Bound`, another `Text` or a whole `RefusedValue`.
+    `parts`: plain words, `Quantity`, `SiNote`, `Bound`, another `Text` or a whole `RefusedValue`.
     """
 
     parts: tuple[Words, ...] = ()

@@ -94,12 +94,7 @@ def mesh_text(content: bytes) -> TextIOWrapper:
 def check_mesh_content(name: str, content: bytes) -> None:
     """Refuse a mesh that names further files, or on which a reader does not end.
 
-    Raises `InputError` naming ``mesh_file``.
-
-    Parameters
-    ----------
-    name : str
-        Of the file; its suffix says the format.
+    `name`: of the file; its suffix says the format. Raises `InputError` naming ``mesh_file``.
     """
     find = _FAULTS.get(PurePath(name).suffix.lower())  # other formats name no files
     if find and (fault := find(content)):

@@ -19,10 +19,7 @@ _REFERENCE = replace(TEMPERATURE, description="Temperature at which drawings hol
 class WarmBearing:
     """A rolling bearing as drawn and as steady temperatures leave it.
 
-    Attributes
-    ----------
-    loose : mapping of str to float
-        Play of a ring in its seat by the ring's name, m: of rings that their fits no longer hold.
+    `loose`: play of a ring in its seat by the ring's name, m: of rings that their fits no longer hold.
     """
 
     drawn: RollingBearing

@@ -106,10 +106,7 @@ def measured(
 def announce(progress: Progress, stage: str, subject: str, cost: Cost) -> None:
     """Report what a stage will take before it begins, behind its name, if that is more than a moment.
 
-    Parameters
-    ----------
-    progress : callable
-        Called as progress("stage; subject: about 25 CPU s, 1.2 GB", 0.0).
+    `progress`: called as progress("stage; subject: about 25 CPU s, 1.2 GB", 0.0).
     """
     if cost.seconds > ANNOUNCED:
         progress(f"{stage}; {subject}: {cost.words}", 0.0)

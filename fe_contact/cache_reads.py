@@ -9,10 +9,7 @@ from dataclasses import dataclass
 class CacheReads:
     """Reads of a cache since the process began.
 
-    Attributes
-    ----------
-    hits, misses : int
-        Reads that found what they looked for, whole; reads that did not.
+    `hits`, `misses`: reads that found what they looked for, whole; reads that did not.
     """
 
     hits: int = 0

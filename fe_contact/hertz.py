@@ -21,13 +21,9 @@ from fe_contact.types import FloatArray
 def wedge_softness(angle: float) -> float:
     """Return how much more a wedge yields to a force at its edge than a half plane does; 1 at an angle of pi.
 
-    A force p at the apex, normal to a face, moves what is r away by -k_w p ln(r) plus a constant.
-    This is k_w/k, k = 2 (1 - nu^2)/(pi E) that of the half plane, by the radial stresses in a wedge.
-
-    Parameters
-    ----------
-    angle : float
-        Of the material between the faces, rad.
+    A force p at the apex, normal to a face, moves what is r away by -k_w p ln(r) plus a constant. This is
+    k_w/k, k = 2 (1 - nu^2)/(pi E) that of the half plane, by the radial stresses in a wedge. `angle`: of the
+    material between the faces, rad.
     """
     half = 0.5 * angle
     along, across = half + 0.5 * math.sin(angle), half - 0.5 * math.sin(angle)

@@ -90,12 +90,8 @@ def missing_protections() -> tuple[str, ...]:
 def confine(folder: Path, limits: Limits = READING) -> None:
     """Give up all that reading does not need; before other threads exist, and for good.
 
-    Raises `OSError`: the system has a protection and refuses it.
-
-    Parameters
-    ----------
-    folder : Path
-        Where the process reads its input and writes; everything beneath it is its own.
+    `folder`: where the process reads its input and writes; everything beneath it is its own. Raises
+    `OSError`: the system has a protection and refuses it.
     """
     missing = missing_protections()
     if LIMITS not in missing:
@@ -174,12 +170,8 @@ def _restrict(readable: Iterable[Path], folder: Path) -> None:
     """Leave this thread, and what it starts, some files to read and one folder to write in.
 
     Connections by TCP, signals to other processes and sockets by name go with the files, where the system's
-    version has that. Raises `OSError`: the system refuses, or has no Landlock.
-
-    Parameters
-    ----------
-    readable : iterable of Path
-        Files and folders with all beneath them; those that do not exist are passed over.
+    version has that. `readable`: files and folders with all beneath them; those that do not exist are passed
+    over. Raises `OSError`: the system refuses, or has no Landlock.
     """
     handled = _handled(_landlock())
     rules = (ctypes.c_uint64 * len(handled))(*handled)

@@ -12,10 +12,7 @@ _ADVICE = "Use Linux, or macOS, or on Windows WSL or a container."
 class Unavailable(OSError):
     """The operating system does not offer what the program needs.
 
-    Attributes
-    ----------
-    what : str
-        What it does not offer, in the plural: "limits on memory".
+    `what`: what it does not offer, in the plural: "limits on memory".
     """
 
     def __init__(self, what: str, advice: str = _ADVICE) -> None:

@@ -33,10 +33,7 @@ _SLOWEST = 1000.0
 def host_slowness(cache: Path | None) -> float:
     """Return the time that this host takes beside the reference, 1 = alike, 2 = twice as long.
 
-    Parameters
-    ----------
-    cache : Path, optional
-        As of `kept_speed`.
+    `cache`: as of `kept_speed`.
     """
     return kept_speed(cache, "slowness", measured_slowness, (1.0 / _SLOWEST, _SLOWEST))
 

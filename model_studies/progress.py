@@ -25,10 +25,7 @@ ANNOUNCED = 3.0
 def announce(progress: Progress, stage: str, seconds: float, subject: str = "") -> None:
     """Report what a stage will take before it begins, behind its name, if that is more than a moment.
 
-    Parameters
-    ----------
-    progress : callable
-        Called as progress("pairs; 200 before and after: about 25 CPU s", 0.0).
+    `progress`: called as progress("pairs; 200 before and after: about 25 CPU s", 0.0).
     """
     if seconds > ANNOUNCED:
         of = f"{subject}: " if subject else ""

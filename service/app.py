@@ -36,14 +36,10 @@ from service.worker.process import Registry, default_registry
 def create_app(settings: Settings, registry: Registry | None = None, *, works: bool = True) -> FastAPI:
     """Return the application; it opens its data directory and starts its scheduler when it is started.
 
-    Raises `BadInput`: another service works in the data directory, or it cannot be written; the files of
-    results are those of another database; the address is not loopback and there are no access keys, or their
-    file cannot be used; the process may open too few files.
-
-    Parameters
-    ----------
-    registry : Registry, optional
-        The processes it offers; default: analyze and simulate.
+    `registry`: the processes it offers; default: analyze and simulate. Raises `BadInput`: another service
+    works in the data directory, or it cannot be written; the files of results are those of another database;
+    the address is not loopback and there are no access keys, or their file cannot be used; the process may
+    open too few files.
     """
     warnings.filterwarnings("ignore", message="implausible")  # said in the fields of the caller
     identities, bearable = open_identities(settings), capacity(settings.workers if works else 0)

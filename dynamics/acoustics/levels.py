@@ -28,12 +28,7 @@ POLES = (20.598997, 107.65265, 737.86223, 12194.217)  # Hz, of [1]_: twofold, si
 def sound_power_level(power: ArrayLike) -> FloatArray:
     """Return the sound power level re 1e-12 W, dB, at least `FLOOR`.
 
-    Raises `InputError`: a power is negative or no number.
-
-    Parameters
-    ----------
-    power : array
-        W, any shape.
+    `power`: W, any shape. Raises `InputError`: a power is negative or no number.
     """
     values = np.asarray(power, dtype=float)
     if not np.all(values >= 0.0):
@@ -45,10 +40,7 @@ def sound_power_level(power: ArrayLike) -> FloatArray:
 def a_weighting(frequency: ArrayLike) -> FloatArray:
     """Return the A-weighting in dB, 0 at 1 kHz; `FLOOR` at most below at 0 Hz.
 
-    Parameters
-    ----------
-    frequency : array
-        Hz, any shape, at least 0.
+    `frequency`: Hz, any shape, at least 0.
     """
     weight = _response(np.asarray(frequency, dtype=float)) / _response(np.array(1000.0))
     return np.asarray(20.0 * np.log10(np.maximum(weight, 10.0 ** (FLOOR / 20.0))))

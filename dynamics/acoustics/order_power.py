@@ -59,12 +59,7 @@ class ModalResistance:
         """Return the part R v of the air's force that takes power from the shapes, (B, M), N.
 
         Re(u^H R v) / 2 is the power that goes by a part u of the velocity; parts of v add up to the whole.
-        Raises `InputError` as `power` does.
-
-        Parameters
-        ----------
-        frequency, velocity : arrays
-            As of `power`.
+        `frequency`, `velocity`: as of `power`. Raises `InputError` as `power` does.
         """
         frequency, velocity = np.atleast_1d(np.asarray(frequency, dtype=float)), np.asarray(velocity)
         if velocity.shape != (frequency.size, self.matrix.shape[1]):

@@ -58,12 +58,7 @@ class RadiationModel(Protocol):
         """Return by how much levels are off, dB: from (below 0: too quiet) and to.
 
         Of bodies that breathe, move as a whole or bend once around, and of walls of boxes
-        (docs/theory/sound-power.md).
-
-        Parameters
-        ----------
-        ka : float
-            Wavenumber times `Hull.equivalent_radius`.
+        (docs/theory/sound-power.md). `ka`: wavenumber times `Hull.equivalent_radius`.
         """
 
 
@@ -104,12 +99,7 @@ def sound_power(
 ) -> float:
     """Return the radiated sound power of one vibration, W.
 
-    Raises `InputError` as `resistance` does.
-
-    Parameters
-    ----------
-    normal_velocity : (T,) array
-        Complex peak amplitudes, m/s.
+    `normal_velocity` (T,): complex peak amplitudes, m/s. Raises `InputError` as `resistance` does.
     """
     matrix = resistance(model, hull, frequency, np.asarray(normal_velocity)[:, None], air)
     return 0.5 * float(matrix[0, 0].real)

@@ -138,13 +138,8 @@ FADE = 0.01  # s at both ends
 def audible(values: FloatArray, sample_rate: float) -> FloatArray:
     """Return a series (..., T) without its trend and what is slower than `LOWEST`, without phase shift.
 
-    The level falls by 3 dB at 20 Hz and by less than 0.1 dB above 36 Hz. Raises `InputError`: the sample rate
-    is too low, or there are fewer than 4 samples.
-
-    Parameters
-    ----------
-    sample_rate : float
-        Hz, above 40.
+    The level falls by 3 dB at 20 Hz and by less than 0.1 dB above 36 Hz. `sample_rate`: Hz, above 40. Raises
+    `InputError`: the sample rate is too low, or there are fewer than 4 samples.
     """
     if not sample_rate > 2.0 * LOWEST:
         raise InputError("sample_rate", sample_rate, above(2.0 * LOWEST, "Hz"), "It holds nothing audible.")
@@ -196,14 +191,9 @@ def force_recording(
 ) -> Recording:
     """Return the force on a bearing over a run along a direction, in N: no sound pressure.
 
-    Raises `InputError`: the run holds no force on that bearing, the direction is zero, or as
-    `series_recording`.
-
-    Parameters
-    ----------
-    direction : (3,) array, optional
-        In the frame of `RunResult.bearing_force`, of any length above zero; by default the
-        `principal_direction`.
+    `direction` (3,): in the frame of `RunResult.bearing_force`, of any length above zero; by default the
+    `principal_direction`. Raises `InputError`: the run holds no force on that bearing, the direction is zero,
+    or as `series_recording`.
     """
     if not run.bearing_force.shape[0]:
         advice = "Run with outputs.bearing_forces = true."
@@ -247,12 +237,8 @@ def wav_file(recording: Recording, full_scale: float) -> bytes:
     """Return the content of a WAV file whose sample 1.0 is `full_scale` in the recording's unit.
 
     Quantity, unit and full scale stand in the file as JSON (RIFF comment ICMT). Files of the same full scale
-    play at their true relative level. Raises `InputError`: the recording would be clipped.
-
-    Parameters
-    ----------
-    full_scale : float
-        At least the recording's peak; `common_full_scale` of those to compare.
+    play at their true relative level. `full_scale`: at least the recording's peak; `common_full_scale` of
+    those to compare. Raises `InputError`: the recording would be clipped.
     """
     positive("full_scale", full_scale)
     if full_scale < recording.peak:

@@ -25,12 +25,8 @@ from host import MissingExtra
 def sound_pressure_level(recording: Recording, *, weighted: bool = False) -> float:
     """Return the level of the root mean square over a recording re 20 uPa, dB or dB(A); at least `FLOOR`.
 
-    The equivalent continuous level of ISO 1996-1. Raises `InputError`: it is no sound pressure in Pa.
-
-    Parameters
-    ----------
-    weighted : bool
-        Whether A-weighted.
+    The equivalent continuous level of ISO 1996-1. `weighted`: whether A-weighted. Raises `InputError`: it is
+    no sound pressure in Pa.
     """
     if recording.unit != "Pa":
         raise InputError("unit", recording.unit, "Pa", "Its level is that of a sound pressure.")

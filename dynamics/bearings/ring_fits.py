@@ -146,12 +146,8 @@ def warm_rings(
 
     Its elements are as warm as the mean of both rings. The play across the axis grows with the difference of
     the strains times the pitch diameter, and with what fits press the raceways apart [2]_; along the axis of
-    a row with a contact angle by 1/(2 tan) of that. Fits press, or cease to; they do not pull.
-
-    Parameters
-    ----------
-    shaft, housing : Cylinder
-        What the rings sit on and in; the diameters of the seats themselves are those of the fits.
+    a row with a contact angle by 1/(2 tan) of that. Fits press, or cease to; they do not pull. `shaft`,
+    `housing`: what the rings sit on and in; the diameters of the seats themselves are those of the fits.
     """
     across, interference = row.pitch_diameter * (strain[1] - strain[0]), None
     if fits is not None:

@@ -25,11 +25,8 @@ LEAST_PRESS = 1e-6  # m; of one element: sets the typical load of a bearing that
 class _RowLaw:
     """The law of a bearing.
 
-    Parameters
-    ----------
-    passing : bool
-        Whether its elements pass one by one; False: their average over the passing. Preload, damping and
-        typical stiffness are those of the average.
+    `passing`: whether its elements pass one by one; False: their average over the passing. Preload, damping
+    and typical stiffness are those of the average.
     """
 
     def __init__(self, bearing: RollingBearing, passing: bool = False) -> None:

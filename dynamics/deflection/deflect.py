@@ -44,13 +44,8 @@ def _life_of(bearing: RollingBearing, displacement: FloatArray) -> float:
     """Return L_10r of a row in revolutions; NaN without a capacity, infinite where no element is loaded.
 
     The inner ring turns against a load that stands still. Loads of the elements are averaged over their
-    passing.
-
-    Parameters
-    ----------
-    displacement : (5,) array
-        Of the inner ring against the outer, x, y, z, tilt_x, tilt_y, m and rad, without what makes the axial
-        preload.
+    passing. `displacement` (5,): of the inner ring against the outer, x, y, z, tilt_x, tilt_y, m and rad,
+    without what makes the axial preload.
     """
     if bearing.dynamic_capacity is None:
         return math.nan

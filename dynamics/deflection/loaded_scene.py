@@ -25,10 +25,7 @@ from model_studies import in_unit
 class ForceUnderCase:
     """A force of a scene as it is under a load case, before the factor of its course.
 
-    Attributes
-    ----------
-    force, moment : (3,) arrays
-        Along and about x, y, z, N and N m.
+    `force`, `moment` (3,): along and about x, y, z, N and N m.
     """
 
     name: str

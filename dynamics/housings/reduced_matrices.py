@@ -164,14 +164,10 @@ class ReducedMatrices:
 def read_reduced_matrices(path: str | Path) -> ReducedMatrices:
     """Read matrices from one file.
 
-    Raises `InputError`: no such file, not readable, no stiffness, or a matrix that is not symmetric or has a
-    negative eigenvalue; `MissingExtra`: a Nastran file, and pyyeti is not installed.
-
-    Parameters
-    ----------
-    path : str or Path
-        ``.npz`` (arrays ``stiffness``, ``mass``, ``damping``), ``.op4``, or DMIG in ``.pch``, ``.bdf``,
-        ``.dat`` (``KAA`` or ``KAAX``, ``MAA`` ...; the extra ``nastran``).
+    `path`: ``.npz`` (arrays ``stiffness``, ``mass``, ``damping``), ``.op4``, or DMIG in ``.pch``, ``.bdf``,
+    ``.dat`` (``KAA`` or ``KAAX``, ``MAA`` ...; the extra ``nastran``). Raises `InputError`: no such file, not
+    readable, no stiffness, or a matrix that is not symmetric or has a negative eigenvalue; `MissingExtra`: a
+    Nastran file, and pyyeti is not installed.
     """
     file = Path(path)
     archive = partial(read_archive, field=FIELD)

@@ -251,10 +251,7 @@ def _symmetric(matrix: object) -> FloatArray:
 class Bodies(Sequence[Rotor]):
     """A sequence of the rotors of a scene, one per shaft, with the housings whose modes are freedoms.
 
-    Attributes
-    ----------
-    housings : tuple of ModalHousing
-        Other housings have no mass: they are condensed into their bearings.
+    `housings`: other housings have no mass: they are condensed into their bearings.
     """
 
     rotors: tuple[Rotor, ...]

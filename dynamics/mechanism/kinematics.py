@@ -25,10 +25,7 @@ Row = dict[int, Fraction]
 class _TrainSpeeds:
     """All sets of shaft speeds that the meshes joined so far allow, as an exact basis.
 
-    Parameters
-    ----------
-    shafts : int
-        Number of shafts, all free at first.
+    `shafts`: number of shafts, all free at first.
     """
 
     def __init__(self, shafts: int) -> None:

@@ -116,11 +116,6 @@ def stiffness_table(stiffness: PeriodicCurve, error: PeriodicCurve | None = None
 def straight_table(stiffness: float) -> PlainTable:
     """Return the table of a flank of the same stiffness at all positions: F = stiffness d, in contact only.
 
-    Raises `InputError`: it is not above 0.
-
-    Parameters
-    ----------
-    stiffness : float
-        Along the transverse line of action, N/m.
+    `stiffness`: along the transverse line of action, N/m. Raises `InputError`: it is not above 0.
     """
     return stiffness_table(PeriodicCurve.constant(positive("stiffness", stiffness)))

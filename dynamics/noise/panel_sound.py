@@ -174,12 +174,8 @@ class Region:
 def regions(sound: PanelSound, points: Sequence[PointMotion] = ()) -> tuple[Region, ...]:
     """Return the regions of a hull, those that radiate most first; their powers add up to the whole.
 
-    A region below 2 % of the hull's area joins the neighbor with the longest common edge.
-
-    Parameters
-    ----------
-    points : sequence of PointMotion
-        Named points; each belongs to the region of the panel with the nearest center.
+    A region below 2 % of the hull's area joins the neighbor with the longest common edge. `points`: named
+    points; each belongs to the region of the panel with the nearest center.
     """
     number = _region_numbers(sound.hull)
     own = {

@@ -30,10 +30,7 @@ CURVED = 0.25
 class DesignFigure:
     """A figure of a design, and a small step of it.
 
-    Attributes
-    ----------
-    value, step : float
-        In `unit`; the step is not zero.
+    `value`, `step`: in `unit`; the step is not zero.
     """
 
     name: str
@@ -66,11 +63,8 @@ class Sensitivity:
     def of(cls, figure: DesignFigure, level: Callable[[float], float]) -> Sensitivity:
         """Return the sensitivity of a level to a figure.
 
-        Parameters
-        ----------
-        level : callable
-            From a value of the figure to the level, dB, all else as it is. It is called three times: smooth
-            in the value, as `largest_level` is and a level at a fixed speed near a resonance is not.
+        `level`: from a value of the figure to the level, dB, all else as it is. It is called three times:
+        smooth in the value, as `largest_level` is and a level at a fixed speed near a resonance is not.
         """
         nominal, single, double = (level(figure.value + count * figure.step) for count in range(3))
         return cls(figure, single - nominal, double - nominal)

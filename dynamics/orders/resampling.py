@@ -75,12 +75,8 @@ def resampled(values: FloatArray, up: int, down: int, half_length: int) -> Float
     """Return a series (T,) at `up` / `down` times its rate, without phase shift; it is 0 before and after.
 
     Contents that lie by 1.9 / `half_length` of the lower rate or more below half of it keep their amplitude
-    within 3e-6; those as far above it are removed by 112 dB.
-
-    Parameters
-    ----------
-    half_length : int
-        Of the filter, in samples of the lower rate.
+    within 3e-6; those as far above it are removed by 112 dB. `half_length`: of the filter, in samples of the
+    lower rate.
     """
     if up == down:
         return np.array(values, dtype=float)
@@ -106,11 +102,7 @@ def low_passed(values: FloatArray, frequency: float) -> FloatArray:
     """Return a series (T,) without what is above a frequency, without phase shift; it is 0 before and after.
 
     Contents up to the frequency keep their amplitude within 0.01 %; those 10 % above it are removed by 80 dB.
-
-    Parameters
-    ----------
-    frequency : float
-        Cycles a sample; a series that holds no more is returned as it is.
+    `frequency`: cycles a sample; a series that holds no more is returned as it is.
     """
     middle = frequency * (1.0 + 0.5 * TRANSITION)
     if frequency * (1.0 + TRANSITION) >= NYQUIST:

@@ -191,13 +191,9 @@ def sidebands(
 ) -> tuple[_Sideband, ...]:
     """Return `count` sidebands on either side of the first `orders` mesh orders of the signal `values` (T,).
 
-    Raises `InputError`: the run is shorter than four periods, or its output does not hold the orders.
-
-    Parameters
-    ----------
-    periods : mapping of str to int, optional
-        Names and periods of what may modulate, in base pitches; left out: both gears with their teeth. What
-        a planet carrier modulates has the ring's teeth as its period.
+    `periods`: names and periods of what may modulate, in base pitches; left out: both gears with their teeth.
+    What a planet carrier modulates has the ring's teeth as its period. Raises `InputError`: the run is
+    shorter than four periods, or its output does not hold the orders.
     """
     orders = checked_order(result, "orders", orders, mesh, ORDERS)
     integer("count", count, 0, 1000)

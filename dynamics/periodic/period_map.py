@@ -356,10 +356,7 @@ def _highest(system: System, frequency: FloatArray) -> float:
 class PeriodMap:
     """y -> state `repeat` common periods later at one speed; not to be shared between threads.
 
-    Attributes
-    ----------
-    speed : float
-        Of the leading law, rad/s.
+    `speed`: of the leading law, rad/s.
     """
 
     problem: PeriodicProblem

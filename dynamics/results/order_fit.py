@@ -36,12 +36,7 @@ def order_phasors(
 
     An order is Re(A exp(2 pi i c)) with c its column of `cycles` (T, K). Least squares over all samples:
     mean, drift and all orders together. What is periodic in position is found exactly however the speed
-    changes; mean and drift are no part of what is left.
-
-    Parameters
-    ----------
-    weight : (T,) array, optional
-        Of the squares; default: all alike.
+    changes; mean and drift are no part of what is left. `weight` (T,): of the squares; default: all alike.
     """
     samples, orders = cycles.shape
     flat = values.reshape(-1, samples)

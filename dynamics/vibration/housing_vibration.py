@@ -58,12 +58,8 @@ REFERENCE = {
 def vibration_level(rms: ArrayLike, quantity: MotionQuantity = MotionQuantity.VELOCITY) -> FloatArray:
     """Return the level of root mean square values, dB re 1 nm/s for velocities, at least `FLOOR`.
 
-    Raises `InputError`: a value is negative or no number.
-
-    Parameters
-    ----------
-    rms : array
-        m, m/s or m/s^2, any shape; 1/sqrt(2) of a peak amplitude.
+    `rms`: m, m/s or m/s^2, any shape; 1/sqrt(2) of a peak amplitude. Raises `InputError`: a value is negative
+    or no number.
     """
     values = np.asarray(rms, dtype=float)
     if not np.all(values >= 0.0):
@@ -162,10 +158,7 @@ class HousingVibration:
     def largest(self, speed: float | None = None, order: float | None = None) -> tuple[int, int]:
         """Return the indices of speed and order at which a point moves fastest; without points, the surface.
 
-        Parameters
-        ----------
-        speed, order : float, optional
-            The nearest one alone, rad/s; what is valid comes first.
+        `speed`, `order`: the nearest one alone, rad/s; what is valid comes first.
         """
         near = np.ones(self.frequency.shape, dtype=bool)
         if speed is not None:

@@ -241,10 +241,7 @@ def node_axes(gear: Toothing, section: QuadSector) -> FloatArray:
 def sector_stiffness(gear: Toothing, section: QuadSector, sector: SweptSector) -> ElementStiffness:
     """Compute the matrices of all batches of a sector.
 
-    Parameters
-    ----------
-    gear : Gear
-        Its material and helix matter.
+    `gear`: its material and helix matter.
     """
     axes, lame = node_axes(gear, section), PlaneHypothesis.PLANE_STRAIN.lame_parameters(gear.material)
     bodies = [batch for batch in sector.batches if not batch.seat]

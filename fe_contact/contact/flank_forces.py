@@ -27,12 +27,7 @@ def contact_pressure(problem: ContactProblem, force: FloatArray) -> FloatArray:
     It is 2 p/(pi h), the peak of an elliptic pressure over the strip 2 h as it is: Hertz's on a plain flank.
     Where a relief begins the pressure of a sharp kink is infinite at a point; this is the mean over the
     strip, times 4/pi. At the edge of a tip or of its chamfer, which is never sharp, it is Hertz's as if the
-    flank went on; a rounded tip is what it is.
-
-    Parameters
-    ----------
-    force : ndarray, shape (P, L, n)
-        Normal forces, N.
+    flank went on; a rounded tip is what it is. `force`: normal forces, N.
     """
     pressure = np.zeros(force.shape)
     candidates = problem.candidates
@@ -47,12 +42,8 @@ def contact_pressure(problem: ContactProblem, force: FloatArray) -> FloatArray:
 def at_edges(problem: ContactProblem, force: FloatArray, pressure: FloatArray) -> BoolArray:
     """Return which loaded contacts (P, L, n) reach an edge with their strip: there the pressure is singular.
 
-    `contact_pressure` states Hertz's there, which only indicates how hard the edge presses.
-
-    Parameters
-    ----------
-    force, pressure : ndarray, shape (P, L, n)
-        Normal forces, N, and their `contact_pressure`, Pa.
+    `contact_pressure` states Hertz's there, which only indicates how hard the edge presses. `force`,
+    `pressure`: normal forces, N, and their `contact_pressure`, Pa.
     """
     here = problem.candidates.gap_about
     chamfer = np.where(here.jump >= _EDGE, np.abs(here.place), np.inf).min(axis=-1, initial=np.inf)

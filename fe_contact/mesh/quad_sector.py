@@ -285,12 +285,8 @@ class QuadSector:
 def quad_sector(gear: Toothing, recipe: SectorRecipe, limits: QualityLimits = QUAD_LIMITS) -> QuadSector:
     """Mesh the transverse section of one tooth sector.
 
-    Raises `MeshError`: gmsh failed, was killed or ran out of time, or an element misses its quality limit.
-
-    Parameters
-    ----------
-    gear : Gear or RingGear
-        Its modification, face width and hand play no part.
+    `gear`: its modification, face width and hand play no part. Raises `MeshError`: gmsh failed, was killed or
+    ran out of time, or an element misses its quality limit.
     """
     outline = sector_outline(tooth_profile(gear), recipe)
     grid = outline.grid

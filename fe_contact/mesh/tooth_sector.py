@@ -47,10 +47,7 @@ class _ToothOutline:
 def tooth_outline(profile: ToothProfile, bottom_radius: float, recipe: MeshRecipe) -> _ToothOutline:
     """Divide the boundary of half a tooth sector.
 
-    Parameters
-    ----------
-    bottom_radius : float
-        Radius of the sector's lower end, away from the tip, m.
+    `bottom_radius`: radius of the sector's lower end, away from the tip, m.
     """
     end, bottom = profile.s_form - recipe.flank_margin, _fillet_end(profile, recipe)
     s_low = end if end > bottom + SNAP * recipe.fillet_size else bottom

@@ -164,12 +164,9 @@ class DesignSpace:
     def check(self, torques: Levels, further_torques: Levels = ()) -> Checked:
         """Check the request of a design in which everything acts that may act in any; computes nothing.
 
-        Raises `InputError`: a value that cannot be used, or something is varied whose effect is off.
-
-        Parameters
-        ----------
-        torques, further_torques : sequence of float
-            Those that count, each with its misalignment, and others that the table has, N m.
+        `torques`, `further_torques`: those that count, each with its misalignment, and others that the table
+        has, N m. Raises `InputError`: a value that cannot be used, or something is varied whose effect is
+        off.
         """
         integer("positions", self.positions, 8, 4096, "64 resolve a spur pair.")
         loads = DesignLoads.of(torques, self.misalignment)

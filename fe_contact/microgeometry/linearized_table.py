@@ -73,10 +73,7 @@ def tabled_loads(
 ) -> Iterator[TabledLoads]:
     """Solve a design, ``gear.quantity`` to m, at some nodes; yield a table for each misalignment.
 
-    Parameters
-    ----------
-    names : sequence of str
-        Variables by which the tables and the limits are differentiated.
+    `names`: variables by which the tables and the limits are differentiated.
     """
     for node in nodes:
         solved = evaluator.solved(values, (node,))

@@ -48,12 +48,8 @@ class RootInfluence:
     def stress(self, problem: ContactProblem, force: FloatArray) -> FloatArray:
         """Return the largest principal stress of the tension roots of the teeth in contact, (2, P, L) Pa.
 
-        Stations that load patches reach do not count; between stations it is up to 1 % more.
-
-        Parameters
-        ----------
-        force : ndarray, shape (P, L, m)
-            Of the candidates, N.
+        Stations that load patches reach do not count; between stations it is up to 1 % more. `force`: of the
+        candidates, N.
         """
         pressed = problem.candidates.on_slices(force)
         return np.stack([gear.crests(pressed)[0].max(axis=2) for gear in self._gears(problem.candidates)])

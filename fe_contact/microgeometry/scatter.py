@@ -36,10 +36,7 @@ class _ScatterRule(Protocol):
 class GaussHermite:
     """Tensor product of Gauss-Hermite rules: exact for polynomials of degree 2 `points` - 1 in each deviate.
 
-    Attributes
-    ----------
-    points : int
-        In each dimension, 1 to 33.
+    `points`: in each dimension, 1 to 33.
     """
 
     points: int = 5

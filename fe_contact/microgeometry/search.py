@@ -150,12 +150,8 @@ class StagedLinearProgramming:
     """Sequential linear programmes for a rough merit that is nearly the merit itself, and much cheaper.
 
     The best points of a Sobol' sequence and the start are followed to their ends by the rough merit: where a
-    walk comes to is not told by its first steps. The best ends by the merit are followed on by it.
-
-    Attributes
-    ----------
-    sample, trials : int
-        As of `SequentialLinearProgramming`.
+    walk comes to is not told by its first steps. The best ends by the merit are followed on by it. `sample`,
+    `trials`: as of `SequentialLinearProgramming`.
     """
 
     sample: int = 64
@@ -291,10 +287,7 @@ def _walked(problem: SearchProblem, task: tuple[_Walk, int | None, int]) -> tupl
 class DifferentialEvolution:
     """Differential evolution (Storn and Price 1997) by the rough merit, then a simplex from its best.
 
-    Attributes
-    ----------
-    population : int
-        Individuals for each variable, 3 to 50.
+    `population`: individuals for each variable, 3 to 50.
     """
 
     population: int = 5

@@ -239,13 +239,8 @@ class Sweep:
 def sweep(request: SweepRequest, run: Run = Run()) -> Sweep:  # noqa: B008 (frozen)
     """Solve the contact at every point of a grid; the gears are condensed once.
 
-    Raises `InputError`: a value that cannot be used, by field name; `MeshError`, `SolveError`: no acceptable
-    mesh.
-
-    Parameters
-    ----------
-    run : Run
-        Its workers take a design each, all torques at once.
+    `run`: its workers take a design each, all torques at once. Raises `InputError`: a value that cannot be
+    used, by field name; `MeshError`, `SolveError`: no acceptable mesh.
     """
     clock = StageClock(run.workers.cost)
     swept = _SweptPair(request, None if run.cache is None else str(run.cache))

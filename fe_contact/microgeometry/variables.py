@@ -123,12 +123,7 @@ def figure(pair: ParallelAxes, name: str) -> float:
 def modified(pair: ParallelAxes, values: Mapping[str, float]) -> ParallelAxes:
     """Return the pair with other figures of its modifications.
 
-    Raises `InputError`: no such modification fits the gear.
-
-    Parameters
-    ----------
-    values : mapping
-        ``gear.quantity`` to m.
+    `values`: ``gear.quantity`` to m. Raises `InputError`: no such modification fits the gear.
     """
     return reduce(lambda changed, gear: _with_gear(changed, gear, values), GEARS, pair)
 

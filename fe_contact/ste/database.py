@@ -313,13 +313,9 @@ AXIS = "misalignment"
 def joined_over_misalignment(tables: Sequence[SteDatabase]) -> SteDatabase:
     """Return the table over the misalignments of `tables`, in their order.
 
-    Facts and metadata are those of the first. Raises `DatabaseError`: their other axes have different sizes
-    or the misalignments do not increase.
-
-    Parameters
-    ----------
-    tables : sequence of SteDatabase
-        Alike but for their misalignments, which increase from one to the next.
+    Facts and metadata are those of the first. `tables`: alike but for their misalignments, which increase
+    from one to the next. Raises `DatabaseError`: their other axes have different sizes or the misalignments
+    do not increase.
     """
     along = {
         name: dimensions.index(AXIS) for name, dimensions in tables[0].stored.items() if AXIS in dimensions

@@ -25,10 +25,7 @@ J = TypeVar("J")
 class _BatchSurface(Followed, Generic[T, J]):
     """The calls of a batch.
 
-    Attributes
-    ----------
-    state : JobState
-        Of the whole, as last seen.
+    `state`: of the whole, as last seen.
     """
 
     def __init__(self, client: Surface, state: JobState, read: Callable[[Path], T]) -> None:

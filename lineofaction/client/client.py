@@ -119,10 +119,7 @@ class _LookupCalls(Surface):
     def plan(self, case: CaseLike, *, time_budget_s: float | None = None) -> Steps[schemas.PlanBody]:
         """Return what the analysis of a case will be, cost and be wrong by.
 
-        Parameters
-        ----------
-        time_budget_s : float, optional
-            CPU seconds that may be spent.
+        `time_budget_s`: CPU seconds that may be spent.
         """
         inputs = subject_inputs("case", case) | {"time_budget_s": time_budget_s}
         return (yield from self._answer("/v1/plans", {"inputs": inputs}, schemas.PlanBody.model_validate))

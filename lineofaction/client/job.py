@@ -29,10 +29,7 @@ Fetched = TypeVar("Fetched")
 class Followed(Surface):
     """What can be done with a job whatever it computes, and with a batch.
 
-    Attributes
-    ----------
-    state : JobState
-        As last seen.
+    `state`: as last seen.
     """
 
     state: JobState

@@ -26,12 +26,8 @@ RUN, SOUND = f"run{SUFFIX}", "run.wav"
 def file_of(named: InputFile, subject: str) -> InputFile:
     """Return a file as it is named, of a folder the only one in it that holds what is studied.
 
-    Raises `BadInput`: the folder holds no such file, or several of other names.
-
-    Parameters
-    ----------
-    subject : "case", "scene" or "case or scene"
-        Of the latter the scene goes first. Of several files the one of that name (``scene.toml``) is taken.
+    `subject`: of the latter the scene goes first. Of several files the one of that name (``scene.toml``) is
+    taken. Raises `BadInput`: the folder holds no such file, or several of other names.
     """
     return only(files_of(named, subject), named.path, subject)
 

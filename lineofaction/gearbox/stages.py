@@ -29,12 +29,7 @@ class PacedFraction:
 
     The usual shares say what stages take that have not begun, in proportion to the time so far. A stage under
     way takes what its pace says, that of the last one counts alone in the end. Stages that are left out, such
-    as that of tables which are stored, have no share.
-
-    Parameters
-    ----------
-    stages : iterable of Stage
-        In the order in which they are done.
+    as that of tables which are stored, have no share. `stages`: in the order in which they are done.
     """
 
     def __init__(self, stages: Iterable[tuple[str, float]]) -> None:
@@ -87,12 +82,8 @@ _FIRST = 0.8
 class TableFraction:
     """The fraction done of a table, by the predicted cost of its stages; it never falls.
 
-    A pass that begins anew takes what is left, or most of it if another may follow.
-
-    Parameters
-    ----------
-    refines : bool
-        Whether a pass may be followed by another, as under a tolerance.
+    A pass that begins anew takes what is left, or most of it if another may follow. `refines`: whether a pass
+    may be followed by another, as under a tolerance.
     """
 
     def __init__(self, *, refines: bool = False) -> None:

@@ -59,10 +59,7 @@ class Takes(Generic[P, T, F]):
 class Offered(Generic[P, T, F]):
     """An attribute of a class that is itself there, and of a client of that class a process.
 
-    Attributes
-    ----------
-    name : str
-        Of the process: that of the attribute.
+    `name`: of the process: that of the attribute.
     """
 
     name: str

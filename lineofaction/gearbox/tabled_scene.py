@@ -68,10 +68,7 @@ def checked_table(checked: CheckedCase, run: Run, on_draft: OnDraft | None = Non
 class ComputedTables:
     """A source of tables that computes them in this process, and holds none.
 
-    Parameters
-    ----------
-    compute : callable
-        ``compute(case)``, the database of a case.
+    `compute`: ``compute(case)``, the database of a case.
     """
 
     def __init__(self, compute: Callable[[Case], SteDatabase]) -> None:

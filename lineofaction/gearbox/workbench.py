@@ -100,13 +100,8 @@ def _over(overrides: Mapping[str, object], path: Path) -> InputFile:
 def analyze(subject: ParallelAxes | Subject, **options: Any) -> SteDatabase:
     """Compute the static transmission error of a gear pair or a case.
 
-    Raises `BadInput`, `InputError`, `InfeasibleGeometry`.
-
-    Parameters
-    ----------
-    subject : GearPair, InternalGearPair, Case, mapping or path
-        A pair takes the keywords of `fe_contact.analyze`; a case states all of it, and takes `progress` and
-        `workers`.
+    `subject`: a pair takes the keywords of `fe_contact.analyze`; a case states all of it, and takes
+    `progress` and `workers`. Raises `BadInput`, `InputError`, `InfeasibleGeometry`.
     """
     if isinstance(subject, ParallelAxes):
         return analyze_pair(subject, **options)

@@ -178,13 +178,9 @@ def _itself(packed: Packed) -> Packed:
 def dask_workers(scheduler: str) -> ByDask:
     """Connect to a Dask scheduler.
 
-    Raises `MissingExtra`: Dask is not installed; `WorkersLost`: no scheduler answers there.
-
-    Parameters
-    ----------
-    scheduler : str
-        Its address, ``tcp://host:port``, or the file in which it left it, as schedulers of batch systems do
-        (``dask scheduler --scheduler-file``); all its workers have this program installed, in this version.
+    `scheduler`: its address, ``tcp://host:port``, or the file in which it left it, as schedulers of batch
+    systems do (``dask scheduler --scheduler-file``); all its workers have this program installed, in this
+    version. Raises `MissingExtra`: Dask is not installed; `WorkersLost`: no scheduler answers there.
     """
     try:
         address = scheduler if "://" in scheduler else _address_in(Path(scheduler))

@@ -303,14 +303,10 @@ def divided(
 ) -> Iterator[R]:
     """Yield ``function(shared, item)`` of every item, in their order, by the workers if that pays.
 
-    Raises `WorkersLost` as `Workers.run`, and what the function raises.
-
-    Parameters
-    ----------
-    seconds : float, optional
-        CPU seconds that all items are predicted to take; above `START_SECONDS`, or the part of it for workers
-        that are awake, they do all of them. Else items are done here until those left would take more, each
-        as long as the last. The first one tells nothing, it loads code.
+    `seconds`: CPU seconds that all items are predicted to take; above `START_SECONDS`, or the part of it for
+    workers that are awake, they do all of them. Else items are done here until those left would take more,
+    each as long as the last. The first one tells nothing, it loads code. Raises `WorkersLost` as
+    `Workers.run`, and what the function raises.
     """
     done, expected = 0, seconds or 0.0
     while len(items) - done > 1 and expected <= _least(workers):

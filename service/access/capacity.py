@@ -64,10 +64,7 @@ _MINUTE_S = 60.0
 class RateLimits:
     """The buckets of all keys, in the memory of one server process.
 
-    Parameters
-    ----------
-    clock : callable
-        Seconds, steady; replaced by tests.
+    `clock`: seconds, steady; replaced by tests.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
@@ -101,10 +98,7 @@ RAISE = "Raise the limit of the process (ulimit -n, LimitNOFILE= of systemd)."
 class Capacity:
     """What one server process bears.
 
-    Attributes
-    ----------
-    connections : int
-        Open HTTP connections on which requests are under way.
+    `connections`: open HTTP connections on which requests are under way.
     """
 
     connections: int = _MOST_CONNECTIONS

@@ -301,10 +301,7 @@ def _claim(claims: Json, path: str) -> Any:
 class Identities:
     """The callers that a service knows.
 
-    Parameters
-    ----------
-    tokens : _Tokens, optional
-        Of an issuer; without it there are keys only.
+    `tokens`: of an issuer; without it there are keys only.
     """
 
     def __init__(self, keyring: Keyring, tokens: _Tokens | None = None) -> None:

@@ -202,11 +202,8 @@ _METHODS = frozenset(("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"
 class Metrics:
     """Metrics of one app.
 
-    Parameters
-    ----------
-    process : CollectorRegistry
-        With the metrics of its process. Those of requests are of the process, or, where several serve on one
-        socket, the sums over all of them.
+    `process`: with the metrics of its process. Those of requests are of the process, or, where several serve
+    on one socket, the sums over all of them.
     """
 
     def __init__(self, process: CollectorRegistry) -> None:

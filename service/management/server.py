@@ -34,10 +34,7 @@ _ANSWER_WITHIN_S = 0.8
 class EventLoop:
     """The loop that answers requests, seen from another thread.
 
-    Attributes
-    ----------
-    loop : asyncio.AbstractEventLoop or None
-        None before the program serves.
+    `loop`: none before the program serves.
     """
 
     loop: asyncio.AbstractEventLoop | None = None
@@ -56,10 +53,7 @@ class EventLoop:
 class Vitals:
     """The signs of one process. A fault is a sentence; empty: there is none.
 
-    Attributes
-    ----------
-    serving : callable
-        Returns the fault of what else it does: of the loop that answers requests.
+    `serving`: returns the fault of what else it does: of the loop that answers requests.
     """
 
     scheduler: Scheduler | None

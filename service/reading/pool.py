@@ -192,10 +192,7 @@ class _Question:
 class ReadingPool:
     """Has files read, each by a process of its own.
 
-    Parameters
-    ----------
-    data_directory : Path
-        Where folders of readers and their logs are; folders that were left there are removed.
+    `data_directory`: where folders of readers and their logs are; folders that were left there are removed.
     """
 
     def __init__(self, data_directory: Path) -> None:

@@ -24,12 +24,8 @@ class Admission:
     """The requests of all callers of one server process.
 
     A body that is under way holds none of the places of requests that are answered: whoever sends bodies
-    slowly takes room from slow bodies alone, and from those of others no more than a share.
-
-    Attributes
-    ----------
-    share : int
-        Requests of one caller, and bodies, where nothing else is said.
+    slowly takes room from slow bodies alone, and from those of others no more than a share. `share`: requests
+    of one caller, and bodies, where nothing else is said.
     """
 
     def __init__(self, capacity: Capacity) -> None:
@@ -153,11 +149,8 @@ _SCHEME = "bearer "
 class Access:
     """Lets requests through that carry a key, and as long as there are no keys those meant for this machine.
 
-    Parameters
-    ----------
-    always : bool
-        Ask for a key even while there is none, so that taking back the last key opens nothing. Otherwise
-        keys are requested as soon as there is one.
+    `always`: ask for a key even while there is none, so that taking back the last key opens nothing.
+    Otherwise keys are requested as soon as there is one.
     """
 
     def __init__(self, app: ASGIApp, identities: Identities, *, always: bool, admission: Admission) -> None:

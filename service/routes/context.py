@@ -55,10 +55,7 @@ class JobEvent(NamedTuple):
 class Streams:
     """A count with a bound, of one event loop, so without a lock.
 
-    Attributes
-    ----------
-    most : int
-        Streams that may be open at once.
+    `most`: streams that may be open at once.
     """
 
     most: int = 256

@@ -81,10 +81,7 @@ _WRITABLE = "Give the service the right to write there, or name another place (L
 class Deployment:
     """A database and the place of its results.
 
-    Parameters
-    ----------
-    store : ResultStore
-        Its index, and the files.
+    `store`: its index, and the files.
     """
 
     def __init__(self, engine: Engine, store: ResultStore) -> None:

@@ -315,11 +315,7 @@ def pressure_map(flanks: LoadDistribution, roll: FloatArray) -> tuple[FloatArray
 
     Along the profile the pressure is interpolated between the contacts at neighboring positions, at every
     face position by itself. Contacts on the path and those of either tip edge pass one after the other.
-
-    Parameters
-    ----------
-    roll : ndarray, shape (P, N, K)
-        Roll lengths on this flank, m.
+    `roll`: roll lengths on this flank, m.
     """
     on_path, edge = flanks.on_path, ~flanks.on_path & (flanks.force > 0.0)
     touched = roll[on_path | edge]

@@ -58,10 +58,7 @@ from model_studies.stage_clock import StageClock
 class _Fidelity(model_studies.Fidelity[Checked], Protocol):
     """One way to a table of transmission error; those of one family differ by their mesh only.
 
-    Attributes
-    ----------
-    element_size : float
-        What a convergence is assessed by.
+    `element_size`: what a convergence is assessed by.
     """
 
     @property
@@ -99,10 +96,7 @@ ISO_ERROR, SLICE_ERROR = 0.45, 0.6
 class _ClosedFormFidelity:
     """A fidelity of uncoupled slices.
 
-    Attributes
-    ----------
-    relative_error : float
-        Of the transmission error, stated with every point of its table.
+    `relative_error`: of the transmission error, stated with every point of its table.
     """
 
     name: str

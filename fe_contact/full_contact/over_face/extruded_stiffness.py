@@ -30,10 +30,7 @@ _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 class Layers:
     """Planes from mid-face to the face, p = layers + 1; functions of z >= 0: p hats, then p - 1 bubbles.
 
-    Attributes
-    ----------
-    planes : (p,) array
-        Rising from 0, m.
+    `planes` (p,): rising from 0, m.
     """
 
     planes: FloatArray

@@ -262,10 +262,7 @@ _ACROSS = 201
 class _WholeFace:
     """A contact for each misalignment.
 
-    Attributes
-    ----------
-    misalignments : tuple of float
-        Growth of the gap over the face in the plane of action, m.
+    `misalignments`: growth of the gap over the face in the plane of action, m.
     """
 
     misalignments: tuple[float, ...]

@@ -217,12 +217,8 @@ def dynamic_scene(
 def check_scene(scene: SceneInput, facts: Mapping[str, PairFacts]) -> Scene:
     """Return the scene on placeholders for its tables and for the matrices of solids.
 
-    Raises `BadInput`: no such system exists or moves, or nothing of it passes where it is complained of.
-
-    Parameters
-    ----------
-    facts : mapping of str to PairFacts
-        By name of the mesh.
+    `facts`: by name of the mesh. Raises `BadInput`: no such system exists or moves, or nothing of it passes
+    where it is complained of.
     """
     tables = dict.fromkeys(facts, straight_table(ANY_STIFFNESS))
     housings = [placeholder(i, part) for i, part in enumerate(scene.housings)]

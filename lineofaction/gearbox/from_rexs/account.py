@@ -151,10 +151,7 @@ class Line:
 class Account:
     """The account of one model. Whoever reads a value states what becomes of it; the last word counts.
 
-    Parameters
-    ----------
-    model : Model
-        Of the newest version.
+    `model`: of the newest version.
     """
 
     def __init__(self, model: Model) -> None:

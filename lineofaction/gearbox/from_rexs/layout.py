@@ -342,12 +342,7 @@ class Train:
     def speeds(self, known: Mapping[int, float]) -> FloatArray | None:
         """Return the speeds of all rotors, rad/s, None where the known ones do not fit or leave some open.
 
-        Rotors that nothing joins to the known ones are at rest.
-
-        Parameters
-        ----------
-        known : mapping of int to float
-            Speeds by rotor.
+        Rotors that nothing joins to the known ones are at rest. `known`: speeds by rotor.
         """
         free = self._free(set(self.rotors) - self.joined_to(known))
         columns = [self.rotors.index(rotor) for rotor in known]

@@ -141,10 +141,7 @@ def _vector(part: Part, item: str, words: str) -> FloatArray | None:
 class SceneAxes:
     """The frame of the scene.
 
-    Attributes
-    ----------
-    rows : (3, 3) array
-        Unit vectors x, y, z of the scene in the frame of the model.
+    `rows` (3, 3): unit vectors x, y, z of the scene in the frame of the model.
     """
 
     rows: FloatArray

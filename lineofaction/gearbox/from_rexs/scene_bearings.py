@@ -41,10 +41,7 @@ _SIGN = {POSITIVE: 1, NEGATIVE: -1}
 class SceneBearings:
     """Tables of what holds the shafts, as a scene file has them; the account says what is left out and why.
 
-    Attributes
-    ----------
-    seats : dict of int to str
-        The bushing or rolling bearing of each bearing on the ground, by its component.
+    `seats`: the bushing or rolling bearing of each bearing on the ground, by its component.
     """
 
     def __init__(self, layout: Layout, shafts: SceneShafts) -> None:

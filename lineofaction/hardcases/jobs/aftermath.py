@@ -39,10 +39,7 @@ Disturb = Callable[["JobService", Job], None]
 class JobService:
     """A service at work.
 
-    Attributes
-    ----------
-    log : list of dict
-        What it has logged.
+    `log`: what it has logged.
     """
 
     directory: Path

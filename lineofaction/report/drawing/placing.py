@@ -107,10 +107,7 @@ class _LineLabel(NamedTuple):
 def line_labels(panel: Panel, row: float) -> list[_LineLabel]:
     """Return the labels of a panel's lines, each as near to its line's end as its neighbors allow.
 
-    Parameters
-    ----------
-    row : float
-        Height of one row of text, as a part of the panel's.
+    `row`: height of one row of text, as a part of the panel's.
     """
     lines = [line for line in panel.lines if line.label and _shown(line.y, panel.y).size]
     ends = np.array([_shown(line.y, panel.y)[-1] for line in lines])

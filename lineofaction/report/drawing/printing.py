@@ -21,13 +21,8 @@ _FLAGS = (
 def pdf(page: str, named: Path) -> bytes:
     """Return a page of HTML as PDF, A4 with page numbers.
 
-    Raises `BadInput`: there is no browser (the variable ``CHROMIUM`` names one), it fails, or it takes over
-    two minutes.
-
-    Parameters
-    ----------
-    named : Path
-        The file that is written, for the refusal.
+    `named`: the file that is written, for the refusal. Raises `BadInput`: there is no browser (the variable
+    ``CHROMIUM`` names one), it fails, or it takes over two minutes.
     """
     found = (shutil.which(name) for name in (os.environ.get("CHROMIUM", ""), *_BROWSERS))
     browser = next((path for path in found if path), None)

@@ -158,10 +158,7 @@ CLOSEST = 2e-8
 class Agreement:
     """The deflection with the tables that belong to it.
 
-    Attributes
-    ----------
-    change : float
-        Largest change of a misalignment by the last pass, over its size or `SMALL`.
+    `change`: largest change of a misalignment by the last pass, over its size or `SMALL`.
     """
 
     deflection: Deflection

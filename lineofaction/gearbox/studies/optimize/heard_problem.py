@@ -88,10 +88,7 @@ class HeardAt:
 class HeardObjective:
     """One level over speeds and load cases.
 
-    Attributes
-    ----------
-    worst_speed, worst_load : bool
-        Whether the largest power counts, or the mean.
+    `worst_speed`, `worst_load`: whether the largest power counts, or the mean.
     """
 
     at: tuple[HeardAt, ...] = field(repr=False)
@@ -176,11 +173,8 @@ class HeardProblem(SearchProblem):
     """The search for the lowest level: the objective is in dB, the merit the amplitude over the start's.
 
     The evaluator has three loads for each load case: a little below it, its own, and a little above.
-
-    Attributes
-    ----------
-    quantile : float or None
-        Share of the nodes that are no louder than the objective; None: it is that of their mean power.
+    `quantile`: share of the nodes that are no louder than the objective; None: it is that of their mean
+    power.
     """
 
     heard: HeardObjective = field(kw_only=True)

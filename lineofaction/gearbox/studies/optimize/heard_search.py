@@ -95,12 +95,8 @@ def heard_optimum(
 ) -> HeardOptimization:
     """Search from the flanks of a mesh, and tell start and optimum with their errors.
 
-    Raises `InputError`, `SolveError`: no such flanks, no equilibrium, or no contact of the start.
-
-    Parameters
-    ----------
-    request : OptimizationRequest
-        Pair, variables, scatter, limits, search and options; its torques do not count.
+    `request`: pair, variables, scatter, limits, search and options; its torques do not count. Raises
+    `InputError`, `SolveError`: no such flanks, no equilibrium, or no contact of the start.
     """
     assert mesh.case is not None  # a scene with its tables has its cases written out
     clock, run = StageClock(means.workers.cost), means.analysis

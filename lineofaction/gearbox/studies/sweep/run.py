@@ -205,10 +205,7 @@ QUANTITIES = {
 class SweepResult:
     """A sweep, and which of its quantities are shown.
 
-    Attributes
-    ----------
-    shown : tuple of str
-        Of `QUANTITIES`, those that there are.
+    `shown`: of `QUANTITIES`, those that there are.
     """
 
     sweep: Sweep
