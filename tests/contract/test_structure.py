@@ -11,15 +11,15 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (40_841, 741),
-    ("dynamics",): (42_615, 832),
-    ("lineofaction.gearbox",): (26_490, 539),
-    ("lineofaction.report",): (11_765, 224),
-    ("service",): (14_766, 339),
-    ("lineofaction.client",): (2_681, 53),
+    ("fe_contact",): (40_701, 741),
+    ("dynamics",): (42_484, 832),
+    ("lineofaction.gearbox",): (26_425, 538),
+    ("lineofaction.report",): (11_757, 224),
+    ("service",): (14_723, 339),
+    ("lineofaction.client",): (2_669, 53),
     ("lineofaction.cli",): (5_445, 80),
-    ("lineofaction.hardcases",): (3_844, 35),
-    ("bounds", "host", "model_studies"): (4_499, 155),
+    ("lineofaction.hardcases",): (3_841, 35),
+    ("bounds", "host", "model_studies"): (4_464, 155),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 818
