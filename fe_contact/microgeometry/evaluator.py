@@ -57,7 +57,7 @@ class Evaluation:
         default_factory=lambda: np.full((1, 1), np.nan), metadata=in_unit("pa", "node", "torque")
     )
 
-    def at_loads(self, some: BoolArray) -> Evaluation:
+    def at_loads(self, some: BoolArray | IntArray) -> Evaluation:
         """Return the same at some of the loads."""
         return Evaluation(**{name: values[..., some] for name, values in vars(self).items()})
 
