@@ -301,6 +301,14 @@ class _Outage(DatabaseUnavailable):
     exit_code = EXIT_FAILED
 
 
+class Unreachable(_Away):
+    """No service answers at the address."""
+
+    status = 503
+    type = f"{_OURS}unreachable"
+    title = "The service cannot be reached"
+
+
 # Those that are no more than a title, an HTTP status, an exit code, and seconds after which to try again.
 
 Kind = TypeVar("Kind", bound=ServiceError)
@@ -338,7 +346,6 @@ NotAcceptable = _row(_Refused, 406, "not-acceptable", "No acceptable type of ans
 NotForUs = _row(_Refused, 421, "not-for-us", "The request is meant for another machine")
 HeadTooLarge = _row(_Refused, 431, "head-too-large", "The head of the request is too large")
 TooSlow = _row(_Away, 408, "too-slow", "The request is too slow")
-Unreachable = _row(_Away, 503, "unreachable", "The service cannot be reached")
 StoreUnavailable = _row(_Away, 503, "store-unavailable", "The store of results cannot be reached", 5)
 DatabaseDamaged = _row(_Outage, 503, "database-damaged", "The database cannot be used")
 NoSpace = _row(_Outage, 503, "no-space", "There is no space left")
