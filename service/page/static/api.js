@@ -73,6 +73,22 @@ export async function file(path, type) {
   return (await answer(await asked(path, { headers: { Accept: type } }))).blob();
 }
 
+/** Do something that the service may refuse; `say` is given the Problem then. */
+export async function guarded(action, say) {
+  try {
+    return await action();
+  } catch (problem) {
+    if (!(problem instanceof Problem)) throw problem;
+    return say(problem);
+  }
+}
+
+/** Do something that the service may refuse, which is said in a line then. */
+export function saidIn(line, action) {
+  line.textContent = "";
+  return guarded(action, (problem) => { line.textContent = problem.message; });
+}
+
 export const pause = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
 
 const NOT_NOW = new Set([0, 502, 503, 504]);

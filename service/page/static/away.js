@@ -19,11 +19,4 @@ export function watchService(back) {
   });
 }
 
-async function answers() {
-  try {
-    await get("/health");
-    return true;
-  } catch {
-    return false;
-  }
-}
+const answers = () => get("/health").then(() => true, () => false);

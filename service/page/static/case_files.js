@@ -1,7 +1,7 @@
 // @ts-check
 /** Case files: opened into the form, saved from it. */
 
-import { Problem, post } from "./api.js";
+import { Problem, guarded, post } from "./api.js";
 import { byId, save } from "./elements.js";
 import { OpenedUnit, isUnit } from "./unit.js";
 
@@ -35,13 +35,8 @@ export class CaseFiles {
   }
 
   /** Do something that the service may refuse; say so at the form. */
-  async careful(action) {
-    try {
-      await action();
-    } catch (problem) {
-      if (!(problem instanceof Problem)) throw problem;
-      this.design.refuse(problem, { focus: true });
-    }
+  careful(action) {
+    return guarded(action, (problem) => this.design.refuse(problem, { focus: true }));
   }
 }
 

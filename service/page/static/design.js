@@ -1,7 +1,7 @@
 // @ts-check
 /** The design: the case as typed, where it came from, its drawing and its plan, and how it differs from another. */
 
-import { Problem, post } from "./api.js";
+import { guarded, post } from "./api.js";
 import { differences } from "./comparison.js";
 import { retype } from "./controls.js";
 import { Drawing } from "./drawing.js";
@@ -158,7 +158,7 @@ export class Design {
     const { signal } = (this.looking = new AbortController());
     const body = { inputs: { case: this.form.case } };
     let drawn = false;
-    try {
+    await guarded(async () => {
       const outline = await post("/v1/cases/outline", body, signal);
       if (signal.aborted) return;
       this.form.clear();
@@ -167,18 +167,16 @@ export class Design {
       drawn = true;
       const plan = await post("/v1/plans", { ...body, caller: this.caller }, signal);
       if (!signal.aborted) this.expected = showPlan(plan);
-    } catch (problem) {
-      if (signal.aborted) return;
-      if (!(problem instanceof Problem)) throw problem;
-      if (problem.status === 0) return; // asked again when the service is back
+    }, (problem) => {
+      if (signal.aborted || problem.status === 0) return; // asked again when the service is back
       this.refuse(problem);
       this.expected = undefined;
       noPlan();
       if (!drawn) this.drawing.stale();
-    }
+    });
   }
 
-  /** @param {Problem} problem @param {{focus?: boolean}} [options] whether the list of faults takes the focus */
+  /** @param {import("./api.js").Problem} problem @param {{focus?: boolean}} [options] whether the list of faults takes the focus */
   refuse(problem, options) {
     this.form.refuse(problem, options);
     if (this.helixInThePlane) byId("form-errors").append(this.threeDimensions());

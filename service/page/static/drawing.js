@@ -1,15 +1,6 @@
 /** The two gears in mesh, from the outlines that the service computes. */
 
-import { byId, figures, number } from "./elements.js";
-
-const SVG = "http://www.w3.org/2000/svg";
-
-function draw(name, attributes, text) {
-  const node = document.createElementNS(SVG, name);
-  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
-  if (text !== undefined) node.textContent = text;
-  return node;
-}
+import { byId, draw, figures, number } from "./elements.js";
 
 const turned = ([x, y], angle) => [x * Math.cos(angle) - y * Math.sin(angle), x * Math.sin(angle) + y * Math.cos(angle)];
 const place = ([x, y]) => `${x.toFixed(3)} ${(-y).toFixed(3)}`;

@@ -12,6 +12,16 @@ export function make(name, attributes = {}, ...children) {
   return node;
 }
 
+const SVG = "http://www.w3.org/2000/svg";
+
+/** Make an element of a drawing. @param {string} name @param {Record<string, string | number>} attributes @param {string} [text] */
+export function draw(name, attributes, text) {
+  const node = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, String(value));
+  if (text !== undefined) node.textContent = text;
+  return node;
+}
+
 export const byId = (id) => document.getElementById(id);
 
 const NUMERIC = /^$|^[-+]?[\d.]+(e[-+]?\d+)?( (N m|µm|%|± .*))?$/;

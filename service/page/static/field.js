@@ -32,10 +32,11 @@ export function numberIn(text) {
 export const numbersIn = (text) => text.split(/[,;\s]+/).filter(Boolean).map(numberIn);
 
 export class Field {
-  constructor(leaf, label) {
+  /** @param {object} leaf of a schema @param {string} label @param {string} [part] of the page, in the id of the control */
+  constructor(leaf, label, part = "f") {
     Object.assign(this, leaf);
     this.key = leaf.path.join(".");
-    this.id = `f-${this.key.replaceAll(".", "-")}`;
+    this.id = `${part}-${this.key.replaceAll(".", "-")}`;
     this.name = leaf.path.at(-1);
     this.kind = kindOf(leaf.schema);
     this.label = label;

@@ -1,6 +1,6 @@
 /** A job: submitted, watched with its stage and the time that remains, cancelled on request. */
 
-import { Problem, dismiss, get, patiently, pause, post } from "./api.js";
+import { Problem, dismiss, get, patiently, pause, post, saidIn } from "./api.js";
 import { duration, make } from "./elements.js";
 
 export const ENDED = new Set(["successful", "failed", "dismissed"]);
@@ -115,14 +115,7 @@ class JobCard {
 }
 
 /** Dismiss a job; what goes wrong is said in `line`. */
-export async function cancelled(id, line) {
-  try {
-    await dismiss(`/v1/jobs/${id}`);
-  } catch (problem) {
-    if (!(problem instanceof Problem)) throw problem;
-    line.textContent = problem.message;
-  }
-}
+export const cancelled = (id, line) => saidIn(line, () => dismiss(`/v1/jobs/${id}`));
 
 /** What is wrong, fault by fault. @param {Problem} problem */
 export function faultsOf(problem) {

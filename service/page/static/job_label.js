@@ -1,7 +1,7 @@
 // @ts-check
 /** What a job is called in the list: its title, or what it is about; what sets it apart, its tags; and the search. */
 
-import { Problem, patch } from "./api.js";
+import { patch, saidIn } from "./api.js";
 import { make } from "./elements.js";
 
 /** @typedef {{field: string, before: unknown, value: unknown}} Difference */
@@ -35,13 +35,7 @@ const written = (value) => (value === null ? "not set" : Array.isArray(value) ? 
 /** Ask for a title and give it to a job; what goes wrong is said in `line`. @param {Named} job @param {HTMLElement} line */
 export async function renamed(job, line) {
   const title = prompt("Name of the job", called(job));
-  if (title === null) return;
-  try {
-    await patch(`/v1/jobs/${job.jobID}`, { title });
-  } catch (problem) {
-    if (!(problem instanceof Problem)) throw problem;
-    line.textContent = problem.message;
-  }
+  if (title !== null) await saidIn(line, () => patch(`/v1/jobs/${job.jobID}`, { title }));
 }
 
 /** Parameters of the list for a search: words of titles, and tags behind a #. @param {string} text @returns {string} */

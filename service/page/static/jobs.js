@@ -1,6 +1,6 @@
 /** The jobs of the service, newest first: how far they are, reopened or cancelled. */
 
-import { Problem, get, pause } from "./api.js";
+import { Problem, get, pause, saidIn } from "./api.js";
 import { byId, duration, make } from "./elements.js";
 import { ENDED, WORDS, cancelled } from "./job.js";
 import { called, label, renamed, search } from "./job_label.js";
@@ -110,13 +110,7 @@ export class Jobs {
     const fits = first && first.jobID !== job.jobID && first.processID === job.processID;
     this.first = fits ? null : job;
     this.line.textContent = fits ? "" : `Choose another ${job.processID} job to compare this one with.`;
-    if (!fits) return;
-    try {
-      await this.compare(first, job);
-    } catch (problem) {
-      if (!(problem instanceof Problem)) throw problem;
-      this.line.textContent = problem.message;
-    }
+    if (fits) await saidIn(this.line, () => this.compare(first, job));
   }
 
   async rename(job) {

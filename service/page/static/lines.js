@@ -1,17 +1,10 @@
 // @ts-check
 /** Lines on one pair of axes as SVG: the first picture of the page, before plotly.js is needed. */
 
-const SVG = "http://www.w3.org/2000/svg";
+import { draw } from "./elements.js";
+
 const EDGE = { left: 60, right: 12, top: 26, bottom: 44 };
 const TICKS = 5;
-
-/** @param {string} name @param {Record<string, string | number>} attributes @param {string} [text] */
-function draw(name, attributes, text) {
-  const node = document.createElementNS(SVG, name);
-  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, String(value));
-  if (text !== undefined) node.textContent = text;
-  return node;
-}
 
 /** Round values from a low to a high one. @param {number} low @param {number} high */
 export function ticks(low, high) {

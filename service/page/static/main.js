@@ -8,7 +8,6 @@ import { layOut } from "./bench.js";
 import { CaseFiles } from "./case_files.js";
 import { typedIn } from "./controls.js";
 import { Design } from "./design.js";
-import { Dynamics } from "./dynamics.js";
 import { byId } from "./elements.js";
 import { referenceOf } from "./job.js";
 import { Jobs } from "./jobs.js";
@@ -18,6 +17,7 @@ import { caseOf, ordersOf, pairOf } from "./orders.js";
 import { pack, unpack } from "./packed.js";
 import { showReport } from "./report.js";
 import { Results } from "./results.js";
+import { Dynamics } from "./scene.js";
 import { SceneEditor } from "./scene_editor.js";
 import { Slot } from "./slot.js";
 import { showResult, showStudies, studiesOf } from "./studies.js";
@@ -38,13 +38,14 @@ class Page {
     const [examples, analyze, effects, { processes }, landing] = starts;
     byId("version").textContent = landing.version;
     const studies = studiesOf(processes);
-    this.address = new Address([...PLACES, ...studies.map(({ process }) => process)], () => this.typed);
+    const ofCases = studies.filter(({ subjects }) => subjects.includes("case"));
+    this.address = new Address([...PLACES, ...ofCases.map(({ process }) => process)], () => this.typed);
     this.caller = `page-${Math.random().toString(36).slice(2, 12)}`;
     this.design = new Design(analyze.inputs.case.schema, effects, examples, this);
     this.files = new CaseFiles(this.design, { scene: (name, unit) => this.scenes.take(name, unit), go: (views) => this.go(views) });
     /** @type {Map<string, Slot>} */
     this.slots = new Map();
-    this.parts(studies);
+    this.parts(ofCases, studies);
     this.nodes = new Tabs(byId("tree"), byId("fields"));
     this.tabs = layOut((id) => this.address.look("tab", id === USUAL_TAB ? null : id));
     this.keepTyped();
@@ -58,14 +59,15 @@ class Page {
     document.documentElement.dataset.ready = "yes";
   }
 
-  /** @param {ReturnType<typeof studiesOf>} studies */
-  parts(studies) {
+  /** @param {ReturnType<typeof studiesOf>} ofCases @param {ReturnType<typeof studiesOf>} studies all */
+  parts(ofCases, studies) {
     const take = (flanks) => this.take(flanks);
     const slot = (name, parts, show) => this.slot(name, parts, show);
     const show = (target, reference, signal) => showResult(target, reference, { take, signal });
-    showStudies(studies, { design: this.design, slot, show });
-    const dynamics = new Dynamics({ slot, show });
-    this.scenes = new SceneEditor({ slot, show, design: this.design });
+    const page = { design: this.design, slot, show };
+    showStudies(ofCases, page);
+    const dynamics = new Dynamics(studies.find(({ process }) => process === "modes"), page);
+    this.scenes = new SceneEditor(studies, page);
     this.variants = new Variants(this, () => this.render());
     const live = new Live(this, { take, inThreeDimensions: () => this.inThreeDimensions() });
     this.results = new Results(this, live, [dynamics, this.scenes]);

@@ -1,7 +1,7 @@
 // @ts-check
 /** What was computed for the parts of an address: the inputs of its jobs, the case of its table. */
 
-import { Problem, get, patiently } from "./api.js";
+import { get, guarded, patiently } from "./api.js";
 import { orderOf } from "./job.js";
 
 /** @typedef {{name: string, processID?: string, inputs: any}} Order a part of the address, and what was computed for it */
@@ -36,9 +36,4 @@ export async function pairOf(orders) {
 }
 
 /** @param {Promise<any>} answer */
-function unlessMissing(answer) {
-  return answer.catch((problem) => {
-    if (problem instanceof Problem) return null;
-    throw problem;
-  });
-}
+const unlessMissing = (answer) => guarded(() => answer, () => null);

@@ -1,6 +1,6 @@
 /** A stored result as the service's report describes it: main results, figures, tables, files. */
 
-import { Problem, file, get, patiently } from "./api.js";
+import { file, get, patiently, saidIn } from "./api.js";
 import { dataTable, figures, folded, make, save } from "./elements.js";
 import { figureBlock, painted, plot } from "./plots.js";
 import { soundBlock } from "./sound.js";
@@ -61,21 +61,10 @@ function files(result, figuresAt) {
   const name = `lineofaction_${result.hash.slice(0, 12)}`;
   const line = make("span", { class: "fault", role: "status" });
   const row = make("div", { class: "row files" }, make("span", { class: "hint" }, "Save"));
-  const button = (text, action) => row.append(make("button", { type: "button", onclick: () => said(action, line) }, text));
+  const button = (text, action) => row.append(make("button", { type: "button", onclick: () => saidIn(line, action) }, text));
   if (!result.against) button("netCDF", async () => save(await file(result.href, result.type), `${name}.nc`));
   if (!result.against) button("JSON", async () => save(await file(result.href, "application/json"), `${name}.json`));
   button("Figures as JSON", async () => save(await file(figuresAt, "application/json"), `${name}_figures.json`));
   row.append(line);
   return row;
-}
-
-/** Fetch a file; what goes wrong is said in `line`. */
-async function said(action, line) {
-  line.textContent = "";
-  try {
-    await action();
-  } catch (problem) {
-    if (!(problem instanceof Problem)) throw problem;
-    line.textContent = problem.message;
-  }
 }

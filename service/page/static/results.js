@@ -1,10 +1,10 @@
 // @ts-check
 /** The result that the address names: its report, its live flanks, its dynamics; and of which design it is. */
 
-import { Problem, get, patiently } from "./api.js";
+import { get, guarded, patiently } from "./api.js";
 import { retype, typedIn } from "./controls.js";
 import { DesignNote } from "./design_note.js";
-import { byId } from "./elements.js";
+import { byId, folded, make } from "./elements.js";
 import { sayMissing } from "./notice.js";
 import { pack, unpack } from "./packed.js";
 import { fetchPlotly } from "./plotly.js";
@@ -32,6 +32,10 @@ export class Results {
     this.shown = null;
     this.stopping = new AbortController();
     this.note = new DesignNote(byId("results-design"), design);
+    for (const tab of Object.keys(TABS)) {
+      const report = folded("As analyzed", make("div", { id: `report-${tab}`, class: "report" }));
+      byId(tab).prepend(make("div", { class: "live", id: `live-${tab}` }), report);
+    }
   }
 
   /**
@@ -69,15 +73,12 @@ export class Results {
       this.clear();
       return;
     }
-    try {
-      await this.read(key, signal);
-    } catch (problem) {
-      if (!(problem instanceof Problem)) throw problem;
+    await guarded(() => this.read(key, signal), (problem) => {
       if (signal.aborted) return;
       this.key = null;
       this.clear();
       sayMissing(`Result ${key.slice(0, 12)}…: ${problem.message}`);
-    }
+    });
   }
 
   /** @param {string} key @param {AbortSignal} signal */

@@ -1,35 +1,29 @@
 /** A scene of one's own: opened or written as TOML, run over time or studied over speed. */
 
-import { Problem, post } from "./api.js";
+import { guarded, post } from "./api.js";
 import { card } from "./card.js";
-import { evenly, usualScene } from "./dynamics.js";
 import { byId, make, save } from "./elements.js";
 import { showFailure } from "./job.js";
-import { textAndFiles } from "./named_files.js";
+import { base64, deflated } from "./packed.js";
+import { evenly, sceneOf } from "./scene.js";
 import { reveal } from "./tabs.js";
 
-const WHAT = [
-  ["simulate", "Run over time"], ["modes", "Modes over speed"], ["response", "Forced response over speed"],
-  ["complaint", "What its [complaint] is"],
-  ["vibration", "Vibration of the housing over speed"], ["noise", "Sound power over speed"],
-  ["listen", "Sound of the last run at a microphone"],
-  ["change", "What the pair of this page brings"],
-  ["steady", "Steady states over speed"], ["deflect", "Deflection under its loads"],
-  ["study", "Many runs, at constant speeds"],
-];
+const RUN = { process: "simulate", title: "Run over time", subjects: ["case", "scene"] };
 /** By which the text of a scene is known. */
 const SCENE = /^\s*\[\[\s*shafts\s*\]\]/m;
-const FIELDS = [
-  { name: "process", label: "Compute", choices: WHAT },
-  { name: "from", label: "Speeds from, rpm", value: "300" },
-  { name: "to", label: "to, rpm", value: "3000" },
-  { name: "count", label: "number", value: "10" },
-  { name: "microphone_mm", label: "Microphone x, y, z, mm", list: true, value: "0, 0, 1000" },
-];
+const FIELDS = {
+  from: { type: "number", title: "Speeds from, rpm", default: 300 },
+  to: { type: "number", title: "to, rpm", default: 3000 },
+  count: { type: "number", title: "number", default: 10 },
+  microphone_mm: { type: "array", items: { type: "number" }, title: "Microphone x, y, z, mm", default: [0, 0, 1000] },
+};
 
 export class SceneEditor {
-  /** @param {{slot: Function, show: Function, design: import("./design.js").Design}} page */
-  constructor({ slot, show, design }) {
+  /**
+   * @param {ReturnType<typeof import("./studies.js").studiesOf>} studies of which those of a scene are offered
+   * @param {{slot: Function, show: Function, design: import("./design.js").Design}} page
+   */
+  constructor(studies, { slot, show, design }) {
     this.design = design;
     this.text = make("textarea", {
       id: "scene-text", rows: 16, spellcheck: "false", autocomplete: "off", wrap: "off",
@@ -42,14 +36,18 @@ export class SceneEditor {
     this.run = undefined;
     /** Files that the scene names, as they go with its text. */
     this.files = [];
-    this.fromPair = make("button", { type: "button", disabled: true, onclick: () => this.write() }, "Write the scene of the pair above");
+    this.fromPair = make("button", { type: "button", disabled: true, onclick: () => this.put(sceneOf(this.known)) }, "Write the scene of the pair above");
+    const ofScenes = [RUN, ...studies.filter(({ subjects }) => subjects.includes("scene"))];
+    /** Of which a scene is all they take. */
+    this.whole = new Set(ofScenes.filter(({ subjects }) => subjects.includes("case")).map(({ process }) => process));
+    this.process = make("select", { id: "scene-process" }, ...ofScenes.map(({ process, title }) => make("option", { value: process }, title)));
+    const shown = (target, reference, signal) => {
+      if (reference.kind === "run") this.run = reference.hash;
+      return show(target, reference, signal);
+    };
     byId("scene-body").replaceChildren(card(
-      { title: "A scene of your own", action: "Compute the scene", text: HELP, fields: FIELDS, more: this.parts() },
-      (parts) => slot("scene", parts, (target, reference, signal) => {
-        if (reference.kind === "run") this.run = reference.hash;
-        return show(target, reference, signal);
-      }),
-      (values) => this.job(values), (order) => this.typedFor(order),
+      { process: "scene", title: "A scene of your own", action: "Compute the scene", text: HELP, fields: FIELDS }, { slot, show: shown },
+      (values) => this.job(values), { typed: (order) => this.typedFor(order), more: this.parts() },
     ));
   }
 
@@ -71,7 +69,8 @@ export class SceneEditor {
       make("button", { type: "button", onclick: () => save(this.text.value, "scene.toml", "application/toml") }, "Save scene"),
     );
     const label = make("label", { for: "scene-text", class: "above" }, "Scene, TOML");
-    return [row, this.chosen, label, this.text, this.spectrum, this.refusal];
+    const compute = make("div", { class: "row" }, make("label", { for: "scene-process" }, "Compute"), this.process);
+    return [row, this.chosen, label, this.text, this.spectrum, this.refusal, compute];
   }
 
   /**
@@ -112,7 +111,7 @@ export class SceneEditor {
   /** Open a scene with the files that it names; files without one belong to the scene that is here. */
   async opened(chosen) {
     if (!chosen.files.length) return;
-    const { text, name, files } = await textAndFiles(chosen.files, SCENE);
+    const { text, name, files } = await textAndFiles(chosen.files);
     chosen.value = "";
     const others = this.files.filter((known) => !files.some((file) => file.name === known.name));
     this.with(name ? files : [...others, ...files]);
@@ -124,27 +123,19 @@ export class SceneEditor {
     await this.careful(() => this.read());
   }
 
-  async write() {
-    await this.put(usualScene(this.known));
-  }
-
   async read() {
     return (await post("/v1/scenes/from-toml", { toml: this.text.value, files: this.files })).scene;
   }
 
   /** Do something that the service may refuse; say so under the text. */
-  async careful(action) {
+  careful(action) {
     this.refusal.replaceChildren();
-    try {
-      await action();
-    } catch (problem) {
-      if (!(problem instanceof Problem)) throw problem;
-      showFailure(this.refusal, problem);
-    }
+    return guarded(action, (problem) => showFailure(this.refusal, problem));
   }
 
-  job({ process, from, to, count, microphone_mm: microphone }) {
+  job({ from, to, count, microphone_mm: microphone }) {
     this.refusal.replaceChildren();
+    const process = this.process.value;
     return {
       process,
       inputs: async () => {
@@ -158,15 +149,16 @@ export class SceneEditor {
   /** Take the scene of a job; returns what was typed beside it. */
   typedFor({ processID, inputs }) {
     this.run = inputs.run ?? this.run;
+    this.process.value = processID;
     this.put(inputs.scene, "this address", inputs.load_cases);
     const speeds = inputs.speed_rpm ?? inputs.factors?.[0].levels ?? [];
     const range = { from: speeds[0], to: speeds.at(-1), count: speeds.length || undefined };
-    return { process: processID, ...range, microphone_mm: inputs.microphone_mm };
+    return { ...range, microphone_mm: inputs.microphone_mm };
   }
 
   /** What a process varies of a scene; a study runs it at each speed of its first drive. */
   varied(process, scene, speeds) {
-    if (process === "simulate" || process === "complaint") return {};
+    if (this.whole.has(process)) return {};
     if (process === "deflect") return this.cases.length ? { load_cases: this.cases } : {};
     if (process === "change") return { after: this.design.case, speed_rpm: speeds };
     if (process !== "study") return { speed_rpm: speeds };
@@ -174,6 +166,18 @@ export class SceneEditor {
     return { factors: [{ path, levels: speeds }], responses: RESPONSES };
   }
 }
+
+/** The TOML file that is a scene by its text, or else the first, and what is chosen with it; no name: none is TOML. @param {Iterable<File>} chosen */
+async function textAndFiles(chosen) {
+  const all = [...chosen];
+  const texts = await Promise.all(all.filter(({ name }) => name.endsWith(".toml")).map(async (file) => ({ file, text: await file.text() })));
+  const main = texts.find(({ text }) => SCENE.test(text)) ?? texts[0];
+  const files = await Promise.all(all.filter((file) => file !== main?.file).map(packed));
+  return { text: main?.text ?? "", name: main?.file.name ?? "", files };
+}
+
+/** The file compressed by zlib, in Base64, as a request carries it. @param {File} file */
+const packed = async (file) => ({ name: file.name, content: base64(await deflated(new Uint8Array(await file.arrayBuffer()))) });
 
 const RESPONSES = [
   { quantity: "dte_peak_to_peak" }, { quantity: "bearing_force", order: 1 }, { quantity: "dynamic_factor" },

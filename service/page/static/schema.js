@@ -34,7 +34,7 @@ export function kindOf(schema) {
   if (schema.enum) return "choice";
   if (schema.type === "boolean") return "switch";
   if (schema.type === "integer" || schema.type === "number") return "number";
-  if (schema.type === "array" && ["number", "integer"].includes(schema.items?.type)) return "list";
+  if (schema.type === "array" && ["number", "integer", "string"].includes(schema.items?.type)) return "list";
   return "json";
 }
 

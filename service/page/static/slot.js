@@ -1,7 +1,7 @@
 // @ts-check
 /** A part of the page that shows one job: submitted from it or named by the address, watched, and shown when it has ended. */
 
-import { Problem } from "./api.js";
+import { guarded } from "./api.js";
 import { DesignNote } from "./design_note.js";
 import { make } from "./elements.js";
 import { followed, orderOf, showFailure, submitted } from "./job.js";
@@ -83,24 +83,17 @@ export class Slot {
   /** Run until it is done or left; refusals are said in the place of the progress, or by `refused`. */
   async guarded(signal, action, refused = (problem) => this.refused(problem)) {
     this.busy(true);
-    try {
-      await action();
-    } catch (problem) {
-      if (!(problem instanceof Problem)) throw problem;
-      if (signal.aborted) return;
-      refused(problem);
-    } finally {
-      if (!signal.aborted) this.busy(false);
-    }
+    const unlessLeft = (then) => !signal.aborted && then();
+    await guarded(action, (problem) => unlessLeft(() => refused(problem))).finally(() => unlessLeft(() => this.busy(false)));
   }
 
-  /** What the address names has no result. @param {Problem} problem */
+  /** What the address names has no result. @param {import("./api.js").Problem} problem */
   missing(problem) {
     sayMissing(`${this.name}: ${problem.message}`);
     if (problem.status !== 404) this.refused(problem);
   }
 
-  /** @param {Problem} problem */
+  /** @param {import("./api.js").Problem} problem */
   refused(problem) {
     showFailure(this.progress, problem);
   }

@@ -1,7 +1,7 @@
 // @ts-check
 /** The sound of a plot of a result: fetched when somebody wants to hear it. */
 
-import { Problem, file, patiently } from "./api.js";
+import { file, patiently, saidIn } from "./api.js";
 import { make } from "./elements.js";
 import { joined } from "./player.js";
 
@@ -27,18 +27,13 @@ export function soundBlock(node, { title, sound }, result) {
   const line = make("span", { class: "fault", role: "status" });
   const listen = async () => {
     button.disabled = true;
-    line.textContent = "";
-    try {
-      const players = await Promise.all(sound.tracks.map((track, k) => fetched(track, k, result)));
-      group.prepend(...players.map((player, k) => make("label", {}, `${sound.tracks[k].name} `, player)));
-      row.remove();
-      joined(group, node, sound);
-      players[0].focus();
-    } catch (problem) {
-      if (!(problem instanceof Problem)) throw problem;
-      line.textContent = problem.message;
-      button.disabled = false;
-    }
+    const players = await saidIn(line, () => Promise.all(sound.tracks.map((track, k) => fetched(track, k, result))));
+    button.disabled = false;
+    if (!players) return;
+    group.prepend(...players.map((player, k) => make("label", {}, `${sound.tracks[k].name} `, player)));
+    row.remove();
+    joined(group, node, sound);
+    players[0].focus();
   };
   const button = make("button", { type: "button", class: "small", "aria-label": `Listen to: ${title}`, onclick: listen }, "Listen");
   const row = make("div", { class: "row" }, button, line);

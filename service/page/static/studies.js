@@ -1,4 +1,4 @@
-/** Jobs on the pair beside its analysis: a card for each process of the service that studies a case. */
+/** Jobs beside the analysis: a card for each process of the service that studies a case, and what came of any. */
 
 import { get, patiently } from "./api.js";
 import { card } from "./card.js";
@@ -7,23 +7,12 @@ import { showReport } from "./report.js";
 
 const TABS = { optimize: "ripple", sweep: "ripple", flank: "flank", "root-stress": "load", ablate: "errors", frontier: "errors" };
 
-/** The studies of a case among the processes of a service. */
+/** The studies among the processes of a service, each as its card shows it. */
 export function studiesOf(processes) {
-  return processes.map(cardOf).filter(({ action, subjects = [] }) => action && subjects.includes("case"));
-}
-
-/** What a process says for its card. */
-function cardOf({ id, title, description, additionalParameters }) {
-  const { action = [], subjects, fields = [{}] } = Object.fromEntries(additionalParameters.parameters.map(({ name, value }) => [name, value]));
-  return { process: id, title, text: description, action: action[0], subjects, fields: Object.entries(fields[0]).map(fieldOf) };
-}
-
-/** A field of a card, by the schema of the input. */
-function fieldOf([name, schema]) {
-  const kind = schema.anyOf?.find(({ type }) => type !== "null") ?? schema;
-  const list = kind.type === "array";
-  const value = list ? (schema.default ?? []).join(", ") : String(schema.default ?? "");
-  return { name, label: schema.title, value, list, ...(kind.enum ? { choices: kind.enum.map((choice) => [choice, choice.replaceAll("_", " ")]) } : {}) };
+  const facts = ({ additionalParameters: { parameters } }) => Object.fromEntries(parameters.map(({ name, value }) => [name, value]));
+  return processes.map((process) => ({ process, ...facts(process) })).filter(({ action }) => action).map(
+    ({ process: { id, title, description }, action: [action], subjects, fields: [fields] }) => (
+      { process: id, title, text: description, action, subjects, fields }));
 }
 
 /** Show an optimization; `take` is given its flanks. */
@@ -46,11 +35,10 @@ export async function showResult(target, reference, { take, signal }) {
  * @param {ReturnType<typeof studiesOf>} studies
  * @param {{design: import("./design.js").Design, slot: Function, show: Function}} page
  */
-export function showStudies(studies, { design, slot, show }) {
+export function showStudies(studies, page) {
   for (const study of studies) {
-    const { process } = study;
-    byId(TABS[process] ?? "tolerance").append(
-      card(study, (parts) => slot(process, parts, show), (values) => ({ process, inputs: { case: design.case, ...values } })),
+    byId(TABS[study.process] ?? "tolerance").append(
+      card(study, page, (values) => ({ inputs: { case: page.design.case, ...values } })),
     );
   }
 }
