@@ -1,6 +1,6 @@
 /** A study on the page: what it does, its fields, a button, progress and what came out. */
 
-import { make } from "./elements.js";
+import { button, make } from "./elements.js";
 import { Field } from "./field.js";
 import { at, put, resolved, same } from "./schema.js";
 
@@ -38,7 +38,11 @@ function valuesOf(fields) {
 export function card(study, { slot, show }, job, { typed = ({ inputs }) => inputs, more = [] } = {}) {
   const { process, title, text, action } = study;
   const fields = fieldsOf(study);
-  const parts = { progress: make("div"), result: make("div", { class: "result" }), button: make("button", { type: "button" }, action) };
+  const submit = () => {
+    const { process: other, inputs } = job(valuesOf(fields));
+    shown.submit(other ?? process, inputs);
+  };
+  const parts = { progress: make("div"), result: make("div", { class: "result" }), button: button(action, submit) };
   const row = make("div", { class: "row" }, ...fields.map(entry), parts.button);
   const block = make(
     "div", { class: "study" }, make("h3", {}, title), make("p", { class: "hint" }, text), ...more, row, parts.progress, parts.result,
@@ -51,9 +55,5 @@ export function card(study, { slot, show }, job, { typed = ({ inputs }) => input
       field.value = same(stated, field.schema.default) ? null : stated;
     }
   };
-  parts.button.addEventListener("click", () => {
-    const { process: other, inputs } = job(valuesOf(fields));
-    shown.submit(other ?? process, inputs);
-  });
   return block;
 }

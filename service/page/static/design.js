@@ -5,7 +5,7 @@ import { guarded, post } from "./api.js";
 import { differences } from "./comparison.js";
 import { retype } from "./controls.js";
 import { Drawing } from "./drawing.js";
-import { byId, make } from "./elements.js";
+import { button, byId, make } from "./elements.js";
 import { CaseForm } from "./form.js";
 import { noPlan, showPlan } from "./plan.js";
 import { View } from "./view.js";
@@ -190,11 +190,10 @@ export class Design {
   /** What a helical pair with a model of the plane is told. */
   threeDimensions() {
     const model = this.form.fields.get("accuracy.model").input.selectedOptions[0].text;
-    const button = { type: "button", class: "small", onclick: () => this.take({ "accuracy.model": "3d" }) };
     return make(
       "div", {}, make("p", {}, `The pair is helical, and the model “${model}” computes one transverse section: a spur pair. `
         + "Its contact lines run across the face, which takes three dimensions."),
-      make("button", button, "Set the model to 3d"),
+      button("Set the model to 3d", () => this.take({ "accuracy.model": "3d" }), { class: "small" }),
     );
   }
 }

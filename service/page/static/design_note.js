@@ -1,7 +1,7 @@
 // @ts-check
 /** A line that says of which design a result is, once the design has been edited since; and the way back to it. */
 
-import { make } from "./elements.js";
+import { button, make } from "./elements.js";
 
 const MOST = 6; // differences that are written out
 
@@ -32,7 +32,7 @@ export class DesignNote {
     const back = () => this.design.goTo(this.content, "Back to the design of the result.");
     return make(
       "div", { class: "design-note", role: "note" }, make("p", {}, text),
-      make("button", { type: "button", class: "small", onclick: back }, "Back to that design"),
+      button("Back to that design", back, { class: "small" }),
     );
   }
 }

@@ -12,6 +12,9 @@ export function make(name, attributes = {}, ...children) {
   return node;
 }
 
+/** A button. @param {string} text @param {(event: Event) => any} onclick @param {object} [facts] further attributes */
+export const button = (text, onclick, facts = {}) => make("button", { type: "button", ...facts, onclick }, text);
+
 const SVG = "http://www.w3.org/2000/svg";
 
 /** Make an element of a drawing. @param {string} name @param {Record<string, string | number>} attributes @param {string} [text] */

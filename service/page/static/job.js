@@ -1,7 +1,7 @@
 /** A job: submitted, watched with its stage and the time that remains, cancelled on request. */
 
 import { Problem, dismiss, get, patiently, pause, post, saidIn } from "./api.js";
-import { duration, make } from "./elements.js";
+import { button, duration, make } from "./elements.js";
 
 export const ENDED = new Set(["successful", "failed", "dismissed"]);
 const FIRST_LOOK = 150;
@@ -74,9 +74,7 @@ class JobCard {
     this.bar = make("progress", { max: "100", "aria-label": `Progress of ${process}` });
     this.line = make("p", {});
     this.spoken = make("p", { class: "hint", role: "status" });
-    this.cancel = make("button", {
-      type: "button", class: "small", onclick: () => cancelled(status.jobID, this.spoken),
-    }, `Cancel ${process}`);
+    this.cancel = button(`Cancel ${process}`, () => cancelled(status.jobID, this.spoken), { class: "small" });
     target.replaceChildren(make("div", { class: "job" }, this.line, this.bar, this.spoken, this.cancel));
   }
 

@@ -1,11 +1,12 @@
 /** The jobs of the service, newest first: how far they are, reopened or cancelled. */
 
 import { Problem, get, pause, saidIn } from "./api.js";
-import { byId, duration, make } from "./elements.js";
+import { button, byId, duration, make } from "./elements.js";
 import { ENDED, WORDS, cancelled } from "./job.js";
 import { called, label, renamed, search } from "./job_label.js";
 
 const AT_ONCE = 10;
+const OPENED = { successful: "Open", failed: "Why" };
 const COMPARED = new Set(["analyze", "simulate"]); // processes whose results are compared
 const AGAIN = 3000; // milliseconds after which jobs that have not ended are looked at again
 
@@ -80,22 +81,16 @@ export class Jobs {
     const when = new Date(job.created).toLocaleString([], { dateStyle: "medium", timeStyle: "short" });
     const name = called(job);
     const about = `${job.processID}${name ? ` of ${name}` : ""}, ${when}`;
-    const button = (text, action) => make(
-      "button", { type: "button", class: "small", "data-job": job.jobID, "aria-label": `${text} ${about}`, onclick: action }, text,
-    );
-    const actions = {
-      successful: () => button("Open", () => this.open(job)),
-      failed: () => button("Why", () => this.open(job)),
-    };
-    const compared = job.status === "successful" && COMPARED.has(job.processID) && !job.children;
-    const fold = () => button(this.unfolded.has(job.jobID) ? "Hide jobs" : "Show jobs", () => this.fold(job));
-    const cancel = () => button("Cancel", () => this.cancel(job));
+    const offered = (text, action) => button(text, action, { class: "small", "data-job": job.jobID, "aria-label": `${text} ${about}` });
+    const { status } = job;
+    const alone = !job.children;
     const buttons = [
-      job.children ? fold() : "",
-      ENDED.has(job.status) ? (!job.children && actions[job.status]?.()) || "" : cancel(),
-      compared ? button("Compare", () => this.choose(job)) : "",
-      button("Rename", () => this.rename(job)),
-    ];
+      !alone && offered(this.unfolded.has(job.jobID) ? "Hide jobs" : "Show jobs", () => this.fold(job)),
+      !ENDED.has(status) && offered("Cancel", () => this.cancel(job)),
+      alone && status in OPENED && offered(OPENED[status], () => this.open(job)),
+      alone && status === "successful" && COMPARED.has(job.processID) && offered("Compare", () => this.choose(job)),
+      offered("Rename", () => this.rename(job)),
+    ].filter(Boolean);
     const what = job.children ? `${job.processID}, ${job.children} jobs` : job.processID;
     const cells = [state(job), when, spent(job)].map((text) => make("td", {}, text));
     return make(

@@ -1,13 +1,13 @@
 /** Live flanks: sliders redraw the transmission error from the compliance the service keeps. */
 
 import { Problem, pause, post } from "./api.js";
-import { byId, dataTable, figures, folded, make, number } from "./elements.js";
+import { button, byId, dataTable, figures, folded, make, number } from "./elements.js";
 import { SHOWN_HARMONICS, harmonicsFigure, sharingFigure, steFigure } from "./live_figures.js";
 import { faultsOf } from "./job.js";
-import { LiveFlanks } from "./live_flanks.js";
+import { LiveFlanks, liveBlock } from "./live_flanks.js";
 import { mainFigures, numbersOf, sourcesOf } from "./live_numbers.js";
 import { LiveSound } from "./live_sound.js";
-import { figureBlock, plot } from "./plots.js";
+import { plot } from "./plots.js";
 import { Sliders } from "./sliders.js";
 
 const STYLES = {
@@ -58,14 +58,8 @@ export class Live {
   /** Show a curve that came with the program. @param {object} content its case @param {any} curve */
   async still(content, curve) {
     this.plots();
-    figures(byId("live-figures"), mainFigures(curve, NOTHING));
-    const shown = [{ ...STYLES.now, curve }];
-    this.describe(shown);
     await Promise.all([
-      plot(this.blocks.ste.node, { ...steFigure(shown), still: true }),
-      plot(this.blocks.harmonics.node, harmonicsFigure(shown)),
-      plot(this.blocks.sharing.node, sharingFigure(curve)),
-      this.flanks.draw(shown),
+      this.plot([{ ...STYLES.now, curve }], NOTHING, { still: true }),
       post("/v1/cases/outline", { inputs: { case: content } }).then((outline) => this.design.view.press(curve, outline)),
     ]);
   }
@@ -82,9 +76,8 @@ export class Live {
     const note = this.known.plane ? make(
       "div", {},
       make("p", { class: "hint" }, "Computed in the plane: misalignment, crowning and all else that acts across the face need three dimensions."),
-      make("button", { type: "button", onclick: () => this.actions.inThreeDimensions() }, "Analyze in three dimensions"),
+      button("Analyze in three dimensions", () => this.actions.inThreeDimensions()),
     ) : null;
-    const button = (text, action) => make("button", { type: "button", onclick: action }, text);
     byId("sliders").replaceChildren(
       ...this.sliders.blocks, note ?? "",
       make(
@@ -175,11 +168,10 @@ export class Live {
   }
 
   plots() {
-    const block = (key, title, caption) => figureBlock({ key, title, caption, alternative: "", plot: { data: [], layout: {} } }, "h3");
     this.blocks = {
-      ste: block("live_ste", "Transmission error over two base pitches", "Gray: as analyzed, at the same torque and aligned."),
-      harmonics: block("live_harmonics", "Mesh harmonics", "Amplitudes of the mesh frequency and its multiples."),
-      sharing: block("live_load_share", "Load sharing", "Part of the load on each pair of teeth."),
+      ste: liveBlock("live_ste", "Transmission error over two base pitches", "Gray: as analyzed, at the same torque and aligned."),
+      harmonics: liveBlock("live_harmonics", "Mesh harmonics", "Amplitudes of the mesh frequency and its multiples."),
+      sharing: liveBlock("live_load_share", "Load sharing", "Part of the load on each pair of teeth."),
     };
     this.numbers = folded("Numbers");
     this.blocks.ste.block.append(this.numbers);
@@ -193,16 +185,22 @@ export class Live {
     const { before } = this;
     const own = { ...STYLES[others.length ? this.variants.on : "now"], curve: now };
     const shown = [{ ...STYLES.before, curve: before }, ...others, own];
-    figures(byId("live-figures"), mainFigures(now, others[0]?.curve ?? before));
     this.sound.show(shown.map(({ name, curve, known = this.known }) => (
       { name, teeth: known.case.pair.pinion.teeth, harmonics: curve.harmonics_um.filter(Number.isFinite) })));
-    await Promise.all([
-      plot(this.blocks.ste.node, steFigure(shown)),
+    await this.plot(shown, others[0]?.curve ?? before);
+  }
+
+  /** Plot curves, the last with its figures and their change. @param {object[]} shown @param {object} from @param {object} [facts] of the first plot */
+  plot(shown, from, facts = {}) {
+    const { curve } = shown.at(-1);
+    figures(byId("live-figures"), mainFigures(curve, from));
+    this.describe(shown);
+    return Promise.all([
+      plot(this.blocks.ste.node, { ...steFigure(shown), ...facts }),
       plot(this.blocks.harmonics.node, harmonicsFigure(shown)),
-      plot(this.blocks.sharing.node, sharingFigure(now)),
+      plot(this.blocks.sharing.node, sharingFigure(curve)),
       this.flanks.draw(shown),
     ]);
-    this.describe(shown);
   }
 
   describe(shown) {

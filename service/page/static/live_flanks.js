@@ -50,12 +50,15 @@ function faceLoadFigure(shown) {
   return { data: [...means, worst], layout: made };
 }
 
+/** The place of a plot that is drawn again and again. @param {string} key @param {string} title @param {string} caption */
+export const liveBlock = (key, title, caption) => (
+  figureBlock({ key, title, caption, alternative: "", plot: { data: [], layout: {} } }, "h3"));
+
 /** What the pressure and the face load are now, and what they were. */
 export class LiveFlanks {
   constructor() {
-    const block = (key, title, caption) => figureBlock({ key, title, caption, alternative: "", plot: { data: [], layout: {} } }, "h3");
-    this.pressure = block("live_pressure", "Pressure over the driving gear's flank", "Hertz pressure that passes over each point, root below. At a tip edge the true pressure is singular. No error is stated.");
-    this.load = block("live_face_load", "Load over the face", "All pairs together: averaged over the positions, whose largest over mean is K_Hbeta, and at the position of the largest load. No error is stated.");
+    this.pressure = liveBlock("live_pressure", "Pressure over the driving gear's flank", "Hertz pressure that passes over each point, root below. At a tip edge the true pressure is singular. No error is stated.");
+    this.load = liveBlock("live_face_load", "Load over the face", "All pairs together: averaged over the positions, whose largest over mean is K_Hbeta, and at the position of the largest load. No error is stated.");
     this.blocks = [this.pressure.block, this.load.block];
   }
 

@@ -1,7 +1,7 @@
 // @ts-check
 /** The live curves as sounds: what the meshes excite over a run-up, all at one scale, so that louder is louder. */
 
-import { byId, make } from "./elements.js";
+import { button, byId, make } from "./elements.js";
 
 /** @typedef {{name: string, teeth: number, harmonics: number[]}} Voice teeth of the driving gear, amplitudes in um */
 /** @typedef {{from: number, to: number, seconds: number}} Sweep speeds of the driving gear in rpm */
@@ -67,7 +67,7 @@ export class LiveSound {
     const names = (list) => list.map(({ name }) => name).join();
     const same = names(voices) === names(this.voices);
     this.voices = voices;
-    if (!same) this.buttons.replaceChildren(...voices.map(({ name }) => make("button", { type: "button", onclick: () => this.play(name) }, `Play ${name}`)));
+    if (!same) this.buttons.replaceChildren(...voices.map(({ name }) => button(`Play ${name}`, () => this.play(name))));
     const voice = voices.find(({ name }) => name === this.playing);
     if (voice) this.source.setPeriodicWave(wave(this.context, voice));
   }

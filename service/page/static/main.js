@@ -2,7 +2,7 @@
 /** The page: what its address says is shown, what is typed is kept with it. */
 
 import { Address, OF_DESIGN } from "./address.js";
-import { Problem, get, patiently } from "./api.js";
+import { get, patiently } from "./api.js";
 import { watchService } from "./away.js";
 import { layOut } from "./bench.js";
 import { CaseFiles } from "./case_files.js";

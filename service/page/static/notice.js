@@ -1,7 +1,7 @@
 // @ts-check
 /** What the first screen says of an address that names what cannot be shown. */
 
-import { byId, make } from "./elements.js";
+import { button, byId, make } from "./elements.js";
 import { reveal } from "./tabs.js";
 
 export function clearNotice() {
@@ -15,7 +15,7 @@ export function sayMissing(text) {
     box.append(
       make("strong", {}, "Not all that this address names can be shown."), make("ul"),
       make("p", {}, make("a", { href: "/" }, "Begin anew"), ", or reopen an earlier result from the ",
-        make("button", { type: "button", class: "small", onclick: () => reveal(byId("jobs")) }, "list of jobs"), "."),
+        button("list of jobs", () => reveal(byId("jobs")), { class: "small" }), "."),
     );
   }
   box.querySelector("ul").prepend(make("li", {}, text));

@@ -1,7 +1,7 @@
 /** Plots by plotly.js: in the colors of the page, with their numbers beside them. */
 
 import { patiently } from "./api.js";
-import { csv, dataTable, folded, make, save } from "./elements.js";
+import { button, csv, dataTable, folded, make, save } from "./elements.js";
 import { lines } from "./lines.js";
 import { plotly } from "./plotly.js";
 
@@ -165,9 +165,7 @@ function columnsOf({ data, layout }) {
 export function figureBlock(figure, level = "h4") {
   const label = `${figure.title}. ${figure.alternative}`;
   const node = make("div", { class: "plot", role: "img", "aria-label": label });
-  const tool = (text, action) => make(
-    "button", { type: "button", class: "small", "data-tool": text, "aria-label": `${text} of: ${figure.title}`, onclick: action }, text,
-  );
+  const tool = (text, action) => button(text, action, { class: "small", "data-tool": text, "aria-label": `${text} of: ${figure.title}` });
   const tools = make(
     "div", { class: "plot-tools" },
     tool("PNG", () => savePng(node, figure.key)),

@@ -1,7 +1,7 @@
 /** A stored result as the service's report describes it: main results, figures, tables, files. */
 
 import { file, get, patiently, saidIn } from "./api.js";
-import { dataTable, figures, folded, make, save } from "./elements.js";
+import { button, dataTable, figures, folded, make, save } from "./elements.js";
 import { figureBlock, painted, plot } from "./plots.js";
 import { soundBlock } from "./sound.js";
 
@@ -61,10 +61,10 @@ function files(result, figuresAt) {
   const name = `lineofaction_${result.hash.slice(0, 12)}`;
   const line = make("span", { class: "fault", role: "status" });
   const row = make("div", { class: "row files" }, make("span", { class: "hint" }, "Save"));
-  const button = (text, action) => row.append(make("button", { type: "button", onclick: () => saidIn(line, action) }, text));
-  if (!result.against) button("netCDF", async () => save(await file(result.href, result.type), `${name}.nc`));
-  if (!result.against) button("JSON", async () => save(await file(result.href, "application/json"), `${name}.json`));
-  button("Figures as JSON", async () => save(await file(figuresAt, "application/json"), `${name}_figures.json`));
+  const offer = (text, action) => row.append(button(text, () => saidIn(line, action)));
+  if (!result.against) offer("netCDF", async () => save(await file(result.href, result.type), `${name}.nc`));
+  if (!result.against) offer("JSON", async () => save(await file(result.href, "application/json"), `${name}.json`));
+  offer("Figures as JSON", async () => save(await file(figuresAt, "application/json"), `${name}_figures.json`));
   row.append(line);
   return row;
 }

@@ -2,7 +2,7 @@
 
 import { guarded, post } from "./api.js";
 import { card } from "./card.js";
-import { byId, make, save } from "./elements.js";
+import { button, byId, make, save } from "./elements.js";
 import { showFailure } from "./job.js";
 import { base64, deflated } from "./packed.js";
 import { evenly, sceneOf } from "./scene.js";
@@ -36,7 +36,7 @@ export class SceneEditor {
     this.run = undefined;
     /** Files that the scene names, as they go with its text. */
     this.files = [];
-    this.fromPair = make("button", { type: "button", disabled: true, onclick: () => this.put(sceneOf(this.known)) }, "Write the scene of the pair above");
+    this.fromPair = button("Write the scene of the pair above", () => this.put(sceneOf(this.known)), { disabled: true });
     const ofScenes = [RUN, ...studies.filter(({ subjects }) => subjects.includes("scene"))];
     /** Of which a scene is all they take. */
     this.whole = new Set(ofScenes.filter(({ subjects }) => subjects.includes("case")).map(({ process }) => process));
@@ -66,7 +66,7 @@ export class SceneEditor {
     const row = make(
       "div", { class: "buttons" },
       chosen, make("label", { class: "button", for: "scene-file" }, "Open scene file…"), this.fromPair,
-      make("button", { type: "button", onclick: () => save(this.text.value, "scene.toml", "application/toml") }, "Save scene"),
+      button("Save scene", () => save(this.text.value, "scene.toml", "application/toml")),
     );
     const label = make("label", { for: "scene-text", class: "above" }, "Scene, TOML");
     const compute = make("div", { class: "row" }, make("label", { for: "scene-process" }, "Compute"), this.process);
@@ -97,7 +97,7 @@ export class SceneEditor {
   /** Say under which load cases the scene is deflected; none: under its own loads. */
   under(name, cases) {
     this.cases = cases;
-    const leave = make("button", { type: "button", onclick: () => this.under("", []) }, "Leave them out");
+    const leave = button("Leave them out", () => this.under("", []));
     const words = `A deflection takes the load cases of ${name}: ${cases.map((load) => load.name).join(", ")}. `;
     this.spectrum.replaceChildren(...(cases.length ? [words, leave] : []));
   }

@@ -2,7 +2,7 @@
 /** The sound of a plot of a result: fetched when somebody wants to hear it. */
 
 import { file, patiently, saidIn } from "./api.js";
-import { make } from "./elements.js";
+import { button, make } from "./elements.js";
 import { joined } from "./player.js";
 
 /** @type {Map<HTMLAudioElement, string>} addresses of what was fetched, by where it plays */
@@ -26,17 +26,17 @@ function swept() {
 export function soundBlock(node, { title, sound }, result) {
   const line = make("span", { class: "fault", role: "status" });
   const listen = async () => {
-    button.disabled = true;
+    asked.disabled = true;
     const players = await saidIn(line, () => Promise.all(sound.tracks.map((track, k) => fetched(track, k, result))));
-    button.disabled = false;
+    asked.disabled = false;
     if (!players) return;
     group.prepend(...players.map((player, k) => make("label", {}, `${sound.tracks[k].name} `, player)));
     row.remove();
     joined(group, node, sound);
     players[0].focus();
   };
-  const button = make("button", { type: "button", class: "small", "aria-label": `Listen to: ${title}`, onclick: listen }, "Listen");
-  const row = make("div", { class: "row" }, button, line);
+  const asked = button("Listen", listen, { class: "small", "aria-label": `Listen to: ${title}` });
+  const row = make("div", { class: "row" }, asked, line);
   const group = make("div", { class: "player", role: "group", "aria-label": `Sound: ${title}` }, row, make("p", { class: "hint" }, sound.caption));
   return group;
 }

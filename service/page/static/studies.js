@@ -2,7 +2,7 @@
 
 import { get, patiently } from "./api.js";
 import { card } from "./card.js";
-import { byId, make } from "./elements.js";
+import { button, byId, make } from "./elements.js";
 import { showReport } from "./report.js";
 
 const TABS = { optimize: "ripple", sweep: "ripple", flank: "flank", "root-stress": "load", ablate: "errors", frontier: "errors" };
@@ -20,8 +20,8 @@ async function showOptimization(target, reference, { take, signal }) {
   const found = await patiently(() => get(reference.href));
   if (!(await showReport(target, reference, { making: true, signal }))) return;
   for (const part of target.querySelectorAll(":scope > details")) part.open = true; // the design and its scatter
-  const button = make("button", { type: "button", onclick: () => take(found.optimum.values) }, "Take the optimum into the case");
-  target.querySelector(".headline").after(make("div", { class: "row" }, button));
+  const taken = button("Take the optimum into the case", () => take(found.optimum.values));
+  target.querySelector(".headline").after(make("div", { class: "row" }, taken));
 }
 
 /** Show a result of any kind but a table; `take` is given the flanks of an optimization. */

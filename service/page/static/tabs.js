@@ -1,7 +1,7 @@
 // @ts-check
 /** Tabs over or beside their panels: one stop of the keyboard, from which arrows go on. */
 
-import { make } from "./elements.js";
+import { button } from "./elements.js";
 
 const STEPS = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1, Home: -Infinity, End: Infinity };
 
@@ -31,8 +31,8 @@ export class Tabs {
     const id = `${panel.id}-tab`;
     panel.setAttribute("role", "tabpanel");
     panel.setAttribute("aria-labelledby", id);
-    const facts = { type: "button", role: "tab", id, "aria-controls": panel.id, "data-level": panel.dataset.level };
-    return make("button", { ...facts, onclick: () => this.select(panel.id) }, panel.dataset.title);
+    const facts = { role: "tab", id, "aria-controls": panel.id, "data-level": panel.dataset.level };
+    return button(panel.dataset.title, () => this.select(panel.id), facts);
   }
 
   /** @param {string} id of a panel; of none: the one that is shown stays */

@@ -2,7 +2,7 @@
 /** A gear unit of another tool (REXS): its tree in the rail, each mesh opened into the form, and the account. */
 
 import { Problem, patiently, post } from "./api.js";
-import { byId, folded, make, number, save } from "./elements.js";
+import { button, byId, folded, make, number, save } from "./elements.js";
 import { sayMissing } from "./notice.js";
 import { base64, packedFile, unpackedFile } from "./packed.js";
 
@@ -84,24 +84,22 @@ export class OpenedUnit {
     Object.assign(this, { word, name, unit });
     const { scene } = unit;
     this.facts = new Map();
+    const shown = (text, seen) => make("li", {}, button(text, () => this.look(seen), { class: "part", "data-part": seen }));
     const part = (text, fact) => {
       this.facts.set(text, fact);
-      return make("li", {}, make("button", { type: "button", class: "part", "data-part": text, onclick: () => this.look(text) }, text));
+      return shown(text, text);
     };
-    const tree = scene ? [
-      make("li", {}, make("button", { type: "button", class: "part", "data-part": WHOLE, onclick: () => this.look(WHOLE) }, name)),
-      make("li", {}, ...branches(scene, part)),
-    ] : [];
-    const meshes = this.meshes.map((mesh) => make("li", {}, make(
-      "button", { type: "button", class: "part", onclick: () => this.openMesh(mesh) }, `${mesh.name}, ${teeth(mesh.case)}`)));
-    const button = (text, action) => make("button", { type: "button", class: "small", onclick: action }, text);
-    const files = scene ? [button("Open scene", () => this.page.scene(name, unit)), button("Save scene", () => this.saveScene())] : [];
+    const tree = scene ? [shown(name, WHOLE), make("li", {}, ...branches(scene, part))] : [];
+    const meshes = this.meshes.map((mesh) => (
+      make("li", {}, button(`${mesh.name}, ${teeth(mesh.case)}`, () => this.openMesh(mesh), { class: "part" }))));
+    const small = (text, action) => button(text, action, { class: "small" });
+    const files = scene ? [small("Open scene", () => this.page.scene(name, unit)), small("Save scene", () => this.saveScene())] : [];
     this.summary = summary(name, unit);
     this.place.replaceChildren(
       ...unit.left_out.map((text) => make("p", { class: "alarm", role: "alert" }, `Left out of the scene: ${text}`)),
       make("ul", { class: "parts" }, ...tree, make("li", {}, branch("Meshes", meshes))),
       make("p", { class: "hint", role: "status" }, this.summary),
-      make("p", { class: "buttons" }, ...files, button("Save report", () => save(`${JSON.stringify(unit.lines, null, 1)}\n`, "import.json", "application/json"))),
+      make("p", { class: "buttons" }, ...files, small("Save report", () => save(`${JSON.stringify(unit.lines, null, 1)}\n`, "import.json", "application/json"))),
       ...(unit.load_cases.length ? [folded("Load cases", loads(unit.load_cases))] : []),
       folded("What was refused, assumed, defaulted and derived", make("ul", {}, ...unit.summary.map((line) => make("li", {}, line)))),
     );

@@ -3,7 +3,7 @@
 
 import { HASH, JOB } from "./address.js";
 import { Problem, post } from "./api.js";
-import { byId, make } from "./elements.js";
+import { button, byId } from "./elements.js";
 import { caseOf } from "./orders.js";
 import { pack, unpack } from "./packed.js";
 
@@ -63,11 +63,11 @@ export class Variants {
   offer() {
     const known = LETTERS.filter((letter) => letter === this.on || this.address.views.has(letter));
     const next = LETTERS.find((letter) => !known.includes(letter));
-    const button = (letter) => make("button", {
-      type: "button", "aria-pressed": String(letter === this.on), "aria-label": `Variant ${letter.toUpperCase()}`, onclick: () => this.choose(letter),
-    }, letter.toUpperCase());
-    const add = next && make("button", { type: "button", "aria-label": "Another variant: a copy of this one", onclick: () => this.add(next) }, "+");
-    byId("variants").replaceChildren(...known.map(button), add ?? "");
+    const variant = (letter) => button(letter.toUpperCase(), () => this.choose(letter), {
+      "aria-pressed": String(letter === this.on), "aria-label": `Variant ${letter.toUpperCase()}`,
+    });
+    const add = next && button("+", () => this.add(next), { "aria-label": "Another variant: a copy of this one" });
+    byId("variants").replaceChildren(...known.map(variant), add ?? "");
   }
 
   /** Begin another variant with what is shown. @param {string} letter */

@@ -1,7 +1,7 @@
 // @ts-check
 /** What the design is, in three dimensions: the pair as it rolls, or the unit that was opened; and how it is steered. */
 
-import { byId, make } from "./elements.js";
+import { button, byId, make } from "./elements.js";
 import { most, RollingPair } from "./view_pair.js";
 import { drawable, Stage } from "./view_stage.js";
 import { gearboxOf } from "./view_unit.js";
@@ -21,7 +21,7 @@ export class View {
     this.words = make("p", { class: "view-words", role: "status" });
     this.scale = make("span", { class: "view-scale", hidden: true });
     this.pair.told = (words, map) => this.words.replaceChildren(...(map ? [map] : []), words);
-    const roll = make("button", { type: "button", class: "small", onclick: () => this.stage.roll(!this.stage.rolls) }, "");
+    const roll = button("", () => this.stage.roll(!this.stage.rolls), { class: "small" });
     const say = () => { roll.textContent = this.stage.rolls ? "Stop" : "Roll"; };
     this.stopped = false;
     this.stage.canvas.addEventListener("rolls", () => {
