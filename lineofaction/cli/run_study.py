@@ -34,7 +34,7 @@ from lineofaction.gearbox.convert.complaint import marks_of_case
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.input_file import InputFile, number_list
 from lineofaction.gearbox.problems import BadInput, JobFailed
-from lineofaction.gearbox.project import inputs_in, result_name
+from lineofaction.gearbox.project import inputs_in, result_name, usual_speeds
 from lineofaction.gearbox.registry import SUFFIX
 from lineofaction.gearbox.result_files import COMPLAINT, stamp, stamp_complaint
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
@@ -42,6 +42,7 @@ from lineofaction.gearbox.schemas.model import BoundaryModel, item_type, spellin
 from lineofaction.gearbox.schemas.reading import located
 from lineofaction.gearbox.schemas.report import ReportInput
 from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.schemas.studied import OverSpeeds
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.tabled_scene import open_executor
@@ -84,7 +85,7 @@ def run_study(study: Study, options: Json) -> None:
     files = options[study.argument] if study.several else [options[study.argument]]
     read = [_read(study, file) for file in files]
     run = None if options.get("run") is None else read_run(options["run"], "run")
-    inputs = _inputs(study, options, files[0].project)
+    inputs = _inputs(study, options, read[0][0], files[0].project)
     subjects = []
     for file, (subject, folder) in zip(files, read, strict=True):
         with located(file):
@@ -153,15 +154,24 @@ def _tell(
         _show(study, result, targets, remote_seconds)
 
 
-def _inputs(study: Study, options: Json, project: Path | None) -> Any:
+def _inputs(study: Study, options: Json, subject: CheckedCase | SceneInput, project: Path | None) -> Any:
     if isinstance(options.get("study"), BoundaryModel):  # of a verb that has read it
         return options["study"]
     if not study.takes.from_file:
-        return validated(study.inputs, _fields(study, options))
+        fields = _fields(study, options)
+        if isinstance(subject, SceneInput) and _without_speeds(study.inputs, fields):
+            fields["speed_rpm"] = usual_speeds(subject, project)
+        return validated(study.inputs, fields)
     file = options["study"] or (inputs_in(project, study) if project else None)
     if file is None and not study.takes.bare:
         raise BadInput.of("study", None, "a study file", f"For example: loa {study.name} {study.example}")
     return validated(study.inputs, {}) if file is None else read_model(study.inputs, file)
+
+
+def _without_speeds(inputs: type[BoundaryModel], fields: Json) -> bool:
+    """Whether inputs need speeds, and neither those nor a run are named."""
+    needed = issubclass(inputs, OverSpeeds) and not inputs.at_rest
+    return needed and not fields.keys() & {"speed_rpm", "run"}
 
 
 def _fields(study: Study, options: Json) -> Json:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
@@ -17,10 +17,15 @@ from lineofaction.gearbox.registry import STUDIES, SUFFIX
 from lineofaction.gearbox.schemas.reading import read_table
 from lineofaction.gearbox.study import Study
 
+if TYPE_CHECKING:
+    from lineofaction.gearbox.schemas.scene import SceneInput
+
 _SIGNS = {"scene": "shafts", "case": "pair"}
 _ENDINGS = (".toml", ".json")
 RUN, SOUND = f"run{SUFFIX}", "run.wav"
 """Of a scene, in its project."""
+USUAL_SPEEDS = 30
+"""How many speeds a study is over if none is named."""
 
 
 def file_of(named: InputFile, subject: str) -> InputFile:
@@ -68,6 +73,22 @@ def inputs_in(project: Path, study: Study) -> Path | None:
     fields = study.inputs.model_fields.keys()
     found = [path for path, table in _tables(project) if table and table.keys() <= fields]
     return only(found, project, f"file for {study.name}") if found else None
+
+
+def usual_speeds(scene: SceneInput, project: Path | None) -> list[float]:
+    """Return speeds in rpm, evenly up to the highest of the scene's first drive and the folder's load cases.
+
+    Raises `BadInput`: none of them has a speed, or several files of the folder have load cases.
+    """
+    file = None if project is None else inputs_in(project, STUDIES["deflect"])
+    cases = [] if file is None else read_table(file)["load_cases"]
+    speeds = [speed for drive in scene.drives[:1] for speed in drive.speed_rpm or ()]
+    speeds += [case.get("speed_rpm", 0.0) for case in cases]
+    highest = max(map(abs, speeds), default=0.0)
+    if not highest:
+        bound = "given where neither a drive nor a load case has a speed"
+        raise BadInput.of("speed_rpm", None, bound, "For example --speed-rpm 500:6000:100.")
+    return [highest * (k + 1) / USUAL_SPEEDS for k in range(USUAL_SPEEDS)]
 
 
 def results_in(project: Path) -> list[Path]:

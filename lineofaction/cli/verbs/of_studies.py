@@ -114,9 +114,9 @@ def _option(name: str, field: FieldInfo) -> Parameter:
     if spelling and spelling.file:
         return keyword(name, Annotated[Path | None, option], field.default)
     kind = str | None if item_type(field) else field.annotation
-    if field.is_required():
-        return keyword(name, Annotated[str if item_type(field) else kind, option])
-    typed = field.default  # as it would be typed; an empty list is none
+    if field.is_required() and not item_type(field):
+        return keyword(name, Annotated[kind, option])
+    typed = None if field.is_required() else field.default  # as it would be typed; an empty list is none
     if isinstance(typed, tuple):
         typed = ",".join(item if isinstance(item, str) else f"{item:g}" for item in typed) or None
     return keyword(name, Annotated[kind, option], typed)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Self
+from typing import Annotated, ClassVar, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
@@ -34,8 +34,9 @@ _OVER_SPEEDS = both(
 
 
 class OverSpeeds(BoundaryModel):
-    """Inputs of a study over speeds, which are an axis."""
+    """Inputs of a study over speeds, which are an axis; `at_rest`: whether it has an answer without any."""
 
+    at_rest: ClassVar[bool] = False
     speed_rpm: Row[float]
 
     @model_validator(mode="after")

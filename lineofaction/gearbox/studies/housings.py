@@ -35,7 +35,8 @@ from lineofaction.gearbox.studies.excitations import excitations_of
 from lineofaction.gearbox.units import RPM
 
 ADVICE = (
-    "Give a housing by step_file, mesh_file or modes_file: matrices alone do not say what the air touches."
+    "Give a housing by step_file, mesh_file or modes_file: matrices alone do not say what the air touches. "
+    'In the scene, step_file = "housing.step" stands in place of its stiffness_matrix.'
 )
 SAME = 1e-6
 """Largest difference between matrices of the same housing, of their largest entry."""

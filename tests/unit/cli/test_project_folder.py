@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from command_line import loa
+from command_line import loa, printed
+from scene_files import scene_file
 from spur_case import spur_case
 
 from lineofaction.gearbox.input_file import InputFile
@@ -67,6 +68,29 @@ def test_the_file_of_a_study_is_known_by_its_fields(rotor: Path) -> None:
     shutil.copy(rotor / "loads.toml", rotor / "others.toml")
     with pytest.raises(BadInput, match=r"one file for deflect. Name one: .*loads\.toml, .*others\.toml"):
         inputs_in(rotor, STUDIES["deflect"])
+
+
+def test_speeds_that_are_not_named_go_up_to_the_highest_of_drive_and_load_cases(tmp_path: Path) -> None:
+    scene = scene_file(tmp_path)  # at 900 rpm
+    assert printed("response", scene, "--orders", 1)["speed_rpm"] == pytest.approx(
+        [30.0 * k for k in range(1, 31)]
+    )
+    cases = "[[load_cases]]\nname = 'fast'\nspeed_rpm = 6000.0\n[[load_cases]]\nname = 'as it is'\n"
+    (tmp_path / "cases.toml").write_text(cases)
+    assert printed("response", tmp_path, "--orders", 1)["speed_rpm"] == pytest.approx(
+        [200.0 * k for k in range(1, 31)]
+    )
+    assert (tmp_path / "response.nc").is_file()
+    assert printed("modes", tmp_path, "--orders", 1)["speed_rpm"] == []
+
+
+def test_a_study_over_speeds_says_what_to_name_where_nothing_turns(rotor: Path) -> None:
+    file = rotor / "jeffcott.toml"
+    file.write_text(file.read_text("utf-8").replace("speed_rpm = [3843.5]", "speed_rpm = [0.0]"))
+    for verb in ("noise", "vibration", "response", "steady"):
+        refused = loa(verb, rotor)
+        assert refused.exit_code == EXIT_BAD_INPUT
+        assert "must be given where neither a drive nor a load case has a speed. For" in refused.stderr
 
 
 def states(folder: Path) -> dict[str, str]:

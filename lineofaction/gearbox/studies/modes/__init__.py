@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from pydantic import Field
 
 from lineofaction.gearbox.schemas.figures import Equilibrium, Figures, Ledger, Part, ReductionCosts, Seconds
@@ -12,6 +14,7 @@ from lineofaction.gearbox.schemas.studied import MOST_SPEEDS, Orders, OverSpeeds
 class Inputs(OverSpeeds):
     """Speeds at which modes are looked for, beside those at rest."""
 
+    at_rest: ClassVar[bool] = True
     speed_rpm: Row[Speed] = Field(
         default=(),
         max_length=MOST_SPEEDS,
