@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,9 +12,11 @@ from dynamics.errors import InputError
 from dynamics.forces.elements import SPATIAL_FLANK
 from dynamics.kernels.by_address import by_address
 from dynamics.mechanism.flanks import mean_stiffness, with_technique
+from dynamics.meshes.flank_force import FlankLaws
 from dynamics.meshes.mesh_table import MeshTable
 from dynamics.meshes.packed_tables import pack_tables
-from dynamics.meshes.technique import table_at, table_at_operating_point
+from dynamics.meshes.spatial_flank import SpatialFlankLaws
+from dynamics.meshes.technique import PlainTable, table_at, table_at_operating_point
 from dynamics.motion.motion import QUANTA_PER_TURN
 from dynamics.motion.observation import local_state
 from dynamics.types import FloatArray, IntArray
@@ -43,40 +46,62 @@ def with_flank(system: System, mesh: int, table: MeshTable) -> System:
     table : MeshTable
         At one misalignment and center distance.
     """
+    used, plain, spatial = _used(system, mesh, table), *_laws(system)
+    plain = plain._replace(table=by_address(plain.table.with_table(mesh, used)), damping=plain.damping.copy())
+    elements = system.arrays.elements
+    if elements.law[mesh] == SPATIAL_FLANK:
+        grid = spatial.grid.with_table(int(elements.entry[mesh]), used)
+        spatial = spatial._replace(grid=grid, damping=spatial.damping.copy())
+    changed = by_address(elements._replace(laws=elements.laws._replace(flank=plain, spatial_flank=spatial)))
+    arrays = by_address(system.arrays._replace(elements=changed))
+    own = replace(system, arrays=arrays, flanks=replace(system.flanks, law=plain))
+    return _damped(own, mesh, used)
+
+
+def with_flanks(system: System, mesh: int, tables: Sequence[MeshTable]) -> Iterator[System]:
+    """Yield `with_flank` for tables of the same positions and number of levels, each until the next is taken.
+
+    They share its arrays. Raises as `with_flank`.
+    """
+    own = with_flank(system, mesh, tables[0])
+    yield own
+    plain, spatial = _laws(own)
+    for table in tables[1:]:
+        used = _used(own, mesh, table)
+        plain.table.overwrite(mesh, used)
+        if own.arrays.elements.law[mesh] == SPATIAL_FLANK:
+            spatial.grid.overwrite(int(own.arrays.elements.entry[mesh]), used)
+        own = _damped(own, mesh, used)
+        yield own
+
+
+def _laws(system: System) -> tuple[FlankLaws, SpatialFlankLaws]:
+    return system.flanks.law, system.arrays.elements.laws.spatial_flank
+
+
+def _used(system: System, mesh: int, table: MeshTable) -> PlainTable:
+    """Return the table with the technique of a mesh."""
     if np.size(table.misalignment) > 1 or np.size(table.center_distance_change) > 1:
         raise InputError("table", "several operating points", "a table at one of them")
-    elements, flanks, part = system.arrays.elements, system.flanks, system.scene.meshes[mesh]
     point = float(table.misalignment[0]), float(table.center_distance_change[0])
-    used = with_technique(part.technique, table_at(table, *point), float(flanks.nominal_force[mesh]))
+    technique, force = system.scene.meshes[mesh].technique, float(system.flanks.nominal_force[mesh])
+    return with_technique(technique, table_at(table, *point), force)
+
+
+def _damped(system: System, mesh: int, used: PlainTable) -> System:
+    """Return `system`, whose laws hold a table `used` already, with its damping in them and what follows."""
+    elements, flanks = system.arrays.elements, system.flanks
     force = float(flanks.nominal_force[mesh]) or float(used.level[1])
-    stiffness = mean_stiffness(used, force)
-    damped = 1.0 if part.damping is not None else (stiffness / flanks.mean_stiffness[mesh]) ** 0.5
-    plain, spatial = elements.laws.flank, elements.laws.spatial_flank
-    plain = plain._replace(
-        table=by_address(plain.table.with_table(mesh, used)), damping=_scaled(plain.damping, mesh, damped)
-    )
-    if elements.law[mesh] == SPATIAL_FLANK:
-        entry = int(elements.entry[mesh])
-        spatial = spatial._replace(
-            grid=spatial.grid.with_table(entry, used), damping=_scaled(spatial.damping, entry, damped)
-        )
-    changed = by_address(elements._replace(laws=elements.laws._replace(flank=plain, spatial_flank=spatial)))
+    stiffness = mean_stiffness(flanks.law.table, mesh, force)
+    if system.scene.meshes[mesh].damping is None:
+        factor = (stiffness / flanks.mean_stiffness[mesh]) ** 0.5
+        plain, spatial = _laws(system)
+        plain.damping[mesh] *= factor
+        if elements.law[mesh] == SPATIAL_FLANK:
+            spatial.damping[elements.entry[mesh]] *= factor
+    stiffnesses = np.where(np.arange(flanks.mean_stiffness.size) == mesh, stiffness, flanks.mean_stiffness)
     tables = tuple(used if index == mesh else own for index, own in enumerate(flanks.tables))
-    return replace(
-        system,
-        arrays=by_address(system.arrays._replace(elements=changed)),
-        flanks=replace(
-            flanks,
-            law=plain,
-            tables=tables,
-            mean_stiffness=_scaled(flanks.mean_stiffness, mesh, stiffness / flanks.mean_stiffness[mesh]),
-        ),
-    )
-
-
-def _scaled(values: FloatArray, index: int, factor: float) -> FloatArray:
-    """Return values with one of them times a factor."""
-    return np.where(np.arange(values.size) == index, factor * values, values)
+    return replace(system, flanks=replace(flanks, tables=tables, mean_stiffness=stiffnesses))
 
 
 def starting_at(system: System, time: float, moved: IntArray) -> System:

@@ -14,6 +14,7 @@ from dynamics.meshes.table_lookup import table_deflection
 from dynamics.motion.force_balance import (
     ForceBalance,
     at_mean_loads,
+    block_diagonal,
     force_balance,
     mean_loads,
     stiffness_across,
@@ -75,6 +76,44 @@ def equilibrium_near(system: System, displacement: FloatArray, time: float = 0.0
     system = replace(system, arrays=at_mean_loads(system.arrays))
     external = _external(system, time)
     return _newton(system, time, displacement, external, parting=False, limit=CLOSE_LIMIT)
+
+
+@dataclass(frozen=True)
+class RestsBeside:
+    """Rests of systems that differ a little from one at rest, to first order: one factorization for all.
+
+    Attributes
+    ----------
+    displacement : (n,) array
+        Of the system at rest, m and rad.
+    force : (R,) array
+        Of its elements, N.
+    compliance : (n, n) array
+        Displacements per force on the freedoms.
+    """
+
+    time: float
+    displacement: FloatArray
+    force: FloatArray
+    compliance: FloatArray
+
+    @classmethod
+    def of(cls, system: System, displacement: FloatArray, time: float = 0.0) -> RestsBeside:
+        """Look at a system that rests at displacements (n,)."""
+        arrays, n = at_mean_loads(system.arrays), displacement.size
+        balance = _balance(arrays, time, displacement, np.zeros(n))
+        unit = _accelerating(arrays, np.eye(n))
+        compliance = _solve(arrays, balance.stiffness, unit, np.zeros((n, n)))
+        return cls(time, displacement, balance.local.force, compliance)
+
+    def rest(self, system: System) -> StaticSolution:
+        """Return the rest of a system whose elements differ a little; its residual is that of the other."""
+        arrays = at_mean_loads(system.arrays)
+        local = local_state(arrays, self.time, self.displacement, np.zeros(self.displacement.size))
+        moved = self.compliance @ ((self.force - local.force) @ arrays.direction)
+        force = local.force + block_diagonal(arrays.elements, local.tangent) @ (arrays.direction @ moved)
+        displacement = self.displacement + moved
+        return StaticSolution(StaticStatus.CONVERGED, displacement, force[system.driving_rows], 0.0, 1)
 
 
 def _external(system: System, time: float) -> FloatArray:
@@ -179,7 +218,7 @@ def _solve(arrays: SystemArrays, matrix: FloatArray, force: FloatArray, q: Float
     Nothing holds a free train, and no force is left along its motion: without that it could rest anywhere.
     """
     own = arrays.reference.freedom[arrays.reference.freedom >= 0]
-    held = np.zeros((own.size, q.size))
+    held = np.zeros((own.size, len(q)))
     held[np.arange(own.size), own] = float(np.max(np.abs(matrix), initial=1.0))
     left, right = np.concatenate([matrix, held]), np.concatenate([force, -held @ q])
     return np.asarray(np.linalg.lstsq(left, right, rcond=1e-14)[0])

@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.assembly.varied import with_flank
+from dynamics.assembly.varied import with_flank, with_flanks
 from dynamics.errors import SolveError
-from dynamics.integrators.static import equilibrium_near
+from dynamics.integrators.static import RestsBeside, StaticSolution, equilibrium_near
 from dynamics.linearize.flank_cycles import flank_cycles
 from dynamics.linearize.steady_vibration import Excited, excited
 from dynamics.linearize.transfer import FlankExcitation, FlankTransfer, excitation_of
@@ -55,14 +55,16 @@ class OtherFlanks:
         SolveError
             There is no static equilibrium.
         """
-        at, before = self.at, self.at.linear
-        system = with_flank(at.system, self.mesh, table)
-        rest = equilibrium_near(system, before.equilibrium.displacement, at.time)
+        system = with_flank(self.at.system, self.mesh, table)
+        rest = equilibrium_near(system, self.at.linear.equilibrium.displacement, self.at.time)
         if not rest.status.usable:
             raise SolveError(f"no static equilibrium: {rest.status.name.lower()}, {rest.residual:.3g} N left")
-        linear = replace(before, equilibrium=rest)
-        cycles = flank_cycles(system, linear, at.time, self.orders)
-        return replace(self, at=replace(at, system=system, linear=linear, cycles=cycles))
+        return self._resting(system, rest)
+
+    def _resting(self, system: System, rest: StaticSolution) -> OtherFlanks:
+        linear = replace(self.at.linear, equilibrium=rest)
+        cycles = flank_cycles(system, linear, self.at.time, self.orders)
+        return replace(self, at=replace(self.at, system=system, linear=linear, cycles=cycles))
 
     @property
     def excitation(self) -> FlankExcitation:
@@ -70,9 +72,14 @@ class OtherFlanks:
         return excitation_of(self.at, self.harmonics)
 
     def changes(self, tables: Sequence[MeshTable]) -> list[FlankExcitation]:
-        """Return how the excitation changes with tables that are a little different, as differences."""
-        own = self.excitation
-        return [_difference(self.with_table(table).excitation, own) for table in tables]
+        """Return how the excitation changes with tables that are a little different, as differences.
+
+        The tables are of the positions and the number of levels of each other.
+        """
+        own, system = self.excitation, self.at.system
+        beside = RestsBeside.of(system, self.at.linear.equilibrium.displacement, self.at.time)
+        moved = (self._resting(each, beside.rest(each)) for each in with_flanks(system, self.mesh, tables))
+        return [_difference(each.excitation, own) for each in moved]
 
 
 def _difference(first: FlankExcitation, second: FlankExcitation) -> FlankExcitation:

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.errors import InputError
-from dynamics.identity_cache import identity_cached
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.meshes.flank_force import FlankLaws
-from dynamics.meshes.packed_tables import PackedTables, pack_tables
+from dynamics.meshes.packed_tables import BUCKETS_PER_KNOT, PackedTables, pack_tables
 from dynamics.meshes.table_lookup import read_tangents
 from dynamics.meshes.technique import PlainTable, secant_table, table_at
 from dynamics.types import FloatArray
@@ -67,7 +66,7 @@ def flank_laws(mechanism: Mechanism) -> Flanks:
             raise error.within(f"meshes[{index}]") from None
     packed = pack_tables(static)
     typical = np.where(nominal > 0.0, nominal, [table.level[1] for table in static])
-    stiffness = np.array([mean_stiffness(table, force) for table, force in zip(static, typical, strict=True)])
+    stiffness = np.array([mean_stiffness(packed, index, force) for index, force in enumerate(typical)])
     damping = [  # as given, or from the ratio, of the gears rotating against each other on the mesh
         2.0 * mesh.damping_ratio * float(np.sqrt(stiffness[f] / mesh_mobility(mechanism, f)))
         if mesh.damping is None
@@ -79,11 +78,12 @@ def flank_laws(mechanism: Mechanism) -> Flanks:
     return Flanks(nominal, stiffness, tuple(used), law, (), packed, tuple(used))
 
 
-@identity_cached
-def mean_stiffness(table: PlainTable, force: float) -> float:
-    """Return the tangent stiffness at `force` (N), mean over the positions of `table`, N/m."""
-    stiffness = np.empty(table.position.size)
-    read_tangents(pack_tables([table]), 0, table.position, force, stiffness)
+def mean_stiffness(tables: PackedTables, flank: int, force: float) -> float:
+    """Return the tangent stiffness of a flank at `force` (N), mean over the knots of its table, N/m."""
+    knot, _, buckets, *_ = (int(value) for value in tables.offset[flank])
+    position = tables.shift[flank] + tables.knot[knot : knot + buckets // BUCKETS_PER_KNOT]
+    stiffness = np.empty(position.size)
+    read_tangents(tables, flank, position, force, stiffness)
     return float(np.mean(stiffness))
 
 

@@ -86,6 +86,12 @@ class GridTables(NamedTuple):
             np.concatenate([self.number, own.number]),
         )
 
+    def overwrite(self, flank: int, table: MeshTable) -> None:
+        """Write another table as `PackedTables.overwrite` does."""
+        number, first = _numbers(table), int(self.first[flank])
+        self.number[first : first + number.size] = number.ravel()
+        self.base.overwrite(flank, table)
+
     def decimated(self, every: int = 2) -> GridTables:
         """Return the tables on each `every`-th knot of position."""
         shape, first = self.shape.copy(), self.first.copy()

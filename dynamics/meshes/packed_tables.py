@@ -109,6 +109,13 @@ class PackedTables(NamedTuple):
         shift[flank], period[flank] = float(table.position[0]), float(table.period)
         return _joined(parts, range(len(parts)), shift, period)
 
+    def overwrite(self, flank: int, table: MeshTable) -> None:
+        """Write another table of the same positions and number of levels into the arrays of a flank's."""
+        own = _part(self, flank)
+        own.level[:] = table.level
+        own.row[:] = _rows(table, np.diff(own.knot))
+        own.energy[:] = _energy_below(own.row, own.level)
+
 
 def kept_knots(knots: int, every: int) -> IntArray:
     """Return the knots that stay, and the one that closes the period."""
@@ -203,11 +210,15 @@ def _joined(
 def _laid_out(table: MeshTable) -> _Table:
     knot = np.append(np.asarray(table.position, dtype=float), table.position[0] + table.period)
     knot -= knot[0]
-    width, level = np.diff(knot)[:, np.newaxis], np.asarray(table.level, dtype=float)
-    deflection = _cubic(table.deflection[0, 0], table.deflection_slope[0, 0], width)
-    stiffness = _cubic(table.stiffness[0, 0], table.stiffness_slope[0, 0], width)
-    rows = np.ascontiguousarray(np.concatenate([deflection, stiffness], axis=-1).reshape(-1, 8))
+    rows, level = _rows(table, np.diff(knot)), np.asarray(table.level, dtype=float)
     return _Table(knot, _bucket_starts(knot), rows, level, _energy_below(rows, level))
+
+
+def _rows(table: MeshTable, width: FloatArray) -> FloatArray:
+    """Return the rows (P L, 8) of a table whose intervals have a width (P,)."""
+    value = np.stack([table.deflection[0, 0], table.stiffness[0, 0]], axis=-1)
+    slope = np.stack([table.deflection_slope[0, 0], table.stiffness_slope[0, 0]], axis=-1)
+    return _cubic(value, slope, width[:, None, None]).reshape(-1, 8)
 
 
 def _bucket_starts(knot: FloatArray) -> IntArray:
@@ -219,7 +230,7 @@ def _bucket_starts(knot: FloatArray) -> IntArray:
 
 
 def _cubic(value: FloatArray, slope: FloatArray, width: FloatArray) -> FloatArray:
-    """Coefficients (P, L, 4) on each interval, the last of which joins the last knot to the first."""
+    """Coefficients (P, L, 2, 4) on each interval, the last of which joins the last knot to the first."""
     end, rise, fall = np.roll(value, -1, axis=0), slope * width, np.roll(slope, -1, axis=0) * width
     step = end - value
     return np.stack([value, rise, 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step], axis=-1)

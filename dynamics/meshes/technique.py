@@ -43,9 +43,12 @@ def table_at(table: MeshTable, misalignment: float, center_distance_change: floa
     """
     weight_m = _weights("misalignment", table.misalignment, misalignment)
     weight_d = _weights("center_distance_change", table.center_distance_change, center_distance_change)
+    alone = weight_m.size == weight_d.size == 1
 
     def here(name: str) -> FloatArray:
         values = np.asarray(getattr(table, name), dtype=float)
+        if alone:
+            return values
         return np.asarray(np.einsum("m,d,mdpl->pl", weight_m, weight_d, values)[None, None])
 
     levers = {name: here(name) for name in LEVERS if getattr(table, name, None) is not None}

@@ -212,7 +212,7 @@ class _Strips:
             mating = self.pair.mating_roll_length(self.roll_1)
             steady = np.asarray(gap(self.pair, self.roll_1, mating, self.face))
             return steady, steady
-        smooth, breaks = self._parted(gap, (-_NODE, 0.0, _NODE))
+        smooth, breaks = self._parted(gap)
         slope = (smooth[2] - smooth[0]) / (2.0 * _NODE)
         bend = (smooth[2] - 2.0 * smooth[1] + smooth[0]) / _NODE**2
         back = -self.middle / self.half
@@ -224,17 +224,21 @@ class _Strips:
 
     def slopes(self, gap: GapTerm) -> FloatArray:
         """Return the mean slope of a gap over the strips (k,)."""
-        smooth, breaks = self._parted(gap, (-_NODE, _NODE))
-        slope = (smooth[1] - smooth[0]) / (2.0 * _NODE * self.half)
+        smooth, breaks = self._parted(gap)
+        slope = (smooth[2] - smooth[0]) / (2.0 * _NODE * self.half)
         return np.asarray(slope + sum(each.side * self._past(each, distance)[1] for each, distance in breaks))
 
-    def _parted(
-        self, gap: GapTerm, places: tuple[float, ...]
-    ) -> tuple[FloatArray, list[tuple[Break, FloatArray]]]:
-        """Return a gap without its breaks at places of each strip, in half strips; breaks and distances."""
-        x = self.middle + self.half * np.array(places)[:, None]
+    @cached_property
+    def _nodes(self) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
+        """Three places of each strip along the flank (3, k), and the roll lengths there."""
+        x = self.middle + self.half * np.array([-_NODE, 0.0, _NODE])[:, None]
+        return x, rolls_at(self.pair, self.s_1 + x, self.s_2 - x)
+
+    def _parted(self, gap: GapTerm) -> tuple[FloatArray, list[tuple[Break, FloatArray]]]:
+        """Return a gap without its breaks at three places of each strip (3, k); breaks and distances."""
+        x, rolls = self._nodes
         breaks = [(each, each.distance(self.s_1, self.s_2)) for each in gap.breaks(self.pair, self.face)]
-        whole = gap(self.pair, *rolls_at(self.pair, self.s_1 + x, self.s_2 - x), self.face)
+        whole = gap(self.pair, *rolls, self.face)
         return whole - sum(each.height(x - distance) for each, distance in breaks), breaks
 
     def _past(self, start: Break, distance: FloatArray) -> tuple[FloatArray, FloatArray]:

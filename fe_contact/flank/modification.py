@@ -89,6 +89,10 @@ class FlankModification(_Figures):
         """The part that differs over the face; twisted or free, it varies along the profile too."""
         return _together(part for part in self.parts if Direction.FACE in part.varies)
 
+    def part_with(self, figure: str) -> FlankModification:
+        """Return the part that has a figure, without the others."""
+        return _together(part for part in self.parts if figure in _DEFAULTS[type(part)][1])
+
     def check_fits(self, gear: Tooth) -> None:
         """Raise `InputError` if a part does not fit the gear.
 
@@ -122,6 +126,8 @@ class FlankModification(_Figures):
             m, >= 0 except where a slope or twist adds material; exactly zero for a neutral modification.
         """
         roll, face = np.broadcast_arrays(np.asarray(roll_length, float), np.asarray(face_position, float))
+        if self.neutral:
+            return np.zeros(roll.shape)
         return self.removed(gear, np.clip(roll, *involute(gear)), face)
 
     def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:

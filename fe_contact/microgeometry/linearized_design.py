@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from fe_contact.contact.model import GapTerm
 from fe_contact.effects.flank_modification import ModificationGap
 from fe_contact.effects.misalignment import MisalignmentGap
 from fe_contact.errors import InputError, SolveError
-from fe_contact.flank.modification import UNMODIFIED
+from fe_contact.flank.modification import UNMODIFIED, FlankModification
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.evaluator import (
     Evaluation,
@@ -254,7 +253,8 @@ class _Difference:
         value = figure(pair, name)
         step = LENGTH_STEP * value if quantity in LENGTHS else AMOUNT_STEP
         low = value - step if quantity in SLOPES else max(value - step, 0.0)
-        above, below = (_gap(pair, gear, {quantity: end}) for end in (value + step, low))
+        part = getattr(pair, gear).modification.part_with(quantity)
+        above, below = (_gap(gear, replace(part, **{quantity: end})) for end in (value + step, low))
         return cls(above, below, value + step - low)
 
     def opened(self, strips: CarryingStrips) -> FloatArray:
@@ -262,9 +262,8 @@ class _Difference:
         return strips.opened(self.above, self.below) / self.over
 
 
-def _gap(pair: ParallelAxes, gear: str, figures: Mapping[str, Any]) -> ModificationGap:
-    changed = replace(getattr(pair, gear).modification, **figures)
-    return ModificationGap(**(dict.fromkeys(GEARS, UNMODIFIED) | {gear: changed}))
+def _gap(gear: str, modification: FlankModification) -> ModificationGap:
+    return ModificationGap(**(dict.fromkeys(GEARS, UNMODIFIED) | {gear: modification}))
 
 
 NEAR = 0.8
