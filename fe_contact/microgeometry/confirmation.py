@@ -347,7 +347,7 @@ def confirm(
     search, nodes, counted = problem.evaluator, problem.evaluator.nodes, study.counted
     table = full_table(search, values, study.decided, cache)
     fine = replace(search.at(table.position), load=study.force, misalignment=study.loads.misalignment)
-    figures, exact = fine.evaluate(values), replace(fine, nodes=ONE_NODE)
+    figures, exact = fine.confirmed(values), replace(fine, nodes=ONE_NODE)
     error = ripple_errors(table, fine)
     ripple = figures.peak_to_peak
     nominal = exact.evaluate(values)

@@ -47,6 +47,8 @@ class Evaluation:
     root_stress : ndarray, shape (S, L)
         Largest principal stress in the tension roots of both gears over positions, Pa; NaN where it is not
         followed.
+    root_stress_error : ndarray, shape (S, L)
+        By the finite elements of the roots, Pa; NaN where it is not estimated.
     """
 
     ste: FloatArray = field(metadata=in_unit("m", "node", "position", "torque"))
@@ -54,6 +56,9 @@ class Evaluation:
     face_load_factor: FloatArray
     edge_load_share: FloatArray
     root_stress: FloatArray = field(
+        default_factory=lambda: np.full((1, 1), np.nan), metadata=in_unit("pa", "node", "torque")
+    )
+    root_stress_error: FloatArray = field(
         default_factory=lambda: np.full((1, 1), np.nan), metadata=in_unit("pa", "node", "torque")
     )
 
@@ -138,6 +143,15 @@ class Evaluator:
 
         return tuple(tuple(run) for _, run in groupby(range(self.nodes.weight.size), flanks))
 
+    def confirmed(self, values: Mapping[str, float]) -> Evaluation:
+        """Evaluate a design with the error of its root stress: of all nodes and loads the largest part."""
+        own = self.evaluate(values)
+        if self.roots is None:
+            return own
+        rough = replace(self, roots=self.roots.rough).evaluate(values)
+        part = self.roots.remaining * np.abs(rough.root_stress / own.root_stress - 1.0).max()
+        return replace(own, root_stress_error=part * own.root_stress)
+
     def solved(
         self, values: Mapping[str, float], nodes: Iterable[int]
     ) -> Iterator[tuple[ParallelAxes, ContactProblem, ContactSolution]]:
@@ -159,7 +173,8 @@ class Evaluator:
             )
             for f in solved
         ]
-        return Evaluation(*(self.gathered(each) for each in zip(*figures, strict=True)))
+        parts = [self.gathered(each) for each in zip(*figures, strict=True)]
+        return replace(Evaluation(*parts), root_stress_error=np.full(parts[-1].shape, np.nan))
 
     def gathered(self, solved: Sequence[FloatArray]) -> FloatArray:
         """Return arrays (..., l) of all that was `solved`, each at its loads, as one (S, ..., L)."""

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_contact.analysis.flanks.root_stress import unit_stresses
+from fe_contact.analysis.flanks.root_stress import root_meshes, unit_stresses
 from fe_contact.analysis.pairs.pair_contact import PairContact
 from fe_contact.compliance import UnitRootStress
 from fe_contact.contact import Candidates, ContactProblem
@@ -35,15 +35,24 @@ class RootInfluence:
     units : pair of UnitRootStress
     offset : float
         Distance of the driven gear's mid-face from the driving gear's, m.
+    rough : RootInfluence, optional
+        On coarser meshes; of these themselves None.
+    remaining : float
+        Error left over the difference to these.
     """
 
     units: tuple[UnitRootStress, UnitRootStress]
     offset: float
+    rough: RootInfluence | None = None
+    remaining: float = math.nan
 
     @classmethod
     def of(cls, contact: PairContact, cache: Path | None = None) -> RootInfluence:
         """Compute or fetch the unit-load stress of the gears of a contact."""
-        return cls(unit_stresses(contact, False, cache), contact.pair.axial_offset)
+        offset = contact.pair.axial_offset
+        units, rough = (unit_stresses(contact, coarse, cache) for coarse in (False, True))
+        remaining = root_meshes(contact.plan.discretization).remaining
+        return cls(units, offset, cls(rough, offset), remaining)
 
     def stress(self, problem: ContactProblem, force: FloatArray) -> FloatArray:
         """Return the largest principal stress of the tension roots of the teeth in contact, (2, P, L) Pa.

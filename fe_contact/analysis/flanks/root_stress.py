@@ -228,7 +228,7 @@ class _FaceRootMeshes:
     """Error left over the difference of the two meshes: ratio one and a half or more, second order."""
 
 
-def _root_meshes(made: PlaneDiscretization | FaceDiscretization) -> _PlaneRootMeshes | _FaceRootMeshes:
+def root_meshes(made: PlaneDiscretization | FaceDiscretization) -> _PlaneRootMeshes | _FaceRootMeshes:
     """Choose the meshes of the root stress for a contact discretized as `made`."""
     if isinstance(made, PlaneDiscretization):
         return _PlaneRootMeshes(made.hypothesis, made.recipes, made.coarse_recipes)
@@ -321,7 +321,7 @@ def _histories(solved: SolvedOperatingPoint, cache: Path | None) -> list[RootStr
     fine, rough = (
         _pair_histories(solved, unit_stresses(solved.contact, coarse, cache)) for coarse in (False, True)
     )
-    remaining = _root_meshes(solved.contact.plan.discretization).remaining
+    remaining = root_meshes(solved.contact.plan.discretization).remaining
     histories = []
     for history, other in zip(fine, rough, strict=True):
         peaks = [[h.peak(root).stress.value for h in (history, other)] for root in ROOTS]
@@ -336,7 +336,7 @@ def unit_stresses(contact: PairContact, coarse: bool, cache: Path | None) -> Uni
 
     `coarse`: on the meshes that tell the error of the others.
     """
-    pair, meshes = contact.pair, _root_meshes(contact.plan.discretization)
+    pair, meshes = contact.pair, root_meshes(contact.plan.discretization)
     gears = contact.plan.bodies(pair)
     if isinstance(meshes, _FaceRootMeshes):
         sectors = meshes.coarse_recipes if coarse else meshes.recipes

@@ -70,7 +70,7 @@ def _flank_table(result: HeardOptimization) -> Table:
     )  # fmt: skip
     before, after = result.start, result.optimum
     followed = bool(np.all(np.isfinite(after.root_stress)))
-    head += ("root stress before, MPa", "after") if followed else ()
+    head += ("root stress before, MPa", "± MPa", "after, MPa", "± MPa") if followed else ()
     rows = tuple(
         (
             torque,
@@ -83,7 +83,15 @@ def _flank_table(result: HeardOptimization) -> Table:
             number(after.pressure[k] / 1e6, 4),
             number(before.face_load_factor[k], 3),
             number(after.face_load_factor[k], 3),
-            *(number(each.root_stress[k] / 1e6, 4) for each in (before, after) if followed),
+            *(
+                text
+                for each in (before, after)
+                if followed
+                for text in (
+                    number(each.root_stress[k] / 1e6, 4),
+                    number(each.root_stress_error[k] / 1e6, 2),
+                )
+            ),
         )
         for k, torque in enumerate(_loads(result))
     )

@@ -337,6 +337,7 @@ class HeardDesignFigures(Part):
     face_load_factor: list[float]
     edge_load_share: list[float]
     root_stress_mpa: list[float | None]
+    root_stress_error_mpa: list[float | None]
 
 
 class WithinFigures(Part):
@@ -431,6 +432,9 @@ class OptimizeFigures(Figures):
         max_pressure_mpa: Annotated[list[float], Source(lambda own: own.figures.pressure.max(axis=0))]
         root_stress_mpa: Annotated[
             list[float | None], Source(lambda own: own.figures.root_stress.max(axis=0))
+        ]
+        root_stress_error_mpa: Annotated[
+            list[float | None], Source(lambda own: own.figures.root_stress_error.max(axis=0))
         ]
 
     class SearchFigures(Part):

@@ -289,7 +289,7 @@ def _confirmed(heard: Heard, values: dict[str, float]) -> HeardDesign:
     levels = np.stack([each.level for each in contacts])
     objectives = np.array([each.objective for each in contacts])
     objective, violation = problem.evaluated(values)
-    figures, own = problem.evaluator.evaluate(values), slice(1, None, BESIDE_EACH.size)
+    figures, own = problem.evaluator.confirmed(values), slice(1, None, BESIDE_EACH.size)
     ripple = [table.peak_to_peak(force=float(table.force[1])) for table in tables]
     return HeardDesign(
         dict(values),
@@ -304,6 +304,7 @@ def _confirmed(heard: Heard, values: dict[str, float]) -> HeardDesign:
         contacts[0].parting,
         violation,
         figures.root_stress.max(axis=0)[own],
+        figures.root_stress_error.max(axis=0)[own],
     )
 
 

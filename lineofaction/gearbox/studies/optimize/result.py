@@ -43,7 +43,7 @@ class HeardDesign:
         Largest share of the static mesh force by which flanks part at a speed, 0: they do not.
     violation : float
         Of the limits, in parts of them.
-    root_stress : (L,) array
+    root_stress, root_stress_error : (L,) arrays
         Largest in the tension roots at any node of the scatter, Pa; NaN without a limit of it.
     """
 
@@ -59,6 +59,9 @@ class HeardDesign:
     parting: FloatArray
     violation: float
     root_stress: FloatArray = field(
+        default_factory=lambda: np.full(1, np.nan), metadata=in_unit("pa", "load_case")
+    )
+    root_stress_error: FloatArray = field(
         default_factory=lambda: np.full(1, np.nan), metadata=in_unit("pa", "load_case")
     )
 

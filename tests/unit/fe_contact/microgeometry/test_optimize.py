@@ -163,6 +163,9 @@ def test_a_root_stress_that_no_relief_reaches_is_told(found: Optimization) -> No
     largest = held.start.figures.root_stress.max()
     assert held.start.violation == pytest.approx(largest / 130e6 - 1.0, rel=1e-9, abs=0.0)
     assert 0.95 * largest < held.optimum.figures.root_stress.max() < 1.01 * largest
+    error = held.start.figures.root_stress_error.max()
+    assert abs(largest - 144.75e6) < error < 0.01 * largest  # `root_stress` at standard accuracy
+    assert np.all(np.isnan(found.start.figures.root_stress_error))
 
 
 def test_a_gain_smaller_than_the_errors_is_not_claimed() -> None:
