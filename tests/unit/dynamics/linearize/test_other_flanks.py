@@ -56,6 +56,20 @@ def test_small_changes_of_inputs_are_those_of_the_flanks(rolling: bool) -> None:
     np.testing.assert_allclose(moved[..., 2], whole, rtol=0.0, atol=1e-4 * np.abs(whole).max())
 
 
+@pytest.mark.law
+def test_bearings_yield_to_changed_flanks_as_at_their_equilibrium() -> None:
+    """A load that acts elsewhere on the face moves the tangents of rolling bearings."""
+    transfer, others = scene(True)
+    aside = replace(NEAR, load_arm=NEAR.load_arm + 1e-7)
+    own, moved = others.excitation, others.with_table(aside).excitation
+    (change,) = others.changes([aside])
+    bearings = slice(transfer.first[2], None)
+    expected = (moved.tangent - own.tangent)[bearings, bearings]
+    np.testing.assert_allclose(
+        change.tangent[bearings, bearings], expected, rtol=0.0, atol=1e-3 * np.abs(expected).max()
+    )
+
+
 def test_a_table_over_misalignments_is_refused() -> None:
     _, others = scene(False)
     wide = replace(NEAR, misalignment=np.array([0.0, 1e-5]))
