@@ -209,18 +209,15 @@ class _Strips:
     def removed(self, gap: GapTerm) -> tuple[FloatArray, FloatArray]:
         """Return the gap at the touching points and its mean over the strips (k,), m."""
         if not gap.along_profile:
-            mating = self.pair.mating_roll_length(self.roll_1)
-            steady = np.asarray(gap(self.pair, self.roll_1, mating, self.face))
-            return steady, steady
+            rolls = self.roll_1, self.pair.mating_roll_length(self.roll_1)
+            return (np.asarray(gap(self.pair, *rolls, self.face)),) * 2
         smooth, breaks = self._parted(gap)
         slope = (smooth[2] - smooth[0]) / (2.0 * _NODE)
         bend = (smooth[2] - 2.0 * smooth[1] + smooth[0]) / _NODE**2
         back = -self.middle / self.half
         there, mean = smooth[1] + back * (slope + 0.5 * back * bend), smooth[1] + 0.25 * bend
-        for each, distance in breaks:
-            there = there + each.height(-distance)
-            mean = mean + self._past(each, distance)[0]
-        return there, mean
+        there = there + sum(each.height(-distance) for each, distance in breaks)
+        return there, mean + sum(self._past(*each)[0] for each in breaks)
 
     def slopes(self, gap: GapTerm) -> FloatArray:
         """Return the mean slope of a gap over the strips (k,)."""
@@ -238,8 +235,8 @@ class _Strips:
         """Return a gap without its breaks at three places of each strip (3, k); breaks and distances."""
         x, rolls = self._nodes
         breaks = [(each, each.distance(self.s_1, self.s_2)) for each in gap.breaks(self.pair, self.face)]
-        whole = gap(self.pair, *rolls, self.face)
-        return whole - sum(each.height(x - distance) for each, distance in breaks), breaks
+        of_breaks = sum(each.height(x - distance) for each, distance in breaks)
+        return gap(self.pair, *rolls, self.face) - of_breaks, breaks
 
     def _past(self, start: Break, distance: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the means over the strips of what a break removes, m, and of its slope."""
