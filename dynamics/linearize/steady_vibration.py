@@ -14,8 +14,9 @@ from dynamics.arrays.sparse_rows import ModalFreedoms
 from dynamics.assembly.assemble import System
 from dynamics.errors import SolveError
 from dynamics.forces.laws import Law
+from dynamics.kernels.local_state import LocalState
 from dynamics.linearize.campbell import terms_at
-from dynamics.linearize.flank_cycles import SAMPLES, FlankCycle, averaged, flank_cycles
+from dynamics.linearize.flank_cycles import SAMPLES, FlankCycle, averaged, flank_cycles, resting
 from dynamics.linearize.linear_system import LinearSystem, about_running, linearize, natural_modes
 from dynamics.linearize.load_harmonics import load_harmonics
 from dynamics.linearize.operating_speeds import CommonPeriod, common_period, law_speeds
@@ -171,6 +172,8 @@ class Excited:
         s.
     linear : LinearSystem
         With the mean tangents of the flanks.
+    at_rest : LocalState
+        The elements there.
     turning : bool
         Whether rotating-frame elements act: gyroscopic and frame terms belong to the system.
     """
@@ -179,6 +182,7 @@ class Excited:
     time: float
     period: CommonPeriod
     linear: LinearSystem
+    at_rest: LocalState
     cycles: tuple[FlankCycle, ...]
     turning: bool = False
 
@@ -227,9 +231,11 @@ def excited(system: System, time: float = 0.0, orders: int = 10, samples: int = 
     """
     system = about_running(system)
     period, linear = common_period(system), linearize(system, time)
-    cycles = flank_cycles(system, linear, time, orders, samples)
+    at_rest = resting(system, linear, time)
+    cycles = flank_cycles(system, linear, at_rest, orders, samples)
     turning = bool(np.any(system.arrays.elements.law == Law.ROTATING_FRAME))
-    return Excited(system, time, period, averaged(system, linear, cycles, time), cycles, turning)
+    linear = averaged(system, linear, cycles, at_rest)
+    return Excited(system, time, period, linear, at_rest, cycles, turning)
 
 
 def steady_vibration(
