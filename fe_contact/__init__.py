@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from fe_contact.allowed_error import AllowedError
     from fe_contact.analysis.analyze import analyze, ste_database
+    from fe_contact.analysis.cycle.deviating_cycle import DeviatingCycle, deviating_cycle
     from fe_contact.analysis.flanks.deformed_pair import DeformedPair, deformed_pairs
     from fe_contact.analysis.flanks.flank_file import ContactPattern, contact_pattern, flank_results
     from fe_contact.analysis.flanks.load_distribution import LoadDistribution
@@ -55,6 +56,7 @@ __all__ = [
     "ContactPattern",
     "DeformedPair",
     "DesignVariable",
+    "DeviatingCycle",
     "Estimate",
     "FlankGrid",
     "FlankModification",
@@ -90,6 +92,7 @@ __all__ = [
     "analyze",
     "contact_pattern",
     "deformed_pairs",
+    "deviating_cycle",
     "flank_results",
     "frontier",
     "optimize",
@@ -102,6 +105,7 @@ __all__ = [
 _NAMES = {
     "fe_contact.allowed_error": "AllowedError",
     "fe_contact.analysis.analyze": "analyze ste_database",
+    "fe_contact.analysis.cycle.deviating_cycle": "DeviatingCycle deviating_cycle",
     "fe_contact.analysis.flanks.deformed_pair": "DeformedPair deformed_pairs",
     "fe_contact.analysis.flanks.flank_file": "ContactPattern contact_pattern flank_results",
     "fe_contact.analysis.flanks.load_distribution": "LoadDistribution",

@@ -103,7 +103,11 @@ class MeetingTeeth:
 
 
 class ToothGap(Protocol):
-    """A rigid gap that differs from tooth to tooth."""
+    """A rigid gap by one gear that differs from tooth to tooth."""
+
+    @property
+    def gear(self) -> int:
+        """0 of the pinion, 1 of the wheel: its teeth come again after a revolution of that gear."""
 
     @property
     def period(self) -> int:

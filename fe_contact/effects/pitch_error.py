@@ -16,26 +16,24 @@ from fe_contact.types import FloatArray
 
 @dataclass(frozen=True)
 class _PitchGap:
-    """Gap of every tooth along the line of action, m, in the order of meshing.
+    """Gap of every tooth of a gear along the line of action, m, in the order of meshing.
 
-    Gears have as many entries as teeth, or one for all of them; after `period` base pitches both are
-    taken to show the same teeth again.
+    It has as many entries as teeth, or one for all of them; after `period` base pitches it is taken to show
+    the same teeth again.
     """
 
-    pinion: tuple[float, ...]
-    wheel: tuple[float, ...]
+    gear: int
+    teeth: tuple[float, ...]
     period: int
 
     @property
     def largest(self) -> float:
         """Bound of the gap, m."""
-        return max(self.pinion) + max(self.wheel)
+        return max(self.teeth)
 
     def __call__(self, teeth: MeetingTeeth) -> FloatArray:
-        """Sum over both teeth, m: the same all over a flank."""
-        count = teeth.meeting % self.period
-        gears = (np.array(self.pinion), np.array(self.wheel))
-        return np.asarray(sum(gap[count % gap.size] for gap in gears))
+        """Return the gap of the tooth that meets, m: the same all over a flank."""
+        return np.array(self.teeth)[teeth.meeting % self.period % len(self.teeth)]
 
 
 @dataclass(frozen=True)
@@ -68,11 +66,12 @@ class PitchError(Effect):
         """Add the gap of both gears' teeth."""
         if all(gear.pitch_deviation.neutral for gear in scene.gears.values()):
             return model
-        first, second = (
-            tuple((-gear.pitch_deviation.on_line_of_action(gear.transverse_pressure_angle)).tolist())
+        late = (
+            -gear.pitch_deviation.on_line_of_action(gear.transverse_pressure_angle)
             for gear in scene.gears.values()
         )
-        return replace(model, tooth_gaps=(*model.tooth_gaps, _PitchGap(first, second, _period(scene))))
+        gaps = (_PitchGap(index, tuple(each.tolist()), _period(scene)) for index, each in enumerate(late))
+        return replace(model, tooth_gaps=(*model.tooth_gaps, *gaps))
 
     def without(self, scene: ContactScene) -> ContactScene:
         """Return the scene with all teeth in their places."""

@@ -116,16 +116,12 @@ const sizes = new ResizeObserver((entries) => {
 
 async function draw(node, figure) {
   if (figure.layout.height) node.style.height = `${figure.layout.height}px`; // others take the height of their place
-  const size = `${node.clientWidth} ${node.clientHeight}`;
-  const resized = node.dataset.drawn && node.dataset.size !== size;
-  node.dataset.size = size;
+  node.dataset.size = `${node.clientWidth} ${node.clientHeight}`;
   const { data, layout } = fitted(themed(figure), node.clientWidth || 800);
   if (figure.still) lines(node, { data, layout });
   else {
     node.querySelector(":scope > .lines")?.remove();
-    const library = await patiently(plotly);
-    await library.react(node, data, layout, CONFIG);
-    if (resized && node.clientWidth) await library.Plots.resize(node); // react keeps the size of the first drawing
+    await (await patiently(plotly)).react(node, data, layout, CONFIG);
   }
   node.dataset.drawn = "yes";
 }

@@ -85,8 +85,7 @@ def test_the_teeth_of_every_pair_by_turning_the_gears(position):
         tooth_2 = np.argmin(np.abs(turned(Z2, +1.0, position) - ahead[1]))
         # into mesh come teeth that stand counter-clockwise on the pinion, clockwise on the wheel
         expected = first[tooth_1] + second[-tooth_2 % Z2]
-        (term,) = model.tooth_gaps
-        found = term(MeetingTeeth.at_pitch_point(gears, np.array([pitch - pair])))
+        found = model.gap_of_teeth(MeetingTeeth.at_pitch_point(gears, np.array([pitch - pair])))
         assert found == pytest.approx([-expected * COSINE], rel=1e-12, abs=1e-20)
 
 
@@ -239,12 +238,12 @@ def test_the_verdict_gives_the_figures_of_the_standard_and_periods_multiply():
     assert verdict.reason.endswith("over 20 base pitches")
     plain = GearPair(gear(Z1), gear(Z2))
     assert not PitchError().called_for(ContactScene(plain, np.array([100.0]), EFFECTS)).on
-    terms = (_PitchGap((1e-6, 0.0), (0.0,), 2), _PitchGap((0.0,), (2e-6, 0.0, 0.0), 3))
+    terms = (_PitchGap(0, (1e-6, 0.0), 2), _PitchGap(1, (2e-6, 0.0, 0.0), 3))
     model = ContactModel(tooth_gaps=terms)
     assert model.period == 6
     pair = GearPair(gear(Z1, np.arange(Z1) * 1e-6), gear(Z2, np.arange(Z2) * 1e-5))
-    (term,) = composed(pair, pitches=30).tooth_gaps
-    assert composed(pair, pitches=30).period == 30
-    assert term(MeetingTeeth.at_pitch_point(pair, np.array([29, 30, 31]))) == pytest.approx(
+    model = composed(pair, pitches=30)
+    assert model.period == 30
+    assert model.gap_of_teeth(MeetingTeeth.at_pitch_point(pair, np.array([29, 30, 31]))) == pytest.approx(
         -COSINE * np.array([9e-6 + 6e-5, 0.0, 1e-6 + 1e-5]), abs=1e-18
     )

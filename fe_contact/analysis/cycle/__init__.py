@@ -1,0 +1,1 @@
+"""Revolutions and hunting cycles of gears whose teeth differ."""

@@ -1,0 +1,70 @@
+"""Errors of derivatives over a cycle, from pitches that were drawn and solved."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+
+from fe_contact.ste.curve_quantities import (
+    BESIDE_MESH,
+    FIRST_HARMONIC,
+    HARMONICS,
+    MEAN,
+    PEAK_TO_PEAK,
+    QUANTITIES,
+)
+from fe_contact.types import FloatArray
+
+CONFIDENCE = 0.99
+"""Of Student's distribution. Few pitches are missed by much more than most: at 0.95 it covers 91 % of 160
+quantities of drawn gears."""
+
+
+@dataclass(frozen=True)
+class DrawnPitches:
+    """By how much tangents miss C drawn pitches of P positions at L loads.
+
+    Attributes
+    ----------
+    missed : ndarray, shape (C, P, L)
+        Transmission error by the tangents of all other states less the solved one, m.
+    """
+
+    missed: FloatArray
+
+    @property
+    def correction(self) -> FloatArray:
+        """Mean of what is missed at every position (P, L), m: tangents lie above."""
+        return np.asarray(self.missed.mean(axis=0))
+
+    @property
+    def error(self) -> FloatArray:
+        """Largest error of a position of a drawn pitch (L,), m, once the mean is taken off."""
+        return np.asarray(np.abs(self._left).max(axis=(0, 1)))
+
+    @property
+    def quantity_errors(self) -> FloatArray:
+        """Errors of mean, peak-to-peak, orders beside the mesh and mesh harmonics (23, L), m.
+
+        Of what repeats at every pitch that of the mean of so many drawn ones. Peak-to-peak is bounded by the
+        envelope, which knows where it is largest: NaN here. All orders beside the mesh share the energy of
+        what pitches are missed by (Parseval), so none is larger than the root of twice the mean square.
+        """
+        count, left = len(self.missed), self._left
+        of_mean = scipy.stats.t.ppf(0.5 + 0.5 * CONFIDENCE, count - 1) / math.sqrt(count)
+        position = np.arange(left.shape[1]) / left.shape[1]
+        waves = np.exp(-2.0j * math.pi * np.arange(1, HARMONICS + 1)[:, None] * position)
+        lines = np.einsum("hp,cpl->chl", waves, left) * (2.0 / position.size)
+        errors = np.empty((QUANTITIES, left.shape[2]))
+        errors[MEAN] = of_mean * left.mean(axis=1).std(axis=0, ddof=1)
+        errors[PEAK_TO_PEAK] = np.nan
+        errors[BESIDE_MESH] = np.sqrt(2.0 * np.mean(left**2, axis=(0, 1)))
+        errors[FIRST_HARMONIC:] = of_mean * np.sqrt((np.abs(lines) ** 2).sum(axis=0) / (count - 1))
+        return errors
+
+    @property
+    def _left(self) -> FloatArray:
+        return np.asarray(self.missed - self.correction)

@@ -1,0 +1,177 @@
+"""Hunting cycles by derivatives, held against all their pitches solved."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fe_contact import (
+    AllowedError,
+    AnalysisOptions,
+    Gear,
+    GearPair,
+    PitchDeviation,
+    Run,
+    RunOut,
+    TableAxes,
+    ToothFlank,
+    Wave,
+)
+from fe_contact.analysis.cycle.deviating_cycle import DeviatingCycle, cycle_contact, deviating_cycle
+from fe_contact.analysis.cycle.envelope import CycleContact, Envelope
+from fe_contact.errors import InputError
+from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, quantity_changes
+
+TEETH = (17, 19)
+AXES = TableAxes(torques=[40.0, 120.0])
+SOLVER = 2e-10
+"""m by which solutions of other pitches at once may differ: the solver ends there."""
+OPTIONS = AnalysisOptions(level="draft", model="plane_strain", positions=48)
+
+
+def as_made(teeth: int, size: float) -> Gear:
+    """Return a gear whose deviations are drawn, in parts of those of a usual one."""
+    draw = np.random.default_rng(teeth)
+    slopes = draw.normal(0.0, 2e-6 * size, teeth).tolist()
+    return Gear(
+        teeth=teeth,
+        normal_module=2e-3,
+        face_width=20e-3,
+        bore_diameter=10e-3,
+        profile_shift_coefficient=0.1,
+        pitch_deviation=PitchDeviation(tuple(draw.normal(0.0, 3e-6 * size, teeth).tolist())),
+        run_out=RunOut(5e-6 * size, 0.4),
+        waves=(Wave(5, 3e-7 * size, 1.0),),
+        tooth_flanks=tuple(ToothFlank(k + 1, profile_slope=slope) for k, slope in enumerate(slopes)),
+    )
+
+
+def made(size: float) -> GearPair:
+    return GearPair(*(as_made(teeth, size) for teeth in TEETH))
+
+
+def contact_of(size: float) -> CycleContact:
+    return cycle_contact(made(size), AXES, OPTIONS, Run())[0]
+
+
+@pytest.fixture(scope="module")
+def exact() -> np.ndarray:
+    contact = contact_of(1.0)
+    assert contact.pitches == 17 * 19
+    return contact.exact(np.arange(contact.pitches))
+
+
+@pytest.fixture(scope="module")
+def cycle() -> DeviatingCycle:
+    return deviating_cycle(made(1.0), AXES, OPTIONS)
+
+
+def test_gaps_of_single_teeth_add_up_to_those_of_the_pair_that_meets():
+    contact = contact_of(1.0)
+    gaps, _ = contact.nominal()
+    pitches = np.array([0, 1, 40, 322])
+    problem, _ = contact.solved(pitches)
+    alike = replace(contact.point.model, tooth_gaps=())
+    plain = contact.point.contact.problem(alike, contact.position).candidates.gap
+    found = problem.candidates.gap.reshape(pitches.size, *plain.shape)
+    there = np.isfinite(plain)
+    for pitch, gap in zip(range(pitches.size), found, strict=True):
+        first, second = (teeth[pitch] for teeth in gaps.teeth(pitches))
+        pairs = np.arange(gaps.pair.size)
+        own = (gaps.gears[0][pairs, :, first] + gaps.gears[1][pairs, :, second]).transpose(1, 0, 2)
+        # flanks that slope touch beside the point, a little closer
+        missed = (plain + own.reshape(plain.shape))[there] - gap[there]
+        assert missed.min() > -1e-12
+        assert np.quantile(missed, 0.9) < 0.02e-6
+
+
+def test_derivatives_are_exact_for_small_deviations():
+    """But at the few positions where a pair of teeth is about to part."""
+    contact = contact_of(1e-3)
+    gaps, nominal = contact.nominal()
+    pitches = np.arange(0, 323, 30)
+    moved = contact.exact(pitches) - nominal.value
+    found, _ = nominal.over(gaps, pitches)
+    missed = np.abs(found - nominal.value - moved)
+    assert np.abs(moved).max() > 5e-9
+    assert np.quantile(missed, 0.9) < 1e-3 * np.abs(moved).max()
+    assert missed.max() < 2e-2 * np.abs(moved).max()
+
+
+def test_tangents_lie_above(exact):
+    """Where teeth part others take over: the transmission error is concave in the gaps, but at tip edges."""
+    contact = contact_of(1.0)
+    gaps, nominal = contact.nominal()
+    pitches = np.array([3, 150])
+    values, tangents = contact.tangents(gaps, pitches)
+    assert values == pytest.approx(exact[pitches], abs=SOLVER)
+    for tangent in (nominal, *tangents):
+        above = tangent.over(gaps, np.arange(contact.pitches))[0] - exact
+        assert np.quantile(above, 0.01) > -0.02e-6
+        assert above.max() > 0.5e-6
+    own = tangents[1].over(gaps, pitches[1:])
+    assert own[0][0] == pytest.approx(exact[150], abs=SOLVER)
+    assert np.abs(own[1]).max() < 1e-15
+
+
+def test_stated_errors_cover_the_whole_cycle_solved(cycle, exact):
+    assert 16 < np.count_nonzero(cycle.solved) < 81
+    assert cycle.ste[cycle.solved] == pytest.approx(exact[cycle.solved], abs=SOLVER)
+    left = np.abs(cycle.ste - exact)[~cycle.solved]
+    assert np.mean(left <= cycle.error) > 0.95
+    position = np.arange(exact[..., 0].size) / 48
+    own, whole = (each.reshape(position.size, -1) for each in (cycle.ste, exact))
+    true = quantity_changes(position, own, whole, 323, position)
+    assert np.mean(true <= cycle.quantity_error) > 0.95
+    values = np.stack([exact.mean(axis=(0, 1)), np.ptp(exact, axis=(0, 1))])
+    assert np.all(cycle.quantity_error[[MEAN, PEAK_TO_PEAK]] <= AllowedError().of(values))
+    assert np.all(cycle.quantity_error < 0.05 * values[1])
+
+
+def test_orders_of_both_shafts_are_named_with_their_error(cycle):
+    lines = cycle.orders()
+    largest = [lines.names[k] for k in np.argsort(-lines.amplitude)[:8]]
+    assert {"pinion 1", "wheel 1"} <= set(largest)
+    assert lines.error[0] == pytest.approx(cycle.quantity_error[2, -1])
+
+
+def test_a_cycle_that_needs_many_pitches_is_solved_whole(exact, monkeypatch):
+    """Nothing is left to derivatives where a tenth of a nanometer is allowed."""
+    monkeypatch.setattr(AnalysisOptions, "allowed", AllowedError(1e-4, 1e-10))
+    cycle = deviating_cycle(made(1.0), AXES, OPTIONS)
+    assert cycle.solved.all()
+    assert not cycle.quantity_error.any()
+    assert not cycle.error.any()
+    assert cycle.ste == pytest.approx(exact, abs=SOLVER)
+
+
+def test_drawn_pitches_do_not_test_themselves():
+    envelope = Envelope.of(contact_of(1.0))
+    least = envelope.least.ste[envelope.drawn]
+    own = np.abs(least - envelope.exact[envelope.drawn]) < SOLVER
+    assert own.any()
+    assert np.all(envelope.without.ste[own] > least[own])
+
+
+def test_a_revolution_of_few_teeth_is_solved_whole():
+    pair = replace(made(1.0), wheel=replace(as_made(19, 0.0), tooth_flanks=(), waves=()))
+    cycle = deviating_cycle(pair, AXES, OPTIONS)
+    assert cycle.ste.shape == (17, 48, 2)
+    assert cycle.solved.all()
+
+
+@pytest.mark.parametrize(
+    ("axes", "positions", "field"),
+    [
+        (TableAxes(torques=[40.0], misalignments=(0.0, 1e-6)), 48, "misalignments"),
+        (TableAxes(torques=[40.0], center_distance_changes=(0.0, 1e-6)), 48, "center_distance_changes"),
+        (AXES, 40, "positions"),
+    ],
+    ids=str,
+)
+def test_what_a_cycle_cannot_be_is_refused(axes, positions, field):
+    with pytest.raises(InputError) as caught:
+        deviating_cycle(made(1.0), axes, replace(OPTIONS, positions=positions))
+    assert caught.value.field == field
