@@ -14,7 +14,7 @@ from dynamics.bearings.matrix import congruent, matrix_rows
 from dynamics.bearings.seat import SEAT, seat_matrix
 from dynamics.errors import SolveError
 from dynamics.forces.elements import Elements, potential
-from dynamics.forces.laws import OF_BEARINGS, STATED, among
+from dynamics.forces.laws import OF_BEARINGS, STATED, Law, among
 from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled
 from dynamics.kernels.local_state import LocalState
@@ -42,11 +42,15 @@ def rest_on_bearings(arrays: SystemArrays, matrix: FloatArray, force: FloatArray
     """Return q (n,) with matrix q + bearing forces = force, `matrix` (n, n) that of all but the bearings.
 
     Damped Newton steps reduce energy less work of the forces, which has one lowest place: no law of a bearing
-    softens. Motions that no bearing resists, wherever it is, stay zero.
+    softens. Motions that no bearing resists, wherever it is, stay zero. Where all bearings are linear,
+    steps are whole from the first on.
     """
     ways = _resisted(arrays, matrix)
     largest = float(np.max(np.abs(ways.T @ matrix @ ways), initial=1.0))
     q, damping = np.zeros(force.size), max(largest, float(np.max(arrays.elements.stiffness, initial=0.0)))
+    bearing = among(arrays.elements.law, OF_BEARINGS)
+    if np.all(arrays.elements.law[bearing] == Law.LINEAR_BEARING):
+        damping = 0.0
     now = _on_bearings(arrays, matrix, q)
     for _ in range(ITERATIONS):
         missing = ways.T @ (force - now.force)

@@ -20,6 +20,7 @@ from dynamics.influence.linear_figures import (
     linear_figures,
     operating_conditions,
 )
+from dynamics.kernels.by_address import by_value
 from dynamics.linearize.operating_speeds import leading_law
 from dynamics.motion.sampled_states import States
 from dynamics.results.checks import Check, SeriesBlock
@@ -164,13 +165,22 @@ def _influences(
     for name, on in _switchable(system).items():
         try:
             other = assemble(replace(scene, effects={**scene.effects, name: "off" if on else "on"}))
-            figures = linear_figures(other, conditions)
+            alike = _same((other.arrays, other.bearing_map), (system.arrays, system.bearing_map))
+            figures = whole if alike else linear_figures(other, conditions)
         except (InputError, SolveError):
             continue
         both = (whole, figures) if on else (figures, whole)
         beyond = _beyond(system, name in LINEAR, *both)
         influences[name] = replace(_influence_of(system, on, *both), beyond=beyond)
     return influences
+
+
+def _same(first: object, second: object) -> bool:
+    """Whether arrays are equal, in tuples of tuples: of systems that have the same figures."""
+    first, second = by_value(first), by_value(second)
+    if isinstance(first, tuple) and isinstance(second, tuple):
+        return len(first) == len(second) and all(map(_same, first, second))
+    return np.array_equal(np.asarray(first), np.asarray(second))
 
 
 def _switchable(system: System) -> dict[str, bool]:

@@ -53,17 +53,21 @@ class FlankCycle:
         return np.asarray(self.coordinate[:, 0])
 
 
+def resting(system: System, linear: LinearSystem, time: float = 0.0) -> LocalState:
+    """Return the elements about the equilibrium of `linear`, loads taken at `time`."""
+    displacement = linear.equilibrium.displacement
+    return by_address(local_state(system.arrays, time, displacement, np.zeros(displacement.size)))
+
+
 def flank_cycles(
-    system: System, linear: LinearSystem, time: float = 0.0, orders: int = 1, samples: int = SAMPLES
+    system: System, linear: LinearSystem, at_rest: LocalState, orders: int = 1, samples: int = SAMPLES
 ) -> tuple[FlankCycle, ...]:
-    """Return the cycle of every driving flank about the equilibrium of `linear`, loads taken at `time`.
+    """Return the cycle of every driving flank about the equilibrium of `linear`, elements being `at_rest`.
 
     The coordinates beside the transmission error (misalignment, center distance, sliding) are those of the
     bodies at rest, so tables are read where these are. `orders` harmonics per base pitch are wanted, at up to
     `samples` positions per base pitch.
     """
-    arrays, rest = system.arrays, np.zeros(system.arrays.mass.shape[0])
-    at_rest = by_address(local_state(arrays, time, linear.equilibrium.displacement, rest))
     force = linear.equilibrium.mesh_force
     cycles = []
     for index, mesh in enumerate(system.scene.meshes):
@@ -75,21 +79,19 @@ def flank_cycles(
 
 
 def averaged(
-    system: System, linear: LinearSystem, cycles: tuple[FlankCycle, ...], time: float
+    system: System, linear: LinearSystem, cycles: tuple[FlankCycle, ...], at_rest: LocalState
 ) -> LinearSystem:
-    """Return `linear` with the mean tangents of all driving flanks instead of those at its position."""
-    arrays, rest = system.arrays, np.zeros(system.arrays.mass.shape[0])
-    tangent = local_state(arrays, time, linear.equilibrium.displacement, rest).tangent
+    """Return `linear` with the mean tangents of all driving flanks instead of those `at_rest`."""
     stiffness, spring = linear.stiffness.copy(), linear.spring_stiffness.copy()
     for index, cycle in enumerate(cycles):
-        gradient, p = arrays.direction[cycle.rows], cycle.tangent.shape[0]
-        stiffness += gradient.T @ (cycle.tangent - tangent[cycle.rows, :p]) @ gradient
+        gradient, p = system.arrays.direction[cycle.rows], cycle.tangent.shape[0]
+        stiffness += gradient.T @ (cycle.tangent - at_rest.tangent[cycle.rows, :p]) @ gradient
         spring[index] = cycle.tangent[0, 0]
     return replace(linear, stiffness=stiffness, spring_stiffness=spring)
 
 
 def _cycle(system: System, local: LocalState, index: int, force: float, position: FloatArray) -> FlankCycle:
-    """Walk one flank over the positions (T,); `local` is left as it was but for this flank."""
+    """Walk one flank over the positions (T,); `local` is left as it was."""
     elements = by_address(system.arrays.elements)
     rows = slice(*(int(row) for row in elements.first[index : index + 2]))
     level = system.flanks.tables[index].level
@@ -121,6 +123,7 @@ def _hold(
     Newton's method, from `guess` (T,); pressed on where flanks part.
     """
     row, mesh = elements.first[e], elements.mesh[e]
+    start, rest = local.position[mesh], local.coordinate[row]
     for t in range(position.size):
         local.position[mesh], local.coordinate[row] = position[t], guess[t]
         for _ in range(ITERATIONS):
@@ -135,6 +138,7 @@ def _hold(
             coordinate[t, p] = local.coordinate[row + p] if p > 0 else coordinate[t, 0]
             for s in range(held.shape[1]):
                 tangent[t, p, s] = local.tangent[row + p, s]
+    local.position[mesh], local.coordinate[row] = start, rest
 
 
 @compiled
@@ -142,9 +146,12 @@ def _block(
     elements: Elements, local: LocalState, e: int, error: float, position: FloatArray, blocked: FloatArray
 ) -> None:
     """Write the forces (T, p) while the transmission error is `error`."""
-    row = elements.first[e]
+    row, mesh = elements.first[e], elements.mesh[e]
+    start, rest = local.position[mesh], local.coordinate[row]
     for t in range(position.size):
-        local.position[elements.mesh[e]], local.coordinate[row] = position[t], error
+        local.position[mesh], local.coordinate[row] = position[t], error
         evaluate(elements, local, e)
         for p in range(blocked.shape[1]):
             blocked[t, p] = local.force[row + p]
+    local.position[mesh], local.coordinate[row] = start, rest
+    evaluate(elements, local, e)

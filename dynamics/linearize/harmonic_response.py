@@ -30,7 +30,6 @@ from dynamics.linearize.steady_vibration import (
     unbounded,
 )
 from dynamics.motion.force_balance import block_diagonal
-from dynamics.motion.observation import local_state
 from dynamics.results.array_file import stored
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 
@@ -213,9 +212,7 @@ def _static_loads(at: Excited, harmonics: IntArray) -> ComplexArray:
 
 def _mesh_force(at: Excited, steady: Steady) -> ComplexArray:
     """Transverse mesh forces, (m, S, H): mean tangent and damping on the coordinates, less what excites."""
-    system, u, omega = at.system, steady.displacement, steady.omega
-    rest = np.zeros(u.shape[2])
-    viscous = local_state(system.arrays, at.time, at.linear.equilibrium.displacement, rest).viscous
+    system, u, omega, viscous = at.system, steady.displacement, steady.omega, at.at_rest.viscous
     force = np.empty((len(at.cycles), *omega.shape), dtype=complex)
     for f, cycle in enumerate(at.cycles):
         first, p = cycle.rows.start, cycle.tangent.shape[0]
@@ -233,10 +230,9 @@ def bearing_forces(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexAr
     q = u.reshape(omega.size, u.shape[2])
     rate = 1j * omega.reshape(-1, 1) * q
     elements, rest = system.arrays.elements, np.zeros(q.shape[1])
-    at_rest = local_state(system.arrays, at.time, at.linear.equilibrium.displacement, rest)
     rows = system.arrays.direction.T
-    local = (q @ rows) @ block_diagonal(elements, at_rest.tangent).T
-    local = local + (rate @ rows) @ block_diagonal(elements, at_rest.viscous).T
+    local = (q @ rows) @ block_diagonal(elements, at.at_rest.tangent).T
+    local = local + (rate @ rows) @ block_diagonal(elements, at.at_rest.viscous).T
     none = system.bearing_force(np.zeros((rows.shape[1], 1)), rest[None, :], rest[None, :])
     real, imaginary = (
         system.bearing_force(np.ascontiguousarray(part(local.T)), part(q), part(rate)) - none

@@ -11,7 +11,7 @@ from dynamics.assembly.assemble import System, assemble
 from dynamics.checks import integer, positive
 from dynamics.linearize.campbell import WhirlBranches, whirl_branches
 from dynamics.linearize.critical_speeds import CriticalSpeeds, critical_speeds
-from dynamics.linearize.flank_cycles import averaged, flank_cycles
+from dynamics.linearize.flank_cycles import averaged, flank_cycles, resting
 from dynamics.linearize.linear_system import (
     LinearSystem,
     Modes,
@@ -185,7 +185,8 @@ def modal_analysis(
     system = about_running(system)
     linear = linearize(system, time)
     ledger = checked_ledger(system, linear.equilibrium.mesh_force)
-    linear = averaged(system, linear, flank_cycles(system, linear, time), time)
+    at_rest = resting(system, linear, time)
+    linear = averaged(system, linear, flank_cycles(system, linear, at_rest), at_rest)
     rest = natural_modes(linear)
     seconds = {"equilibrium_and_rest": cpu_seconds() - began}
     began = cpu_seconds()

@@ -15,7 +15,7 @@ from dynamics.assembly.assemble import System
 from dynamics.assembly.varied import with_flank, with_flanks
 from dynamics.errors import SolveError
 from dynamics.integrators.static import RestsBeside, StaticSolution, equilibrium_near
-from dynamics.linearize.flank_cycles import flank_cycles
+from dynamics.linearize.flank_cycles import flank_cycles, resting
 from dynamics.linearize.steady_vibration import Excited, excited
 from dynamics.linearize.transfer import FlankExcitation, FlankTransfer, excitation_of
 from dynamics.meshes import MeshTable
@@ -63,8 +63,10 @@ class OtherFlanks:
 
     def _resting(self, system: System, rest: StaticSolution) -> OtherFlanks:
         linear = replace(self.at.linear, equilibrium=rest)
-        cycles = flank_cycles(system, linear, self.at.time, self.orders)
-        return replace(self, at=replace(self.at, system=system, linear=linear, cycles=cycles))
+        at_rest = resting(system, linear, self.at.time)
+        cycles = flank_cycles(system, linear, at_rest, self.orders)
+        at = replace(self.at, system=system, linear=linear, at_rest=at_rest, cycles=cycles)
+        return replace(self, at=at)
 
     @property
     def excitation(self) -> FlankExcitation:

@@ -14,8 +14,9 @@ from dynamics.arrays.sparse_rows import ModalFreedoms
 from dynamics.assembly.assemble import System
 from dynamics.errors import SolveError
 from dynamics.forces.laws import Law
+from dynamics.kernels.local_state import LocalState
 from dynamics.linearize.campbell import terms_at
-from dynamics.linearize.flank_cycles import SAMPLES, FlankCycle, averaged, flank_cycles
+from dynamics.linearize.flank_cycles import SAMPLES, FlankCycle, averaged, flank_cycles, resting
 from dynamics.linearize.linear_system import LinearSystem, about_running, linearize, natural_modes
 from dynamics.linearize.load_harmonics import load_harmonics
 from dynamics.linearize.operating_speeds import CommonPeriod, common_period, law_speeds
@@ -58,32 +59,46 @@ class _ModalElimination:
 
         `swept` are gyroscopic and frame terms of the bodies (S, a, a), or nothing.
         """
-        first, w = self.bodies.shape[1], omega[..., None, None]
-        own = _sum(omega[..., None], self.modal)
-        receptance = (self.shape / own[..., None, :]) @ self.shape.T
-        out, into, along = (_sum(w, part) for part in (self.outward, self.inward, self.along))
-        top = np.concatenate([_sum(w, self.bodies) + _turning_terms(w, swept), out], axis=-1)
-        unit = np.eye(len(self.shape))
-        bottom = np.concatenate([receptance @ into, unit + receptance @ along], axis=-1)
-        answer = right[..., first:, :] / own[..., None]
+        first = self.bodies.shape[1]
+        inverse = 1.0 / _sum(omega, self.modal)
+        receptance = self._receptance(inverse)
+        into, along = _sum(omega, self.inward), _sum(omega, self.along)
+        size = first + len(self.shape)
+        matrix = np.empty((*omega.shape, size, size), dtype=complex)
+        matrix[..., :first, :first] = self._of_bodies(omega, swept)
+        matrix[..., :first, first:] = _sum(omega, self.outward)
+        matrix[..., first:, :first] = receptance @ into
+        matrix[..., first:, first:] = np.eye(len(self.shape)) + receptance @ along
+        answer = right[..., first:, :] * inverse[..., None]
         pushed = np.concatenate([right[..., :first, :], self.shape @ answer], axis=-2)
-        found = solved(np.concatenate([top, bottom], axis=-2), pushed)
+        found = solved(matrix, pushed)
         moved, along_rows = found[..., :first, :], found[..., first:, :]
         force = into @ moved + along @ along_rows
-        return np.concatenate([moved, answer - (self.shape.T @ force) / own[..., None]], axis=-2)
+        return np.concatenate([moved, answer - (self.shape.T @ force) * inverse[..., None]], axis=-2)
+
+    def _receptance(self, inverse: ComplexArray) -> ComplexArray:
+        """Return V diag(inverse) V^T (S, H, s, s) of `inverse` (S, H, b): one real product for all."""
+        rows = len(self.shape)
+        pairs = (self.shape[:, None] * self.shape).reshape(rows * rows, -1).T
+        real, imaginary = (np.ascontiguousarray(part) @ pairs for part in (inverse.real, inverse.imag))
+        return np.asarray((real + 1j * imaginary).reshape(*inverse.shape[:-1], rows, rows))
 
     def product(
         self, omega: FloatArray | ComplexArray, moved: ComplexArray, swept: Sequence[FloatArray] = ()
     ) -> ComplexArray:
         """Return the forces (S, H, n, f) that the displacements `moved` (S, H, n, f) take."""
-        first, w = self.bodies.shape[1], omega[..., None, None]
-        out, into, along = (_sum(w, part) for part in (self.outward, self.inward, self.along))
+        first = self.bodies.shape[1]
+        out, into, along = (_sum(omega, part) for part in (self.outward, self.inward, self.along))
         bodies, modes = moved[..., :first, :], moved[..., first:, :]
         rows = self.shape @ modes
-        own = _sum(omega[..., None], self.modal)[..., None] * modes
+        own = _sum(omega, self.modal)[..., None] * modes
         pushed = own + self.shape.T @ (into @ bodies + along @ rows)
-        own_bodies = _sum(w, self.bodies) + _turning_terms(w, swept)
-        return np.concatenate([own_bodies @ bodies + out @ rows, pushed], axis=-2)
+        return np.concatenate([self._of_bodies(omega, swept) @ bodies + out @ rows, pushed], axis=-2)
+
+    def _of_bodies(self, omega: FloatArray | ComplexArray, swept: Sequence[FloatArray]) -> ComplexArray:
+        """Return the bodies' own matrices, (S, H, a, a)."""
+        matrix = _sum(omega, self.bodies)
+        return matrix + _turning_terms(omega[..., None, None], swept) if swept else matrix
 
 
 def _turning_terms(w: FloatArray | ComplexArray, swept: Sequence[FloatArray]) -> ComplexArray | float:
@@ -92,9 +107,10 @@ def _turning_terms(w: FloatArray | ComplexArray, swept: Sequence[FloatArray]) ->
 
 
 def _sum(omega: FloatArray | ComplexArray, parts: FloatArray) -> ComplexArray:
-    """Return K + i w C - w^2 M of `parts` K, C and, if it has, M."""
-    total = parts[0] + 1j * omega * parts[1]
-    return np.asarray(total - omega * omega * parts[2] if len(parts) > 2 else total)
+    """Return K + i w C - w^2 M at `omega` (S, H) of `parts` K, C and, if there are three, M (p, ...)."""
+    by_part = np.stack([np.ones_like(omega), 1j * omega, -omega * omega], axis=-1)[..., : len(parts)]
+    total = by_part.reshape(-1, len(parts)) @ parts.reshape(len(parts), -1)
+    return np.asarray(total.reshape(*omega.shape, *parts.shape[1:]))
 
 
 def _modal_elimination(
@@ -156,6 +172,8 @@ class Excited:
         s.
     linear : LinearSystem
         With the mean tangents of the flanks.
+    at_rest : LocalState
+        The elements there.
     turning : bool
         Whether rotating-frame elements act: gyroscopic and frame terms belong to the system.
     """
@@ -164,6 +182,7 @@ class Excited:
     time: float
     period: CommonPeriod
     linear: LinearSystem
+    at_rest: LocalState
     cycles: tuple[FlankCycle, ...]
     turning: bool = False
 
@@ -212,9 +231,11 @@ def excited(system: System, time: float = 0.0, orders: int = 10, samples: int = 
     """
     system = about_running(system)
     period, linear = common_period(system), linearize(system, time)
-    cycles = flank_cycles(system, linear, time, orders, samples)
+    at_rest = resting(system, linear, time)
+    cycles = flank_cycles(system, linear, at_rest, orders, samples)
     turning = bool(np.any(system.arrays.elements.law == Law.ROTATING_FRAME))
-    return Excited(system, time, period, averaged(system, linear, cycles, time), cycles, turning)
+    linear = averaged(system, linear, cycles, at_rest)
+    return Excited(system, time, period, linear, at_rest, cycles, turning)
 
 
 def steady_vibration(

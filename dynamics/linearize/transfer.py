@@ -41,7 +41,6 @@ from dynamics.linearize.steady_vibration import (
     with_receptances,
 )
 from dynamics.motion.force_balance import block_diagonal
-from dynamics.motion.observation import local_state
 from dynamics.results.array_file import ArrayFile, stored
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 from model_studies.kept_file import kept_in
@@ -322,9 +321,10 @@ def excitation_of(at: Excited, harmonics: IntArray) -> FlankExcitation:
     """Return what the flanks of a system about its equilibrium excite in `harmonics` (H,)."""
     arrays, start = at.system.arrays, at.linear.equilibrium
     static, excited_rows = flank_forces(at, harmonics)
-    local, rows = local_state(arrays, at.time, start.displacement, np.zeros(at.linear.scale.size)), _rows(at)
+    rows = _rows(at)
     tangent, viscous = (
-        block_diagonal(arrays.elements, part)[np.ix_(rows, rows)] for part in (local.tangent, local.viscous)
+        block_diagonal(arrays.elements, part)[np.ix_(rows, rows)]
+        for part in (at.at_rest.tangent, at.at_rest.viscous)
     )
     for cycle in at.cycles:  # driving flanks come first
         tangent[cycle.rows, cycle.rows] = cycle.tangent
@@ -395,11 +395,10 @@ def _bearing_columns(at: Excited, omega: FloatArray, u: ComplexArray, rows: IntA
 def _content_key(at: Excited, speed: FloatArray, harmonics: IntArray, orders: int) -> str:
     """Return the hash of everything that decides the transfer functions."""
     system, linear, flanks = at.system, at.linear, excitation_of(at, harmonics)
-    local = local_state(system.arrays, at.time, linear.equilibrium.displacement, np.zeros(linear.scale.size))
     terms = gyroscopic_terms(system, speed) if at.turning else []
     loads = load_harmonics(system, at.period, speed, harmonics, at.time)
     matrices = linear.mass, linear.damping, linear.stiffness, linear.scale, system.arrays.direction
-    bearings = local.tangent, local.viscous, *system.bearing_map[:4]
+    bearings = at.at_rest.tangent, at.at_rest.viscous, *system.bearing_map[:4]
     own = speed, harmonics, loads, flanks.force, flanks.tangent, flanks.viscous
     names = VERSION, orders, at.time, at.period, linear.freedom, system.supports.name
     digest = hashlib.sha256(repr(names).encode())

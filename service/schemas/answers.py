@@ -314,6 +314,7 @@ class ReportTrack(BaseModel):
     query: dict[str, str] = Field(description="Query of /v1/results/{hash}/sound")
     time: list[float] = Field(description="s from its start")
     along: list[float] = Field(description="Where it then is on the horizontal axis")
+    mesh_hz: list[float] | None = Field(None, description="Frequency of mesh order 1 then; null: of none")
 
 
 class ReportSound(BaseModel):

@@ -81,6 +81,7 @@ def test_the_report_names_the_sound_as_the_path_takes_it(stored: Stored) -> None
     (track,) = sound["tracks"]
     assert stored.heard(LOUD, **track["query"]).peak == stored.heard(LOUD).peak
     np.testing.assert_allclose(track["along"], 450.0 * np.array(track["time"]), atol=1e-3)
+    np.testing.assert_allclose(track["mesh_hz"], 20 / 60 * np.array(track["along"]), atol=1e-3)  # 20 teeth
     assert figures["levels"]["sound"] is None
 
 

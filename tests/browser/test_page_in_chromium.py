@@ -182,6 +182,18 @@ def test_the_result_is_saved_as_netcdf(visit: Visit) -> None:
     assert Path(given.value.path()).read_bytes()[1:4] == b"HDF"
 
 
+def test_plots_follow_the_width_of_the_window(visit: Visit) -> None:
+    widths = "node => [node.clientWidth, node.querySelector('.main-svg')?.clientWidth]"
+    plot = visit.page.locator("#live-ripple .plot")
+    seen = []
+    tab(visit.page, "Ripple")
+    for width in (400, 1400):
+        visit.page.set_viewport_size({"width": width, "height": 900})
+        until(lambda: len(set(plot.evaluate(widths))) == 1)
+        seen.append(plot.evaluate(widths)[0])
+    assert seen[0] < 400 < seen[1]
+
+
 def test_both_gears_are_drawn_and_roll(visit: Visit) -> None:
     page = visit.page
     gears = page.locator("#mesh-drawing g > g")

@@ -47,6 +47,33 @@ def test_a_live_sound_sweeps_over_the_mesh_frequencies(visit: Visit) -> None:
         assert np.interp(moment, at, frequency) == pytest.approx(20 * rpm / 60, rel=0.02)
 
 
+HEARD = """async () => {
+  const { heardAt } = await import("/page/order_tone.js");
+  const { Tone } = await import("/page/live_sound.js");
+  const map = { x: [0, 600, 1200], y: [1, 2], z: [[40, 54, 60], [0, 0, 20]], zmax: 60 };
+  const track = { along: [0, 1200], mesh_hz: [0, 400] };
+  const heard = (x, order) => heardAt(map, track, { x, order });
+  const tone = async ({ frequency, part }) => {
+    const context = new OfflineAudioContext(1, 24000, 24000);
+    new Tone(context).sound(frequency, part);
+    return [...(await context.startRendering()).getChannelData(0)].slice(12000);
+  };
+  const places = [heard(1200, 1), heard(610, 1.1), heard(600, 2)];
+  return { places, tones: await Promise.all(places.map(tone)) };
+}"""
+
+
+@pytest.mark.law
+def test_an_order_of_the_map_is_heard_at_its_frequency_and_level(visit: Visit) -> None:
+    heard = visit.page.evaluate(HEARD)
+    assert [place["frequency"] for place in heard["places"]] == pytest.approx([400.0, 1.1 * 610 / 3, 400.0])
+    loudest, softer, silent = (np.array(tone) for tone in heard["tones"])
+    assert np.abs(loudest).max() == pytest.approx(0.5, rel=1e-3)
+    assert np.abs(softer).max() == pytest.approx(0.5 * 10 ** (-6 / 20), rel=1e-3)
+    assert np.abs(silent).max() < 1e-6
+    assert np.count_nonzero(np.diff(np.sign(loudest)) > 0.0) == pytest.approx(200, abs=1)
+
+
 def test_the_sound_tab_plays_what_is_shown(visit: Visit) -> None:
     visit.page.get_by_role("tab", name="Sound", exact=True).click()
     for name in ("Play as analyzed", "Play now"):

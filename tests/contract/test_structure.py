@@ -11,18 +11,18 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (41_341, 754),
-    ("dynamics",): (42_575, 834),
+    ("fe_contact",): (40_731, 742),
+    ("dynamics",): (42_615, 835),
     ("lineofaction.gearbox",): (26_466, 540),
-    ("lineofaction.report",): (11_765, 224),
-    ("service",): (14_723, 339),
+    ("lineofaction.report",): (11_773, 224),
+    ("service",): (14_724, 339),
     ("lineofaction.client",): (2_669, 53),
     ("lineofaction.cli",): (5_455, 80),
     ("lineofaction.hardcases",): (3_841, 35),
     ("bounds", "host", "model_studies"): (4_464, 155),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 823
+MOST_FILES = 818
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""

@@ -220,13 +220,14 @@ class Track:
     """One of the sounds of a plot, and where on the horizontal axis of its first panel it is as it plays.
 
     `time` (n,), s, increases; `along` (n,) are values on the axis. `query` names it to the service's path of
-    the sound of a result.
+    the sound of a result. `mesh_frequency` (n,), Hz, is that of mesh order 1; None: no mesh is heard alone.
     """
 
     name: str
     time: FloatArray
     along: FloatArray
     query: dict[str, str]
+    mesh_frequency: FloatArray | None = None
 
 
 @dataclass(frozen=True)

@@ -56,7 +56,13 @@ def _player(figure: Figure) -> str:
 def sound_json(sound: Sound) -> Json:
     """Return what the script needs of a sound."""
     tracks = [
-        {"name": one.name, "query": one.query, "time": numbers(one.time), "along": numbers(one.along)}
+        {
+            "name": one.name,
+            "query": one.query,
+            "time": numbers(one.time),
+            "along": numbers(one.along),
+            "mesh_hz": None if one.mesh_frequency is None else numbers(one.mesh_frequency),
+        }
         for one in sound.tracks
     ]
     return {"caption": sound.caption, "tracks": tracks}

@@ -3,7 +3,7 @@
 
 const STILL = 4; // pixels between press and release of a click: a longer way zooms
 
-/** @typedef {{name: string, query: Record<string, string>, time: number[], along: number[]}} Track */
+/** @typedef {{name: string, query: Record<string, string>, time: number[], along: number[], mesh_hz: number[] | null}} Track */
 /** @typedef {{caption: string, tracks: Track[]}} Sound */
 
 /**

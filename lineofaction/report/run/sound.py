@@ -111,7 +111,8 @@ def _track(heard: Heard, axis: Axis) -> Track:
     if unit_of(axis.label) == "rpm":
         speed = run.speed[run.shaft.index(driving_shaft(run, heard.signal.mesh))]
         along = np.interp(time, run.time, np.abs(speed)) * 30.0 / np.pi
-    return Track(heard.name, time - time[0], along, heard.query)
+    mesh_frequency = np.interp(time, run.time, np.abs(run.mesh_frequency[heard.signal.mesh]))
+    return Track(heard.name, time - time[0], along, heard.query, mesh_frequency)
 
 
 # The sound of a stored run or recording as a WAV file; work of the live worker.

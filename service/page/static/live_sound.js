@@ -50,6 +50,25 @@ export function sounded(context, voice, { from, to, seconds }, full) {
   return source;
 }
 
+/** A tone that follows what is pointed at. */
+export class Tone {
+  /** @param {BaseAudioContext} context */
+  constructor(context) {
+    this.context = context;
+    [this.source, this.level] = [context.createOscillator(), context.createGain()];
+    this.level.gain.value = 0;
+    this.source.connect(this.level).connect(context.destination);
+    this.source.start();
+  }
+
+  /** @param {number} frequency Hz @param {number} part of what is played at LOUDEST; 0: silence */
+  sound(frequency, part) {
+    const now = this.context.currentTime;
+    if (part) this.source.frequency.setTargetAtTime(frequency, now, EDGE / 5);
+    this.level.gain.setTargetAtTime(LOUDEST * part, now, EDGE / 5);
+  }
+}
+
 export class LiveSound {
   constructor() {
     /** @type {Voice[]} */

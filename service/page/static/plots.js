@@ -116,12 +116,16 @@ const sizes = new ResizeObserver((entries) => {
 
 async function draw(node, figure) {
   if (figure.layout.height) node.style.height = `${figure.layout.height}px`; // others take the height of their place
-  node.dataset.size = `${node.clientWidth} ${node.clientHeight}`;
+  const size = `${node.clientWidth} ${node.clientHeight}`;
+  const resized = node.dataset.drawn && node.dataset.size !== size;
+  node.dataset.size = size;
   const { data, layout } = fitted(themed(figure), node.clientWidth || 800);
   if (figure.still) lines(node, { data, layout });
   else {
     node.querySelector(":scope > .lines")?.remove();
-    await (await patiently(plotly)).react(node, data, layout, CONFIG);
+    const library = await patiently(plotly);
+    await library.react(node, data, layout, CONFIG);
+    if (resized && node.clientWidth) await library.Plots.resize(node); // react keeps the size of the first drawing
   }
   node.dataset.drawn = "yes";
 }

@@ -3,6 +3,7 @@
 
 import { file, patiently, saidIn } from "./api.js";
 import { button, make } from "./elements.js";
+import { orderTone } from "./order_tone.js";
 import { joined } from "./player.js";
 
 /** @type {Map<HTMLAudioElement, string>} addresses of what was fetched, by where it plays */
@@ -20,10 +21,10 @@ function swept() {
 /**
  * A button that fetches the sounds of a figure and puts their players in its place.
  * @param {HTMLElement} node its plot
- * @param {{title: string, sound: import("./player.js").Sound}} figure
+ * @param {{title: string, sound: import("./player.js").Sound, plot: {data: any[]}}} figure
  * @param {{href: string, hash: string, against?: string}} result
  */
-export function soundBlock(node, { title, sound }, result) {
+export function soundBlock(node, { title, sound, plot }, result) {
   const line = make("span", { class: "fault", role: "status" });
   const listen = async () => {
     asked.disabled = true;
@@ -38,6 +39,7 @@ export function soundBlock(node, { title, sound }, result) {
   const asked = button("Listen", listen, { class: "small", "aria-label": `Listen to: ${title}` });
   const row = make("div", { class: "row" }, asked, line);
   const group = make("div", { class: "player", role: "group", "aria-label": `Sound: ${title}` }, row, make("p", { class: "hint" }, sound.caption));
+  if (plot.data[0].type === "heatmap") group.append(orderTone(node, { title, sound }));
   return group;
 }
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,10 +12,16 @@ from flexible_scenes import flexible_pair
 from geared_scenes import RPM, gear_pair_scene, spring_table, with_gear
 
 from dynamics.ablation import ablate
+from dynamics.assembly.assemble import System
 from dynamics.errors import InputError
 from dynamics.forces import RollingContact
-from dynamics.influence import decide_effects, estimate_influences
-from dynamics.influence.linear_figures import operating_conditions
+from dynamics.influence import decide_effects, estimate_influences, neglected_check
+from dynamics.influence.linear_figures import (
+    LinearFigures,
+    OperatingCondition,
+    linear_figures,
+    operating_conditions,
+)
 from dynamics.joints import FreeRotation, Housing
 from dynamics.loads import AppliedForce, TimeLaw
 from dynamics.loads.load_course import Orders
@@ -53,6 +60,23 @@ def test_estimates_are_right_within_a_factor_of_two() -> None:
     assert lateral.estimate is not None
     assert (lateral.estimate.freedoms, lateral.estimate.on) == (4, True)
     json.dumps([entry.estimate.to_json() for entry in made.effects if entry.estimate], allow_nan=False)
+
+
+def test_an_effect_that_changes_no_force_is_not_solved_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Lateral motion alone does not turn with the shafts: gyroscopic terms are none, and known to be 0."""
+    looked: list[str] = []
+
+    def figures(system: System, conditions: Sequence[OperatingCondition]) -> LinearFigures:
+        looked.append(" ".join(name for name, choice in system.scene.effects.items() if choice != "auto"))
+        return linear_figures(system, conditions)
+
+    monkeypatch.setattr(neglected_check, "linear_figures", figures)
+    scene = gear_pair_scene(duration=0.1, outputs=QUICK, speed=TimeLaw.constant(2000.0 * RPM))
+    found = estimate_influences(scene)
+    assert found["gyroscopic"].largest == 0.0 and "gyroscopic" not in looked
+    assert found["lateral"].largest > 0.0 and "lateral" in looked
 
 
 def in_housing(speed: TimeLaw, duration: float = 0.1, inert: float = 6.75, **changes: object) -> Scene:

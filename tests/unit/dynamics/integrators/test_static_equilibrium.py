@@ -13,6 +13,7 @@ from scipy.linalg import expm
 from scipy.sparse.csgraph import connected_components
 
 from dynamics.arrays.sparse_rows import LEAST, TOGETHER, _chained, _modal_freedoms, sparse_matrices
+from dynamics.assembly import bearing_rest
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import SolveError
 from dynamics.forces import RollingContact
@@ -177,6 +178,16 @@ def exact(system, start, times):
         states.append(start + state[:n])
         state = unit @ state
     return np.array(states)
+
+
+def test_bodies_on_linear_bearings_alone_rest_without_damped_steps(monkeypatch):
+    """The first step solves a linear balance, the next ones take what its rounding leaves."""
+    monkeypatch.setattr(bearing_rest, "ITERATIONS", 5)
+    arrays = assemble(housed_pair()).arrays
+    force = FORCE * arrays.direction[0]
+    rest = bearing_rest.rest_on_bearings(arrays, arrays.stiffness, force)
+    assert rest.settled
+    assert np.max(np.abs(rest.displacement * arrays.scale)) > 1e-5
 
 
 def test_amplitudes_of_a_housing_are_modal_and_rotors_are_not():

@@ -24,7 +24,7 @@ from dynamics.linearize import (
     whirl_modes,
 )
 from dynamics.linearize.campbell import _continued, _whirl, _WhirlModes, likeness, modes_at
-from dynamics.linearize.flank_cycles import averaged, flank_cycles
+from dynamics.linearize.flank_cycles import averaged, flank_cycles, resting
 from dynamics.linearize.linear_system import LinearSystem
 from dynamics.loads import TimeLaw
 from dynamics.scene import Outputs
@@ -224,7 +224,8 @@ def test_critical_speeds_follow_eigenvectors_and_agree_with_the_dense_solve(monk
 
 def averaged_linear(system: System) -> LinearSystem:
     linear = linearize(system)
-    return averaged(system, linear, flank_cycles(system, linear, 0.0), 0.0)
+    at_rest = resting(system, linear)
+    return averaged(system, linear, flank_cycles(system, linear, at_rest), at_rest)
 
 
 @pytest.mark.law
