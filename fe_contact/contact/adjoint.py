@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from fe_contact.contact.elimination import dot, eliminate
 from fe_contact.contact.model import Break, GapTerm
 from fe_contact.contact.newton import empty_system, newton_system
 from fe_contact.contact.point_problem import (
@@ -16,8 +17,6 @@ from fe_contact.contact.point_problem import (
     PointProblems,
     approach,
     carrying_strip,
-    dot,
-    eliminate,
     motion_at,
     point_problems,
     press,

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fe_contact.contact.elimination import dot
 from fe_contact.contact.patch import profile_moments
-from fe_contact.contact.point_problem import dot
 from fe_contact.types import BoolArray, FloatArray, IntArray
 from host.loops import inner, njit
 

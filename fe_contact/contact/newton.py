@@ -23,18 +23,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fe_contact.contact.elimination import dot, eliminate, subtract
 from fe_contact.contact.point_problem import (
     PointProblem,
     State,
     approach,
-    dot,
-    eliminate,
     evaluate,
     motion_at,
     press,
     pressed_state,
     stiffness,
-    subtract,
 )
 from fe_contact.contact.tilted_bodies import fill_yielding, move, yield_to
 from fe_contact.types import FloatArray, IntArray

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fe_contact.contact.elimination import subtract
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.contact.strip import Gap, free_strip, gap_at, half_strip, strip_at, strip_load, strip_middle
 from fe_contact.types import BoolArray, FloatArray, IntArray
@@ -196,60 +197,6 @@ def _strip_at(law: _LocalLaw, i: int, value: float, half: float) -> float:
     return half
 
 
-# Gaussian elimination with partial pivoting for the small dense systems of the contact, compiled.
-
-
-@inner(fastmath={"reassoc", "contract"})
-def dot(x: FloatArray, y: FloatArray, n: int) -> float:
-    """Sum of products of the first `n` entries."""
-    total = 0.0
-    for i in range(n):
-        total += x[i] * y[i]
-    return total
-
-
-@inner(error_model="numpy")
-def eliminate(a: FloatArray, right: FloatArray, n: int) -> bool:
-    """Solve a x = right for the leading n x n block; `right` (k, n) holds k right-hand sides, then solutions.
-
-    Returns False, and leaves neither as it was, if the matrix is singular or not finite.
-    """
-    for j in range(n):
-        pivot = j
-        for i in range(j + 1, n):
-            if abs(a[i, j]) > abs(a[pivot, j]):
-                pivot = i
-        if not 0.0 < abs(a[pivot, j]) < 1e300:  # false for NaN too
-            return False
-        if pivot != j:
-            _swap(a[j], a[pivot], n)
-            for each in right:
-                each[j], each[pivot] = each[pivot], each[j]
-        for i in range(j + 1, n):
-            if a[i, j] != 0.0:
-                part = a[i, j] / a[j, j]
-                subtract(a[i, j + 1 : n], a[j, j + 1 : n], part)
-                for each in right:
-                    each[i] -= part * each[j]
-    for each in right:
-        for i in range(n - 1, -1, -1):
-            each[i] = (each[i] - dot(a[i, i + 1 : n], each[i + 1 : n], n - i - 1)) / a[i, i]
-    return True
-
-
-@inner(error_model="numpy")
-def subtract(x: FloatArray, y: FloatArray, part: float) -> None:
-    """Take a part of `y` off `x`."""
-    for k in range(x.size):
-        x[k] -= part * y[k]
-
-
-@inner(error_model="numpy")
-def _swap(x: FloatArray, y: FloatArray, n: int) -> None:
-    for k in range(n):
-        x[k], y[k] = y[k], x[k]
-
-
 class PointProblems(NamedTuple):
     """All P positions as the compiled solver reads them; position p has the bodies of row p modulo Q.
 
@@ -257,7 +204,7 @@ class PointProblems(NamedTuple):
     ----------
     bodies, tilt : ndarray, shape (Q, n, n)
         The tilt is empty where flanks do not roll.
-    radius : ndarray, shape (Q, n)
+    radius : ndarray, shape (P, n) where flanks roll, else (Q, n)
     present : ndarray of bool, shape (Q, n)
     curves, heights : ndarray, shapes (points of a pair, K), (K, K)
     gap, motion_arm, torque_arm, width : ndarray, shape (P, m)
@@ -343,28 +290,62 @@ class PointProblem(NamedTuple):
     law: _LocalLaw
 
 
+class RowBodies(NamedTuple):
+    """What all problems of one row of bodies have in common.
+
+    Attributes
+    ----------
+    there : ndarray of bool, shape (n,)
+        Slices that any contact can press on.
+    moved, tilt : ndarray
+        See `bodies` and `tilt` of `PointProblem`.
+    curve, first : ndarray, shapes (points, w), (points,)
+        See `PointProblem`, of the points of one pair.
+    """
+
+    there: BoolArray
+    moved: FloatArray
+    tilt: FloatArray
+    curve: FloatArray
+    first: IntArray
+
+
+@inner(error_model="numpy")
+def row_bodies(every: PointProblems, row: int) -> RowBodies:
+    """Return what positions share that repeat row `row` in further base pitches."""
+    there = every.present[row]
+    slices = np.flatnonzero(there)
+    moved, tilt = every.bodies[row][slices][:, slices], np.zeros((0, 0))
+    moved = _turned(every.heights, _turned(every.heights, moved))
+    if every.tilt.size:
+        tilt = _turned(every.heights, _turned(every.heights, every.tilt[row][slices][:, slices]))
+    curve, first = _beside(every.curves)
+    return RowBodies(there, moved, tilt, curve, first)
+
+
 @inner(error_model="numpy")
 def problem_at(every: PointProblems, p: int) -> tuple[PointProblem, IntArray]:
     """Return the problem of a position, and its contacts among all candidates."""
+    return problem_on(every, row_bodies(every, p % every.bodies.shape[0]), p)
+
+
+@inner(error_model="numpy")
+def problem_on(every: PointProblems, bodies: RowBodies, p: int) -> tuple[PointProblem, IntArray]:
+    """Return the problem of a position on the bodies of its row, and its contacts among all candidates."""
     row, (points, count) = p % every.bodies.shape[0], every.curves.shape
-    there = every.present[row]
-    slices = np.flatnonzero(there)
-    pairs = np.cumsum(there[::count]) - 1  # of all pairs among those that are there
+    there = bodies.there[::count]
+    pairs = np.cumsum(there) - 1  # of all pairs among those that are there
     here = np.flatnonzero(~(every.gap[p] == np.inf))  # also those that are not a number
-    at = np.flatnonzero(np.repeat(there[::count], points))
-    inner, tilt = every.bodies[row][slices][:, slices], np.zeros((0, 0))
-    inner = _turned(every.heights, _turned(every.heights, inner))
-    if every.tilt.size:
-        tilt = _turned(every.heights, _turned(every.heights, every.tilt[row][slices][:, slices]))
-    radius = every.radius[row][slices]
+    at = np.flatnonzero(np.repeat(there, points))
+    radius = every.radius[p % every.radius.shape[0]][bodies.there]
     gaps = gap_at(gap_at(every.about, p), at)
     law = _LocalLaw(every.width[p][at], gaps, _free_strips(gaps), every.length, every.modulus[row][at])
     slot = pairs[here // points] * points + here % points
-    curve, first = _beside(every.curves)
     point = here % points
-    first = pairs[here // points] * count + first[point]
+    first = pairs[here // points] * count + bodies.first[point]
     arms = every.motion_arm[p][here], every.torque_arm[p][here]
-    return PointProblem(inner, tilt, radius, curve[point], first, slot, every.gap[p][here], *arms, law), here
+    held = bodies.moved, bodies.tilt, radius
+    return PointProblem(*held, bodies.curve[point], first, slot, every.gap[p][here], *arms, law), here
 
 
 @inner(error_model="numpy")

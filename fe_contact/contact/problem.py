@@ -368,10 +368,13 @@ class ContactProblem:
 
     @property
     def radius(self) -> FloatArray:
-        """How far flanks that roll move the middles of their strips back as they tilt by 1 (Q, n), m."""
+        """How far flanks that roll move the middles of their strips back as they tilt by 1, m.
+
+        Of each position (P, n); zeros (Q, n) where no flank rolls.
+        """
         if not self.rolling.size:
             return np.zeros(self.candidates.slices.present.shape)
-        return self.candidates.on_mean(self.candidates.rolling_radius)[: len(self.tilt)]
+        return self.candidates.on_mean(self.candidates.rolling_radius)
 
     def moved(self, force: FloatArray) -> FloatArray:
         """Return how far forces (P, L, m) in N move the flanks apart at every candidate (P, L, m), m.
@@ -379,7 +382,8 @@ class ContactProblem:
         Without the local approach of a candidate that carries.
         """
         held = self.candidates.on_slices(force)
-        radius, longest = self.radius[:, None], self.candidates.slices.law_length
+        radius, longest = self.radius, self.candidates.slices.law_length
+        radius = radius.reshape(-1, len(self.compliance), 1, radius.shape[1])
         by_pitch = held.reshape(-1, len(self.compliance), *held.shape[1:])
 
         def times(matrices: FloatArray, forces: FloatArray) -> FloatArray:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from fe_contact.contact.newton import CONVERGED, solve_point
-from fe_contact.contact.point_problem import PointProblems, point_problems, problem_at
+from fe_contact.contact.point_problem import PointProblems, point_problems, problem_on, row_bodies
 from fe_contact.contact.problem import Candidates, ContactProblem
 from fe_contact.types import BoolArray, FloatArray, IntArray, Status
 from host.loops import njit
@@ -111,21 +112,25 @@ def solve_contact(problem: ContactProblem, loads: FloatArray, start: Start | Non
     ContactSolution
         Points that did not converge hold NaN and their status; nothing is raised.
     """
-    c = problem.candidates
-    p, m, levels = c.position.size, c.pair.size, loads.size
-    deflection, tangent = np.full((2, p, levels), np.nan)
-    force = np.zeros((p, levels, m))
-    status, iterations = np.zeros((2, p, levels), dtype=np.int64)
-    residuals = np.zeros((p, levels, 4))
-    beyond = np.zeros((p, levels), dtype=np.bool_)
+    return solve_sets(problem, (loads,), start)[0]
+
+
+def solve_sets(
+    problem: ContactProblem, sets: Sequence[FloatArray], start: Start | None = None
+) -> tuple[ContactSolution, ...]:
+    """Solve every position at sets of loads, each by itself; see `solve_contact`."""
+    every, c = point_problems(problem), problem.candidates
+    p, m, solved = c.position.size, c.pair.size, []
     first = np.zeros((0, 0, m)) if start is None else np.ascontiguousarray(start.on(c))
-    _sweep(
-        point_problems(problem), np.array(loads, dtype=float), first,
-        deflection, tangent, force, status, iterations, residuals, beyond,
-    )  # fmt: skip
-    return ContactSolution(
-        loads, deflection, tangent, force, status, iterations, residuals, beyond, np.min(c.gap, axis=1)
-    )
+    for loads in sets:
+        deflection, tangent = np.full((2, p, loads.size), np.nan)
+        force = np.zeros((p, loads.size, m))
+        status, iterations = np.zeros((2, p, loads.size), dtype=np.int64)
+        residuals, beyond = np.zeros((p, loads.size, 4)), np.zeros((p, loads.size), dtype=np.bool_)
+        results = deflection, tangent, force, status, iterations, residuals, beyond
+        _sweep(every, np.array(loads, dtype=float), first, *results)
+        solved.append(ContactSolution(loads, *results, np.min(c.gap, axis=1)))
+    return tuple(solved)
 
 
 @njit(cache=True, error_model="numpy")
@@ -144,27 +149,30 @@ def _sweep(
     """Fill the result arrays, started from the `first` forces, or each load from the two below it.
 
     Forces of a much smaller load press on too few points: where no solution is found from them, the search
-    begins again from a guess of its own.
+    begins again from a guess of its own. Positions that repeat one row of bodies follow each other.
     """
-    for p in range(every.gap.shape[0]):
-        point, here = problem_at(every, p)
-        start, last = np.zeros(here.size), np.zeros(here.size)
-        for k in range(loads.size):
-            if first.shape[0] > 0:
-                start = first[p, k][here]
-            elif k > 0:
-                below = loads[k - 2] if k > 1 else 0.0
-                part = (loads[k] - loads[k - 1]) / (loads[k - 1] - below)
-                start, last = start + part * (start - last), start
-            guessed = not start.any()
-            d, t, code, count, over = solve_point(point, loads[k], start, residuals[p, k])
-            if code != CONVERGED and not guessed:
-                start = np.zeros(here.size)
-                d, t, code, further, over = solve_point(point, loads[k], start, residuals[p, k])
-                count += further
-            status[p, k], iterations[p, k], beyond[p, k] = code, count, over
-            if code == CONVERGED:
-                deflection[p, k], tangent[p, k] = d, t
-                force[p, k][here] = start
-            else:
-                start = np.zeros(here.size)
+    rows = every.bodies.shape[0]
+    for row in range(rows):
+        bodies = row_bodies(every, row)
+        for p in range(row, every.gap.shape[0], rows):
+            point, here = problem_on(every, bodies, p)
+            start, last = np.zeros(here.size), np.zeros(here.size)
+            for k in range(loads.size):
+                if first.shape[0] > 0:
+                    start = first[p, k][here]
+                elif k > 0:
+                    below = loads[k - 2] if k > 1 else 0.0
+                    part = (loads[k] - loads[k - 1]) / (loads[k - 1] - below)
+                    start, last = start + part * (start - last), start
+                guessed = not start.any()
+                d, t, code, count, over = solve_point(point, loads[k], start, residuals[p, k])
+                if code != CONVERGED and not guessed:
+                    start = np.zeros(here.size)
+                    d, t, code, further, over = solve_point(point, loads[k], start, residuals[p, k])
+                    count += further
+                status[p, k], iterations[p, k], beyond[p, k] = code, count, over
+                if code == CONVERGED:
+                    deflection[p, k], tangent[p, k] = d, t
+                    force[p, k][here] = start
+                else:
+                    start = np.zeros(here.size)

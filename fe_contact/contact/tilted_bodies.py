@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from fe_contact.contact.point_problem import PointProblem, State, dot, subtract
+from fe_contact.contact.elimination import dot, subtract
+from fe_contact.contact.point_problem import PointProblem, State
 from fe_contact.types import FloatArray
 from host.loops import inner
 

@@ -22,6 +22,7 @@ from fe_contact.contact import (
     contact_candidates,
     solve_contact,
 )
+from fe_contact.contact.elimination import eliminate
 from fe_contact.contact.newton import _residuals, solve_point
 from fe_contact.contact.patch import Patches
 from fe_contact.contact.point_problem import (
@@ -30,7 +31,6 @@ from fe_contact.contact.point_problem import (
     _free_strips,
     _LocalLaw,
     approach,
-    eliminate,
     point_problems,
     problem_at,
 )

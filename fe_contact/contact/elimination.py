@@ -1,0 +1,57 @@
+"""Gaussian elimination with partial pivoting for the small dense systems of the contact, compiled."""
+
+from __future__ import annotations
+
+from fe_contact.types import FloatArray
+from host.loops import inner
+
+
+@inner(fastmath={"reassoc", "contract"})
+def dot(x: FloatArray, y: FloatArray, n: int) -> float:
+    """Sum of products of the first `n` entries."""
+    total = 0.0
+    for i in range(n):
+        total += x[i] * y[i]
+    return total
+
+
+@inner(error_model="numpy")
+def eliminate(a: FloatArray, right: FloatArray, n: int) -> bool:
+    """Solve a x = right for the leading n x n block; `right` (k, n) holds k right-hand sides, then solutions.
+
+    Returns False, and leaves neither as it was, if the matrix is singular or not finite.
+    """
+    for j in range(n):
+        pivot = j
+        for i in range(j + 1, n):
+            if abs(a[i, j]) > abs(a[pivot, j]):
+                pivot = i
+        if not 0.0 < abs(a[pivot, j]) < 1e300:  # false for NaN too
+            return False
+        if pivot != j:
+            _swap(a[j], a[pivot], n)
+            for each in right:
+                each[j], each[pivot] = each[pivot], each[j]
+        for i in range(j + 1, n):
+            if a[i, j] != 0.0:
+                part = a[i, j] / a[j, j]
+                subtract(a[i, j + 1 : n], a[j, j + 1 : n], part)
+                for each in right:
+                    each[i] -= part * each[j]
+    for each in right:
+        for i in range(n - 1, -1, -1):
+            each[i] = (each[i] - dot(a[i, i + 1 : n], each[i + 1 : n], n - i - 1)) / a[i, i]
+    return True
+
+
+@inner(error_model="numpy")
+def subtract(x: FloatArray, y: FloatArray, part: float) -> None:
+    """Take a part of `y` off `x`."""
+    for k in range(x.size):
+        x[k] -= part * y[k]
+
+
+@inner(error_model="numpy")
+def _swap(x: FloatArray, y: FloatArray, n: int) -> None:
+    for k in range(n):
+        x[k], y[k] = y[k], x[k]
