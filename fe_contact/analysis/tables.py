@@ -5,7 +5,7 @@ A table as solved, before its errors are known: plan, positions, solutions.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fe_contact.analysis.pairs.contact_lines import Solved, deflected_operating_points, solve_operating_points
+from fe_contact.analysis.pairs.contact_lines import deflected_operating_points, solve_operating_points
+from fe_contact.analysis.pairs.kept_contact import OF_SUPPORT, KeptContact, contact_fields
 from fe_contact.analysis.pairs.pair_contact import (
     OperatingPoints,
     PairContact,
@@ -24,9 +25,9 @@ from fe_contact.analysis.pairs.pair_contact import (
 )
 from fe_contact.analysis.request.model_choice import Decided, decide
 from fe_contact.analysis.request.request import Checked, Request
-from fe_contact.analysis.request.solved_run import SolvedRun
+from fe_contact.analysis.request.solved_run import SolvedRun, edges_left_out
 from fe_contact.compliance.remote_condensation import condense_remotely, condensing
-from fe_contact.contact import ContactModel, ContactProblem, ContactSolution, at_edges, contact_pressure
+from fe_contact.contact import ContactModel, ContactProblem, ContactSolution
 from fe_contact.contact.model import MeetingTeeth
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import Run
@@ -214,8 +215,8 @@ class SolvedTable(SolvedRun):
         Model and discretization.
     prediction : Prediction
         What it was expected to cost.
-    support : list of (ContactProblem, ContactSolution)
-        Of every place at the support loads.
+    kept, support : list of KeptContact
+        Of every place at the loads of the table, and at the support loads.
     table : SteDatabase
         Its errors not yet estimated.
     condition : ndarray or None
@@ -225,9 +226,15 @@ class SolvedTable(SolvedRun):
     decided: Decided
     prediction: Prediction
     nodes: PositionNodes
-    support: Solved
+    kept: Sequence[KeptContact]
+    support: Sequence[KeptContact]
     table: SteDatabase
     condition: FloatArray | None = None
+
+    @property
+    def edge_depths(self) -> list[FloatArray]:
+        """See `SolvedRun`; they were found with the solutions."""
+        return [each.edge_depth for each in self.kept]
 
 
 def solve_table(
@@ -262,12 +269,16 @@ def solve_table(
         progress = by_cost(partial(run.progress, "contact"), prediction.parts["contact"])
         nodes = _table_nodes(points, plan, partial(progress, "positions"))
         loads, report = (plan.load, plan.support), partial(progress, "table")
-        (solved, support), condition = solve_operating_points(
-            points, nodes.position, loads, conditioned=full, report=report
+        edges = edges_left_out(checked)
+        (kept, support), condition = solve_operating_points(
+            points, nodes.position, loads, conditioned=full, edges=edges, report=report
         )
-        table = assembled_table(request, points, nodes, solved, support)
+        table = assembled_table(request, points, nodes, kept, support)
         run.progress("contact", 1.0)
-    return SolvedTable(checked, plan, points, solved, decided, prediction, nodes, support, table, condition)
+    solved = [(each.problem, each.solution) for each in kept]
+    return SolvedTable(
+        checked, plan, points, solved, decided, prediction, nodes, kept, support, table, condition
+    )
 
 
 def condensed_bodies(
@@ -310,7 +321,11 @@ def _same_bodies(own: Plan, other: Plan) -> bool:
 
 
 def assembled_table(
-    request: Request, points: OperatingPoints, nodes: PositionNodes, solved: Solved, support: Solved
+    request: Request,
+    points: OperatingPoints,
+    nodes: PositionNodes,
+    kept: Sequence[KeptContact],
+    support: Sequence[KeptContact],
 ) -> SteDatabase:
     """Assemble the table, its errors not yet estimated; `support` may be empty."""
     position = (np.arange(points.period)[:, None] + nodes.position).ravel()
@@ -324,12 +339,12 @@ def assembled_table(
         period=points.period,
         error_estimate=np.full((position.size, request.load.size, *points.shape), np.nan),
         metadata=Metadata(),
-        **table_fields(points, solved),
+        **table_fields(points, kept),
         **(table_support(points, support) if support else {}),
     )
 
 
-# From contact solutions to the arrays of the STE database.
+# From what is kept of the contact to the arrays of the STE database.
 
 
 def table_of_solution(
@@ -349,8 +364,7 @@ def table_of_solution(
         m.
     """
     period = len(solution.deflection) // position.size
-    pairs = np.arange(problem.candidates.pair.min(), problem.candidates.pair.max() + 1)
-    fields = _contact_fields(pair, problem, solution, pairs)
+    fields = contact_fields(pair, problem, solution)
     return SteDatabase(
         position=(np.arange(period)[:, None] + position).ravel(),
         force=solution.load,
@@ -361,75 +375,29 @@ def table_of_solution(
         period=period,
         error_estimate=np.full((*solution.deflection.shape, 1, 1), np.nan),
         metadata=Metadata(),
-        pair=pairs,
+        pair=np.unique(problem.candidates.pair),
         no_load_transmission_error=solution.no_load[:, None, None],
         **{name: values[:, :, None, None] for name, values in fields.items()},
     )
 
 
-def table_fields(
-    points: OperatingPoints, solved: list[tuple[ContactProblem, ContactSolution]]
-) -> dict[str, NDArray[Any]]:
+def table_fields(points: OperatingPoints, kept: Sequence[KeptContact]) -> dict[str, NDArray[Any]]:
     """Arrays of the database at the requested loads, (P, F, M, D, ...), and its pair axis."""
-    seen = np.concatenate([problem.candidates.pair for problem, _ in solved])
+    seen = np.concatenate([each.problem.candidates.pair for each in kept])
     pairs = np.arange(seen.min(), seen.max() + 1)
-    fields = [
-        _contact_fields(point.contact.pair, *each, pairs)
-        for point, each in zip(points.places, solved, strict=True)
-    ]
-    no_load = points.gathered([solution.no_load[:, None] for _, solution in solved])[:, 0]
-    gathered = {name: points.gathered([field[name] for field in fields]) for name in fields[0]}
+    stored = [dict(each.stored) for each in kept]
+    for arrays, each in zip(stored, kept, strict=True):
+        own, share = np.unique(each.problem.candidates.pair), arrays["load_share"]
+        arrays["load_share"] = np.zeros((*share.shape[:2], pairs.size))
+        arrays["load_share"][..., own - pairs[0]] = share
+    no_load = points.gathered([each.solution.no_load[:, None] for each in kept])[:, 0]
+    gathered = {name: points.gathered([arrays[name] for arrays in stored]) for name in stored[0]}
     return gathered | {"pair": pairs, "no_load_transmission_error": no_load}
 
 
-def table_support(
-    points: OperatingPoints, solved: list[tuple[ContactProblem, ContactSolution]]
-) -> dict[str, NDArray[Any]]:
+def table_support(points: OperatingPoints, kept: Sequence[KeptContact]) -> dict[str, NDArray[Any]]:
     """Support loads that converged everywhere, and their arrays (P, S, M, D)."""
-    fields = [_support_fields(problem, solution) for problem, solution in solved]
-    good = np.all([solution.status == Status.CONVERGED for _, solution in solved], axis=(0, 1))
-    gathered = {name: points.gathered([field[name][:, good] for field in fields]) for name in fields[0]}
-    return gathered | {"support_force": solved[0][1].load[good]}
-
-
-def _contact_fields(
-    pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution, pairs: IntArray
-) -> dict[str, NDArray[Any]]:
-    """Arrays (P, F, ...) of one operating point by name in the database; `pairs` are those of the table."""
-    candidates = problem.candidates
-    good = solution.status == Status.CONVERGED
-    loaded = solution.force * candidates.torque_share[:, None, :]
-    total = np.where(good, loaded.sum(axis=2), 1.0)
-    pressure = contact_pressure(problem, solution.force)
-    edge = at_edges(problem, solution.force, pressure)
-    of_pair = candidates.pair[:, None] == pairs
-    centroid = (loaded @ candidates.face_position) / total
-    along_path = pair.tilt_arm(candidates.touch.roll_1, 0.0)
-    return {
-        "static_transmission_error": solution.deflection,
-        "tangent_compliance": solution.tangent,
-        "load_share": (loaded @ of_pair) / total[..., None],
-        "face_centroid": centroid,
-        "load_arm": centroid + np.einsum("pfm,pm->pf", loaded, along_path) / total,
-        "max_pressure": np.where(good, np.where(edge, 0.0, pressure).max(axis=2), np.nan),
-        "edge_pressure": np.where(good, np.where(edge, pressure, 0.0).max(axis=2), np.nan),
-        "pairs_in_contact": _pairs_in_contact(solution.force, of_pair),
-        "status": solution.status,
-        "residuals": solution.residuals,
-    }
-
-
-def _support_fields(problem: ContactProblem, solution: ContactSolution) -> dict[str, NDArray[Any]]:
-    """Arrays (P, S) of one place at the support loads."""
-    pair = problem.candidates.pair
-    of_pair = pair[:, None] == np.unique(pair)
-    return {
-        "support_transmission_error": solution.deflection,
-        "support_tangent_compliance": solution.tangent,
-        "support_pairs_in_contact": _pairs_in_contact(solution.force, of_pair),
-    }
-
-
-def _pairs_in_contact(force: FloatArray, of_pair: BoolArray) -> IntArray:
-    """Count the pairs (P, F) of which any candidate carries load."""
-    return np.asarray((((force > 0.0).astype(float) @ of_pair) > 0.0).sum(axis=2))
+    good = np.all([each.solution.status == Status.CONVERGED for each in kept], axis=(0, 1))
+    arrays = {name: points.gathered([each.stored[name][:, good] for each in kept]) for name in OF_SUPPORT}
+    support = {f"support_{name.removeprefix('static_')}": values for name, values in arrays.items()}
+    return support | {"support_force": kept[0].solution.load[good]}

@@ -10,82 +10,24 @@ import numpy as np
 
 from bounds import engineering
 from fe_contact.allowed_error import AllowedError
-from fe_contact.analysis.pairs.contact_lines import assemble_remotely
+from fe_contact.analysis.pairs.kept_contact import problems_in_parts
 from fe_contact.analysis.pairs.pair_contact import OperatingPoint
+from fe_contact.analysis.pairs.tip_edges import edge_depth, handovers
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.analysis.request.solved_run import SolvedRun
 from fe_contact.analysis.tables import SolvedTable
-from fe_contact.contact import Candidates, ContactProblem, ContactSolution
+from fe_contact.contact import solve_contact
 from fe_contact.contact.assembly import FLATTEST
 from fe_contact.effects.effect import across_face
 from fe_contact.effects.influence.estimate import estimate_influence
 from fe_contact.effects.misalignment import MisalignmentGap
 from fe_contact.effects.tooth_deviations import sharpest_crest
 from fe_contact.errors import SolveError
-from fe_contact.geometry import ParallelAxes
 from fe_contact.geometry.printed_data import backlash_rounding
 from fe_contact.planning.plane_bias import PlaneBias
 from fe_contact.types import FloatArray, Json
 from model_studies.stage_clock import StageClock
-
-# Depth of tip edges inside the mating flanks in a contact that was solved without them.
-
-
-OUTSIDE = 1e-3
-"""Base pitches before A and after E at which the gap of an edge is assessed: it grows from there on."""
-
-
-def _deepest_edge(
-    point: OperatingPoint, load: FloatArray, problem: ContactProblem, solution: ContactSolution
-) -> FloatArray:
-    """Return how far tip edges would be inside the mating flanks (L,), m; 0 where they stay clear.
-
-    At the positions solved, and where pairs come into contact and leave it: there the gap of an edge is
-    least, and solved positions may pass it by. The contact is solved for these too.
-    """
-    position = _handovers(point.contact.pair)
-    meant = point.solve_pitches(position, load, np.arange(point.model.period))
-    return np.maximum(_edge_depth(point, problem, solution), _edge_depth(point, *meant))
-
-
-def _handovers(pair: ParallelAxes) -> FloatArray:
-    """Return the positions (2,) in [0, 1), rising, just before a pair meets at A and after it leaves at E."""
-    path = pair.path_of_contact
-    start, end = (float(pair.position(roll)) for roll in (path.start, path.end))
-    return np.sort(np.array([start - OUTSIDE, end + OUTSIDE]) % 1.0)
-
-
-def _edge_depth(point: OperatingPoint, problem: ContactProblem, solution: ContactSolution) -> FloatArray:
-    """Return how far tip edges would be inside the mating flanks (L,), m; 0 where they stay clear.
-
-    Under the forces as solved: what the loaded teeth move at the unloaded edges is in.
-    """
-    where = problem.candidates.position
-    phase, pitch = _phase(problem), np.floor(where).astype(np.int64)
-    model = replace(point.model, corner_contact=True)
-    edges = point.contact.problem(model, phase, pitch if model.tooth_gaps else None)
-    touch = edges.candidates.touch
-    off_line = (touch.lever_1 != 1.0) | (touch.lever_2 != 1.0)
-    force = _carried(problem.candidates, edges.candidates, np.nan_to_num(solution.force))
-    moved = edges.moved(force)
-    closing = edges.candidates.motion_arm[:, None, :] * np.nan_to_num(solution.deflection)[:, :, None]
-    gap = np.where(off_line, touch.gap, np.inf) * edges.candidates.motion_arm
-    return np.asarray(np.max(closing - moved - gap[:, None, :], axis=(0, 2), initial=0.0))
-
-
-def _phase(problem: ContactProblem) -> FloatArray:
-    return problem.candidates.position[: len(problem.compliance)] % 1.0
-
-
-def _carried(these: Candidates, those: Candidates, force: FloatArray) -> FloatArray:
-    """Return forces (P, L, n) of some candidates on others, of which they are a part."""
-    column = {key: i for i, key in enumerate(zip(those.pair.tolist(), those.face_position, strict=True))}
-    carried = np.zeros((*force.shape[:2], those.pair.size))
-    keys = zip(these.pair.tolist(), these.face_position, strict=True)
-    carried[:, :, [column[key] for key in keys]] = force
-    return carried
-
 
 LEAST_BACKLASH = 1e-9
 """m; teeth without a thickness allowance have none but rounding."""
@@ -162,20 +104,29 @@ def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:
     A contact that is left out can carry at most until the deflection has fallen to its gap: the change of STE
     is at most how far the deflection exceeds the gap, over `size` (L, places) in m.
     """
-    request = run.checked.request
-    effect = request.named("corner_contact")
-    if run.checked.model.corner_contact or effect in request.neglected:
+    if not run.edges_left_out:
         return
-    models = [replace(point.model, corner_contact=True) for point in run.places.places]
-    assemble_remotely(run.places, models, _phase(run.solved[0][0]))
-    pairs = zip(run.places.places, run.solved, strict=True)
-    depth = np.stack([_deepest_edge(point, run.plan.load, *solved) for point, solved in pairs], axis=1)
+    effect = run.checked.request.named("corner_contact")
+    pairs = zip(run.places.places, run.edge_depths, strict=True)
+    deepest = [np.maximum(depth, _at_handovers(point, run.plan.load)) for point, depth in pairs]
+    depth = np.stack(deepest, axis=1)
     change = float(np.max(depth / np.maximum(_allowed(run).scale(size), 1e-12 * np.abs(_means(run)))))
-    deepest = 1e6 * float(depth.max())
     reason = "the gaps at the tip edges stay open"
-    if deepest > 0.0:
-        reason = f"teeth bend {engineering(deepest, 2)} µm beyond the gap at a tip edge"
+    if depth.any():
+        largest = engineering(1e6 * float(depth.max()), 2)
+        reason = f"teeth bend {largest} µm beyond the gap at a tip edge"
     yield Assumption(effect, "tip edges stay clear", change <= _allowed(run).relative, change, reason)
+
+
+def _at_handovers(point: OperatingPoint, load: FloatArray) -> FloatArray:
+    """Return the depth of tip edges (L,) in m where pairs come into contact and leave it.
+
+    There the gap of an edge is least, and the positions of a run may pass it by.
+    """
+    pitches, position = np.arange(point.model.period), handovers(point.contact.pair)
+    parts = problems_in_parts(point, position, pitches)
+    depths = [edge_depth(point, part, solve_contact(part, load)) for part in parts]
+    return np.asarray(np.max(depths, axis=0))
 
 
 def _neglected(run: SolvedTable) -> Iterator[Assumption]:
@@ -260,7 +211,7 @@ def _load_patches(run: SolvedRun) -> Assumption:
 
 def _support_loads(run: SolvedTable) -> Assumption:
     """From lift-off to twice the largest load the forces for dynamics are solved."""
-    failed = sum(int(np.count_nonzero(solution.status)) for _, solution in run.support)
+    failed = sum(int(np.count_nonzero(each.solution.status)) for each in run.support)
     reason = (
         f"{failed} points have no solution" if failed else "all points beyond the requested loads are solved"
     )

@@ -21,8 +21,9 @@ from fe_contact.analysis.estimates.assessed_table import (
 )
 from fe_contact.analysis.request.model_choice import Decided
 from fe_contact.analysis.request.request import Checked, Influences, Request, estimated_influences
+from fe_contact.analysis.request.solved_run import Solved
 from fe_contact.analysis.tables import SolvedTable, condensed_bodies, solve_table
-from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.contact import ContactSolution
 from fe_contact.contact.problem import condition_numbers
 from fe_contact.options import Run
 from fe_contact.planning.cost_model import log_name
@@ -42,8 +43,6 @@ from model_studies.workers import InProcess, RunCost
 
 FEW_ITERATIONS = 40
 """Iterations that a point is expected to need at most; those beyond are counted."""
-
-Solved = Sequence[tuple[ContactProblem, ContactSolution]]
 
 
 def _contact_receipt(
@@ -246,7 +245,8 @@ def _assessed(made: SolvedTable, clock: StageClock, run: Run) -> tuple[AssessedT
     """Return the table's errors, and what its receipt says of the contact."""
     full = _full(made)
     with clock.stage("contact"):
-        contact = _contact_receipt(made.solved, made.support, condition=full, known=made.condition)
+        support = [(each.problem, each.solution) for each in made.support]
+        contact = _contact_receipt(made.solved, support, condition=full, known=made.condition)
     if not full:
         return unassessed_table(made.table, made.places, made.plan), contact
     stage = "error estimate"

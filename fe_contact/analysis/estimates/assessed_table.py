@@ -14,9 +14,9 @@ from fe_contact.analysis.estimates.position_errors import (
     position_errors,
 )
 from fe_contact.analysis.estimates.table_sample import Nested, TableSample
-from fe_contact.analysis.pairs.contact_lines import Solved
 from fe_contact.analysis.pairs.pair_contact import OperatingPoints
 from fe_contact.analysis.request.request import Checked
+from fe_contact.analysis.request.solved_run import Solved
 from fe_contact.analysis.tables import PositionNodes
 from fe_contact.contact import ContactSolution
 from fe_contact.geometry import ParallelAxes

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_contact.analysis.pairs.contact_lines import Solved, deflected_operating_points
+from fe_contact.analysis.pairs.contact_lines import deflected_operating_points
 from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoints, operating_points
+from fe_contact.analysis.request.solved_run import Solved
 from fe_contact.contact import Start
 from fe_contact.effects import ContactScene
 from fe_contact.errors import DatabaseError

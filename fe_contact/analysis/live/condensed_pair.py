@@ -29,6 +29,7 @@ from fe_contact.analysis.estimates.assessed_table import (
 from fe_contact.analysis.estimates.position_errors import errors_by_halves
 from fe_contact.analysis.estimates.table_sample import Nested, TableSample
 from fe_contact.analysis.live.condensed_contacts import CondensedContacts
+from fe_contact.analysis.pairs.kept_contact import KeptContact
 from fe_contact.analysis.pairs.pair_contact import OperatingPoints, PairContact, operating_points
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import checked_request
@@ -237,7 +238,8 @@ class CondensedPair:
             contacts.assemble(points.places[0].model, sample)
         with clock.stage("contact"):
             solved = _solved(checked, plan, points, nodes)
-            table = assembled_table(checked.request, points, nodes, solved.solved, [])
+            kept = KeptContact.of(solved.pair, solved.problem, solved.solution)
+            table = assembled_table(checked.request, points, nodes, [kept], [])
         with clock.stage("error estimate"):
             assessed = _condensed_errors(table, solved, contacts, sample)
         checks = (*check_cheaply(solved), *_edges(solved), *_neglected(self.neglected))

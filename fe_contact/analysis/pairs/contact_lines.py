@@ -10,18 +10,19 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
+from functools import partial
 from itertools import groupby
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fe_contact.analysis.pairs.kept_contact import KeptContact, problems_in_parts, solved_in_parts
 from fe_contact.analysis.pairs.pair_contact import Bodies, OperatingPoint, OperatingPoints, PairContact
 from fe_contact.contact import (
     Candidates,
     ContactModel,
     ContactProblem,
-    ContactSolution,
     Start,
     load_arm,
     solve_contact,
@@ -56,6 +57,8 @@ class _ContactBlock:
         Sets of normal forces in N; each is solved by itself.
     conditioned : bool
         Whether condition numbers are wanted.
+    edges : bool
+        Whether the depth of tip edges under the first set of loads is wanted.
     starts : tuple of ndarray, shape (rows, L, n), optional
         Forces in N on the candidates that each model starts from; default: each load from the one below it.
     assembled : ContactProblem, optional
@@ -69,13 +72,9 @@ class _ContactBlock:
     pitches: IntArray | None
     loads: tuple[FloatArray, ...]
     conditioned: bool = False
+    edges: bool = False
     starts: tuple[FloatArray, ...] | None = None
     assembled: ContactProblem | None = None
-
-    @property
-    def pitch(self) -> IntArray | None:
-        """The base pitch of every row."""
-        return None if self.pitches is None else np.repeat(self.pitches, self.candidates.position.size)
 
     def start(self, model: int) -> Start | None:
         """Return what the solution of a model is started from."""
@@ -84,45 +83,62 @@ class _ContactBlock:
 
 @dataclass(frozen=True)
 class _SolvedBlock:
-    """The problem of each model of a block, its solution for each set of loads, and condition numbers.
+    """What is kept of each model of a block for each set of loads, and condition numbers.
 
     The latter are of the compliance at the positions, if they were wanted.
     """
 
-    problems: tuple[ContactProblem, ...]
-    solutions: tuple[tuple[ContactSolution, ...], ...]
+    kept: tuple[tuple[KeptContact, ...], ...]
     condition: FloatArray | None
 
 
-def _solve_block(bodies: Bodies, block: _ContactBlock) -> _SolvedBlock:
-    """Assemble and solve a block: one task."""
+def _points(bodies: Bodies, block: _ContactBlock) -> list[OperatingPoint]:
+    """Return the operating points of a block, its compliance assembled."""
     contact = PairContact.of_bodies(block.pair, block.plan, bodies)
     if block.assembled is None:
         contact.assemble(block.models[0], block.candidates)
     else:
         contact.take(block.models[0], block.assembled)
-    where, pitch = block.candidates.position, block.pitch
-    problems = tuple(contact.problem(model, where, pitch) for model in block.models)
-    solutions = tuple(
-        tuple(solve_contact(problem, load, block.start(k)) for load in block.loads)
-        for k, problem in enumerate(problems)
+    return [OperatingPoint(contact, model) for model in block.models]
+
+
+def _solve_block(bodies: Bodies, block: _ContactBlock) -> _SolvedBlock:
+    """Assemble and solve a block: one task."""
+    where = block.candidates.position
+    kept = tuple(
+        solved_in_parts(point, where, block.loads, block.pitches, edges=block.edges)
+        for point in _points(bodies, block)
     )
-    condition = condition_numbers(problems[0].compliance) if block.conditioned else None
-    return _SolvedBlock(problems, solutions, condition)
+    condition = condition_numbers(kept[0][0].problem.compliance) if block.conditioned else None
+    return _SolvedBlock(kept, condition)
 
 
-def _deflect_block(bodies: Bodies, block: _ContactBlock) -> tuple[tuple[FloatArray, ...], ...]:
-    """Return the curves (rows, L, 2) of each model for each set of loads alone: one task."""
-    solved = _solve_block(bodies, block)
+def _deflect_block(bodies: Bodies, block: _ContactBlock) -> tuple[FloatArray, ...]:
+    """Return the curves (rows, L, 2) of each model alone, of one set of loads: one task."""
+    where, (load,) = block.candidates.position, block.loads
     return tuple(
-        tuple(_curves(block.pair, problem, solution) for solution in each)
-        for problem, each in zip(solved.problems, solved.solutions, strict=True)
+        _curves(point, where, load, block.pitches, block.start(k))
+        for k, point in enumerate(_points(bodies, block))
     )
 
 
-def _curves(pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> FloatArray:
-    """Return transmission error and load arm of a solution, (rows, L, 2) in m."""
-    return np.stack([solution.deflection, load_arm(pair, problem, solution)], axis=-1)
+def _curves(
+    point: OperatingPoint,
+    position: FloatArray,
+    load: FloatArray,
+    pitches: IntArray | None,
+    start: Start | None = None,
+) -> FloatArray:
+    """Return transmission error and load arm of an operating point, (rows, L, 2) in m.
+
+    `start` is for positions in the first base pitch.
+    """
+    parts = []
+    for problem in problems_in_parts(point, position, pitches):
+        solution = solve_contact(problem, load, start)
+        arm = load_arm(point.contact.pair, problem, solution)
+        parts.append(np.stack([solution.deflection, arm], axis=-1))
+    return np.concatenate(parts)
 
 
 TASK_SECONDS = 0.1
@@ -151,9 +167,9 @@ class _Line:
         work = unit_work(whole.pair, whole.plan, whole.plan.discretization.slices)
         return work.of(1, len(whole.models) * self.pitches * sum(load.size for load in whole.loads))
 
-    def blocks(self, *, conditioned: bool) -> Iterator[_ContactBlock]:
+    def blocks(self) -> Iterator[_ContactBlock]:
         """Cut it."""
-        whole, count = replace(self.whole, conditioned=conditioned), self.whole.candidates.position.size
+        whole, count = self.whole, self.whole.candidates.position.size
         chunks = together(count)
         parts = min(math.ceil(count * self.seconds_a_position / TASK_SECONDS), len(chunks))
         for numbers in np.array_split(np.arange(len(chunks)), max(parts, 1)):
@@ -169,13 +185,13 @@ class _Line:
 
 
 def _solved_lines(
-    lines: Sequence[_Line], workers: Workers, *, conditioned: bool = False, report: Report = unreported
+    lines: Sequence[_Line], workers: Workers, report: Report = unreported
 ) -> list[_SolvedBlock]:
     """Solve lines; their contacts keep what was assembled for them. `report` is called after each line."""
     solved: list[_SolvedBlock] = []
-    for line, blocks in zip(lines, _by_line(lines, workers, _solve_block, conditioned), strict=True):
+    for line, blocks in zip(lines, _by_line(lines, workers, _solve_block), strict=True):
         joined = _joined(line, blocks)
-        plain = replace(joined.problems[0], candidates=line.whole.candidates)
+        plain = replace(joined.kept[0][0].problem, candidates=line.whole.candidates)
         line.contact.take(line.whole.models[0], plain)
         solved.append(joined)
         report(len(solved) / len(lines))
@@ -185,21 +201,18 @@ def _solved_lines(
 def _deflections(lines: Sequence[_Line], workers: Workers) -> list[list[FloatArray]]:
     """Solve lines of one set of loads; of each line the curves (T P, L, 2) in m of every model."""
     return [
-        [_rows([block[k][0] for block in blocks], line.pitches) for k in range(len(line.whole.models))]
-        for line, blocks in zip(lines, _by_line(lines, workers, _deflect_block, False), strict=True)
+        [_rows([block[k] for block in blocks], line.pitches) for k in range(len(line.whole.models))]
+        for line, blocks in zip(lines, _by_line(lines, workers, _deflect_block), strict=True)
     ]
 
 
 def _by_line(
-    lines: Sequence[_Line],
-    workers: Workers,
-    function: Callable[[Bodies, _ContactBlock], R],
-    conditioned: bool,
+    lines: Sequence[_Line], workers: Workers, function: Callable[[Bodies, _ContactBlock], R]
 ) -> Iterator[list[R]]:
     """Yield the results of the blocks of every line; lines of the same bodies go out together."""
     for _, group in groupby(lines, key=lambda line: id(line.contact.bodies)):
         together = list(group)
-        cut = [list(line.blocks(conditioned=conditioned)) for line in together]
+        cut = [list(line.blocks()) for line in together]
         results = workers.run(
             function, together[0].contact.bodies, [block for blocks in cut for block in blocks]
         )
@@ -233,29 +246,38 @@ def _alike(part: Any, whole: Any) -> Any:
 
 def _joined(line: _Line, blocks: list[_SolvedBlock]) -> _SolvedBlock:
     """Put the blocks of a line together; all models share one compliance."""
-    compliance = np.concatenate([block.problems[0].compliance for block in blocks])
-    models = range(len(line.whole.models))
-    tilts = [np.concatenate([block.problems[k].tilt for block in blocks]) for k in models]
+    problems = [[kept[0].problem for kept in block.kept] for block in blocks]
+    compliance = np.concatenate([parts[0].compliance for parts in problems])
+    tilts = [np.concatenate([problem.tilt for problem in parts]) for parts in zip(*problems, strict=True)]
     tilt = max(tilts, key=np.size)  # that of flanks that slope, if any does
-    problems, solutions = [], []
-    for k in models:
-        parts = [block.problems[k] for block in blocks]
-        candidates = _joined_candidates([part.candidates for part in parts], line.pitches)
-        problems.append(replace(parts[0], candidates=candidates, compliance=compliance, tilt=tilt))
-        sets = zip(*(block.solutions[k] for block in blocks), strict=True)
-        solutions.append(tuple(_joined_arrays(list(each), line.pitches, ("load",)) for each in sets))
+    kept = []
+    for k, parts in enumerate(zip(*problems, strict=True)):
+        candidates = _joined_candidates([part.candidates for part in parts])
+        problem = replace(parts[0], candidates=candidates, compliance=compliance, tilt=tilt)
+        sets = zip(*(block.kept[k] for block in blocks), strict=True)
+        kept.append(tuple(_joined_contact(list(each), problem, line.pitches) for each in sets))
     known = [block.condition for block in blocks if block.condition is not None]
-    return _SolvedBlock(tuple(problems), tuple(solutions), np.concatenate(known) if known else None)
+    return _SolvedBlock(tuple(kept), np.concatenate(known) if known else None)
 
 
-def _joined_candidates(parts: list[Candidates], pitches: int) -> Candidates:
-    """Put candidates together; their slices do not go through pitches."""
+def _joined_contact(parts: list[KeptContact], problem: ContactProblem, pitches: int) -> KeptContact:
+    """Put what is kept of the blocks of a line together; forces are those of one base pitch."""
+    solutions = [part.solution for part in parts]
+    forces = _rows([solution.force for solution in solutions], 1)
+    solution = replace(_joined_arrays(solutions, pitches, ("load", "force")), force=forces)
+    stored = {name: _rows([part.stored[name] for part in parts], pitches) for name in parts[0].stored}
+    depth: FloatArray = np.max([part.edge_depth for part in parts], axis=0)
+    return KeptContact(problem, solution, stored, depth)
+
+
+def _joined_candidates(parts: list[Candidates]) -> Candidates:
+    """Put candidates in one base pitch together."""
     slices = [part.slices for part in parts]
     return replace(
         parts[0],
-        position=_rows([part.position for part in parts], pitches),
-        touch=_joined_arrays([part.touch for part in parts], pitches),
-        width=_rows([part.width for part in parts], pitches),
+        position=_rows([part.position for part in parts], 1),
+        touch=_joined_arrays([part.touch for part in parts], 1),
+        width=_rows([part.width for part in parts], 1),
         slices=replace(
             slices[0],
             present=_rows([part.present for part in slices], 1),
@@ -289,7 +311,6 @@ def _rows(parts: list[NDArray[Any]], pitches: int) -> NDArray[Any]:
 # Contact at many places at once: here, or line by line by workers, to the same bits.
 
 
-Solved = list[tuple[ContactProblem, ContactSolution]]
 Lines = dict[tuple[object, ...], tuple[_Line, list[int]]]
 
 
@@ -299,8 +320,9 @@ def solve_operating_points(
     loads: tuple[FloatArray, ...],
     *,
     conditioned: bool,
+    edges: bool,
     report: Report = unreported,
-) -> tuple[list[Solved], FloatArray | None]:
+) -> tuple[list[list[KeptContact]], FloatArray | None]:
     """Solve all places at the positions of all base pitches.
 
     Parameters
@@ -308,41 +330,50 @@ def solve_operating_points(
     position : ndarray, shape (P,)
         In [0, 1).
     loads : tuple of ndarray
-        Sets of normal forces in N.
+        Sets of normal forces in N: those of a table, support loads.
     conditioned : bool
         Whether workers also find condition numbers.
+    edges : bool
+        Whether the depth of tip edges under the first set is wanted.
     report : callable
-        Called with the fraction of operating points and sets of loads, or of lines, that are solved.
+        Called with the fraction of operating points and base pitches, or of lines, that are solved.
 
     Returns
     -------
-    list of list of (ContactProblem, ContactSolution)
+    list of list of KeptContact
         For each set of loads, of every place.
     ndarray or None
         Condition numbers of all compliances, if workers found them.
     """
-    pitches = np.arange(points.period)
-    everywhere = [position] * len(points.places)
+    pitches, count = np.arange(points.period), len(points.places)
+    everywhere = [position] * count
     lines = _sent_lines(points.workers, points.places, everywhere, loads, pitches)
     if not lines:
-        count, here = len(loads) * len(points.places), list[Solved]()
-        for load in loads:
-            here.append([])
-            for point in points.places:
-                here[-1].append(point.solve_pitches(position, load, pitches))
-                report(sum(map(len, here)) / count)
-        return here, None
-    sent = [line for line, _ in lines.values()]
-    solved_each = _solved_lines(sent, points.workers, conditioned=conditioned, report=report)
+        here = [
+            solved_in_parts(
+                point, position, loads, pitches, edges=edges, report=partial(_of_whole, report, k, count)
+            )
+            for k, point in enumerate(points.places)
+        ]
+        return [list(each) for each in zip(*here, strict=True)], None
+    sent = [
+        replace(line, whole=replace(line.whole, conditioned=conditioned, edges=edges))
+        for line, _ in lines.values()
+    ]
+    solved_each = _solved_lines(sent, points.workers, report)
     by_place = {
-        k: (problem, solutions)
+        k: kept
         for (_, members), line in zip(lines.values(), solved_each, strict=True)
-        for k, problem, solutions in zip(members, line.problems, line.solutions, strict=True)
+        for k, kept in zip(members, line.kept, strict=True)
     }
     each = [by_place[k] for k in sorted(by_place)]
-    solved = [[(problem, solutions[k]) for problem, solutions in each] for k in range(len(loads))]
     known = [line.condition for line in solved_each if line.condition is not None]
-    return solved, np.concatenate(known) if known else None
+    return [list(kept) for kept in zip(*each, strict=True)], np.concatenate(known) if known else None
+
+
+def _of_whole(report: Report, done: int, count: int, fraction: float) -> None:
+    """Report the fraction of one of so many parts."""
+    report((done + fraction) / count)
 
 
 def deflected_operating_points(
@@ -387,13 +418,6 @@ def deflected_operating_points(
     return [by_place[k] for k in range(len(points))]
 
 
-def assemble_remotely(points: OperatingPoints, models: Sequence[ContactModel], position: FloatArray) -> None:
-    """Let workers assemble what operating points need with other models; nothing without workers."""
-    sent = [OperatingPoint(point.contact, model) for point, model in zip(points.places, models, strict=True)]
-    lines = _sent_lines(points.workers, sent, [position] * len(sent), (), None)
-    _solved_lines([line for line, _ in lines.values()], points.workers)
-
-
 def _deflected_here(
     points: Sequence[OperatingPoint],
     position: Sequence[FloatArray],
@@ -406,11 +430,7 @@ def _deflected_here(
     for k, point in enumerate(points):
         if known is not None:
             point.contact.assemble(point.model, known[k])
-        if pitches is None:
-            start = None if starts is None else starts[k]
-            yield _curves(point.contact.pair, *point.solve(position[k], load, start=start))
-        else:
-            yield _curves(point.contact.pair, *point.solve_pitches(position[k], load, pitches))
+        yield _curves(point, position[k], load, pitches, None if starts is None else starts[k])
 
 
 def _started(line: _Line, starts: Sequence[Start]) -> _Line:

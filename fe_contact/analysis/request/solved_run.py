@@ -5,10 +5,21 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fe_contact.analysis.pairs.pair_contact import OperatingPoints, PairContact
+from fe_contact.analysis.pairs.tip_edges import edge_depth
 from fe_contact.analysis.request.request import Checked
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.plan import Plan
+from fe_contact.types import FloatArray
+
+Solved = list[tuple[ContactProblem, ContactSolution]]
+"""Of every place; of several base pitches of a table the problem and the forces are those of the first."""
+
+
+def edges_left_out(checked: Checked) -> bool:
+    """Whether a request leaves tip edges out in the belief that they stay clear, not for a tolerance."""
+    neglected = checked.request.named("corner_contact") in checked.request.neglected
+    return not (checked.model.corner_contact or neglected)
 
 
 @dataclass(frozen=True)
@@ -18,7 +29,18 @@ class SolvedRun:
     checked: Checked
     plan: Plan
     places: OperatingPoints
-    solved: list[tuple[ContactProblem, ContactSolution]]
+    solved: Solved
+
+    @property
+    def edges_left_out(self) -> bool:
+        """Whether tip edges were left out in the belief that they stay clear."""
+        return edges_left_out(self.checked)
+
+    @property
+    def edge_depths(self) -> list[FloatArray]:
+        """How far tip edges would be inside the mating flanks at every place, (L,) in m."""
+        pairs = zip(self.places.places, self.solved, strict=True)
+        return [edge_depth(point, *solved) for point, solved in pairs]
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ import numpy as np
 import model_studies
 from fe_contact.analysis.analyze import analyze
 from fe_contact.analysis.database.compute_database import compute_database
+from fe_contact.analysis.pairs.kept_contact import KeptContact
 from fe_contact.analysis.pairs.pair_contact import OperatingPoints, operating_points
 from fe_contact.analysis.pairs.slice_springs import (
     SliceLaw,
@@ -143,9 +144,15 @@ class _ClosedFormFidelity:
         request = checked.request
         count = plan.positions or POSITIONS
         position, pitches = np.arange(count) / count, np.arange(points.period)
-        solved = [point.solve_pitches(position, plan.load, pitches) for point in points.places]
-        support = [point.solve_pitches(position, plan.support, pitches) for point in points.places]
-        elastic = [solution.deflection - solution.no_load[:, None] for _, solution in solved]
+        table, support = (
+            [
+                KeptContact.of(point.contact.pair, *point.solve_pitches(position, load, pitches))
+                for point in points.places
+            ]
+            for load in (plan.load, plan.support)
+        )
+        solutions = [each.solution for each in table]
+        elastic = [solution.deflection - solution.no_load[:, None] for solution in solutions]
         return SteDatabase(
             position=(pitches[:, None] + position).ravel(),
             force=plan.load,
@@ -156,7 +163,7 @@ class _ClosedFormFidelity:
             period=points.period,
             error_estimate=points.gathered([self.relative_error * np.abs(part) for part in elastic]),
             metadata=Metadata(),
-            **table_fields(points, solved),
+            **table_fields(points, table),
             **table_support(points, support),
         )
 

@@ -1,0 +1,184 @@
+"""Contact of an operating point over many base pitches: solved in parts, and what a table keeps of it.
+
+The touching points of a whole hunting cycle take gigabytes. Parts of its base pitches are laid out, solved
+and reduced one after the other: memory holds those of one part beside the arrays of the table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fe_contact.analysis.pairs.pair_contact import OperatingPoint
+from fe_contact.analysis.pairs.tip_edges import edge_depth
+from fe_contact.contact import ContactProblem, ContactSolution, at_edges, contact_pressure
+from fe_contact.contact.sweep import solve_sets
+from fe_contact.geometry import ParallelAxes
+from fe_contact.types import BoolArray, FloatArray, IntArray, Status
+from model_studies.progress import Report, unreported
+
+POINTS_AT_ONCE = 2**18
+"""Touching points of a part: about 120 MB with their solutions, and enough that rows of the compliance, which
+are prepared once in each part, cost little."""
+
+
+def problems_in_parts(
+    point: OperatingPoint, position: FloatArray, pitches: IntArray | None
+) -> Iterator[ContactProblem]:
+    """Yield the contact of positions (P,) in [0, 1) in parts of the base pitches (T,), pitch by pitch.
+
+    None stands for the first pitch. Where all teeth are alike there is one part of one pitch.
+    """
+    contact, model = point.contact, point.model
+    if pitches is None or model.period == 1:
+        yield contact.problem(model, position)
+        return
+    points = contact.problem(model, position).candidates.gap.size
+    count = max(POINTS_AT_ONCE // points, 1)
+    for part in np.split(pitches, np.arange(count, pitches.size, count)):
+        yield contact.problem(model, position, np.repeat(part, position.size))
+
+
+@dataclass(frozen=True)
+class KeptContact:
+    """What is kept of the contact of an operating point at P positions in each of T base pitches.
+
+    Attributes
+    ----------
+    problem : ContactProblem
+        Of the first of the base pitches.
+    solution : ContactSolution
+        Of all of them, but for its forces (P, L, n): those in the first.
+    stored : dict
+        Arrays (T P, L, ...) by their names in the table.
+    edge_depth : ndarray, shape (L,)
+        How far tip edges would be inside the mating flanks, m; 0 where they stay clear or were left aside.
+    """
+
+    problem: ContactProblem
+    solution: ContactSolution
+    stored: Mapping[str, NDArray[Any]]
+    edge_depth: FloatArray
+
+    @classmethod
+    def of(cls, pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> KeptContact:
+        """Return all that there is of a solution, edges left aside."""
+        return cls(problem, solution, contact_fields(pair, problem, solution), np.zeros(solution.load.size))
+
+
+def solved_in_parts(
+    point: OperatingPoint,
+    position: FloatArray,
+    sets: Sequence[FloatArray],
+    pitches: IntArray | None,
+    *,
+    edges: bool,
+    report: Report = unreported,
+) -> tuple[KeptContact, ...]:
+    """Solve positions (P,) in the base pitches (T,) at sets of normal forces in N, each by itself.
+
+    Of the first set all arrays of a table are stored, of others those of support loads.
+
+    Parameters
+    ----------
+    pitches : ndarray of int, shape (T,), or None
+        As `problems_in_parts` takes them.
+    edges : bool
+        Whether the depth of tip edges under the first set is wanted.
+    report : callable
+        Called with the fraction of the base pitches that are solved.
+    """
+    parts: list[list[KeptContact]] = []
+    solved, count = 0, position.size * (1 if pitches is None else pitches.size)
+    for problem in problems_in_parts(point, position, pitches):
+        solutions = solve_sets(problem, sets)
+        depth = edge_depth(point, problem, solutions[0]) if edges else np.zeros(sets[0].size)
+        first = parts[0][0].problem if parts else _first_pitch(problem)
+        kept = 0 if parts else first.candidates.position.size
+        part = []
+        for number, solution in enumerate(solutions):
+            stored = (_support_fields if number else contact_fields)(point.contact.pair, problem, solution)
+            forces = replace(solution, force=solution.force[:kept].copy())
+            part.append(KeptContact(first, forces, stored, depth))
+        parts.append(part)
+        solved += problem.candidates.position.size
+        report(min(solved / count, 1.0))
+    return tuple(map(_one_after_another, zip(*parts, strict=True)))
+
+
+def _first_pitch(problem: ContactProblem) -> ContactProblem:
+    """Return a problem of several base pitches in the first of them."""
+    whole, rows = problem.candidates, np.arange(len(problem.compliance))
+    if whole.position.size == rows.size:
+        return problem
+    first = replace(
+        whole, position=whole.position[rows], touch=whole.touch.rows(rows), width=whole.width[rows]
+    )
+    return problem.touching(first)
+
+
+def _one_after_another(parts: Sequence[KeptContact]) -> KeptContact:
+    """Put parts of the base pitches of one set of loads together."""
+    first, solutions = parts[0], [part.solution for part in parts]
+    if len(parts) == 1:
+        return first
+    names = [field.name for field in fields(ContactSolution) if field.name != "load"]
+    solution = replace(
+        first.solution,
+        **{name: np.concatenate([getattr(each, name) for each in solutions]) for name in names},
+    )
+    stored = {name: np.concatenate([part.stored[name] for part in parts]) for name in first.stored}
+    depth: FloatArray = np.max([part.edge_depth for part in parts], axis=0)
+    return KeptContact(first.problem, solution, stored, depth)
+
+
+# From contact solutions to the arrays of the STE database.
+
+
+def contact_fields(
+    pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution
+) -> dict[str, NDArray[Any]]:
+    """Arrays (P, F, ...) of one operating point by name in the database; load shares of its pairs."""
+    candidates = problem.candidates
+    good = solution.status == Status.CONVERGED
+    loaded = solution.force * candidates.torque_share[:, None, :]
+    total = np.where(good, loaded.sum(axis=2), 1.0)
+    pressure = contact_pressure(problem, solution.force)
+    edge = at_edges(problem, solution.force, pressure)
+    of_pair = candidates.pair[:, None] == np.unique(candidates.pair)
+    centroid = (loaded @ candidates.face_position) / total
+    along_path = pair.tilt_arm(candidates.touch.roll_1, 0.0)
+    return {
+        "static_transmission_error": solution.deflection,
+        "tangent_compliance": solution.tangent,
+        "load_share": (loaded @ of_pair) / total[..., None],
+        "face_centroid": centroid,
+        "load_arm": centroid + np.einsum("pfm,pm->pf", loaded, along_path) / total,
+        "max_pressure": np.where(good, np.where(edge, 0.0, pressure).max(axis=2), np.nan),
+        "edge_pressure": np.where(good, np.where(edge, pressure, 0.0).max(axis=2), np.nan),
+        "pairs_in_contact": _pairs_in_contact(solution.force, of_pair),
+        "status": solution.status,
+        "residuals": solution.residuals,
+    }
+
+
+OF_SUPPORT = ("static_transmission_error", "tangent_compliance", "pairs_in_contact")
+"""What is stored of support loads."""
+
+
+def _support_fields(
+    _pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution
+) -> dict[str, NDArray[Any]]:
+    """Arrays (P, S) of one place at the support loads."""
+    pair = problem.candidates.pair
+    carrying = _pairs_in_contact(solution.force, pair[:, None] == np.unique(pair))
+    return dict(zip(OF_SUPPORT, (solution.deflection, solution.tangent, carrying), strict=True))
+
+
+def _pairs_in_contact(force: FloatArray, of_pair: BoolArray) -> IntArray:
+    """Count the pairs (P, F) of which any candidate carries load."""
+    return np.asarray((((force > 0.0).astype(float) @ of_pair) > 0.0).sum(axis=2))

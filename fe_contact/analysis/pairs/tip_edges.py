@@ -1,0 +1,49 @@
+"""Depth of tip edges inside the mating flanks in a contact that was solved without them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from fe_contact.analysis.pairs.pair_contact import OperatingPoint
+from fe_contact.contact import Candidates, ContactProblem, ContactSolution
+from fe_contact.geometry import ParallelAxes
+from fe_contact.types import FloatArray
+
+OUTSIDE = 1e-3
+"""Base pitches before A and after E at which the gap of an edge is assessed: it grows from there on."""
+
+
+def handovers(pair: ParallelAxes) -> FloatArray:
+    """Return the positions (2,) in [0, 1), rising, just before a pair meets at A and after it leaves at E."""
+    path = pair.path_of_contact
+    start, end = (float(pair.position(roll)) for roll in (path.start, path.end))
+    return np.sort(np.array([start - OUTSIDE, end + OUTSIDE]) % 1.0)
+
+
+def edge_depth(point: OperatingPoint, problem: ContactProblem, solution: ContactSolution) -> FloatArray:
+    """Return how far tip edges would be inside the mating flanks (L,), m; 0 where they stay clear.
+
+    Under the forces as solved: what the loaded teeth move at the unloaded edges is in.
+    """
+    where = problem.candidates.position
+    phase, pitch = where[: len(problem.compliance)] % 1.0, np.floor(where).astype(np.int64)
+    model = replace(point.model, corner_contact=True)
+    edges = point.contact.problem(model, phase, pitch if model.tooth_gaps else None)
+    touch = edges.candidates.touch
+    off_line = (touch.lever_1 != 1.0) | (touch.lever_2 != 1.0)
+    force = _carried(problem.candidates, edges.candidates, np.nan_to_num(solution.force))
+    moved = edges.moved(force)
+    closing = edges.candidates.motion_arm[:, None, :] * np.nan_to_num(solution.deflection)[:, :, None]
+    gap = np.where(off_line, touch.gap, np.inf) * edges.candidates.motion_arm
+    return np.asarray(np.max(closing - moved - gap[:, None, :], axis=(0, 2), initial=0.0))
+
+
+def _carried(these: Candidates, those: Candidates, force: FloatArray) -> FloatArray:
+    """Return forces (P, L, n) of some candidates on others, of which they are a part."""
+    column = {key: i for i, key in enumerate(zip(those.pair.tolist(), those.face_position, strict=True))}
+    carried = np.zeros((*force.shape[:2], those.pair.size))
+    keys = zip(these.pair.tolist(), these.face_position, strict=True)
+    carried[:, :, [column[key] for key in keys]] = force
+    return carried
