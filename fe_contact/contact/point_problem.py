@@ -402,7 +402,8 @@ class State(NamedTuple):
 def pressed_state(problem: PointProblem, force: FloatArray) -> State:
     """Return a state with the forces (m,) of the contacts on the curves; what they move is still missing."""
     n, m = problem.bodies.shape[0], force.size
-    state = State(np.zeros(n), np.zeros(n), np.zeros((n, n)), force, np.zeros(m), np.zeros(n))
+    yielding = np.zeros((n, n)) if problem.tilt.size else problem.bodies  # it stays where no flank rolls
+    state = State(np.zeros(n), np.zeros(n), yielding, force, np.zeros(m), np.zeros(n))
     press(problem, force, state.pressed)
     state.held[:] = state.pressed
     return state

@@ -36,7 +36,9 @@ def rolled(problem: PointProblem, j: int, held: FloatArray) -> tuple[float, floa
 
 @inner(error_model="numpy")
 def fill_yielding(problem: PointProblem, state: State) -> None:
-    """Fill in the derivative of the motions: symmetric."""
+    """Fill in the derivative of the motions: symmetric, and that of the bodies where no flank rolls."""
+    if not problem.tilt.size:
+        return
     n, out = state.held.size, state.yielding
     out[:] = problem.bodies
     for j in range(n):
