@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from bounds import engineering
 from fe_contact.analysis.pairs.contact_lines import deflected_operating_points, solve_operating_points
 from fe_contact.analysis.pairs.kept_contact import OF_SUPPORT, KeptContact, contact_fields
 from fe_contact.analysis.pairs.pair_contact import (
@@ -31,8 +32,8 @@ from fe_contact.contact import ContactModel, ContactProblem, ContactSolution
 from fe_contact.contact.model import MeetingTeeth
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import Run
-from fe_contact.planning.cost_model import Prediction, expected_tries
-from fe_contact.planning.plan import MOST_ROWS, FaceDiscretization, NodeRule, Plan
+from fe_contact.planning.cost_model import Prediction, expected_tries, most_positions
+from fe_contact.planning.plan import FaceDiscretization, NodeRule, Plan
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import BoolArray, FloatArray, IntArray, Status
@@ -165,19 +166,18 @@ def _table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreporte
     if plan.positions is not None:
         return unmeasured_nodes(plan.positions, len(points.assessed) * plan.load.size)
     windows = _assessed_windows(points.nominal.pair, points.places[0].model, plan.nodes.assessed_pitches)
-    tried, expected = 0, expected_tries(plan)
+    times = points.period * len(points.places)
+    tried, expected = 0, expected_tries(plan, times)
 
     def solve(position: FloatArray) -> FloatArray:
         """STE (W, P, windows x places x L) in m."""
         nonlocal tried
-        curves = [_curves(points, plan.load, position, window) for window in windows]
+        curves = _curves(points, plan.load, position, np.concatenate(windows))
         tried += position.size
         report(min(tried / expected, 1.0))
-        return np.concatenate(curves, axis=2)
+        return np.concatenate(np.split(curves, len(windows)), axis=2)
 
-    rows = points.period * len(points.places)
-    most = max(min(plan.nodes.most, MOST_ROWS // rows), plan.nodes.start)
-    return _adaptive_nodes(replace(plan.nodes, most=most), solve)
+    return _adaptive_nodes(replace(plan.nodes, most=most_positions(plan, times)), solve)
 
 
 def _assessed_windows(pair: ParallelAxes, model: ContactModel, most: int) -> tuple[IntArray, ...]:
@@ -261,7 +261,7 @@ def solve_table(
         run = run if pays(run.workers, prediction.cpu_seconds) else replace(run, workers=InProcess())
     known = before.places.nominal if before is not None and _same_bodies(before.plan, plan) else None
     run.on_plan(prediction.stages)
-    announce(run.progress, "compliance", prediction.cpu_seconds, "table")
+    announce(run.progress, "compliance", prediction.cpu_seconds, _subject(checked, prediction))
     report = partial(run.progress, "compliance")
     nominal = condensed_bodies(checked, plan, clock, run, known=known, report=report)
     points = operating_points(request.scene, request.choices, nominal, run.workers)
@@ -279,6 +279,12 @@ def solve_table(
     return SolvedTable(
         checked, plan, points, solved, decided, prediction, nodes, kept, support, table, condition
     )
+
+
+def _subject(checked: Checked, prediction: Prediction) -> str:
+    """Return what is announced, and its memory where the period is long."""
+    period, gigabytes = checked.model.period, 1e-9 * prediction.memory_bytes
+    return "table" if period == 1 else f"table of {period} base pitches in {engineering(gigabytes, 2)} GB"
 
 
 def condensed_bodies(

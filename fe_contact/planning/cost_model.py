@@ -9,7 +9,7 @@ Everything is then multiplied by how slow the host is and by what earlier runs s
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -36,6 +36,8 @@ _FACE_POSITION, _FACE_SLICE = 0.4e-6, 2.2e-5
 _FACE_CANDIDATE = 4.6e-6
 _TOOTH_POINT = 0.25e-6
 """Gaps of teeth at a touching point."""
+_PLANE_BEGUN, _FACE_BEGUN = 8e-6, 4e-6
+"""First load of a set, beside the others, in the plane and per slice of a tooth pair."""
 _FACE_TILT = 2.7
 """Assembly with the change of the compliance along sloping flanks, over that without."""
 _PLANE_EXPECTED, _FACE_EXPECTED = 118, 76
@@ -62,23 +64,28 @@ _POINT_NUMBERS = 25
 
 
 class _Work(NamedTuple):
-    """CPU seconds to assemble a position, to solve one load at it, and to find the gaps of one pitch."""
+    """CPU seconds to assemble a position, to solve one load at it, and of every pitch of a longer period.
+
+    In each pitch the gaps of its teeth are found (`pitch`), and the first of a set of loads is solved from a
+    guess (`begun` beside `point`).
+    """
 
     position: float
     point: float
     pitch: float
+    begun: float
 
     def of(self, positions: float, points: float) -> float:
         """Return the CPU seconds of so many positions and points."""
         return positions * self.position + points * self.point
 
-    def in_pitches(self, rows: float, loads: float, pitches: int) -> float:
-        """Return the CPU seconds of rows of positions in so many pitches, at each of some loads."""
-        gaps = self.pitch if pitches > 1 else 0.0
-        return rows * pitches * (loads * self.point + gaps)
+    def in_pitches(self, rows: float, sets: Sequence[float], pitches: int) -> float:
+        """Return the CPU seconds of rows of positions in so many pitches, at sets of so many loads."""
+        beside = self.pitch + len(sets) * self.begun if pitches > 1 else 0.0
+        return rows * pitches * (sum(sets) * self.point + beside)
 
 
-def _contact_seconds(
+def contact_seconds(
     pair: ParallelAxes,
     plan: Plan,
     model: ContactModel,
@@ -87,14 +94,14 @@ def _contact_seconds(
     with_errors: bool = True,
 ) -> tuple[float, float, float]:
     """CPU seconds of the search of positions, of the table, and of the solutions that measure its errors."""
-    kept, loads = _expected_positions(plan), plan.load.size
     points, distances = alignments[0] * alignments[1], alignments[1]
-    assessed = min(points, _JUDGED)
-    tried, window = expected_tries(plan), _searched_pitches(plan, model.period)
+    times, loads = points * model.period, plan.load.size
+    kept, assessed = expected_positions(plan, times), min(points, _JUDGED)
+    tried, window = expected_tries(plan, times), _searched_pitches(plan, model.period)
     work = unit_work(pair, plan, plan.discretization.slices)
-    search = work.of(tried * distances, 0) + work.in_pitches(tried * assessed, loads, window)
+    search = work.of(tried * distances, 0) + work.in_pitches(tried * assessed, (loads,), window)
     table = work.of(kept * distances, 0)
-    table += work.in_pitches(kept * points, loads + plan.support.size, model.period)
+    table += work.in_pitches(kept * points, (loads, plan.support.size), model.period)
     table += _FACE_CHECK if plan.discretization.slices > 1 else 0.0
     return search, table, _errors(pair, plan, model.period, alignments) if with_errors else 0.0
 
@@ -106,7 +113,8 @@ def _searched_pitches(plan: Plan, period: int) -> int:
 
 def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, int]) -> float:
     """CPU seconds of rougher solutions of some of the table, middles, and held-out points of its axes."""
-    made, kept, loads = plan.discretization, _expected_positions(plan), plan.load.size
+    made, loads = plan.discretization, plan.load.size
+    kept = expected_positions(plan, period * alignments[0] * alignments[1])
     work = unit_work(pair, plan, made.slices)
     rougher = [work, *([work] if made.corrected else [])]
     if made.slices > 1:
@@ -116,11 +124,11 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
     some, rows = min(loads, LOADS), some_positions(kept).size
     skews, distances = (min(count, ALIGNMENTS) for count in alignments)
     seconds = sum(
-        w.of(rows * distances, 0) + w.in_pitches(rows * skews * distances, some, period) for w in rougher
+        w.of(rows * distances, 0) + w.in_pitches(rows * skews * distances, (some,), period) for w in rougher
     )
-    if plan.positions is not None:
+    if plan.positions is not None or period > 1:
         middles, assessed = _SOLVED_MIDDLES * kept, min(alignments[0] * alignments[1], _JUDGED)
-        seconds += work.of(middles * alignments[1], 0) + work.in_pitches(middles * assessed, some, period)
+        seconds += work.of(middles * alignments[1], 0) + work.in_pitches(middles * assessed, (some,), period)
     held_out_loads = (loads - 1) * (WIDE_PROBES if loads - 1 <= WIDE_INTERVALS else 1)
     held = rows * (held_out_loads + (alignments[0] - 1) * some)
     apart = _HELD_OUT_DISTANCES * (alignments[1] - 1)
@@ -129,13 +137,30 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
     return seconds + _TABLE_POINT * kept * period * alignments[0] * alignments[1] * loads
 
 
-def _contact_bytes(pair: ParallelAxes, plan: Plan) -> float:
-    """Return the bytes of compliance and touching points that are held at once."""
+MOST_ROWS = 150_000
+"""Positions x alignments that a table may have."""
+POINTS_AT_ONCE = 2**18
+"""Touching points of a part of the base pitches that is solved at once: enough that the rows of the
+compliance, which are prepared once in each part, cost little."""
+_PART_NUMBERS = 90
+"""Numbers that are held of one of them at a time, with its solutions."""
+_ROW_NUMBERS, _LOAD_NUMBERS = 150, 160
+"""Numbers of a row of a table, and of each load at it, its errors and force table included."""
+
+
+def memory_of_contact(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, int]) -> float:
+    """Return the bytes of compliance, touching points and table that are held at once."""
     held = _HELD_POSITIONS if plan.positions is None else _HELD_PART * plan.positions
     count = _candidates(pair, plan.discretization.slices)
     points = count * (POINTS if plan.discretization.slices > 1 else 1)
     blocks = 2 if _with_tilt(pair, plan) else 1
-    return 8.0 * held * (blocks * count**2 + _POINT_NUMBERS * points)
+    numbers = held * (blocks * count**2 + _POINT_NUMBERS * points)
+    if period > 1:
+        rows = expected_positions(plan, period * alignments[0] * alignments[1]) * period
+        numbers += _PART_NUMBERS * min(rows * points, POINTS_AT_ONCE)
+        loads = plan.load.size + plan.support.size
+        numbers += rows * alignments[0] * alignments[1] * (_ROW_NUMBERS + _LOAD_NUMBERS * loads)
+    return 8.0 * numbers
 
 
 def _with_tilt(pair: ParallelAxes, plan: Plan) -> bool:
@@ -154,26 +179,36 @@ def unit_work(pair: ParallelAxes, plan: Plan, slices: int) -> _Work:
     made = plan.discretization
     count = _candidates(pair, slices)
     if not isinstance(made, FaceDiscretization):
-        return _Work(_PLANE_POSITION, _PLANE_POINT + _PLANE_CANDIDATE * count, _TOOTH_POINT * count)
+        point = _PLANE_POINT + _PLANE_CANDIDATE * count
+        return _Work(_PLANE_POSITION, point, _TOOTH_POINT * count, _PLANE_BEGUN)
     elements = max(pair.pinion.normal_module / recipe.flank_size for recipe in made.recipes)
     position = (_FACE_POSITION * elements**2 + _FACE_SLICE) * count
     tilted = _FACE_TILT * position if _with_tilt(pair, plan) else position
-    return _Work(tilted, _FACE_CANDIDATE * count, _TOOTH_POINT * POINTS * count)
+    return _Work(tilted, _FACE_CANDIDATE * count, _TOOTH_POINT * POINTS * count, _FACE_BEGUN * count)
 
 
-def expected_tries(plan: Plan) -> int:
+def expected_tries(plan: Plan, times: int = 1) -> int:
     """Return the positions at which the search usually solves; none if they are requested."""
     if plan.positions is not None:
         return 0
     begun = plan.nodes.start
-    return _TRIED_PER_START * begun + _TRIED_PER_NODE * max(_expected_positions(plan) - begun, 0)
+    return _TRIED_PER_START * begun + _TRIED_PER_NODE * max(expected_positions(plan, times) - begun, 0)
 
 
-def _expected_positions(plan: Plan) -> int:
-    """Return the positions in a base pitch: requested, or those that the search usually ends with."""
+def expected_positions(plan: Plan, times: int = 1) -> int:
+    """Return the positions in a base pitch: requested, or those that the search usually ends with.
+
+    `times` is the number of base pitches and alignments that a table repeats them in (`most_positions`).
+    """
     if plan.positions is not None:
         return plan.positions
-    return _FACE_EXPECTED if isinstance(plan.discretization, FaceDiscretization) else _PLANE_EXPECTED
+    over_face = isinstance(plan.discretization, FaceDiscretization)
+    return min(_FACE_EXPECTED if over_face else _PLANE_EXPECTED, most_positions(plan, times))
+
+
+def most_positions(plan: Plan, times: int) -> int:
+    """Return how many positions a search may end with, in so many base pitches and alignments."""
+    return max(min(plan.nodes.most, MOST_ROWS // times), plan.nodes.start)
 
 
 STAGES = ("compliance", "contact", "error estimate")
@@ -297,7 +332,7 @@ def predict_run(
     kind = "face" if isinstance(made, FaceDiscretization) else "plane"
     fine = _compliance(pair, plan, cache, coarse=False)
     coarse = _compliance(pair, plan, cache, coarse=True) if with_errors else _Cost(0.0, 0.0, 0.0)
-    search, solve, check = _contact_seconds(pair, plan, model, alignments, with_errors=with_errors)
+    search, solve, check = contact_seconds(pair, plan, model, alignments, with_errors=with_errors)
     slowness = host_slowness(cache)
     # dense algebra has its own measurement of the host in it
     speed = slowness if kind == "plane" else 1.0
@@ -308,9 +343,10 @@ def predict_run(
     }
     known = corrections(cache)
     correction = {stage: known.get(log_name(kind, stage), 1.0) for stage in STAGES}
-    memory = PROCESS_BYTES + _contact_bytes(pair, plan) + fine.held + coarse.held
+    positions = expected_positions(plan, model.period * alignments[0] * alignments[1])
+    memory = PROCESS_BYTES + memory_of_contact(pair, plan, model.period, alignments) + fine.held + coarse.held
     memory += max(fine.working, coarse.working)
-    return Prediction(parts, correction, int(memory), _expected_positions(plan), kind)
+    return Prediction(parts, correction, int(memory), positions, kind)
 
 
 def _compliance(pair: ParallelAxes, plan: Plan, cache: Path | None, *, coarse: bool) -> _Cost:
@@ -411,7 +447,7 @@ def effort(pair: ParallelAxes, plan: Plan, model: ContactModel, alignments: tupl
     """
     made = plan.discretization
     bodies = tuple(body.right_handed() for body in plan.bodies(pair))
-    work = sum(_contact_seconds(pair, plan, model, alignments))
+    work = sum(contact_seconds(pair, plan, model, alignments))
     if isinstance(made, FaceDiscretization):
         gears = dict.fromkeys(zip(bodies, made.recipes, strict=True))
         return work + sum(_solid_effort(gear.teeth, recipe, plan.level) for gear, recipe in gears)

@@ -18,12 +18,9 @@ from fe_contact.analysis.pairs.tip_edges import edge_depth
 from fe_contact.contact import ContactProblem, ContactSolution, at_edges, contact_pressure
 from fe_contact.contact.sweep import solve_sets
 from fe_contact.geometry import ParallelAxes
+from fe_contact.planning.cost_model import POINTS_AT_ONCE
 from fe_contact.types import BoolArray, FloatArray, IntArray, Status
 from model_studies.progress import Report, unreported
-
-POINTS_AT_ONCE = 2**18
-"""Touching points of a part: about 120 MB with their solutions, and enough that rows of the compliance, which
-are prepared once in each part, cost little."""
 
 
 def problems_in_parts(

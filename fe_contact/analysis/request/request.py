@@ -26,7 +26,8 @@ from fe_contact.effects.influence.estimate import (
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning.cost_model import Prediction, predict_run
-from fe_contact.planning.plan import CycleCost, Plan, make_plan
+from fe_contact.planning.cycle_cost import CycleCost
+from fe_contact.planning.plan import Plan, make_plan
 from fe_contact.planning.planned import chosen_mesh
 from fe_contact.plausibility import pair_findings
 from fe_contact.types import FloatArray, Json

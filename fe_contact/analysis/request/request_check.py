@@ -19,7 +19,8 @@ from fe_contact.flank.modification import fields_of
 from fe_contact.geometry import FlankModification, ParallelAxes
 from fe_contact.mesh import SectorRecipe
 from fe_contact.options import AnalysisOptions, OperatingPoint, TableAxes
-from fe_contact.planning.plan import CycleCost, make_plan
+from fe_contact.planning.cycle_cost import CycleCost
+from fe_contact.planning.plan import make_plan
 
 # Automatic effects that a requested tolerance does not need.
 
@@ -205,8 +206,7 @@ def _refuse_idle_pitches(request: Request) -> None:
 def _cycle_cost(request: Request, model: ContactModel) -> CycleCost:
     """Predict the cost of the whole table; refuse one that is too long to be made."""
     plan = make_plan(request.pair, request.load, request.options, model)
-    alignments = request.misalignment.size * request.center_distance_change.size
-    cost = CycleCost.of(request.pair, plan, model.period, alignments)
+    cost = CycleCost.of(request.pair, plan, model, request.alignments)
     cost.refuse_too_long()
     return cost
 

@@ -17,7 +17,12 @@ from fe_contact.compliance.cache import kept_size
 from fe_contact.errors import InputError
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning import cost_model
-from fe_contact.planning.cost_model import _contact_bytes, _contact_seconds, _expected_positions, predict_run
+from fe_contact.planning.cost_model import (
+    contact_seconds,
+    expected_positions,
+    memory_of_contact,
+    predict_run,
+)
 from fe_contact.planning.planned import ExpectedError, MeshOption, _mesh_for_time, _mesh_for_tolerance
 from model_studies.run_log import FILE as LOG
 
@@ -116,10 +121,8 @@ def test_slices_change_no_positions_but_their_cost():
     wide = pair(helix=0.4, width=40e-3)
     asked = check_request(wide, TableAxes(normal_forces=[500.0]), AnalysisOptions(level="fine"))
     few, many = (decide(asked).in_slices(count).plan for count in (15, 31))
-    assert _expected_positions(few) == _expected_positions(many)
-    costs = [
-        sum(_contact_seconds(wide, plan, asked.model, (1, 1), with_errors=False)) for plan in (few, many)
-    ]
+    assert expected_positions(few) == expected_positions(many)
+    costs = [sum(contact_seconds(wide, plan, asked.model, (1, 1), with_errors=False)) for plan in (few, many)]
     assert 2.0 < costs[1] / costs[0] < 4.0
 
 
@@ -195,7 +198,11 @@ def test_memory_grows_with_meshes_positions_and_slices():
     plan = decide(check_request(face, TableAxes(normal_forces=[1000.0]), AnalysisOptions(level="draft"))).plan
     finer = replace(plan, discretization=replace(plan.discretization, slices=61))
     ratio = 61 / plan.discretization.slices
-    assert ratio < _contact_bytes(face, finer) / _contact_bytes(face, plan) < ratio**2
+
+    def bytes_of(made):
+        return memory_of_contact(face, made, 1, (1, 1))
+
+    assert ratio < bytes_of(finer) / bytes_of(plan) < ratio**2
 
 
 def test_kept_compliances_take_the_memory_of_their_files(tmp_path, monkeypatch):
@@ -212,5 +219,5 @@ def test_kept_compliances_take_the_memory_of_their_files(tmp_path, monkeypatch):
     ).plan
     alike = 2 * 3_000_000  # gears alike but for the hand are read once, the mesh and the coarse one
     beside = 1.25 * 3_000_000  # the mirror image of one, and a gathered block
-    assert kept == int(cost_model.PROCESS_BYTES + _contact_bytes(gears, plan) + alike + beside)
+    assert kept == int(cost_model.PROCESS_BYTES + memory_of_contact(gears, plan, 1, (1, 1)) + alike + beside)
     assert kept < fresh

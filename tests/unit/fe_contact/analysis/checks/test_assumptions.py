@@ -12,9 +12,9 @@ from analysis_requests import point_request, table_request
 from spur_gears import GEAR, PAIR
 
 from fe_contact import FlankModification, GearPair, Shaft, analyze
-from fe_contact.analysis.checks.assumptions import OUTSIDE, _handovers
 from fe_contact.analysis.flanks.flank_file import flank_results
 from fe_contact.analysis.flanks.root_stress import root_stress
+from fe_contact.analysis.pairs.tip_edges import OUTSIDE, handovers
 from fe_contact.analysis.request import request_check as neglected_effects
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.errors import SolveError
@@ -163,7 +163,7 @@ def test_teeth_that_jam_are_noticed(cache: Path) -> None:
 
 
 SKEWED_POINT = {"normal_force": 1500.0, "misalignment": 150e-6, "level": "draft"}
-AT = [0.1, *_handovers(CLEAR)]
+AT = [0.1, *handovers(CLEAR)]
 
 
 def edges(receipt: Json) -> Json:
@@ -223,6 +223,6 @@ def test_positions_that_pass_a_handover_by_miss_no_edge(cache: Path) -> None:
 def test_handovers_are_just_outside_the_path_of_contact() -> None:
     pair = check_request(GearPair(GEAR, GEAR), TableAxes(torques=[1.0])).request.pair
     path = pair.path_of_contact
-    rolls = [path.pitch_point + (x + j) * path.base_pitch for x in _handovers(pair) for j in (-2, -1, 0, 1)]
+    rolls = [path.pitch_point + (x + j) * path.base_pitch for x in handovers(pair) for j in (-2, -1, 0, 1)]
     assert min(abs(path.start - roll - OUTSIDE * path.base_pitch) for roll in rolls) < 1e-12
     assert min(abs(roll - path.end - OUTSIDE * path.base_pitch) for roll in rolls) < 1e-12

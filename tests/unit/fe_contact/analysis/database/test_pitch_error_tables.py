@@ -8,10 +8,13 @@ from analysis_requests import point_request, table_request
 
 from fe_contact import Gear, GearPair, PitchDeviation, analyze, flank_results
 from fe_contact.analysis.estimates.position_errors import _measured_nodes
+from fe_contact.analysis.pairs import kept_contact
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.tables import _adaptive_nodes, _assessed_windows
+from fe_contact.contact.sweep import solve_sets
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.errors import InputError
+from fe_contact.geometry import RunOut, Wave
 from fe_contact.options import Run, TableAxes
 from fe_contact.planning.plan import NodeRule
 
@@ -19,8 +22,8 @@ TORQUES = (30.0, 100.0)
 RNG = np.random.default_rng(21)
 
 
-def gear(teeth, deviation=()):
-    return Gear(teeth, 4e-3, 25e-3, 40e-3, pitch_deviation=PitchDeviation(tuple(deviation)))
+def gear(teeth, deviation=(), **more):
+    return Gear(teeth, 4e-3, 25e-3, 40e-3, pitch_deviation=PitchDeviation(tuple(deviation)), **more)
 
 
 @pytest.fixture(scope="module")
@@ -87,6 +90,35 @@ def test_both_gears_repeat_after_the_hunting_cycle_or_the_pitches_asked_for():
         part.static_transmission_error[same], cycle.static_transmission_error[: 30 * 8][same]
     )
     assert part.metadata.content_hash != cycle.metadata.content_hash
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("edges", ["on", "off"])
+def test_pitches_solved_in_parts_are_the_whole_table(monkeypatch, edges):
+    """To the last bit, however small the parts: flanks that roll under load and edges left out included."""
+    first = gear(17, RNG.normal(0.0, 3e-6, 17), waves=(Wave(4, 0.4e-6),), run_out=RunOut(4e-6))
+    options = {"torques": [60.0, 100.0], "level": "draft", "model": "plane_strain", "positions": 8}
+    options |= {"effects": {"corner_contact": edges}, "on_violation": "report"}
+    tables, sizes = [], []
+
+    def counted(problem, sets):
+        sizes[-1].append(problem.candidates.gap.size)
+        return solve_sets(problem, sets)
+
+    monkeypatch.setattr(kept_contact, "solve_sets", counted)
+    for most in (2**18, 100, 1):
+        sizes.append([])
+        monkeypatch.setattr(kept_contact, "POINTS_AT_ONCE", most)
+        tables.append(analyze(GearPair(first, gear(23)), **options))
+    assert len(sizes[0]) == 1 and max(sizes[1]) <= 100 and len(sizes[2]) == 17
+    whole, *parted = tables
+    for table in parted:
+        assert all(np.array_equal(getattr(table, n), getattr(whole, n), equal_nan=True) for n in whole.stored)
+        assert table.metadata.receipt["assumptions"] == whole.metadata.receipt["assumptions"]
+    depths = [
+        float(np.max(each["change"])) for each in whole.metadata.receipt["assumptions"] if "change" in each
+    ]
+    assert edges == "on" or max(depths) > 0.0
 
 
 @pytest.mark.parametrize(

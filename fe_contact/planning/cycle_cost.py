@@ -1,0 +1,75 @@
+"""Size of a table over several base pitches, what it costs, and the longest one."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+from bounds import at_most, engineering
+from fe_contact.contact import ContactModel
+from fe_contact.errors import InputError
+from fe_contact.geometry import ParallelAxes
+from fe_contact.planning.cost_model import MOST_ROWS, contact_seconds, memory_of_contact
+from fe_contact.planning.plan import Plan
+from fe_contact.types import Json
+
+
+@dataclass(frozen=True)
+class CycleCost:
+    """Size of a table and what it costs.
+
+    Attributes
+    ----------
+    pitches : int
+        Base pitches of the period.
+    positions : int
+        In each of them; the least number where they are placed adaptively.
+    alignments : int
+        Misalignments x center distances.
+    cpu_seconds, memory_bytes : float
+        Predicted for the contact with its error estimate.
+    """
+
+    pitches: int
+    positions: int
+    alignments: int
+    cpu_seconds: float
+    memory_bytes: float
+
+    @property
+    def rows(self) -> int:
+        """Positions over the whole period, at all alignments."""
+        return self.pitches * self.positions * self.alignments
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return asdict(self)
+
+    @classmethod
+    def of(
+        cls, pair: ParallelAxes, plan: Plan, model: ContactModel, alignments: tuple[int, int]
+    ) -> CycleCost:
+        """Predict the cost of a table over the period of a model; parameters of `predict_run`."""
+        seconds = sum(contact_seconds(pair, plan, model, alignments))
+        memory = memory_of_contact(pair, plan, model.period, alignments)
+        positions = plan.positions or plan.nodes.start
+        return cls(model.period, positions, alignments[0] * alignments[1], seconds, memory)
+
+    def refuse_too_long(self) -> None:
+        """Refuse a table of more than `MOST_ROWS` rows, saying what it would cost and what to ask for.
+
+        Raises
+        ------
+        InputError
+            Of the field "pitches".
+        """
+        if self.rows <= MOST_ROWS:
+            return
+        longest = MOST_ROWS // (self.positions * self.alignments)
+        note = f" with {self.positions} positions a pitch and {self.alignments} alignments"
+        advice = (
+            f"The table would have {self.rows} rows, about "
+            f"{engineering(self.cpu_seconds, 2)} CPU s and {engineering(1e-9 * self.memory_bytes, 2)} GB. "
+            "Request fewer pitches (for example the teeth of one gear), positions or alignments, or give the "
+            "deviations of one gear only."
+        )
+        raise InputError("pitches", self.pitches, at_most(longest, note=note), advice)
