@@ -57,10 +57,7 @@ class CycleCost:
     def refuse_too_long(self) -> None:
         """Refuse a table of more than `MOST_ROWS` rows, saying what it would cost and what to ask for.
 
-        Raises
-        ------
-        InputError
-            Of the field "pitches".
+        Raises `InputError` of the field "pitches".
         """
         if self.rows <= MOST_ROWS:
             return

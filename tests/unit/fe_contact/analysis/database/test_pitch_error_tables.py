@@ -115,16 +115,14 @@ def test_pitches_solved_in_parts_are_the_whole_table(monkeypatch, edges):
     for table in parted:
         assert all(np.array_equal(getattr(table, n), getattr(whole, n), equal_nan=True) for n in whole.stored)
         assert table.metadata.receipt["assumptions"] == whole.metadata.receipt["assumptions"]
-    depths = [
-        float(np.max(each["change"])) for each in whole.metadata.receipt["assumptions"] if "change" in each
-    ]
-    assert edges == "on" or max(depths) > 0.0
+    changes = [each["change"] for each in whole.metadata.receipt["assumptions"] if "change" in each]
+    assert edges == "on" or max(changes) > 0.0  # teeth bend beyond the gap at a tip edge
 
 
 @pytest.mark.parametrize(
     ("teeth", "options", "message"),
     [
-        ((97, 101), {}, r"pitches = 9797: must be at most 2343 .* CPU s and 4.4 GB"),
+        ((97, 101), {}, r"pitches = 9797: must be at most 2343 .* CPU s and .* GB"),
         ((97, 101), {"positions": 8, "pitches": 20_000}, "at most 18750 with 8 positions"),
         ((97, 101), {"pitches": 0}, "an integer from 1"),
         ((97, 101), {"pitches": 2.5}, "an integer from 1"),
