@@ -57,11 +57,11 @@ class CycleSeconds(NamedTuple):
         rows, loads = plan.positions or POSITIONS, plan.load.size
         work = unit_work(pair, plan, plan.discretization.slices)
         states = min(DRAWN + BATCH, pitches)
-        solved = (1.0 + _TANGENT) * work.in_pitches(rows, loads, states)
+        solved = (1.0 + _TANGENT) * work.in_pitches(rows, (loads,), states)
         teeth = 0.5 * (pair.pinion.teeth + pair.wheel.teeth) * rows * work.pitch
         meeting = 2 * (math.ceil(pair.transverse_contact_ratio + pair.overlap_ratio) + 1)
         added = _ADDED * meeting * states * pitches * rows * loads
-        return cls(work.in_pitches(rows, loads, pitches), solved + teeth + added)
+        return cls(work.in_pitches(rows, (loads,), pitches), solved + teeth + added)
 
 
 @dataclass(frozen=True)
