@@ -11,7 +11,7 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (41_341, 754),
+    ("fe_contact",): (41_624, 768),
     ("dynamics",): (42_615, 835),
     ("lineofaction.gearbox",): (26_466, 540),
     ("lineofaction.report",): (11_773, 224),
@@ -22,7 +22,7 @@ BUDGETS = {
     ("bounds", "host", "model_studies"): (4_464, 155),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 823
+MOST_FILES = 827
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
