@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,9 +11,11 @@ import pytest
 from analysis_requests import point_request
 from spur_gears import PAIR
 
+import fe_contact.analysis.pairs.kept_contact as kept
 import fe_contact.analysis.pairs.pair_contact as room
 from fe_contact import SteDatabase, analyze, flank_results
 from fe_contact.contact import ContactProblem, ContactSolution, Start, solve_contact
+from fe_contact.contact.sweep import solve_sets
 from fe_contact.errors import SolveError
 from fe_contact.types import FloatArray, Status
 
@@ -20,12 +23,19 @@ TORQUES = [10.0, 50.0, 100.0]
 DAMAGED = 0.25
 
 
-def damaging(problem: ContactProblem, load: FloatArray, start: Start | None = None) -> ContactSolution:
-    """Solve with a compliance that is no longer definite at one position."""
+def spoiled(problem: ContactProblem) -> ContactProblem:
+    """Return a problem with a compliance that is no longer definite at one position."""
     compliance = problem.compliance.copy()
-    hit = np.flatnonzero(problem.candidates.position == DAMAGED)
-    compliance[hit] *= -1.0
-    return solve_contact(replace(problem, compliance=compliance), load, start)
+    compliance[np.flatnonzero(problem.candidates.position == DAMAGED)] *= -1.0
+    return replace(problem, compliance=compliance)
+
+
+def damaging(problem: ContactProblem, load: FloatArray, start: Start | None = None) -> ContactSolution:
+    return solve_contact(spoiled(problem), load, start)
+
+
+def damaging_sets(problem: ContactProblem, sets: Sequence[FloatArray]) -> list[ContactSolution]:
+    return solve_sets(spoiled(problem), sets)
 
 
 def table(**how: object) -> SteDatabase:
@@ -37,7 +47,7 @@ def both(request) -> tuple[SteDatabase, SteDatabase]:
     """The table as it should be, and the damaged one."""
     sound = table(**request.param)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(room, "solve_contact", damaging)
+        patch.setattr(kept, "solve_sets", damaging_sets)
         return sound, table(**request.param)
 
 
