@@ -133,7 +133,7 @@ REFUSED: dict[str, list[tuple[Json, str]]] = {
         ({"order": 20.0, "microphone_mm": [0.0, 0.0, 1000.0]}, "complaint.microphone_mm"),
     ],
     "response": [
-        ({}, "speed_rpm"),
+        ({"speed_rpm": []}, "speed_rpm"),
         ({"speed_rpm": [0.0, 1.0]}, "speed_rpm[0]"),
         ({"speed_rpm": [100.0], "orders": 500}, "orders"),
     ],
@@ -149,7 +149,7 @@ REFUSED: dict[str, list[tuple[Json, str]]] = {
             "microphone_mm",
         ),
     ],
-    "vibration": [({}, "speed_rpm"), ({"speed_rpm": [300.0], "mode": 0}, "mode")],
+    "vibration": [({"speed_rpm": []}, "speed_rpm"), ({"speed_rpm": [300.0], "mode": 0}, "mode")],
     "listen": [
         ({"run": ABSENT, "point": "cover", "microphone_mm": [0, 0, 1]}, "microphone_mm"),
         ({"run": ABSENT, "microphone_mm": [0, 0]}, "microphone_mm"),
@@ -295,7 +295,7 @@ SAID: dict[str, list[tuple[list[str], str]]] = {
         (["--frequency-hz", "1.4", "--speed-rpm", "1200"], "In kHz? Then write 1400."),
     ],
     "steady": [(["--speed-rpm", "0:100:50"], "speed_rpm[0]"), (["--speed-rpm", "a"], "--speed-rpm")],
-    "noise": [(["--speed-rpm", "300", "--mesh-damping", "1.1,2"], "mesh_damping"), ([], "speed_rpm")],
+    "noise": [(["--speed-rpm", "300", "--mesh-damping", "1.1,2"], "mesh_damping")],
     "vibration": [(["--speed-rpm", "300", "--at-order", "0"], "at_order")],
     "scatter": [(["--workers", "2", "--scheduler", "tcp://127.0.0.1:9"], "left out with --scheduler")],
 }

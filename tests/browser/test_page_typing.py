@@ -27,6 +27,17 @@ EDGES = """() => {
   return fields.getBoundingClientRect().top + rail.scrollTop;
 }"""
 
+GIVEN_UP = """async () => {
+  const { post } = await import("/page/api.js");
+  const own = window.fetch;
+  const cut = { start: (body) => body.error(new DOMException("", "AbortError")) };
+  window.fetch = async () => new Response(new ReadableStream(cut));
+  const said = await post("/v1/plans", {}).catch((fault) => [fault.constructor.name, fault.status]);
+  window.fetch = own;
+  return said;
+}"""
+"""What a request is that ends while its answer is read."""
+
 
 @pytest.fixture
 def visit(browser: Browser, address: str) -> Iterator[Visit]:
@@ -142,3 +153,7 @@ def test_an_edit_gives_up_the_plan_that_the_edit_before_asked_for(visit: Visit) 
         control(page, "#f-pair-pinion-face_width_mm").fill("23")
     expect(page.locator("#plan dl")).to_be_visible()
     assert [line for line in visit.console if line.startswith("error")] == []
+
+
+def test_a_request_given_up_while_its_answer_is_read_is_no_answer(visit: Visit) -> None:
+    assert visit.page.evaluate(GIVEN_UP) == ["Problem", 0]

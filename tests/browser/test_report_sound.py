@@ -207,7 +207,7 @@ def test_a_run_is_heard_under_its_order_map(heard: Visit) -> None:
     until(lambda: player.evaluate("one => one.readyState") > 0)
     assert player.evaluate("one => one.duration") == pytest.approx(2.0, abs=1e-3)
     player.evaluate("one => { one.currentTime = 1.0; }")
-    expect(order_map.locator("output")).to_have_text("450.0 rpm")
+    expect(order_map.locator("output").first).to_have_text("450.0 rpm")
     area, cursor = (order_map.locator(name).first.bounding_box() for name in (".nsewdrag", ".cursor"))
     assert area and cursor
     assert area["x"] < cursor["x"] < area["x"] + area["width"]

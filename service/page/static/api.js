@@ -34,6 +34,14 @@ function heard(now) {
   document.dispatchEvent(new Event(now ? "service-back" : "service-away"));
 }
 
+const unanswered = () => new Problem({ title: "No answer", detail: "The service does not answer. Is it still running?", status: 0 });
+
+/** What an answer holds; a request may be given up, or its connection end, while it is read. */
+async function read(response) {
+  const text = await response.text().catch(() => { throw unanswered(); });
+  return JSON.parse(text);
+}
+
 async function asked(path, options = {}) {
   let response;
   const key = keyHeader();
@@ -41,7 +49,7 @@ async function asked(path, options = {}) {
     response = await fetch(path, { ...options, headers: { ...options.headers, ...key } });
   } catch {
     if (!options.signal?.aborted) heard(false);
-    throw new Problem({ title: "No answer", detail: "The service does not answer. Is it still running?", status: 0 });
+    throw unanswered();
   }
   heard(true);
   if (response.status !== 401) return response;
@@ -51,22 +59,22 @@ async function asked(path, options = {}) {
 }
 
 export async function get(path) {
-  return (await answer(await asked(path))).json();
+  return read(await answer(await asked(path)));
 }
 
 /** @param {AbortSignal} [signal] gives the request up */
 export async function post(path, body, signal) {
   const headers = { "Content-Type": "application/json" };
-  return (await answer(await asked(path, { method: "POST", headers, body: JSON.stringify(body), signal }))).json();
+  return read(await answer(await asked(path, { method: "POST", headers, body: JSON.stringify(body), signal })));
 }
 
 export async function patch(path, body) {
   const headers = { "Content-Type": "application/json" };
-  return (await answer(await asked(path, { method: "PATCH", headers, body: JSON.stringify(body) }))).json();
+  return read(await answer(await asked(path, { method: "PATCH", headers, body: JSON.stringify(body) })));
 }
 
 export async function dismiss(path) {
-  return (await answer(await asked(path, { method: "DELETE" }))).json();
+  return read(await answer(await asked(path, { method: "DELETE" })));
 }
 
 export async function file(path, type) {
