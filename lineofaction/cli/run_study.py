@@ -159,8 +159,8 @@ def _inputs(study: Study, options: Json, subject: CheckedCase | SceneInput, proj
         return options["study"]
     if not study.takes.from_file:
         fields = _fields(study, options)
-        if isinstance(subject, SceneInput) and _without_speeds(study.inputs, fields):
-            fields["speed_rpm"] = usual_speeds(subject, project)
+        if isinstance(subject, SceneInput) and (count := _speeds_to_choose(study.inputs, fields)):
+            fields["speed_rpm"] = usual_speeds(subject, project, count)
         return validated(study.inputs, fields)
     file = options["study"] or (inputs_in(project, study) if project else None)
     if file is None and not study.takes.bare:
@@ -168,10 +168,11 @@ def _inputs(study: Study, options: Json, subject: CheckedCase | SceneInput, proj
     return validated(study.inputs, {}) if file is None else read_model(study.inputs, file)
 
 
-def _without_speeds(inputs: type[BoundaryModel], fields: Json) -> bool:
-    """Whether inputs need speeds, and neither those nor a run are named."""
-    needed = issubclass(inputs, OverSpeeds) and not inputs.at_rest
-    return needed and not fields.keys() & {"speed_rpm", "run"}
+def _speeds_to_choose(inputs: type[BoundaryModel], fields: Json) -> int:
+    """Return how many speeds inputs need, of which neither those nor a run are named; 0: none."""
+    if not issubclass(inputs, OverSpeeds) or inputs.at_rest or fields.keys() & {"speed_rpm", "run"}:
+        return 0
+    return inputs.usual_speeds
 
 
 def _fields(study: Study, options: Json) -> Json:

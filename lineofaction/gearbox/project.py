@@ -24,8 +24,6 @@ _SIGNS = {"scene": "shafts", "case": "pair"}
 _ENDINGS = (".toml", ".json")
 RUN, SOUND = f"run{SUFFIX}", "run.wav"
 """Of a scene, in its project."""
-USUAL_SPEEDS = 30
-"""How many speeds a study is over if none is named."""
 
 
 def file_of(named: InputFile, subject: str) -> InputFile:
@@ -75,8 +73,8 @@ def inputs_in(project: Path, study: Study) -> Path | None:
     return only(found, project, f"file for {study.name}") if found else None
 
 
-def usual_speeds(scene: SceneInput, project: Path | None) -> list[float]:
-    """Return speeds in rpm, evenly up to the highest of the scene's first drive and the folder's load cases.
+def usual_speeds(scene: SceneInput, project: Path | None, count: int) -> list[float]:
+    """Return so many speeds in rpm, evenly up to the highest of the first drive and the folder's load cases.
 
     Raises `BadInput`: none of them has a speed, or several files of the folder have load cases.
     """
@@ -88,7 +86,7 @@ def usual_speeds(scene: SceneInput, project: Path | None) -> list[float]:
     if not highest:
         bound = "given where neither a drive nor a load case has a speed"
         raise BadInput.of("speed_rpm", None, bound, "For example --speed-rpm 500:6000:100.")
-    return [highest * (k + 1) / USUAL_SPEEDS for k in range(USUAL_SPEEDS)]
+    return [highest * (k + 1) / count for k in range(count)]
 
 
 def results_in(project: Path) -> list[Path]:

@@ -34,9 +34,13 @@ _OVER_SPEEDS = both(
 
 
 class OverSpeeds(BoundaryModel):
-    """Inputs of a study over speeds, which are an axis; `at_rest`: whether it has an answer without any."""
+    """Inputs of a study over speeds, which are an axis; `at_rest`: whether it has an answer without any.
+
+    `usual_speeds` is how many there are if none is named: peaks of modes damped by 1 % lie between fewer.
+    """
 
     at_rest: ClassVar[bool] = False
+    usual_speeds: ClassVar[int] = 600
     speed_rpm: Row[float]
 
     @model_validator(mode="after")

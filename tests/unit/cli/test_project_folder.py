@@ -73,12 +73,12 @@ def test_the_file_of_a_study_is_known_by_its_fields(rotor: Path) -> None:
 def test_speeds_that_are_not_named_go_up_to_the_highest_of_drive_and_load_cases(tmp_path: Path) -> None:
     scene = scene_file(tmp_path)  # at 900 rpm
     assert printed("response", scene, "--orders", 1)["speed_rpm"] == pytest.approx(
-        [30.0 * k for k in range(1, 31)]
+        [1.5 * k for k in range(1, 601)]
     )
     cases = "[[load_cases]]\nname = 'fast'\nspeed_rpm = 6000.0\n[[load_cases]]\nname = 'as it is'\n"
     (tmp_path / "cases.toml").write_text(cases)
     assert printed("response", tmp_path, "--orders", 1)["speed_rpm"] == pytest.approx(
-        [200.0 * k for k in range(1, 31)]
+        [10.0 * k for k in range(1, 601)]
     )
     assert (tmp_path / "response.nc").is_file()
     assert printed("modes", tmp_path, "--orders", 1)["speed_rpm"] == []

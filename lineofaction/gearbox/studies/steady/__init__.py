@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -12,8 +12,9 @@ from lineofaction.gearbox.schemas.studied import MOST_SPEEDS, OverSpeeds, Turnin
 
 
 class Inputs(OverSpeeds):
-    """Speeds at which steady states are looked for."""
+    """Speeds at which steady states are looked for, each by shooting."""
 
+    usual_speeds: ClassVar[int] = 30
     speed_rpm: Row[TurningSpeed] = Field(
         min_length=1,
         max_length=MOST_SPEEDS,
