@@ -38,7 +38,7 @@ ASSESSED = [MEAN, PEAK_TO_PEAK, BESIDE_MESH, *range(FIRST_HARMONIC, FIRST_HARMON
 T = TypeVar("T")
 
 
-class Judged(NamedTuple):
+class AssessedCycle(NamedTuple):
     """One cycle by derivatives: what is stated of it, what is true, and CPU seconds.
 
     Attributes
@@ -64,13 +64,13 @@ class Judged(NamedTuple):
 
 def figures() -> list[Figure]:
     """Return what is covered, and what it costs."""
-    judged = [judge(name, pair, torque) for name, pair, torque in drawn_gears()]
-    beyond = np.mean([each.true > each.stated for each in judged])
-    parts = [each.seconds / each.exact_seconds for each in judged]
-    outside = [each.points for each in judged]
-    hunting = [each.seconds for each in judged if each.name.startswith(HUNTING)]
+    cycles = [assessed(name, pair, torque) for name, pair, torque in drawn_gears()]
+    beyond = np.mean([each.true > each.stated for each in cycles])
+    parts = [each.seconds / each.exact_seconds for each in cycles]
+    outside = [each.points for each in cycles]
+    hunting = [each.seconds for each in cycles if each.name.startswith(HUNTING)]
     return [
-        Figure(SUBJECT, "pairs of gears", len(judged), "-"),
+        Figure(SUBJECT, "pairs of gears", len(cycles), "-"),
         Figure(SUBJECT, "quantities beyond the stated error", 100.0 * float(beyond), "%", 5.0),
         Figure(SUBJECT, "positions beyond it, median", 100.0 * float(np.median(outside)), "%", 5.0),
         Figure(SUBJECT, "positions beyond it, worst pair", 100.0 * max(outside), "%"),
@@ -81,7 +81,7 @@ def figures() -> list[Figure]:
     ]
 
 
-def judge(name: str, pair: GearPair, torque: float) -> Judged:
+def assessed(name: str, pair: GearPair, torque: float) -> AssessedCycle:
     """Hold one cycle against all its pitches solved."""
     wish = TableAxes(torques=[torque]), OPTIONS, Run(cache=cache_home())
     contact, _ = cycle_contact(pair, *wish)
@@ -94,7 +94,7 @@ def judge(name: str, pair: GearPair, torque: float) -> Judged:
     position = np.arange(exact.shape[0] * exact.shape[1]) / exact.shape[1]
     true = quantity_changes(position, own, all_solved, contact.pitches, position)[ASSESSED, 0]
     points = float(np.mean(missed > found.error)) if missed.size else 0.0
-    return Judged(
+    return AssessedCycle(
         name,
         float(np.ptp(exact)),
         int(found.solved.sum()),
