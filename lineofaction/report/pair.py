@@ -234,7 +234,7 @@ def _profile(name: str, pair: ParallelAxes) -> Panel:
     at_pitch = pitch_point if name == "pinion" else float(pair.mating_roll_length(pitch_point))
     mark = Reference("C", at_pitch / gear.base_radius / DEGREE)
     title = f"Profile of the {name}, root to the {'left' if gear.sign > 0 else 'right'}"
-    return Panel(Axis("roll angle, deg"), Axis("removed, µm"), lines, (mark,), title=title)
+    return Panel(Axis(f"roll angle of the {name}, deg"), Axis("removed, µm"), lines, (mark,), title=title)
 
 
 def _usable(gear: Toothing) -> FloatArray:
