@@ -8,6 +8,7 @@ import numpy as np
 
 from fe_contact.analysis.cycle.drawn_pitches import DrawnPitches
 from fe_contact.analysis.cycle.tangents import Tangent, ToothGaps, nominal_tangent, pitch_tangents
+from fe_contact.analysis.pairs.kept_contact import solved_in_parts
 from fe_contact.analysis.pairs.pair_contact import OperatingPoint
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.errors import SolveError
@@ -20,8 +21,6 @@ FEWEST = 8
 """Of them that count at least."""
 BATCH = 8
 """Further pitches that are solved together."""
-_CHUNK = 32
-"""Pitches that are solved at once: their touching points are held."""
 
 
 @dataclass(frozen=True)
@@ -39,8 +38,8 @@ class CycleContact:
 
     def exact(self, pitches: IntArray) -> FloatArray:
         """Return the transmission error in whole base pitches (t,), (t, P, L) in m."""
-        parts = np.array_split(pitches, -(-pitches.size // _CHUNK))
-        return np.concatenate([self._by_pitch(self.solved(part)[1]) for part in parts])
+        (kept,) = solved_in_parts(self.point, self.position, (self.load,), pitches, edges=False)
+        return self._by_pitch(_converged(kept.solution))
 
     def solved(self, pitches: IntArray) -> tuple[ContactProblem, ContactSolution]:
         """Solve whole base pitches.
@@ -51,10 +50,7 @@ class CycleContact:
             A point has no solution.
         """
         problem, solution = self.point.solve_pitches(self.position, self.load, pitches)
-        if not solution.converged:
-            failed = int(np.count_nonzero(solution.status))
-            raise SolveError(f"contact of {failed} points of a cycle was not solved", solution)
-        return problem, solution
+        return problem, _converged(solution)
 
     def nominal(self) -> tuple[ToothGaps, Tangent]:
         """Return the gaps of single teeth, and the tangent about gears without them."""
@@ -71,6 +67,13 @@ class CycleContact:
 
     def _by_pitch(self, solution: ContactSolution) -> FloatArray:
         return solution.deflection.reshape(-1, self.position.size, self.load.size)
+
+
+def _converged(solution: ContactSolution) -> ContactSolution:
+    if not solution.converged:
+        failed = int(np.count_nonzero(solution.status))
+        raise SolveError(f"contact of {failed} points of a cycle was not solved", solution)
+    return solution
 
 
 @dataclass(frozen=True)
