@@ -88,6 +88,8 @@ class RestsBeside:
         Of the system at rest, m and rad.
     force : (R,) array
         Of its elements, N.
+    residual : float
+        Largest unbalanced force there, N.
     compliance : (n, n) array
         Displacements per force on the freedoms.
     """
@@ -95,6 +97,7 @@ class RestsBeside:
     time: float
     displacement: FloatArray
     force: FloatArray
+    residual: float
     compliance: FloatArray
 
     @classmethod
@@ -104,7 +107,7 @@ class RestsBeside:
         balance = _balance(arrays, time, displacement, np.zeros(n))
         unit = _accelerating(arrays, np.eye(n))
         compliance = _solve(arrays, balance.stiffness, unit, np.zeros((n, n)))
-        return cls(time, displacement, balance.local.force, compliance)
+        return cls(time, displacement, balance.local.force, _size(arrays, balance), compliance)
 
     def rest(self, system: System) -> StaticSolution:
         """Return the rest of a system whose elements differ a little; its residual is that of the other."""
@@ -112,8 +115,8 @@ class RestsBeside:
         local = local_state(arrays, self.time, self.displacement, np.zeros(self.displacement.size))
         moved = self.compliance @ ((self.force - local.force) @ arrays.direction)
         force = local.force + block_diagonal(arrays.elements, local.tangent) @ (arrays.direction @ moved)
-        displacement = self.displacement + moved
-        return StaticSolution(StaticStatus.CONVERGED, displacement, force[system.driving_rows], 0.0, 1)
+        flanks = force[system.driving_rows]
+        return StaticSolution(StaticStatus.CONVERGED, self.displacement + moved, flanks, self.residual, 1)
 
 
 def _external(system: System, time: float) -> FloatArray:
