@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -24,7 +23,12 @@ from fe_contact import (
     Wave,
 )
 from fe_contact.analysis.cycle.deviating_cycle import cycle_contact, deviating_cycle
-from fe_contact.geometry.flank_tolerances import helix_slope_tolerance, profile_slope_tolerance
+from fe_contact.geometry.flank_tolerances import (
+    cumulative_pitch_tolerance,
+    helix_slope_tolerance,
+    profile_slope_tolerance,
+    single_pitch_tolerance,
+)
 from fe_contact.ste.curve_quantities import BESIDE_MESH, FIRST_HARMONIC, MEAN, PEAK_TO_PEAK, quantity_changes
 from fe_contact.types import FloatArray
 from host.directories import cache_home
@@ -136,10 +140,7 @@ def _as_made(pair: GearPair, quality: int, draw: np.random.Generator) -> GearPai
 
 def _deviations(gear: Gear, quality: int, draw: np.random.Generator) -> dict[str, Any]:
     """Draw a gear within a class of ISO 1328-1:2013, helix deviations of helical gears alone."""
-    module, diameter = 1e3 * gear.normal_module, 2e3 * gear.reference_radius
-    step = 1e-6 * math.sqrt(2.0) ** (quality - 5)
-    single = (0.001 * diameter + 0.4 * module + 5.0) * step
-    total = (0.002 * diameter + 0.55 * math.sqrt(diameter) + 0.7 * module + 12.0) * step
+    single, total = (each(gear, quality) for each in (single_pitch_tolerance, cumulative_pitch_tolerance))
     profile, helix = profile_slope_tolerance(gear, quality), helix_slope_tolerance(gear, quality)
     helix = helix if gear.helix_angle else 0.0
 

@@ -1,12 +1,12 @@
 """Tolerances of flanks by ISO 1328-1:2013, and the misalignment that a class of gears and housing allows.
 
-Formulas, range and rounding of clause 5. ANSI/AGMA ISO 1328-1-B14 and DIN ISO 1328-1:2018 are the same text.
-The edition of 1995 has other formulas, in grades 0 to 12: its figures are not those of a class of equal
-number.
+Pitch, run-out, slope and form of profile and helix: formulas, range and rounding of clause 5. ANSI/AGMA ISO
+1328-1-B14 and DIN ISO 1328-1:2018 are the same text. The edition of 1995 has other formulas, in grades 0 to
+12: its figures are not those of a class of equal number.
 
 References
 ----------
-.. [1] ISO 1328-1:2013, 5.3.4: tolerances of helix slope, helix form and the whole helix.
+.. [1] ISO 1328-1:2013, 5.3: tolerances of pitch, profile and helix; annex E: of run-out.
 .. [2] ISO/TR 10064-3:1996, clause 5: parallelism of axes in their plane and out of it, by the span L of the
    bearings: f_Sigma_beta = 0.5 (L/b) F_beta, f_Sigma_delta = 2 f_Sigma_beta.
 """
@@ -25,39 +25,80 @@ from fe_contact.geometry.toothing import Toothing
 _ADVICE = "ISO 1328-1:2013, 5.2.1 has no tolerances beyond: give your own figures."
 
 
+def single_pitch_tolerance(gear: Toothing, tolerance_class: int) -> float:
+    """f_pT in m: formula (5) of 5.3.2, 0.001 d + 0.4 m_n + 5 um of class 5, d and m_n in mm."""
+    module, diameter, _ = _sizes(gear)
+    return _of_class(0.001 * diameter + 0.4 * module + 5.0, tolerance_class)
+
+
+def cumulative_pitch_tolerance(gear: Toothing, tolerance_class: int) -> float:
+    """F_pT in m: formula (6) of 5.3.2, 0.002 d + 0.55 sqrt d + 0.7 m_n + 12 um of class 5."""
+    return _of_class(_cumulative_pitch(gear), tolerance_class)
+
+
+def run_out_tolerance(gear: Toothing, tolerance_class: int) -> float:
+    """F_rT in m: 0.9 F_pT, which is not rounded before (annex E)."""
+    return _of_class(0.9 * _cumulative_pitch(gear), tolerance_class)
+
+
 def profile_slope_tolerance(gear: Toothing, tolerance_class: int) -> float:
     """f_HalphaT in m: formula (7) of 5.3.3.1, 0.4 m_n + 0.001 d + 4 um of class 5, m_n and d in mm."""
-    module, diameter = 1e3 * gear.normal_module, 2e3 * gear.reference_radius
-    return 1e-6 * rounded((0.4 * module + 0.001 * diameter + 4.0) * _step(tolerance_class))
+    module, diameter, _ = _sizes(gear)
+    return _of_class(0.4 * module + 0.001 * diameter + 4.0, tolerance_class)
+
+
+def profile_form_tolerance(gear: Toothing, tolerance_class: int) -> float:
+    """f_falphaT in m: formula (8) of 5.3.3.2, 0.55 m_n + 5 um of class 5."""
+    return _of_class(0.55 * _sizes(gear)[0] + 5.0, tolerance_class)
 
 
 def helix_slope_tolerance(gear: Toothing, tolerance_class: int) -> float:
     """f_HbetaT in m: formula (10) of 5.3.4.1, 0.05 sqrt d + 0.35 sqrt b + 4 um of class 5, d and b in mm."""
-    return 1e-6 * rounded(_helix_slope(gear) * _step(tolerance_class))
+    return _of_class(_helix_slope(gear), tolerance_class)
+
+
+def helix_form_tolerance(gear: Toothing, tolerance_class: int) -> float:
+    """f_fbetaT in m: formula (11) of 5.3.4.2, 0.07 sqrt d + 0.45 sqrt b + 4 um of class 5."""
+    return _of_class(_helix_form(gear), tolerance_class)
 
 
 def helix_tolerance(gear: Toothing, tolerance_class: int) -> float:
     """F_betaT in m: the root of the sum of squares of slope and form, neither of them rounded before."""
-    diameter, width = 2e3 * gear.reference_radius, 1e3 * gear.face_width
-    form = 0.07 * math.sqrt(diameter) + 0.45 * math.sqrt(width) + 4.0
-    return 1e-6 * rounded(math.hypot(_helix_slope(gear), form) * _step(tolerance_class))
+    return _of_class(math.hypot(_helix_slope(gear), _helix_form(gear)), tolerance_class)
+
+
+def _sizes(gear: Toothing) -> tuple[float, float, float]:
+    """Return m_n, d and b in mm."""
+    return 1e3 * gear.normal_module, 2e3 * gear.reference_radius, 1e3 * gear.face_width
+
+
+def _cumulative_pitch(gear: Toothing) -> float:
+    """Of class 5, um."""
+    module, diameter, _ = _sizes(gear)
+    return 0.002 * diameter + 0.55 * math.sqrt(diameter) + 0.7 * module + 12.0
 
 
 def _helix_slope(gear: Toothing) -> float:
     """Of class 5, um."""
-    diameter, width = 2e3 * gear.reference_radius, 1e3 * gear.face_width
+    _, diameter, width = _sizes(gear)
     return 0.05 * math.sqrt(diameter) + 0.35 * math.sqrt(width) + 4.0
+
+
+def _helix_form(gear: Toothing) -> float:
+    """Of class 5, um."""
+    _, diameter, width = _sizes(gear)
+    return 0.07 * math.sqrt(diameter) + 0.45 * math.sqrt(width) + 4.0
+
+
+def _of_class(fifth: float, tolerance_class: int) -> float:
+    """Return the tolerance of a class in m by that of class 5 in um, which is not rounded before (5.2.2)."""
+    return 1e-6 * rounded(fifth * math.sqrt(2.0) ** (tolerance_class - 5))
 
 
 def rounded(tolerance: float) -> float:
     """Round a tolerance in um: above 10 to whole ones, from 5 to halves, below to tenths (5.2.3)."""
     parts = 1 if tolerance > 10.0 else 2 if tolerance >= 5.0 else 10
     return math.floor(tolerance * parts + 0.5) / parts
-
-
-def _step(tolerance_class: int) -> float:
-    """Tolerance of a class over that of class 5, which is not rounded before (5.2.2)."""
-    return math.sqrt(2.0) ** (tolerance_class - 5)
 
 
 def check_scope(name: str, gear: Toothing) -> None:
