@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES, SUFFIX
-from lineofaction.gearbox.schemas.reading import read_table
+from lineofaction.gearbox.schemas.reading import read_model, read_table
 from lineofaction.gearbox.study import Study
 
 if TYPE_CHECKING:
@@ -68,20 +68,24 @@ def inputs_in(project: Path, study: Study) -> Path | None:
 
     Raises `BadInput`: several do.
     """
-    fields = study.inputs.model_fields.keys()
-    found = [path for path, table in _tables(project) if table and table.keys() <= fields]
+    found = _inputs_in(project, study)
     return only(found, project, f"file for {study.name}") if found else None
+
+
+def _inputs_in(project: Path, study: Study) -> list[Path]:
+    fields = study.inputs.model_fields.keys()
+    return [path for path, table in _tables(project) if table and table.keys() <= fields]
 
 
 def usual_speeds(scene: SceneInput, project: Path | None, count: int) -> list[float]:
     """Return so many speeds in rpm, evenly up to the highest of the first drive and the folder's load cases.
 
-    Raises `BadInput`: none of them has a speed, or several files of the folder have load cases.
+    Raises `BadInput`: none of them has a speed, or load cases with a fault.
     """
-    file = None if project is None else inputs_in(project, STUDIES["deflect"])
-    cases = [] if file is None else read_table(file)["load_cases"]
+    study = STUDIES["deflect"]
+    files = [] if project is None else _inputs_in(project, study)
     speeds = [speed for drive in scene.drives[:1] for speed in drive.speed_rpm or ()]
-    speeds += [case.get("speed_rpm", 0.0) for case in cases]
+    speeds += [case.speed_rpm or 0.0 for path in files for case in read_model(study.inputs, path).load_cases]
     highest = max(map(abs, speeds), default=0.0)
     if not highest:
         bound = "given where neither a drive nor a load case has a speed"

@@ -82,6 +82,13 @@ def test_speeds_that_are_not_named_go_up_to_the_highest_of_drive_and_load_cases(
     )
     assert (tmp_path / "response.nc").is_file()
     assert printed("modes", tmp_path, "--orders", 1)["speed_rpm"] == []
+    (tmp_path / "others.toml").write_text("[[load_cases]]\nname = 'faster'\nspeed_rpm = 9000.0\n")
+    assert printed("response", tmp_path, "--orders", 1)["speed_rpm"][-1] == pytest.approx(9000.0)
+    (tmp_path / "others.toml").write_text("[[load_cases]]\nname = 'faster'\nspeed_rpm = -9000.0\n")
+    refused = loa("response", tmp_path)
+    assert refused.exit_code == EXIT_BAD_INPUT
+    assert "load_cases[0].speed_rpm = -9000.0: must be above 0" in refused.stderr
+    assert "others.toml:3" in refused.stderr
 
 
 def test_a_study_over_speeds_says_what_to_name_where_nothing_turns(rotor: Path) -> None:
