@@ -36,6 +36,9 @@ STUDIES = {
     "sweep": (
         "Maps", "Map the figures", {"Over": "torque, profile_crowning=0:10:5"}, ["sweep_map", "sweep_curves"],
     ),
+    "complaint": (
+        "Complaint", "Find what it is", {"Frequency": "2200", "Speed": "3360"}, ["complaint"],
+    ),
     "modes": (
         "Modes", "Find the modes", {"Top speed": "2000"}, ["modal_campbell", "modal_energy", "modal_motion"],
     ),

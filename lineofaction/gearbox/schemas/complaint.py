@@ -25,10 +25,16 @@ class ComplaintFields(BoundaryModel):
     """Fields of a complaint, each of which may be left out."""
 
     frequency_hz: float | None = Field(
-        default=None, gt=0.0, le=1e5, description="Frequency that is heard in Hz", examples=[400.0]
+        default=None,
+        title="Frequency, Hz",
+        gt=0.0,
+        le=1e5,
+        description="Frequency that is heard in Hz",
+        examples=[400.0],
     )
     order: float | None = Field(
         default=None,
+        title="or order",
         gt=0.0,
         le=1e5,
         description="Order that is heard, per revolution of `shaft`, in place of the frequency",
@@ -51,6 +57,7 @@ class ComplaintFields(BoundaryModel):
     )
     speed_rpm: float | None = Field(
         default=None,
+        title="Speed, rpm",
         gt=0.0,
         le=1e7,
         description="Speed of `shaft` in rpm, in place of the road speed",

@@ -5,7 +5,7 @@ import { card } from "./card.js";
 import { button, byId, make } from "./elements.js";
 import { showReport } from "./report.js";
 
-const TABS = { optimize: "ripple", sweep: "ripple", flank: "flank", "root-stress": "load", ablate: "errors", frontier: "errors" };
+const TABS = { optimize: "ripple", sweep: "ripple", flank: "flank", "root-stress": "load", ablate: "errors", frontier: "errors", complaint: "orders" };
 
 /** The studies among the processes of a service, each as its card shows it. */
 export function studiesOf(processes) {
