@@ -30,7 +30,7 @@ from dynamics.deflection.mesh_alignment import (
 )
 from dynamics.linearize.operating_speeds import common_period
 from dynamics.mechanism.bearing_elements import supports_by_name
-from dynamics.mechanism.columns import section_rows
+from dynamics.mechanism.shaft_axes import shaft_axes
 from dynamics.scene.scene import Scene
 from dynamics.settings.load_case import LoadCase, check_forces
 from dynamics.types import FloatArray, IntArray
@@ -194,20 +194,9 @@ class _ShaftLines:
 
 
 def _shaft_lines(system: System, motion: FloatArray) -> _ShaftLines:
-    """Return the lines at `motion` (N,): at the nodes of an elastic shaft, at what is on a rigid one."""
-    shaft, position, moved = [], [], []
-    for index, rotor in enumerate(system.rotors):
-        on = [gear.position for gear in system.scene.gears if gear.shaft == rotor.shaft.name]
-        on += [support.position for support in rotor.supports]
-        points = sorted({0.0, rotor.shaft.length, *map(float, on)})
-        if rotor.elastic is not None:
-            points = [float(node) for node in rotor.elastic.position]
-        for along in points:
-            z = rotor.shaft.origin[2] + along
-            shaft.append(index)
-            position.append(along)
-            moved.append(section_rows(system.rotors, index, z) @ motion)
-    return _ShaftLines(np.array(shaft, dtype=np.int64), np.array(position), np.array(moved).reshape(-1, 6))
+    """Return the lines at `motion` (N,)."""
+    axes = shaft_axes(system.scene, system.rotors)
+    return _ShaftLines(axes.shaft, axes.position, axes.motion @ motion)
 
 
 # Times at which all meshes of a system stand evenly spread over their cycles.

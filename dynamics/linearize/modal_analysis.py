@@ -23,6 +23,7 @@ from dynamics.linearize.linear_system import (
     spring_parts,
 )
 from dynamics.linearize.operating_speeds import checked_speeds, leading_law, mesh_frequencies
+from dynamics.mechanism.shaft_axes import shaft_axes
 from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.run_checks import checked_ledger
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
@@ -57,7 +58,8 @@ class ModalAnalysis(ArrayFile):
 
     n freedoms, p springs, m meshes, S speeds, A whirl modes, C crossings; S = A = C = 0 without speeds. What
     modes at rest are: `Modes`; over speed: `WhirlBranches`, NaN where one does not oscillate; where they
-    cross orders: `CriticalSpeeds`.
+    cross orders: `CriticalSpeeds`. Points of the axes of shafts (`ShaftAxes`): none in files of versions that
+    did not keep them.
 
     Attributes
     ----------
@@ -120,6 +122,20 @@ class ModalAnalysis(ArrayFile):
         metadata=stored("Hz", "frequency of the mode less that of the order", "crossing")
     )
     facts: Json = field(default_factory=dict)
+    axis_shaft: IntArray = field(
+        default_factory=lambda: np.empty(0, dtype=np.int64),
+        metadata=stored("1", "shaft of a point of an axis, counted from 0", "axis_point"),
+    )
+    axis_position: FloatArray = field(
+        default_factory=lambda: np.empty(0),
+        metadata=stored("m", "along the shaft from its left end", "axis_point"),
+    )
+    axis_motion: FloatArray = field(
+        default_factory=lambda: np.empty((0, 6, 0)),
+        metadata=stored(
+            "m or rad", "x, y, z, tilts and rotation there per freedom", "axis_point", "direction", "freedom"
+        ),
+    )
 
     def held_by(self, strain_energy: FloatArray) -> dict[str, float]:
         """Sum the shares (p,) of one mode over each mesh, bearing, coupling and drive, the largest first."""
@@ -227,6 +243,7 @@ def _analysis(
 ) -> ModalAnalysis:
     parts = spring_parts(system, linear.spring)
     meshes = np.empty((len(system.scene.meshes), 0))
+    axes = shaft_axes(system.scene, system.rotors)
     return ModalAnalysis(
         freedom=linear.freedom,
         mesh=tuple(mesh.name for mesh in system.scene.meshes),
@@ -239,6 +256,9 @@ def _analysis(
         **vars(branches),
         **{f"critical_{name}": values for name, values in vars(crossings).items()},
         facts=facts,
+        axis_shaft=axes.shaft,
+        axis_position=axes.position,
+        axis_motion=system.freedoms.keep(axes.motion),
     )
 
 

@@ -239,7 +239,7 @@ class Studies:
         group="gearbox",
         kind="modes",
         stages=(("analysis", 0.9), ("modes", 0.1)),
-        version="3",
+        version="4",
     )
     response = StudyOf(
         _scene(lambda: RESPONSE),

@@ -33,7 +33,7 @@ from service.routes.media_types import (
 )
 from service.routes.openapi import documented
 from service.routes.scopes import ScopedRoute, needs
-from service.schemas.answers import DatabaseEntry, DatabaseList, ReportBody, ResultFigures
+from service.schemas.answers import DatabaseEntry, DatabaseList, MotionBody, ReportBody, ResultFigures
 from service.store.files import WrongContent
 from service.store.results import IndexLine, Mark, ResultStore, StoredResult
 from service.version import program_tag
@@ -233,6 +233,37 @@ async def result_figures(
         tag, order = tag + other.sha256, LiveOrder(COMPARISON, {"files": [str(stored.path), str(other.path)]})
     tag = f'"{tag}-figures-{program_tag()}"'
     return await _kept_answer(request, context, tag, order, "application/json")
+
+
+MOTION = "lineofaction.report.unit_motion:stored_motion"
+_MOST_MOTIONS = 1_000_000
+
+
+@router.get(
+    "/results/{key}/motion",
+    summary="A motion of the unit",
+    response_class=Response,
+    responses={
+        200: answer("Motions to choose from, and the one of a number", *_VERSION, model=MotionBody),
+        304: _UNMODIFIED_ANSWER,
+        **documented(NotFound, BadInput, QueueFull, LiveUnavailable, DamagedFile),
+    },
+)
+@needs(Scope.READ)
+async def result_motion(
+    key: Key,
+    request: Request,
+    context: Ctx,
+    number: Annotated[
+        int | None,
+        Query(ge=0, lt=_MOST_MOTIONS, description="Of the motion among those listed, from 0; left out: none"),
+    ] = None,
+) -> Response:
+    """Return how shafts move in a mode or under a load case, and how the surface of a housing does."""
+    stored = await run_in_threadpool(known_result, context, key)
+    order = LiveOrder(MOTION, {"kind": stored.kind, "file": str(stored.path), "number": number})
+    tag = f'"{stored.sha256}-motion-{number}-{program_tag()}"'
+    return await _kept_answer(request, context, tag, order, JSON)
 
 
 # Stored runs and recordings to listen to, as `loa listen` writes them.

@@ -359,6 +359,38 @@ class ReportBody(BaseModel):
     sections: list[Annotated[dict[str, Any], Named("ReportSection")]]
 
 
+class ShaftMotion(BaseModel):
+    """Complex amplitudes of a shaft at stations evenly spaced along its axis."""
+
+    name: str
+    position_mm: list[float] = Field(description="Of the first and the last station")
+    real: list[list[float]] = Field(
+        description="At phase 0, by station: x, y, z in mm, tilt about x, tilt about y, rotation in rad"
+    )
+    imaginary: list[list[float]] = Field(description="A quarter of a period before")
+
+
+class MovedUnit(BaseModel):
+    """A motion of a unit about where it stands."""
+
+    oscillates: bool = Field(description="Whether its phase runs; a deflection rests")
+    shafts: list[ShaftMotion]
+
+
+class MotionGroup(BaseModel):
+    """Motions that are listed together, by their names."""
+
+    name: str
+    motions: list[str]
+
+
+class MotionBody(BaseModel):
+    """Motions of a unit that a result holds."""
+
+    groups: list[MotionGroup] = Field(description="All of them, numbered through from 0")
+    motion: MovedUnit | None = Field(description="The one of the number; null without a number")
+
+
 class UnitFile(BoundaryModel):
     """A file of REXS, the exchange format of gear-unit tools."""
 

@@ -24,7 +24,7 @@ from service.routes.access import OPEN_FOLDER, OPEN_PATHS
 from service.routes.scopes import OPEN_TO_ALL, ScopedRoute
 from service.settings import Settings
 
-KEY, NO_KEY, RUN = "ab" * 32, "cd" * 32, "ef" * 32
+KEY, NO_KEY, RUN, MODES = "ab" * 32, "cd" * 32, "ef" * 32, "12" * 32
 NO_JOB = "00000000-0000-4000-8000-000000000000"
 BODIES: dict[str, Any] = {
     "query_forces": {"position": [0.5], "deflection_um": [5.0]},
@@ -65,8 +65,8 @@ def _walk(routes: Any, prefix: str) -> Iterator[WalkedRoute]:
 
 
 def key_at(walked: WalkedRoute) -> str:
-    """Return the hash of the result that a route is about: sounds are of runs."""
-    return RUN if walked.path.endswith("/sound") else KEY
+    """Return the hash of the result that a route is about: sounds are of runs, motions of modes."""
+    return {"sound": RUN, "motion": MODES}.get(walked.path.rpartition("/")[2], KEY)
 
 
 _directory = tempfile.TemporaryDirectory(prefix="loa-crossings-")
@@ -129,6 +129,7 @@ def two() -> Any:
         mine = APP.state.context.within("axle")
         mine.store.put(KEY, "database", _table("table.nc"))
         mine.store.put(RUN, "run", _table("table.nc"))
+        mine.store.put(MODES, "modes", _table("table.nc"))
         job = mine.submissions.submit("fake", KEY, {"wish": {"text": "hidden"}}, stored=True).id
         yield Two(http, job, keys)
 

@@ -98,6 +98,15 @@ def sound(reading: Reading) -> None:
         _got(reading, "/sound", **query)
 
 
+def motions(reading: Reading) -> None:
+    answer = _got(reading, "/motion")
+    if answer is not None:
+        count = sum(len(group["motions"]) for group in answer.json()["groups"])
+        for number in {0, count - 1}:
+            assert _got(reading, "/motion", number=str(number)) is not None
+        assert _got(reading, "/motion", number=str(count)) is None
+
+
 def table_queries(reading: Reading) -> None:
     path = f"/v1/databases/{reading.result.key}"
     columns = np.array([0.0, 0.25, -1.0, 5.0]).tobytes()
@@ -164,6 +173,7 @@ READERS: tuple[Callable[[Reading], None], ...] = (
     figures_as_json,
     drawings,
     sound,
+    motions,
     table_queries,
     report,
     comparison,

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from page_visit import PATIENCE, Visit, found_inaccessible, moved, shown
+from page_visit import PATIENCE, Visit, control, found_inaccessible, moved, shown
 from PIL import Image
 from playwright.sync_api import Browser, Page, Playwright, expect
 from running_service import until
@@ -62,7 +62,9 @@ def rest(page: Page) -> None:
 
 
 def different(first: np.ndarray, second: np.ndarray) -> float:
-    """Return the part of the points that differ."""
+    """Return the part of the points that differ; of pictures of other sizes all."""
+    if first.shape != second.shape:
+        return 1.0
     return float(np.mean(np.abs(first - second).max(axis=-1) > 12))
 
 
@@ -137,6 +139,44 @@ def test_a_unit_turns_when_its_file_opens_and_a_mesh_that_is_clicked_opens_its_p
     expect(page.locator("#f-pair-wheel-teeth")).to_have_value("74")
     assert "see=" not in page.url
     assert view.complaints == []
+
+
+@pytest.mark.law
+def test_a_mode_moves_the_unit_and_the_way_back_shows_the_pair(
+    drawing_browser: Browser, address: str, analyzed: str
+) -> None:
+    seen = shown(drawing_browser, address, analyzed)
+    page = seen.page
+    if page.get_by_role("button", name="Stop", exact=True).count():
+        page.get_by_role("button", name="Stop", exact=True).click()
+    motion, amplitude = page.get_by_label("Motion", exact=True), page.get_by_label("Amplitude", exact=True)
+    expect(motion).to_be_hidden()
+    control(page, "#study-Modes-top_rpm").fill("2000")
+    page.get_by_role("button", name="Find the modes").press("Enter")
+    expect(motion).to_be_visible()
+    pair = picture(page)
+    groups = motion.locator("optgroup").evaluate_all("all => all.map((one) => one.label)")
+    assert (groups[:2], groups[-1]) == (["at rest", "at 0 rpm"], "at 2000 rpm")
+    name = motion.locator("option").nth(2).inner_text()
+    motion.select_option(name)
+    said = page.locator("#view [role=status]")
+    expect(said).to_have_text(name)
+    moved_unit = picture(page)
+    assert different(pair, moved_unit) > 0.01
+    amplitude.focus()
+    amplitude.press("Home")
+    still = picture(page)
+    assert different(still, moved_unit) > 0.005
+    page.get_by_role("button", name="Roll", exact=True).press("Enter")
+    count = frames(page)
+    until(lambda: frames(page) > count + 2)
+    page.get_by_role("button", name="Stop", exact=True).press("Enter")
+    assert different(still, picture(page)) < 0.001, "only the phase runs"
+    assert found_inaccessible(page, "#view") == {}
+    motion.select_option("")
+    assert different(pair, picture(page)) < 0.002
+    assert seen.complaints == []
+    page.close()
 
 
 def test_a_browser_without_webgl_shows_the_drawing(browser: Browser, address: str, analyzed: str) -> None:

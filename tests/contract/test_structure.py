@@ -12,17 +12,17 @@ ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
     ("fe_contact",): (41_668, 773),
-    ("dynamics",): (42_618, 835),
-    ("lineofaction.gearbox",): (26_480, 540),
-    ("lineofaction.report",): (11_773, 224),
-    ("service",): (14_724, 339),
+    ("dynamics",): (42_673, 837),
+    ("lineofaction.gearbox",): (26_578, 543),
+    ("lineofaction.report",): (11_844, 226),
+    ("service",): (14_787, 344),
     ("lineofaction.client",): (2_669, 53),
     ("lineofaction.cli",): (5_456, 80),
     ("lineofaction.hardcases",): (3_841, 35),
     ("bounds", "host", "model_studies"): (4_464, 155),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 827
+MOST_FILES = 830
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""

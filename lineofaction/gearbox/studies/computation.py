@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import reduce
 from operator import or_
@@ -22,6 +22,7 @@ from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.figures import figures_of
+from lineofaction.gearbox.studies.motion import OfferedMotion
 from model_studies.record_file import read_record, write_record
 from model_studies.workers import InProcess, Workers
 
@@ -174,6 +175,10 @@ class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):
 
     def _derived(self, _result: Result) -> Json:
         return {}
+
+    def motions(self, _result: Result) -> Sequence[OfferedMotion]:
+        """Return the motions of the unit that a result holds, as they are listed."""
+        return ()
 
     def save_figures(self, result: Result, file: Path) -> None:
         """Write the figures as JSON."""

@@ -63,7 +63,10 @@ class Page {
   parts(ofCases, studies) {
     const take = (flanks) => this.take(flanks);
     const slot = (name, parts, show) => this.slot(name, parts, show);
-    const show = (target, reference, signal) => showResult(target, reference, { take, signal });
+    const show = async (target, reference, signal, { scene }) => {
+      if (scene) await this.design.view.offer(scene, reference, signal);
+      await showResult(target, reference, { take, signal });
+    };
     const page = { design: this.design, slot, show };
     showStudies(ofCases, page);
     const dynamics = new Dynamics(studies.find(({ process }) => process === "modes"), page);
@@ -77,7 +80,7 @@ class Page {
     this.analysis.refused = (problem) => this.notAnalyzed(problem);
     button.addEventListener("click", () => this.analyze());
     this.reopened = slot("job", { progress: byId("jobs-progress"), result: byId("jobs-result") },
-      (target, reference, signal) => (reference.kind === "database" ? this.tabled("job", reference) : show(target, reference, signal)));
+      (target, reference, signal, inputs) => (reference.kind === "database" ? this.tabled("job", reference) : show(target, reference, signal, inputs)));
     this.jobs = new Jobs((job) => this.reopen(job), (first, second) => this.compare(first, second));
     this.jobs.refresh();
     this.design.settled = () => this.carry();

@@ -41,9 +41,9 @@ export class SceneEditor {
     /** Of which a scene is all they take. */
     this.whole = new Set(ofScenes.filter(({ subjects }) => subjects.includes("case")).map(({ process }) => process));
     this.process = make("select", { id: "scene-process" }, ...ofScenes.map(({ process, title }) => make("option", { value: process }, title)));
-    const shown = (target, reference, signal) => {
+    const shown = (target, reference, signal, inputs) => {
       if (reference.kind === "run") this.run = reference.hash;
-      return show(target, reference, signal);
+      return show(target, reference, signal, inputs);
     };
     byId("scene-body").replaceChildren(card(
       { process: "scene", title: "A scene of your own", action: "Compute the scene", text: HELP, fields: FIELDS }, { slot, show: shown },

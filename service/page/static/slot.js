@@ -17,7 +17,7 @@ export class Slot {
    * @param {HTMLElement} parts.progress
    * @param {HTMLElement} parts.result
    * @param {HTMLButtonElement} [parts.button] disabled while a job is under way
-   * @param {(target: HTMLElement, reference: object, signal: AbortSignal) => Promise<void>} show
+   * @param {(target: HTMLElement, reference: object, signal: AbortSignal, inputs: any) => Promise<void>} show
    */
   constructor(name, { address, design }, { progress, result, button }, show) {
     Object.assign(this, { name, address, progress, result, button, show });
@@ -77,7 +77,7 @@ export class Slot {
     const { inputs } = await orderOf(this.job);
     if (signal.aborted) return;
     this.note.of(inputs.case ?? null);
-    await this.show(this.result, reference, signal);
+    await this.show(this.result, reference, signal, inputs);
   }
 
   /** Run until it is done or left; refusals are said in the place of the progress, or by `refused`. */

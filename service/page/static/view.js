@@ -2,6 +2,7 @@
 /** What the design is, in three dimensions: the pair as it rolls, or the unit that was opened; and how it is steered. */
 
 import { button, byId, make } from "./elements.js";
+import { MOVING, Motions } from "./view_motion.js";
 import { most, RollingPair } from "./view_pair.js";
 import { drawable, Stage } from "./view_stage.js";
 import { gearboxOf } from "./view_unit.js";
@@ -42,7 +43,8 @@ export class View {
       choice(`bent × ${BENT}`, false, (on) => { this.pair.bent = on ? BENT : 0; }),
       choice("see through the wheel", true, (on) => { this.pair.through = on; }),
       this.scale);
-    target.append(make("div", { class: "view-controls" }, roll, this.ofPair), this.words);
+    this.motions = new Motions(this);
+    target.append(make("div", { class: "view-controls" }, roll, this.ofPair, this.motions.block), this.words);
   }
 
   /** Where it stands, in base pitches, as a word of the address; null: nobody stopped it. */
@@ -64,9 +66,10 @@ export class View {
    */
   async see(scene, part = "", open = () => {}) {
     if (!this.stage) return;
-    this.wanted = scene;
+    const wanted = (this.wanted = { scene, part, open });
+    this.motions.seen(scene);
     const gearbox = scene && (scene === this.gearbox?.scene ? this.gearbox : await gearboxOf(scene, open));
-    if (this.wanted !== scene) return;
+    if (this.wanted !== wanted) return;
     this.gearbox = gearbox ?? this.gearbox;
     gearbox?.mark(part);
     if (!this.stage.rolls && gearbox) gearbox.position = this.pair.position;
@@ -76,10 +79,15 @@ export class View {
     this.label(scene);
   }
 
+  /** Offer the motions of a result, if it has any, in the picture of its scene. @param {any} scene @param {any} result reference to it @param {AbortSignal} signal */
+  async offer(scene, result, signal) {
+    if (this.stage && MOVING.has(result.kind)) await this.motions.offer(scene, result, signal);
+  }
+
   /** Say in words what is drawn. @param {any} scene null: the pair */
   label(scene) {
     const { pinion, wheel, internal } = this.pair.outline ?? { pinion: {}, wheel: {} };
-    const what = scene ? `Gear unit with ${scene.shafts.length} shafts and ${scene.meshes.length} meshes, in motion`
+    const what = scene ? `Gear unit with ${scene.shafts.length} shafts and ${scene.meshes?.length ?? 0} meshes, in motion`
       : `${pinion.teeth} teeth drive ${internal ? "a ring gear with " : ""}${wheel.teeth}, rolling in three dimensions`;
     this.stage.canvas.setAttribute("aria-label", `${what}. Drag or arrow keys turn the picture, wheel or + and − zoom, space stops and starts.`);
   }

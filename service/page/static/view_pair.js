@@ -4,7 +4,7 @@
 import { number } from "./elements.js";
 import { flankMap } from "./view_flank.js";
 import { freed, held, program, tables } from "./view_gl.js";
-import { BENT as BENDING, FLANK, PICK, STEEL, TOOTH } from "./view_shaders.js";
+import { BENT as BENDING, FLANK, MOVED, PICK, STEEL, TOOTH } from "./view_shaders.js";
 import { toothMesh } from "./view_teeth.js";
 
 const SPEED = 0.4; // base pitches a second
@@ -26,10 +26,17 @@ function scaleOf(value) {
   return size * (STEPS.find((step) => step * size >= value) ?? 10);
 }
 
-/** By whether teeth bend and by what is drawn. @param {WebGL2RenderingContext} gl */
+/** By whether teeth bend or move, and by what is drawn. @param {WebGL2RenderingContext} gl */
 export function programsOf(gl) {
   const made = (define) => Object.fromEntries(Object.entries({ STEEL, FLANK, PICK }).map(([name, source]) => [name, program(gl, define + TOOTH, source)]));
-  return { straight: made(""), bent: made(BENDING) };
+  let moved;
+  return { straight: made(""), bent: made(BENDING), get moved() { return (moved ??= made(MOVED)); } };
+}
+
+/** Let a program move what it draws. @param {WebGL2RenderingContext} gl @param {import("./view_motion.js").Moved} moved */
+export function put(gl, at, { values, stations }) {
+  gl.uniform3fv(at["moved[0]"], values);
+  gl.uniform3f(at.stations, ...stations);
 }
 
 /** The rolling pair, drawn by a stage. @implements {import("./view_stage.js").Subject} */
@@ -44,6 +51,8 @@ export class RollingPair {
     this.through = true;
     this.meshes = null;
     this.colors = COLORS;
+    /** @type {Record<string, import("./view_motion.js").Moved> | null} how its gears move as discs */
+    this.moved = null;
     this.told = (/** @type {string} */ _words, /** @type {HTMLElement | undefined} */ _map) => {};
   }
 
@@ -120,7 +129,7 @@ export class RollingPair {
 
   /** Parts of a gear: FLANK or SMOOTH, its flanks that carry; STEEL, all else; PICK, both. */
   gear(gl, name, parts, { view, back, moving, code = 1 }, opacity) {
-    const programs = this.programs[this.bent && this.curve ? "bent" : "straight"];
+    const programs = this.programs[this.moved ? "moved" : this.bent && this.curve ? "bent" : "straight"];
     const { teeth } = this.outline[name];
     const { array, count, marked } = this.meshes[moving ? `${name} moving` : name];
     const rest = count - marked;
@@ -154,6 +163,7 @@ export class RollingPair {
     gl.uniform2f(at.shown, this.top, LINE * contact.basePitch);
     gl.uniform2f(at.ends, ...contact.ends);
     gl.uniform2f(at.face, ...gear.face_mm);
+    if (this.moved) put(gl, at, this.moved[name]);
   }
 
   /** Where the flank of a gear is touched: roll lengths in mm at the pitch point and the ends of the path. */

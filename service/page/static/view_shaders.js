@@ -2,6 +2,7 @@
 /** The shaders of the rolling pair; what a software renderer draws most of has the least to compute. */
 
 export const BENT = "#define BENT\n";
+export const MOVED = "#define MOVED\n";
 
 /** Every tooth of a gear from one: turned to its place, twisted along the face, bent by what its pair carries; lit. */
 export const TOOTH = `
@@ -33,6 +34,18 @@ vec2 met(float at, float z) {
 }
 
 #endif
+#ifdef MOVED
+uniform vec3 moved[66]; // displacement and rotation of each station
+uniform vec3 stations; // first place, distance, whether all is one disc
+
+vec3 shift(vec2 arm, float z) {
+  float part = clamp((z - stations.x) / stations.y, 0.0, 31.9999);
+  int k = 2 * int(part);
+  vec3 rotation = mix(moved[k + 1], moved[k + 3], fract(part));
+  return mix(moved[k], moved[k + 2], fract(part)) + cross(rotation, vec3(arm, stations.z * (z - stations.x)));
+}
+
+#endif
 void main() {
   float index = float(gl_InstanceID);
   pair = mod(turning.z + index + 0.5 * turning.w, turning.w) - 0.5 * turning.w;
@@ -52,7 +65,11 @@ void main() {
   vec3 facing = normalize(vec3(rotation * normal.xy, normal.z + slope));
   vec3 light = normalize(back + vec3(0.1, 0.6, 0.1));
   lit = 0.34 + 0.62 * max(dot(facing, light), 0.0) + 0.10 * pow(max(dot(facing, back), 0.0), 12.0);
-  gl_Position = view * vec4(rotation * place.xy + center.xy, place.z, 1.0);
+  vec3 stands = vec3(rotation * place.xy + center.xy, place.z);
+#ifdef MOVED
+  stands += shift(rotation * place.xy, place.z);
+#endif
+  gl_Position = view * vec4(stands, 1.0);
 }`;
 
 /** Lit steel. */

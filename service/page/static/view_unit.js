@@ -2,8 +2,10 @@
 /** A gear unit as its scene has it: shafts and bearings as bodies of revolution, gears with their teeth, all in motion. */
 
 import { post } from "./api.js";
+import { caseOf } from "./orders.js";
 import { freed, held, Meshing } from "./view_gl.js";
-import { COLORS as OF_PAIR, GEARS, RollingPair } from "./view_pair.js";
+import { Motion } from "./view_motion.js";
+import { COLORS as OF_PAIR, GEARS, put, RollingPair } from "./view_pair.js";
 
 const SIDES = 32; // of a body of revolution
 const SPEED = 0.5; // base pitches a second of the first mesh
@@ -11,6 +13,7 @@ const COLORS = { shaft: [0.62, 0.64, 0.67], bearing: [0.42, 0.46, 0.52] };
 const MARKED = [0.90, 0.62, 0.0];
 const BUSHING = 1.7; // outside over shaft diameter where a scene has no catalog
 const WIDTH = 0.55; // of a bearing over its height twice
+const STILL = { values: new Float32Array(12), stations: [0, 1e9, 0] };
 
 /** @typedef {{name: string, origin_mm: number[], length_mm: number, diameter_mm?: number, sections?: {length_mm: number, outer_diameter_mm: number}[]}} Shaft */
 
@@ -79,6 +82,8 @@ export class Gearbox {
   constructor(scene, stages, open) {
     Object.assign(this, { scene, open });
     this.position = 0;
+    /** @type {Motion | null} */
+    this.motion = null;
     this.shafts = new Map(scene.shafts.map((shaft) => [shaft.name, shaft]));
     const gears = new Map(scene.gears.map((gear) => [gear.name, gear]));
     /** @type {Map<string, number>} turns of shafts in rad a base pitch of the first mesh, counter-clockwise */
@@ -97,7 +102,19 @@ export class Gearbox {
     this.turns.set(other.name, (turned / step) * outline.wheel.turn * ((2 * Math.PI) / outline.wheel.teeth));
     const pair = new RollingPair();
     pair.outline = outline;
-    return { mesh, pair, place: placement(angle, to), ratio: turned / step };
+    const on = { pinion: driver, wheel: driven };
+    return { mesh, pair, place: placement(angle, to), ratio: turned / step, on, angle, from: to[2] };
+  }
+
+  /** Let it move by a result. @param {import("./view_motion.js").UnitMotion | null} motion null: it stands */
+  move(motion) {
+    const discs = this.stages.flatMap(({ pair, on }) => GEARS.map((name) => ({ ...on[name], reach: pair.outline[name].radius_mm.tip })));
+    const reachAt = (name, place) => {
+      const shaft = this.shafts.get(name);
+      const near = discs.filter((disc) => disc.shaft === name && Math.abs(disc.position_mm - place) < shaft.length_mm / 32).map(({ reach }) => reach);
+      return Math.max(diameterAt(shaft, place) / 2, ...near);
+    };
+    this.motion = motion && new Motion(motion, this.reach, reachAt);
   }
 
   begin(gl, programs) {
@@ -127,22 +144,40 @@ export class Gearbox {
     }
   }
 
-  frame(camera) {
+  /** Both corners of a box about the axes. */
+  get box() {
     const corners = this.scene.shafts.flatMap(({ origin_mm: [x, y, z], length_mm: length }) => [[x, y, z], [x, y, z + length]]);
-    const reach = Math.max(...this.stages.map(({ pair }) => pair.outline.wheel.radius_mm.tip));
-    const [low, high] = [Math.min, Math.max].map((end) => [0, 1, 2].map((k) => end(...corners.map((corner) => corner[k]))));
+    return [Math.min, Math.max].map((end) => [0, 1, 2].map((k) => end(...corners.map((corner) => corner[k]))));
+  }
+
+  /** Half of its size in mm. */
+  get reach() {
+    const [low, high] = this.box;
+    const tips = this.stages.map(({ pair }) => pair.outline.wheel.radius_mm.tip);
+    return Math.hypot(...high.map((value, k) => (value - low[k]) / 2)) + 0.5 * Math.max(0, ...tips);
+  }
+
+  frame(camera) {
+    const [low, high] = this.box;
     const center = /** @type {[number, number, number]} */ (low.map((value, k) => (value + high[k]) / 2));
-    camera.look(center, Math.hypot(...high.map((value, k) => (value - low[k]) / 2)) + 0.5 * reach, 0.8, 0.35);
+    camera.look(center, this.reach, 0.8, 0.35);
   }
 
   advance(seconds) {
-    this.position += SPEED * seconds;
+    if (this.motion?.oscillates) this.motion.advance(seconds);
+    else this.position += SPEED * seconds;
   }
 
   draw(gl, frame) {
     gl.enable(gl.CULL_FACE);
     if (!frame.picking) this.revolved(gl, frame, this.bodies);
-    this.stages.forEach(({ pair, place, ratio }, k) => {
+    this.stages.forEach(({ pair, place, ratio, on, angle, from }, k) => {
+      const moved = (name) => {
+        const [gear, shaft] = [on[name], this.shafts.get(on[name].shaft)];
+        const middle = shaft.origin_mm[2] + gear.position_mm - from;
+        return [name, this.motion.ofDisc(shaft.name, gear.position_mm, middle, angle) ?? STILL];
+      };
+      pair.moved = this.motion && Object.fromEntries(GEARS.map(moved));
       pair.position = ratio * this.position;
       pair.meshes ??= pair.made(gl);
       const own = { ...frame, view: product(frame.view, place), code: 8 * k + 1 };
@@ -155,12 +190,13 @@ export class Gearbox {
 
   /** Draw shafts and bearings. */
   revolved(gl, frame, bodies) {
-    const { program, at } = this.programs.straight.STEEL;
+    const { program, at } = this.programs[this.motion ? "moved" : "straight"].STEEL;
     gl.useProgram(program);
     gl.uniform3fv(at.back, frame.back);
     gl.uniform4f(at.center, 0, 0, 0, 0);
     gl.uniform4f(at.bend, 0, 0, 0, 1);
     for (const { name, shaft, mesh, color } of bodies) {
+      if (this.motion) put(gl, at, (name === shaft.name && this.motion.ofShaft(name)) || STILL); // bearings stand
       gl.uniformMatrix4fv(at.view, false, product(frame.view, placement(0, shaft.origin_mm)));
       gl.uniform4f(at.turning, (this.turns.get(shaft.name) ?? 0) * this.position, 0, 0, 1);
       gl.uniform4f(at.color, ...(name === this.marked ? MARKED : color), 1);
@@ -177,7 +213,9 @@ export class Gearbox {
 
 /** The unit of a scene, with the outlines of its meshes. @param {any} scene @param {(mesh: any) => void} open */
 export async function gearboxOf(scene, open) {
-  const meshes = scene.meshes.filter((mesh) => mesh.case);
-  const outlines = await Promise.all(meshes.map((mesh) => post("/v1/cases/outline", { inputs: { case: mesh.case } })));
-  return new Gearbox(scene, meshes.map((mesh, k) => ({ mesh, outline: outlines[k] })), open);
+  const written = (mesh) => mesh.case ?? (mesh.database_hash ? caseOf(mesh.database_hash) : null);
+  const meshes = await Promise.all((scene.meshes ?? []).map(async (mesh) => ({ ...mesh, case: await written(mesh) })));
+  const drawn = meshes.filter((mesh) => mesh.case);
+  const outlines = await Promise.all(drawn.map((mesh) => post("/v1/cases/outline", { inputs: { case: mesh.case } })));
+  return new Gearbox(scene, drawn.map((mesh, k) => ({ mesh, outline: outlines[k] })), open);
 }

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds import engineering
 from bounds.types import Json
 from dynamics.assembly.assemble import assemble
 from dynamics.linearize import ModalAnalysis, modal_analysis
@@ -14,9 +15,12 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
 from lineofaction.gearbox.studies.excitations import with_facts_of_scene
 from lineofaction.gearbox.studies.modes import Inputs, ModesFigures
+from lineofaction.gearbox.studies.motion import OfferedMotion, UnitMotion, chosen_rows
 from lineofaction.gearbox.units import RPM
 
 LEAST_SHARE = 1e-3
+MOST_GROUPS = 12
+"""Speeds whose modes are listed to be looked at."""
 
 
 class _ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
@@ -45,6 +49,36 @@ class _ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
             "modes": [_over_speed(modes, mode) for mode in range(modes.frequency.shape[1])],
             "critical_speeds": [_crossing(modes, index) for index in range(modes.critical_speed.size)],
         }
+
+    def motions(self, modes: ModalAnalysis) -> list[OfferedMotion]:
+        """Return the modes at rest and over speed; none of files of versions that did not keep the axes."""
+        if not modes.axis_shaft.size:
+            return []
+        energies = modes.natural_strain_energy, modes.natural_kinetic_energy
+        rest = zip(modes.natural_frequency, modes.natural_damping_ratio, *energies, strict=True)
+        shapes = modes.natural_shape
+        offered = [_offered(modes, "at rest", row, shapes[k]) for k, row in enumerate(rest)]
+        for at in chosen_rows(modes.speed.size, MOST_GROUPS) if modes.speed.size else ():
+            whirl = modes.frequency[at], modes.damping_ratio[at], modes.strain_energy[at]
+            rows = enumerate(zip(*whirl, modes.kinetic_energy[at], strict=True))
+            group = f"at {engineering(modes.speed[at] / RPM, 5)} rpm"
+            offered += [
+                _offered(modes, group, row, modes.shape[at, k]) for k, row in rows if np.isfinite(row[0])
+            ]
+        return offered
+
+
+def _offered(modes: ModalAnalysis, group: str, row: Any, shape: Any) -> OfferedMotion:
+    hertz, damping, strain, kinetic = row
+    name = (
+        f"{engineering(hertz, 4)} Hz, {modes.kind(strain, kinetic)}, damping {engineering(100.0 * damping)} %"
+    )
+
+    def made() -> UnitMotion:
+        motion = np.asarray(modes.axis_motion @ shape, dtype=complex)
+        return UnitMotion(modes.shaft, modes.axis_shaft, modes.axis_position, motion, oscillates=True)
+
+    return OfferedMotion(group, name, made)
 
 
 def _energies(modes: ModalAnalysis, strain: Any, kinetic: Any) -> Json:

@@ -169,6 +169,20 @@ def test_a_file_gives_back_every_bit(disc, tmp_path):
                 assert value == other, name
 
 
+@pytest.mark.law
+def test_the_axis_of_a_rigid_shaft_moves_with_its_center_and_tilts_about_it(disc):
+    """u_x = x + tilt_y (z - c), u_y = y - tilt_x (z - c): the freedoms are those of the center of mass."""
+    own = disc.axis_shaft == disc.shaft.index("disc")
+    arm = disc.axis_position[own] - LENGTH / 2.0
+    columns = [disc.freedom.index(f"disc.{kind}") for kind in ("x", "y", "tilt_x", "tilt_y")]
+    for shape in disc.shape[-1]:
+        x, y, tilt_x, tilt_y = shape[columns]
+        motion = (disc.axis_motion @ shape)[own]
+        np.testing.assert_allclose(motion[:, 0], x + tilt_y * arm, atol=1e-12)
+        np.testing.assert_allclose(motion[:, 1], y - tilt_x * arm, atol=1e-12)
+        np.testing.assert_allclose(motion[:, 3:5], [[tilt_x, tilt_y]] * arm.size, atol=1e-12)
+
+
 def test_a_damaged_file_is_refused(disc, tmp_path):
     path = tmp_path / "modes.nc"
     disc.to_netcdf(path)

@@ -1,0 +1,59 @@
+"""How a unit moves by a result: its shafts along their axes, as the page animates it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.types import ComplexArray, FloatArray, IntArray
+
+
+@dataclass(frozen=True)
+class UnitMotion:
+    """Complex amplitudes of the motion of a unit about where it stands: their real part at phase 0.
+
+    Attributes
+    ----------
+    shafts : tuple of str
+    shaft : (P,) int array
+        Index of the shaft of each point of an axis.
+    position : (P,) array
+        Along it, m, increasing within a shaft.
+    motion : (P, 6) complex array
+        x, y, z (m), tilt_x, tilt_y, rotation (rad).
+    oscillates : bool
+        Whether the phase runs; a deflection rests.
+    """
+
+    shafts: tuple[str, ...]
+    shaft: IntArray
+    position: FloatArray
+    motion: ComplexArray
+    oscillates: bool
+
+    def at_stations(self, count: int) -> dict[str, tuple[FloatArray, ComplexArray]]:
+        """Return stations evenly spaced along each shaft, m, and the motion there, (count, 6)."""
+        sampled = {}
+        for index, name in enumerate(self.shafts):
+            own = self.shaft == index
+            known, motion = self.position[own], self.motion[own]
+            along = np.linspace(known[0], known[-1], count)
+            columns = [np.interp(along, known, column) for column in motion.T]
+            sampled[name] = along, np.stack(columns, axis=-1)
+        return sampled
+
+
+@dataclass(frozen=True)
+class OfferedMotion:
+    """A motion of a result: in which group it is listed, what it is, and what makes it."""
+
+    group: str
+    name: str
+    made: Callable[[], UnitMotion]
+
+
+def chosen_rows(count: int, most: int) -> Sequence[int]:
+    """Return at most `most` of `count` rows, evenly spread, the first and the last among them."""
+    return sorted(set(np.linspace(0, count - 1, min(count, most)).round().astype(int).tolist()))

@@ -1,0 +1,71 @@
+"""Motions of a unit by a stored result, for the page: what there is, and one of them at even stations."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bounds.types import Json
+from lineofaction.gearbox.problems import BadInput, DamagedFile, NotFound
+from lineofaction.gearbox.registry import study_of
+from lineofaction.gearbox.studies.motion import OfferedMotion, UnitMotion
+from lineofaction.gearbox.units import MM
+from lineofaction.report.document import of_the_store, read_stored
+
+STATIONS = 33
+"""Along a shaft."""
+_LENGTHS = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0], dtype=bool)
+
+
+def stored_motion(inputs: Json) -> Json:
+    """Return ``{"groups": [...], "motion": {...}}`` of a stored result; work of the live worker.
+
+    ``{"kind": ..., "file": ..., "number": n or None}``; None: what there is to choose from, and no motion.
+
+    Raises `NotFound`: results of that kind hold no motions, or this one none; `BadInput`: no such number.
+    """
+    with of_the_store():
+        study = study_of(inputs["kind"])
+        result = None if study is None else read_stored(study, Path(inputs["file"]))
+        offered = [] if study is None else list(study.run.motions(result))
+        if not offered:
+            raise NotFound(
+                "The result holds no motion of a unit. Compute it again if an older version made it."
+            )
+        number = inputs["number"]
+        if number is not None and number >= len(offered):
+            raise BadInput.of("number", number, f"below {len(offered)}, the number of motions")
+        motion = None if number is None else motion_json(offered[number].made())
+        return {"groups": _groups(offered), "motion": motion}
+
+
+def _groups(offered: list[OfferedMotion]) -> list[Json]:
+    groups: dict[str, list[str]] = {}
+    for one in offered:
+        groups.setdefault(one.group, []).append(one.name)
+    return [{"name": group, "motions": names} for group, names in groups.items()]
+
+
+def motion_json(motion: UnitMotion) -> Json:
+    """Return a motion in mm and rad; raises `DamagedFile`: a value is not finite."""
+    shafts = []
+    for name, (along, moved) in motion.at_stations(STATIONS).items():
+        in_mm = np.where(_LENGTHS, moved / MM, moved)
+        if not np.all(np.isfinite(in_mm)):
+            raise DamagedFile(f"The stored motion of {name} has values that are not finite.")
+        shafts.append(
+            {
+                "name": name,
+                "position_mm": [float(along[0] / MM), float(along[-1] / MM)],
+                "real": _rounded(in_mm.real),
+                "imaginary": _rounded(in_mm.imag),
+            }
+        )
+    return {"oscillates": motion.oscillates, "shafts": shafts}
+
+
+def _rounded(values: Any) -> list[list[float]]:
+    """Return rows with six digits of each, as many as a picture shows."""
+    return [[float(f"{value:.6g}") for value in row] for row in values.tolist()]
