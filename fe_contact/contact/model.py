@@ -57,6 +57,10 @@ class GapTerm(Protocol):
     def along_profile(self) -> bool:
         """Whether the gap varies along the flanks, at the roll lengths where they touch."""
 
+    @property
+    def only_removes(self) -> bool:
+        """Whether it is nowhere below zero."""
+
     def breaks(self, pair: ParallelAxes, face: FloatArray) -> tuple[Break, ...]:
         """Return where the gap's slope or curvature along the profile jumps.
 

@@ -284,14 +284,16 @@ def _moved(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTe
     here = Touch(*(getattr(touch, name)[possible] for name in touch.__dataclass_fields__))
     flanks = _Flanks(pair, here, np.broadcast_to(face, possible.shape)[possible], gaps)
     shift = flanks.lowest_sample()
+    now = flanks.gap(shift)
     for _ in range(_CUT_TIP_PASSES if flanks.cut_tips else _PASSES):
         about = flanks.about(shift)
         step = _touching_places(about, flanks.first - shift, flanks.last - shift)
         # bumps of a measured flank are no parabolas: the step must lead down, unless it is next to nothing
-        down = (flanks.gap(shift + step) <= flanks.gap(shift)) | (np.abs(step) < 1e-3 * flanks.step)
+        ahead = flanks.gap(shift + step)
+        down = (ahead <= now) | (np.abs(step) < 1e-3 * flanks.step)
         step = np.where(down, step, 0.0)
         least, there = _moved_gap(about, step)
-        gap, shift = flanks.gap(shift) + least, shift + step
+        gap, shift, now = now + least, shift + step, np.where(down, ahead, now)
     moved = {"s_1": here.s_1 + shift, "s_2": here.s_2 - shift, "gap": here.gap + gap, "moved": shift}
     moved |= there._asdict()
     result = {}
@@ -321,15 +323,27 @@ class _Flanks:
 
     def gap(self, x: FloatArray) -> FloatArray:
         """Return the gap at x, m."""
-        parabola = x * (self._touch.slope + 0.5 * self._touch.curvature * x)
-        return np.asarray(parabola + self._removed(x) + sum(self._excess(side, x) for side in self.cut_tips))
+        excess = sum(self._excess(side, x) for side in self.cut_tips)
+        return np.asarray(self._plain(x) + self._removed(x) + excess)
 
     def lowest_sample(self) -> FloatArray:
-        """Return where the gap is least among samples all over the reach."""
-        samples = self.first + (self.last - self.first) * np.linspace(0.0, 1.0, _SAMPLES)[:, None]
-        samples = np.concatenate([np.zeros((1, self.step.size)), samples])
-        lowest = np.argmin([self.gap(x) for x in samples], axis=0)
-        return np.asarray(np.take_along_axis(samples, lowest[None], axis=0)[0])
+        """Return where the gap is least among samples all over the reach, and at 0.
+
+        Flanks from which material is only removed are nowhere nearer than plain ones: most samples are too
+        far off to be lower than one before them.
+        """
+        bounded = not self.cut_tips and all(term.only_removes for term in self._gaps)
+        lowest, every = np.zeros(self.step.size), np.arange(self.step.size)
+        least = self.gap(lowest)
+        for part in np.linspace(0.0, 1.0, _SAMPLES):
+            x = self.first + (self.last - self.first) * part
+            plain = self._plain(x)
+            may = np.flatnonzero(plain < least) if bounded else every
+            gap = plain[may] + self._removed(x[may], may) if bounded else self.gap(x)
+            lower = gap < least[may]
+            at = may[lower]
+            lowest[at], least[at] = x[at], gap[lower]
+        return lowest
 
     def about(self, x: FloatArray) -> Gap:
         """Return the gap about x.
@@ -362,10 +376,14 @@ class _Flanks:
         # flanks hollowed out more than they are round would touch at several places
         return _rounded(Gap(slope, curvature, *ends, position, jump, bends), _ROUNDEST * touch.curvature)
 
-    def _removed(self, x: FloatArray) -> FloatArray:
-        """Return what is removed at x, m."""
-        rolls = rolls_at(self._pair, self._touch.s_1 + x, self._touch.s_2 - x)
-        return np.asarray(sum(term(self._pair, *rolls, self._face) for term in self._gaps))
+    def _plain(self, x: FloatArray) -> FloatArray:
+        """Return the gap of plain flanks at x, m."""
+        return np.asarray(x * (self._touch.slope + 0.5 * self._touch.curvature * x))
+
+    def _removed(self, x: FloatArray, of: IntArray | slice = slice(None)) -> FloatArray:
+        """Return what is removed at x, m, of some of the touching points."""
+        rolls = rolls_at(self._pair, self._touch.s_1[of] + x, self._touch.s_2[of] - x)
+        return np.asarray(sum(term(self._pair, *rolls, self._face[of]) for term in self._gaps))
 
     def _excess(self, side: Side, x: FloatArray) -> FloatArray:
         """Return how much further apart than their parabola plain flanks are behind a cut tip, m.

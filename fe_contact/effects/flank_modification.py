@@ -30,6 +30,11 @@ class ModificationGap:
         """Whether the gap depends on the roll lengths."""
         return self.pinion.varies_along_profile or self.wheel.varies_along_profile
 
+    @property
+    def only_removes(self) -> bool:
+        """Whether neither flank has material added anywhere."""
+        return self.pinion.only_removes and self.wheel.only_removes
+
     def breaks(self, pair: ParallelAxes, face: FloatArray) -> tuple[Break, ...]:
         """Roll lengths at which reliefs and the edges of rounded or chamfered tips begin on either flank."""
         sides = ((pair.pinion, self.pinion, face), (pair.wheel, self.wheel, face - pair.axial_offset))

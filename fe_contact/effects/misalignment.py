@@ -23,6 +23,7 @@ class MisalignmentGap:
 
     growth: float
     along_profile: ClassVar[bool] = False
+    only_removes: ClassVar[bool] = False
 
     def breaks(self, pair: ParallelAxes, face: FloatArray) -> tuple[Break, ...]:
         """None: it stays the same as a touching point moves along the profile, across the plane of action."""

@@ -69,6 +69,11 @@ class FlankModification(_Figures):
         """Whether nothing is removed anywhere."""
         return not self.varies
 
+    @cached_property
+    def only_removes(self) -> bool:
+        """Whether material is added nowhere, as slopes and measured flanks may."""
+        return not any(getattr(self, name) for name in fields_of(Kind.SLOPE, Kind.SURFACE))
+
     @property
     def varies_along_profile(self) -> bool:
         """Whether the modification depends on the roll length, at any place of the face."""

@@ -297,7 +297,8 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
     orders = spectrum(ste[: even.size], database.period, database.facts.teeth, np.array(of_orders))
     mesh = slice(database.period - 1, None, database.period)
     lowest, highest = int(np.argmin(ste)), int(np.argmax(ste))
-    values, *error_parts = _evaluate(database, force, point, position)
+    stored = [part[even.size :] for part in (ste, band, below)]
+    values, *error_parts = stored if at is None else _evaluate(database, force, point, position)
     return Curve(
         point=point,
         torque=point.force * database.facts.base_radius[0] * math.cos(database.facts.base_helix_angle),

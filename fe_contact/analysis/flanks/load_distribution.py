@@ -15,6 +15,7 @@ from fe_contact.errors import DatabaseError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import Metadata, PairFacts
 from fe_contact.types import BoolArray, FloatArray, IntArray, Json
+from host.loops import njit
 
 if TYPE_CHECKING:
     import xarray
@@ -326,20 +327,40 @@ def pressure_map(flanks: LoadDistribution, roll: FloatArray) -> tuple[FloatArray
     for part in (on_path, edge & lower, edge & ~lower):
         if part.any():
             ends = float(roll[part].min()), float(roll[part].max())
-            for k in np.flatnonzero(part.any(axis=(0, 1))):
-                here = part[:, :, k]
-                passing = _between(rows, roll[:, :, k][here], flanks.pressure[:, :, k][here], ends)
-                pressure[:, k] = np.maximum(pressure[:, k], passing)
+            passing = np.zeros(pressure.shape)
+            _pass_between(rows, roll, flanks.pressure, part, ends, passing)
+            np.maximum(pressure, passing, out=pressure)
     return rows, pressure
 
 
-def _between(
-    rows: FloatArray, roll: FloatArray, pressure: FloatArray, ends: tuple[float, float]
-) -> FloatArray:
-    """Interpolate a pressure between the places (n,) where it is known, held to both ends, 0 beyond."""
-    place = _SAME * (ends[1] - ends[0]) / roll.size or 1.0
-    knots, index = np.unique(np.round((roll - ends[0]) / place), return_inverse=True)
-    largest = np.zeros(knots.size)
-    np.maximum.at(largest, index, pressure)
-    reached = (rows >= ends[0]) & (rows <= ends[1])
-    return np.asarray(np.where(reached, np.interp(rows, ends[0] + place * knots, largest), 0.0))
+@njit(cache=True)
+def _pass_between(
+    rows: FloatArray,
+    roll: FloatArray,
+    pressure: FloatArray,
+    part: BoolArray,
+    ends: tuple[float, float],
+    out: FloatArray,
+) -> None:
+    """Interpolate the pressures (P, N, K) of a part of the contacts at `rows` into `out` (R, K).
+
+    Between the places where it is known, the largest of those on one place; held to both ends, 0 beyond.
+    """
+    for k in range(out.shape[1]):
+        here = np.flatnonzero(part[:, :, k].copy().ravel())
+        if here.size == 0:
+            continue
+        at, known = roll[:, :, k].copy().ravel()[here], pressure[:, :, k].copy().ravel()[here]
+        place = _SAME * (ends[1] - ends[0]) / here.size
+        place = place if place > 0.0 else 1.0
+        number = np.rint((at - ends[0]) / place)
+        order = np.argsort(number)
+        knots, largest, last = np.empty(here.size), np.empty(here.size), -1
+        for i in order:
+            if last < 0 or number[i] != knots[last]:
+                last += 1
+                knots[last], largest[last] = number[i], known[i]
+            largest[last] = max(largest[last], known[i])
+        passing = np.interp(rows, ends[0] + place * knots[: last + 1], largest[: last + 1])
+        reached = (rows >= ends[0]) & (rows <= ends[1])
+        out[:, k] = np.where(reached, passing, 0.0)

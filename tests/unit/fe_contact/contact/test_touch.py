@@ -25,6 +25,7 @@ class Removed:
     """Material removed from both flanks."""
 
     along_profile = True
+    only_removes = False
 
     def breaks(self, gears, face):
         return ModificationGap(gears.pinion.modification, gears.wheel.modification).breaks(gears, face)
@@ -105,6 +106,22 @@ def test_against_a_direct_search(position, shape):
         for bounds in ((max(-0.4e-3, s_2 - tip), 0.0), (0.0, min(0.4e-3, tip - s_1)))
     )
     assert modified.gap[0, 0] == pytest.approx(found, abs=1e-11)
+
+
+SHED = {"tip_relief": 15e-6, "tip_relief_length": 0.9e-3, "root_relief": 9e-6, "root_relief_length": 0.7e-3}
+
+
+@pytest.mark.parametrize("more", [{}, {"profile_crowning": 6e-6}, {"profile_slope": 12e-6}])
+def test_samples_left_out_as_too_far_off_are_not_the_lowest(more, monkeypatch):
+    gears = pair(**SHED, **more)
+    term = ModificationGap(gears.pinion.modification, gears.wheel.modification)
+    assert term.only_removes == ("profile_slope" not in more)
+    position = np.linspace(-1.2, 1.2, 301)
+    _, quick = touches(gears, position, (term,))
+    monkeypatch.setattr(ModificationGap, "only_removes", False)
+    _, whole = touches(gears, position, (term,))
+    for name in whole.__dataclass_fields__:
+        assert np.array_equal(getattr(quick, name), getattr(whole, name))
 
 
 @pytest.mark.parametrize("face", [2e-3, 7e-3, 9.9e-3])
