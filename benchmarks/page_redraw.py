@@ -65,15 +65,15 @@ def _measured(page: Page, address: str, name: str) -> list[Figure]:
     page.select_option("#example", name)
     page.wait_for_selector("#plan dl")
     page.click("#analyze")
-    page.wait_for_selector("#live-body[data-answers]")
+    page.wait_for_selector("#live-figures[data-answers]")
     slider = page.locator("#live-pinion-tip_relief_um")
     slider.focus()
     moves = []
     for _ in range(_MOVES):
-        count = page.get_attribute("#live-body", "data-answers")
+        count = page.get_attribute("#live-figures", "data-previews")
         slider.press("ArrowRight")
-        page.wait_for_selector(f"#live-body:not([data-answers='{count}'])")
-        moves.append([float(page.get_attribute("#live-body", f"data-{x}") or 0.0) for x in _NOTED])
+        page.wait_for_selector(f"#live-figures:not([data-previews='{count}'])")
+        moves.append([float(page.get_attribute("#live-figures", f"data-{x}") or 0.0) for x in _NOTED])
     answered, drawn, cpu = (median(column) for column in zip(*moves, strict=True))
     page.close()
     return [

@@ -111,12 +111,16 @@ def _beside(
     return here + way * (slope + 0.5 * curvature * way), curvature
 
 
-def with_flanks(pair: ParallelAxes, problem: ContactProblem, model: ContactModel) -> ContactProblem:
+def with_flanks(
+    pair: ParallelAxes, problem: ContactProblem, model: ContactModel, touch: Touch | None = None
+) -> ContactProblem:
     """Add the gaps of the model to a problem of plain involutes.
 
     Where patches follow the flanks, the touch says how far the middles of the strips have moved.
+    `touch`: where the flanks touch, if it is known.
     """
-    modified = with_gaps(pair, problem.candidates, model)
+    plain = problem.candidates
+    modified = with_gaps(pair, plain, model) if touch is None else plain.touching(touch)
     if problem.tilt.size and model.sloped:
         modified = problem.candidates.following(modified.touch)
     return problem.touching(modified)

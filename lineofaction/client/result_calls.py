@@ -44,6 +44,10 @@ class LiveOptions(TypedDict, total=False):
         Also return the derivatives of each curve by its flanks, the misalignment and the torque.
     flanks : bool
         Also return pressure over the driving gear's flank, load over the face, K_Hbeta.
+    passage : bool
+        Also return what a pair of teeth meets on its way through the mesh.
+    preview : bool
+        Answer at every other position and without errors, at a half to a third of the cost.
     condense : bool
         Compute the compliance first if the service has none in its cache.
     caller : str, optional
@@ -57,6 +61,7 @@ class LiveOptions(TypedDict, total=False):
     derivatives: bool
     flanks: bool
     passage: bool
+    preview: bool
     condense: bool
     caller: str | None
 

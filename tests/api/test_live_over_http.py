@@ -100,6 +100,19 @@ def test_two_results_are_compared_as_figures(client: TestClient, key: str) -> No
     assert client.get(where, params={"against": "nonsense"}).status_code == 422
 
 
+def test_a_preview_states_no_errors_and_has_every_other_position(client: TestClient, key: str) -> None:
+    question = {"torque_n_m": [1.0], "pinion": RELIEF, "flanks": True, "passage": True}
+    answers = [
+        client.post(f"/v1/databases/{key}/ste", json=question | {"preview": preview}).json()
+        for preview in (True, False)
+    ]
+    (quick,), (whole,) = (answer["curves"] for answer in answers)
+    assert quick["ste_um"] == pytest.approx(whole["ste_um"][::2], rel=1e-12, abs=0.0)
+    assert "mean_error_um" not in quick and "mean_error_um" in whole and quick["error_by_source_um"] == {}
+    assert answers[0]["discretisation_error"] is None and "position" in answers[0]["not_estimated"]
+    assert set(quick["flanks"]) == set(whole["flanks"])
+
+
 def test_an_answer_knows_how_wrong_it_is_and_what_it_cost(client: TestClient, key: str) -> None:
     questions = [{"torque_n_m": [0.5, 1.0], "pinion": RELIEF | {"tip_relief_um": x}} for x in (4.0, 5.0)]
     first, again = (client.post(f"/v1/databases/{key}/ste", json=question).json() for question in questions)

@@ -9,7 +9,7 @@ import numpy as np
 
 from fe_contact.analysis.pairs.contact_lines import deflected_operating_points
 from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoints
-from fe_contact.contact import Candidates
+from fe_contact.contact import Candidates, ContactProblem, ContactSolution, Start
 from fe_contact.sampled import ALIGNMENTS, LOADS, sample_of, some_positions, spread, spread_around
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray, IntArray
@@ -93,14 +93,26 @@ class TableSample:
         curves = np.stack([table.static_transmission_error, table.load_arm])
         return np.asarray(curves[np.ix_(np.arange(2), self.every_row, *self.nodes)])
 
-    def solved(self, points: OperatingPoints, known: OperatingPoints) -> FloatArray:
-        """Solve the points on other places, (2, T R, f, m, d) in m; `known` are those of the table."""
+    def solved(
+        self, points: OperatingPoints, known: OperatingPoints, starts: Sequence[Start] | None = None
+    ) -> FloatArray:
+        """Solve the points on other places, (2, T R, f, m, d) in m; `known` are those of the table.
+
+        `starts` has forces near the solution for each of the `places`; of one pitch.
+        """
         pitches, load = np.arange(self.period), self.axes[0][self.nodes[0]]
         chosen = [points.places[k] for k in self.places]
         where = [self.position[self.rows]] * len(chosen)
         candidates = self._candidates(chosen[0], [known.places[k] for k in self.places])
-        curves = deflected_operating_points(chosen, where, load, pitches, points.workers, candidates)
+        curves = deflected_operating_points(chosen, where, load, pitches, points.workers, candidates, starts)
         return self.shaped([np.moveaxis(each, -1, 0) for each in curves])
+
+    def start(self, problem: ContactProblem, solution: ContactSolution) -> Start | None:
+        """Return the forces of one place of the table at the points; None where the pitches differ."""
+        if self.period > 1:
+            return None
+        force = solution.force[np.ix_(self.rows, self.nodes[0])]
+        return Start(problem.candidates, np.nan_to_num(force))
 
     def _candidates(self, point: OperatingPoint, known: Sequence[OperatingPoint]) -> list[Candidates] | None:
         """Return those of the table's places, which do not depend on the bodies.

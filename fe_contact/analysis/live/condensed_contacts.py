@@ -10,8 +10,10 @@ from dataclasses import dataclass, replace
 
 from fe_contact.analysis.estimates.table_sample import TableSample
 from fe_contact.analysis.pairs.pair_contact import PairContact
-from fe_contact.contact import ContactModel
+from fe_contact.contact import ContactModel, with_gaps
+from fe_contact.contact.touch import Touch
 from fe_contact.geometry import ParallelAxes
+from fe_contact.types import FloatArray, IntArray
 
 
 @dataclass(frozen=True)
@@ -51,18 +53,33 @@ class CondensedContacts:
         )
 
     def with_flanks(self, pair: ParallelAxes) -> CondensedContacts:
-        """Return the same bodies with other flanks; what is assembled is shared."""
+        """Return the same bodies with other flanks; what is assembled is shared.
 
-        def there(contact: PairContact | None) -> PairContact | None:
-            return None if contact is None else replace(contact, pair=pair)
+        In the same slices the flanks touch alike on all bodies: it is found once.
+        """
+        touches: dict[bytes, Touch] = {}
+
+        def alike(contact: PairContact) -> PairContact:
+            return replace(contact, pair=pair, touches=touches)
 
         return CondensedContacts(
-            replace(self.own, pair=pair),
-            there(self.plane),
-            there(self.sliced),
-            there(self.coarse),
-            replace(self.patched, pair=pair),
+            alike(self.own),
+            self.plane and alike(self.plane),
+            self.sliced and replace(self.sliced, pair=pair),
+            self.coarse and alike(self.coarse),
+            alike(self.patched),
         )
+
+    def touch(self, model: ContactModel, sample: TableSample) -> None:
+        """Find where the flanks touch at all positions of a table: for all bodies in the same slices."""
+        own, here = self.own, sample.position[sample.rows]
+        touch = with_gaps(own.pair, own.candidates(model, sample.position), model).touch
+        own.touches.update({here.tobytes(): touch.rows(sample.rows), sample.position.tobytes(): touch})
+
+    def keep(self, model: ContactModel, position: FloatArray, rows: IntArray) -> None:
+        """Keep the compliance of some of the positions that are assembled by itself."""
+        if self.own.kept(model, position[rows]) is None:
+            self.own.keep_rows(model, position, rows)
 
     def apart(self, change: float) -> CondensedContacts:
         """Return the same bodies at a distance larger by `change` in m; nothing is assembled there yet."""

@@ -23,6 +23,7 @@ from fe_contact.analysis.estimates.assessed_table import (
     estimate_errors,
     load_arm_errors,
     plane_bias,
+    unassessed_table,
     with_axes,
     worst_residual,
 )
@@ -67,11 +68,13 @@ def _condensed_errors(
     solved again. Between the loads nothing is estimated (NaN): the table is of the loads asked.
     """
     points, solution, plan = run.places, run.solution, run.plan
+    start = sample.start(run.problem, solution)
+    starts = None if start is None else [start]
 
     def solved(rougher: PairContact | None, otherwise: FloatArray) -> FloatArray:
         if rougher is None:
             return otherwise
-        return sample.solved(points.on(rougher), points)
+        return sample.solved(points.on(rougher), points, starts)
 
     own = sample.taken(table)
     plane = solved(contacts.plane, own)
@@ -226,8 +229,13 @@ class CondensedPair:
         torques: FloatArray,
         misalignment: float = 0.0,
         center_distance_change: float = 0.0,
+        *,
+        preview: bool = False,
     ) -> tuple[SteDatabase, SolvedOperatingPoint]:
-        """Return the table, as `table` does, and the contact solution that it is of."""
+        """Return the table, as `table` does, and the contact solution that it is of.
+
+        A `preview` is the same solution at every other position; its errors are not estimated.
+        """
         clock = StageClock()
         checked = self._asked(pair, torques, misalignment, center_distance_change)
         nodes, plan = self._laid_out(checked)
@@ -235,16 +243,25 @@ class CondensedPair:
         sample = TableSample.of(nodes.position, checked.model.period, (load, *alignment))
         with clock.stage("compliance"):
             contacts, points = self._placed(checked)
-            contacts.assemble(points.places[0].model, sample)
+            model, count = points.places[0].model, sample.position.size
+            contacts.assemble(model, sample)
+            if preview:
+                rows = np.arange(0, count, 2 - count % 2)  # equally spaced
+                contacts.keep(model, sample.position, rows)
+                nodes, plan = unmeasured_nodes(rows.size, load.size), replace(plan, positions=rows.size)
+                sample = replace(sample, position=nodes.position, rows=np.arange(rows.size))
         with clock.stage("contact"):
+            contacts.touch(model, sample)
             solved = _solved(checked, plan, points, nodes)
             kept = KeptContact.of(solved.pair, solved.problem, solved.solution)
             table = assembled_table(checked.request, points, nodes, [kept], [])
         with clock.stage("error estimate"):
-            assessed = _condensed_errors(table, solved, contacts, sample)
+            stated = unassessed_table(table, points, plan) if preview else None
+            assessed = stated or _condensed_errors(table, solved, contacts, sample)
         checks = (*check_cheaply(solved), *_edges(solved), *_neglected(self.neglected))
         receipt = _condensed_receipt(solved, assessed, checks, clock)
-        receipt["discretisation_error"] = "expected" if contacts.coarse is None else "measured"
+        origin = "expected" if contacts.coarse is None else "measured"
+        receipt["discretisation_error"] = None if preview else origin
         ledger = [{"name": entry.name, "on": entry.on} for entry in checked.ledger]
         metadata = Metadata(effect_ledger=ledger, receipt=receipt)
         return assessed.stated(replace(table, metadata=metadata)), solved

@@ -36,6 +36,7 @@ from fe_contact.contact import (
     with_face_tilt,
     with_flanks,
 )
+from fe_contact.contact.touch import Touch
 from fe_contact.effects import ContactScene, compose
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.cost_model import condensed_teeth
@@ -65,6 +66,9 @@ class PairContact:
         Those in the plane before they were corrected for the finite width, if they were.
     varied : bool
         Whether its flanks are to vary: problems then tell how compliance changes along them, sloped or not.
+    touches : dict of bytes to Touch
+        Where its flanks touch under the gaps of the only model it is used with, by the bytes of the
+        positions; where there is none it is found for every problem.
     """
 
     pair: ParallelAxes
@@ -73,6 +77,7 @@ class PairContact:
     face: FaceFlanks | None = None
     uncorrected: PlaneFlanks | None = None
     varied: bool = False
+    touches: dict[bytes, Touch] = field(default_factory=dict, repr=False)
     _problems: dict[tuple[object, ...], ContactProblem] = field(default_factory=dict, repr=False)
 
     @classmethod
@@ -110,7 +115,7 @@ class PairContact:
     ) -> ContactProblem:
         """Assemble what `solve` solves."""
         problem = self._problem(model, position)
-        problem = with_flanks(self.pair, problem, model)
+        problem = with_flanks(self.pair, problem, model, self.touches.get(position.tobytes()))
         if pitch is None and not model.tooth_gaps:
             return problem
         first = np.zeros(position.size, dtype=np.int64)

@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -98,7 +98,7 @@ def _flanks_json(flanks: LoadDistribution) -> Json:
         "k_h_beta": flanks.mean_face_load_factor if over_face else None,
         "roll_length_mm": _short(roll / MM),
         "face_position_mm": _short(flanks.face_position / MM),
-        "pressure_mpa": [_short(row) for row in pressure / _MPA],
+        "pressure_mpa": _short(pressure / _MPA),
         "mean_load_n_per_mm": _short(load.mean(axis=0) / _N_PER_MM),
         "worst_load_n_per_mm": _short(load[worst] / _N_PER_MM),
         "worst_position": float(flanks.position[worst]),
@@ -137,9 +137,11 @@ def _passage_json(flanks: LoadDistribution, apart: FloatArray) -> Json:
     }
 
 
-def _short(values: FloatArray) -> list[float]:
-    """Return numbers of five digits: they are drawn."""
-    return [float(f"{value:.{_DIGITS}g}") for value in values]
+def _short(values: FloatArray) -> Any:
+    """Return numbers of five digits, as lists: they are drawn."""
+    size = np.floor(np.log10(np.where(values == 0.0, 1.0, np.abs(values))))
+    scale = 10.0 ** (_DIGITS - 1 - size)
+    return (np.rint(values * scale) / scale).tolist()
 
 
 # Live questions: from a stored table and a change of its flanks to curves.
@@ -187,7 +189,7 @@ def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput) -> Jso
     """Return the curves, and of each what else the question is about, with its cost."""
     torques = np.array(change.torque_n_m)
     alignment = change.misalignment_um * UM, change.center_distance_change_mm * MM
-    table, solved = bodies.solve_table(pair, torques, *alignment)
+    table, solved = bodies.solve_table(pair, torques, *alignment, preview=change.preview)
     curves = [_curve(table, k) for k in range(table.force.size)]
     answer = {"curves": curves, **_receipt(table)}
 

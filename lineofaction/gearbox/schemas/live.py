@@ -81,6 +81,12 @@ class LiveInput(BoundaryModel):
         "deflection along its contact line",
         examples=[True],
     )
+    preview: bool = Field(
+        default=False,
+        description="Answer at every other position and without errors, at a half to a third of the cost: "
+        "for a slider that moves",
+        examples=[True],
+    )
     condense: bool = Field(
         default=False,
         description="Compute the compliance first if it is not in the cache of this service, as for gears "
@@ -326,10 +332,10 @@ class LiveOutput(BoundaryModel):
         description="Points at which a contact strip is wider than its load patch: 0.5 % of the mean there",
         examples=[0],
     )
-    discretisation_error: Literal["measured", "expected"] = Field(
+    discretisation_error: Literal["measured", "expected"] | None = Field(
         description="Origin of the discretization error: measured on coarse meshes with these flanks, or "
         "expected, the usual error of the level, if those meshes are not in the cache (tables "
-        "with a minimal receipt)",
+        "with a minimal receipt); null in a preview",
         examples=["measured"],
     )
     not_estimated: list[str] = Field(description="Sources of error without an estimate", examples=[[]])

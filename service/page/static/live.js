@@ -19,6 +19,7 @@ const STYLES = {
 };
 const PLACES = { ste: "live-ripple", harmonics: "live-orders", sharing: "live-load", flanks: "live-flank", sound: "live-sound" };
 const NOTHING = { harmonics_um: [], flanks: {} }; // to compare with
+const REST = 150; // milliseconds without a move after which sliders are taken to rest
 const AWAY = 2; // seconds after which a service that does not answer is asked again
 
 export class Live {
@@ -41,6 +42,7 @@ export class Live {
    * @param {{key: string, case: object, torques: number[], torque: number, plane: boolean} | null} known
    */
   show(known) {
+    clearTimeout(this.resting);
     this.before = null;
     this.waiting = null;
     byId("live-none").hidden = known !== null;
@@ -90,10 +92,11 @@ export class Live {
     this.sliders.follow(byId("quick"));
   }
 
-  /** Ask for where the sliders are now; while an answer is on its way only the newest wish is kept. */
-  async ask() {
+  /** Ask for where the sliders are now; while an answer is on its way only the newest wish is kept. @param {boolean} [preview] as they move */
+  async ask(preview = true) {
+    clearTimeout(this.resting);
     if (!this.known) return;
-    this.waiting = { ...this.sliders.moved, torque_n_m: [this.sliders.value("torque_n_m")] };
+    this.waiting = { ...this.sliders.moved, torque_n_m: [this.sliders.value("torque_n_m")], preview };
     if (this.busy) return;
     this.busy = true;
     try {
@@ -109,7 +112,7 @@ export class Live {
     const key = this.known.key;
     try {
       const begin = performance.now();
-      await this.baseline(waiting.torque_n_m, key);
+      await this.baseline(waiting, key);
       const others = [];
       for (const other of this.others) {
         const curve = await other.at(waiting.torque_n_m[0], this.caller);
@@ -118,9 +121,11 @@ export class Live {
       const found = await post(`/v1/databases/${key}/ste`, { ...waiting, flanks: true, passage: true, caller: this.caller });
       const round = performance.now() - begin;
       if (key !== this.known?.key) return;
-      this.roll(found.curves[0]);
-      await this.draw(found.curves[0], others);
-      this.timed(round, performance.now() - begin, found);
+      const now = { ...found.curves[0], preview: waiting.preview };
+      this.roll(now);
+      await this.draw(now, others);
+      this.timed(round, performance.now() - begin, found, waiting.preview ? "previews" : "answers");
+      if (waiting.preview && !this.waiting) this.resting = setTimeout(() => this.ask(false), REST);
       byId("live-errors").hidden = true;
     } catch (problem) {
       if (!(problem instanceof Problem)) throw problem;
@@ -134,10 +139,10 @@ export class Live {
   }
 
   /** The curve as analyzed at this torque, to compare with. */
-  async baseline(torque, key) {
-    if (this.before?.asked === torque[0] && this.before?.key === key) return;
-    const found = await post(`/v1/databases/${key}/ste`, { torque_n_m: torque, flanks: true, caller: `${this.caller}-before` });
-    this.before = { ...found.curves[0], key, asked: torque[0] };
+  async baseline({ torque_n_m: torque, preview }, key) {
+    if (this.before?.asked === torque[0] && this.before.key === key && (preview || !this.before.preview)) return;
+    const found = await post(`/v1/databases/${key}/ste`, { torque_n_m: torque, preview, flanks: true, caller: `${this.caller}-before` });
+    this.before = { ...found.curves[0], key, asked: torque[0], preview };
   }
 
   /** Pressure on the pair that rolls. @param {any} curve */
@@ -154,7 +159,7 @@ export class Live {
     box.hidden = false;
   }
 
-  timed(round, all, found) {
+  timed(round, all, found, count) {
     const said = [`Answered in ${round.toFixed(0)} ms, drawn after ${all.toFixed(0)} ms.`];
     if (found.beyond_load_patches) {
       said.push(`At ${found.beyond_load_patches} points the contact is wider than the mesh allows for.`);
@@ -164,7 +169,7 @@ export class Live {
     byId("live-time").textContent = said.join(" ");
     const body = byId("live-figures").dataset;
     Object.assign(body, { answered: round.toFixed(1), milliseconds: all.toFixed(1), cpu: found.cpu_seconds });
-    body.answers = Number(body.answers || 0) + 1;
+    body[count] = Number(body[count] || 0) + 1;
   }
 
   plots() {

@@ -3,7 +3,7 @@
 import { number } from "./elements.js";
 import { SHOWN_HARMONICS } from "./live_figures.js";
 
-const plusMinus = (error) => (Number.isFinite(error) ? `± ${number(error, 2)}` : "");
+const plusMinus = (error, coming) => (Number.isFinite(error) ? `± ${number(error, 2)}` : coming ? "± …" : "");
 
 const signed = (value, digits) => `${value < 0 ? "−" : "+"}${number(Math.abs(value), digits)}`;
 const change = (value, from) => (from ? `${signed(100 * (value / from - 1), 3)} %` : "");
@@ -16,7 +16,7 @@ export function edgeWords({ edge_pressure_mpa: edge }) {
 
 /** The error without the bias of a plane model, which has its own statement. */
 function ownError({ bias, error_by_source_um: errors }, total, source) {
-  return bias ? Math.sqrt(Math.max(0, total ** 2 - errors.finite_width[source] ** 2)) : total;
+  return bias && total ? Math.sqrt(Math.max(0, total ** 2 - errors.finite_width[source] ** 2)) : total;
 }
 
 /** What each source states of the errors of a curve. */
@@ -32,7 +32,7 @@ export function sourcesOf({ bias, error_by_source_um: errors }) {
 export function mainFigures(now, from) {
   const remarks = (...words) => words.filter(Boolean).join("; ");
   const entry = (name, value, error, other, source, changed = change) => [
-    name, `${number(value, 3)} µm`, remarks(plusMinus(ownError(now, error, source)), changed(value, other)),
+    name, `${number(value, 3)} µm`, remarks(plusMinus(ownError(now, error, source), now.preview), changed(value, other)),
   ];
   const { k_h_beta: factor, largest_pressure_mpa: pressure } = now.flanks;
   const entries = [

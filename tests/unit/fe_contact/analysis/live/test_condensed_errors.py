@@ -76,7 +76,9 @@ def test_errors_of_the_discretization_are_those_of_an_analysis_of_its_own(cache:
     )
     for name in ("discretisation", "slices", "finite_width", "contact_solver"):
         source = AT_NODES.index(name)
-        assert quick.curve_error[source] == pytest.approx(whole.curve_error[source], rel=1e-9, abs=0.0)
+        # solved from other forces, STE differs by its rounding, and so do the least of its differences
+        rounding = 1e-15 * float(whole.static_transmission_error.max())
+        assert quick.curve_error[source] == pytest.approx(whole.curve_error[source], rel=1e-9, abs=rounding)
     acting = {"discretisation", "slices" if model == "3d" else "finite_width"}
     assert {name for name in AT_NODES if quick.curve_error[AT_NODES.index(name)].max() > 1e-12} >= acting
 

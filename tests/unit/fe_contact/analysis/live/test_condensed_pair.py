@@ -92,6 +92,18 @@ def test_crowned_and_misaligned_flanks_carry_what_they_carry_in_results_of_their
     assert quick.mean_face_load_factor > 1.5
 
 
+@pytest.mark.parametrize("model", ["plane_strain", "3d"])
+def test_a_preview_is_every_other_position_of_the_table_without_errors(cache: Path, model: str) -> None:
+    pair, relieved = condensed(PAIR, cache, model), with_flank(PAIR, RELIEF)
+    quick, _ = pair.solve_table(relieved, TORQUES, preview=True)
+    whole = pair.table(relieved, TORQUES)
+    assert np.array_equal(quick.position, whole.position[::2])
+    for name in ("static_transmission_error", "load_share", "max_pressure"):
+        assert np.array_equal(getattr(quick, name), getattr(whole, name)[::2])
+    assert np.isnan(quick.curve_error).all() and np.isfinite(whole.curve_error[0]).all()
+    assert "discretisation" in quick.metadata.receipt["not_estimated"]
+
+
 def test_another_center_distance_has_the_curve_of_its_own_analysis(cache: Path) -> None:
     pair = condensed(PAIR, cache)
     for change in (1e-5, 3e-5, 2e-5):
