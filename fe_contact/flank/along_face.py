@@ -72,6 +72,21 @@ class _HelixSlope(Polynomial):
 
 
 @dataclass(frozen=True, kw_only=True)
+class _HelixForm(Polynomial):
+    """Form deviation f_fbeta of all teeth alike, as that of single teeth: its mean line is zero."""
+
+    helix_form: float = slope(
+        _FACE,
+        "Helix form of all teeth, a parabola of this height; > 0 removes two thirds at both ends of the "
+        "face, adds a third in its middle; < 0: hollow",
+        2e-6,
+        later=True,
+    )
+    powers: ClassVar[tuple[int, int]] = (0, 2)
+    mean: ClassVar[float] = 1.0 / 3.0
+
+
+@dataclass(frozen=True, kw_only=True)
 class _EndRelief(FaceRelief):
     """Relief over the same length at either end of the face."""
 
@@ -121,6 +136,7 @@ class AlongFace(
     _HelixCrowningDatumFace,
     _HelixCrowningNonDatumFace,
     _HelixSlope,
+    _HelixForm,
     _EndRelief,
     _EndReliefDatumFace,
     _EndReliefNonDatumFace,

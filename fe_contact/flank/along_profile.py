@@ -71,6 +71,21 @@ class _ProfileSlope(Polynomial):
 
 
 @dataclass(frozen=True, kw_only=True)
+class _ProfileForm(Polynomial):
+    """Form deviation f_falpha of all teeth alike, as that of single teeth: its mean line is zero."""
+
+    profile_form: float = slope(
+        _PROFILE,
+        "Profile form of all teeth, a parabola of this height; > 0 removes two thirds at both ends of the "
+        "profile, adds a third in its middle; < 0: hollow",
+        2e-6,
+        later=True,
+    )
+    powers: ClassVar[tuple[int, int]] = (2, 0)
+    mean: ClassVar[float] = 1.0 / 3.0
+
+
+@dataclass(frozen=True, kw_only=True)
 class _TipRelief(ProfileRelief):
     _at_tip: ClassVar[bool] = True
 
@@ -241,6 +256,7 @@ class AlongProfile(
     _ProfileCrowningTip,
     _ProfileCrowningRoot,
     _ProfileSlope,
+    _ProfileForm,
     _TipRelief,
     _RootRelief,
     _CutTip,

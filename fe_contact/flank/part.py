@@ -141,7 +141,7 @@ def involute(gear: Tooth) -> tuple[float, float]:
 
 
 class Polynomial(FlankPart):
-    """A depth times u^m v^n, u and v running from -1 to 1 over the roll length and over the face.
+    """A depth times u^m v^n - c, u and v running from -1 to 1 over the roll length and over the face.
 
     Attributes
     ----------
@@ -149,10 +149,13 @@ class Polynomial(FlankPart):
         m and n.
     weight : float
         Of the depth: one half where it is the difference between two ends.
+    mean : float
+        c: 1/3 where the mean line of a parabola is zero.
     """
 
     powers: ClassVar[tuple[int, int]]
     weight: ClassVar[float] = 1.0
+    mean: ClassVar[float] = 0.0
 
     def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
         """See `FlankPart.removed`."""
@@ -160,4 +163,5 @@ class Polynomial(FlankPart):
         form, tip = gear.form_roll_length, gear.tip_roll_length
         u = (2.0 * roll_length - form - tip) / (tip - form)
         v = 2.0 * face_position / gear.face_width
-        return np.asarray(self.weight * depth * u ** self.powers[0] * v ** self.powers[1])
+        shape = u ** self.powers[0] * v ** self.powers[1]
+        return np.asarray(self.weight * depth * (shape - self.mean if self.mean else shape))

@@ -46,6 +46,8 @@ MODIFIED: dict[str, Any] = {
     "profile_slope_um": -4.0,
     "helix_crowning_um": 5.0,
     "helix_slope_um": -6.0,
+    "profile_form_um": -1.5,
+    "helix_form_um": 2.2,
     "flank_twist_um": 2.5,
     "ground_helix_crowning_um": 4.5,
     "end_relief_um": 7.0,

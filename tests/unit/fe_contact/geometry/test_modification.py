@@ -14,7 +14,15 @@ from spur_gears import GEAR, make_gear
 from bounds import DEPTHS, Direction, Kind
 from fe_contact.errors import InputError
 from fe_contact.flank.modification import FLANK_FIELDS, fields_of
-from fe_contact.geometry import FlankGrid, FlankModification, Gear, GearPair, PitchDeviation, RingGear
+from fe_contact.geometry import (
+    FlankGrid,
+    FlankModification,
+    Gear,
+    GearPair,
+    PitchDeviation,
+    RingGear,
+    ToothFlank,
+)
 
 
 def over_profile(gear: Gear, count: int = 201) -> np.ndarray:
@@ -64,6 +72,20 @@ def test_crownings_and_slopes_over_profile_and_face() -> None:
     assert crowned == pytest.approx([8e-6, 2e-6, 0.0, 2e-6, 8e-6], abs=1e-18)
     sloped = FlankModification(helix_slope=8e-6).material_removed(gear, roll, face)
     assert sloped == pytest.approx([-4e-6, -2e-6, 0.0, 2e-6, 4e-6], abs=1e-18)
+
+
+@pytest.mark.parametrize("form", ["profile_form", "helix_form"])
+def test_a_form_of_all_teeth_is_that_of_each(form: str) -> None:
+    """What a flank lacks is what a tooth of the same form has in excess; the mean line is zero."""
+    gear = make_gear()
+    roll, face = over_profile(gear, 201)[:, None], np.linspace(-12.5e-3, 12.5e-3, 201)
+    hollow = FlankModification(**{form: -3e-6})
+    removed = hollow.material_removed(gear, roll, face)
+    tooth = ToothFlank(1, **{form: -3e-6})  # type: ignore[arg-type]
+    assert removed == pytest.approx(-tooth.excess(gear, roll, face), rel=1e-12, abs=1e-20)
+    assert removed.max() == pytest.approx(1e-6) and removed.min() == pytest.approx(-2e-6)
+    even = 0.5 * (removed[1:, 1:] + removed[:-1, :-1])
+    assert abs(even.mean()) < 1e-10
 
 
 def test_twist_is_a_profile_slope_that_grows_along_the_face() -> None:
