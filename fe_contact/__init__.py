@@ -41,7 +41,8 @@ if TYPE_CHECKING:
     from fe_contact.microgeometry.optimize import optimize
     from fe_contact.microgeometry.scatter import Scatter
     from fe_contact.microgeometry.search import Search
-    from fe_contact.microgeometry.tolerance_study import Sampling, Tolerances, ToleranceStudy, scatter
+    from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceStudy, scatter
+    from fe_contact.microgeometry.tolerances import Tolerances
     from fe_contact.microgeometry.variables import DesignVariable
     from fe_contact.options import AnalysisOptions, OperatingPoint, Run, TableAxes
     from fe_contact.ste import SteDatabase
@@ -123,7 +124,8 @@ _NAMES = {
     "fe_contact.microgeometry.optimize": "optimize",
     "fe_contact.microgeometry.scatter": "Scatter",
     "fe_contact.microgeometry.search": "Search",
-    "fe_contact.microgeometry.tolerance_study": "Sampling Tolerances ToleranceStudy scatter",
+    "fe_contact.microgeometry.tolerance_study": "Sampling ToleranceStudy scatter",
+    "fe_contact.microgeometry.tolerances": "Tolerances",
     "fe_contact.microgeometry.variables": "DesignVariable",
     "fe_contact.options": "AnalysisOptions OperatingPoint Run TableAxes",
     "fe_contact.ste": "SteDatabase",

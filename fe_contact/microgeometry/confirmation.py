@@ -172,7 +172,7 @@ class DesignSpace:
         loads = DesignLoads.of(torques, self.misalignment)
         scattered = self.scatter.modification
         present = {name: figure(self.pair, name) for name in scattered} | dict(self.varied)
-        acting = {name: present[name] + scattered.get(name, 0.0) for name in present}
+        acting = {name: own + _toward(name) * scattered.get(name, 0.0) for name, own in present.items()}
         skews = _misalignment_axis(loads.misalignment, self.scatter.nodes().misalignment)
         checked = check_request(
             modified(self.pair, acting),
@@ -182,6 +182,11 @@ class DesignSpace:
         )
         _refuse_off(checked, self.varied, self.scatter)
         return checked
+
+
+def _toward(name: str) -> float:
+    """Return the sign of a deviation that acts: hollow flanks stand at their ends, where tip edges touch."""
+    return -1.0 if name.endswith("_form") else 1.0
 
 
 def design_study(

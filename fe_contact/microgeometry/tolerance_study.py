@@ -2,123 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Literal
 
 import numpy as np
-from scipy.special import ndtr, ndtri
 
-from bounds import SiNote
 from fe_contact.analysis.request.request import Checked
-from fe_contact.errors import InputError, SolveError, integer, positive, within
-from fe_contact.geometry import ParallelAxes, Toothing
-from fe_contact.geometry.flank_tolerances import check_scope, helix_slope_tolerance, profile_slope_tolerance
+from fe_contact.errors import SolveError, integer, within
+from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.confirmation import DesignSpace, design_study, full_table, ripple_errors
 from fe_contact.microgeometry.evaluator import Evaluator, least_deviation
 from fe_contact.microgeometry.linearized_design import linearized
 from fe_contact.microgeometry.objective import NO_LIMITS
+from fe_contact.microgeometry.order_limit import DrawnPairs, OrderLimit, PairsAbove, pairs_above
 from fe_contact.microgeometry.scatter import MISALIGNMENT, ONE_NODE, Scatter, ScatterNodes, SobolSample
-from fe_contact.microgeometry.variables import GEARS, figure, gear_and_quantity
+from fe_contact.microgeometry.tangent_model import TangentModel
+from fe_contact.microgeometry.tolerances import Tolerances
+from fe_contact.microgeometry.variables import figure
 from fe_contact.options import AnalysisOptions, Levels, Run
 from fe_contact.types import FloatArray, Json
 from model_studies import in_unit
 from model_studies.spread import quantile_bounds, rank_correlation
 from model_studies.stage_clock import StageClock
-
-# Tolerances of assembly and manufacture: how figures are distributed between the limits of inspection.
-
-
-Distribution = Literal["normal", "uniform"]
-PROCESS_SPREAD = 3.0
-"""Standard deviations of the normal distribution in a tolerance, beyond which parts are rejected."""
-
-
-@dataclass(frozen=True)
-class Tolerances:
-    """Half widths of tolerance bands about the design, and the distribution within them.
-
-    Attributes
-    ----------
-    misalignment : float
-        m, >= 0.
-    modification : mapping
-        ``gear.quantity`` to m, > 0.
-    distribution : {"normal", "uniform"}
-        Normal: three standard deviations are the tolerance, and deviations beyond are rejected.
-    """
-
-    misalignment: float = 0.0
-    modification: Mapping[str, float] = field(default_factory=dict)
-    distribution: Distribution = "normal"
-
-    def __post_init__(self) -> None:
-        if self.misalignment:
-            positive("tolerances.misalignment", self.misalignment, SiNote("In m: 10 µm is 1e-5."))
-        for name, width in self.modification.items():
-            gear_and_quantity(f"tolerances.modification.{name}", name)
-            positive(f"tolerances.modification.{name}", width, SiNote("In m: 10 µm is 1e-5."))
-        if self.distribution not in ("normal", "uniform"):
-            raise InputError("tolerances.distribution", self.distribution, 'one of "normal" and "uniform"')
-        if not self.widths:
-            raise InputError("tolerances", {}, "at least one width above 0")
-
-    @property
-    def widths(self) -> dict[str, float]:
-        """Half width of every deviation, m, in a fixed order."""
-        own = {MISALIGNMENT: self.misalignment} if self.misalignment else {}
-        return own | dict(sorted(self.modification.items()))
-
-    def sample(self, count: int, seed: int) -> FloatArray:
-        """Draw deviations (count, d) in m; a larger sample of the same seed begins with a smaller one."""
-        widths = np.array(list(self.widths.values()))
-        uniform = np.random.Generator(np.random.PCG64(seed)).random((count, widths.size))
-        if self.distribution == "uniform":
-            return np.asarray(widths * (2.0 * uniform - 1.0))
-        low = ndtr(-PROCESS_SPREAD)
-        return np.asarray(widths * ndtri(low + (1.0 - 2.0 * low) * uniform) / PROCESS_SPREAD)
-
-    def to_json(self) -> Json:
-        """Return plain JSON."""
-        return {
-            "misalignment_m": self.misalignment,
-            "modification_m": dict(self.modification),
-            "distribution": self.distribution,
-        }
-
-
-def iso1328_tolerances(
-    pair: ParallelAxes,
-    tolerance_class: int,
-    *,
-    misalignment: float = 0.0,
-    across_face: bool = True,
-    distribution: Distribution = "normal",
-) -> Tolerances:
-    """Return tolerances of profile and helix slope of both gears by ISO 1328-1:2013.
-
-    Raises `InputError`: no such class, or a gear beyond the range of the standard.
-
-    Parameters
-    ----------
-    tolerance_class : int
-        1 (finest) to 11.
-    misalignment : float
-        Of the assembly, m; the standard has none.
-    across_face : bool
-        Whether helix slopes deviate too; a plane model cannot have it.
-    """
-    integer("tolerance_class", tolerance_class, 1, 11)
-    widths = {}
-    for name in GEARS:
-        gear: Toothing = getattr(pair, name)
-        check_scope(name, gear)
-        widths[f"{name}.profile_slope"] = profile_slope_tolerance(gear, tolerance_class)
-        if across_face:
-            widths[f"{name}.helix_slope"] = helix_slope_tolerance(gear, tolerance_class)
-    return Tolerances(misalignment, widths, distribution)
-
 
 # Quantiles of a sample with confidence bounds that assume no shape of the distribution.
 
@@ -166,6 +72,8 @@ class Sampling:
         Quantiles to estimate.
     positions : int
         Equally spaced in a base pitch.
+    exact : int
+        So many pairs are solved; further ones are by tangents about some of these, held against the others.
     """
 
     samples: int = 1000
@@ -173,15 +81,29 @@ class Sampling:
     confidence: float = 0.95
     fractions: Sequence[float] = (0.05, 0.5, 0.95)
     positions: int = 64
+    exact: int = 300
 
     def __post_init__(self) -> None:
         integer("samples", self.samples, 2, 1_000_000)
+        integer("exact", self.exact, 2, 1_000_000)
         integer("seed", self.seed, 0, 2**63 - 1)
         within("confidence", self.confidence, 0.5, 0.9999)
         for index, fraction in enumerate(self.fractions):
             within(f"fractions[{index}]", fraction, 0.0, 1.0)
 
+    @property
+    def solved(self) -> int:
+        """Number of pairs that are solved."""
+        return min(self.samples, self.exact)
 
+    @property
+    def tangents(self) -> int:
+        """Number of them about which tangents are taken."""
+        return min(TANGENTS, max(1, self.solved // 4))
+
+
+TANGENTS = 64
+"""Pairs about which tangents are taken, besides the design, at most."""
 IN_A_TASK = 25
 """Samples of a task: half a second to some seconds. It does not depend on who does the tasks."""
 ACTING = SobolSample(1)
@@ -212,6 +134,13 @@ class ToleranceStudy:
     cost : dict
         CPU and wall seconds by stage, of this process.
     asked : dict
+    solved, held : int
+        The first so many pairs are solved, the others by the model; so many of them it did not know.
+    missed, missed_largest : ndarray, shape (L,)
+        By how much the model misses the peak-to-peak of the pairs that are held against it: root of the mean
+        square, and most, m.
+    above : PairsAbove, optional
+        Pairs above a limit.
     """
 
     torque: FloatArray = field(metadata=in_unit("n_m", "torque"))
@@ -225,6 +154,11 @@ class ToleranceStudy:
     confidence: float
     cost: Json
     asked: Json
+    solved: int = 0
+    held: int = 0
+    missed: FloatArray = field(default_factory=lambda: np.zeros(0), metadata=in_unit("m", "torque"))
+    missed_largest: FloatArray = field(default_factory=lambda: np.zeros(0), metadata=in_unit("m", "torque"))
+    above: PairsAbove | None = None
 
     @property
     def mean(self) -> FloatArray:
@@ -251,8 +185,9 @@ def scatter(
     run: Run = Run(),  # noqa: B008 (frozen)
     *,
     misalignment: float = 0.0,
+    limit: OrderLimit | None = None,
 ) -> ToleranceStudy:
-    """Sample pairs within their tolerances and compute the peak-to-peak transmission error of each.
+    """Sample pairs within their tolerances and find the peak-to-peak transmission error of each.
 
     Raises `InputError`: a value that cannot be used, by field name; `MeshError`, `SolveError`: no acceptable
     mesh, or the contact of a pair cannot be solved.
@@ -272,8 +207,11 @@ def scatter(
         Its workers run tasks of 25 pairs.
     misalignment : float
         As designed, m.
+    limit : OrderLimit, optional
+        Which pairs are above it is counted.
     """
-    return sampled(ToleranceRequest(pair, torques, tolerances, sampling, options, misalignment), run)
+    request = ToleranceRequest(pair, torques, tolerances, sampling, options, misalignment, limit)
+    return sampled(request, run)
 
 
 @dataclass(frozen=True)
@@ -286,6 +224,7 @@ class ToleranceRequest:
     sampling: Sampling
     options: AnalysisOptions
     misalignment: float
+    limit: OrderLimit | None = None
 
     @property
     def space(self) -> DesignSpace:
@@ -298,6 +237,8 @@ class ToleranceRequest:
     @cached_property
     def checked(self) -> Checked:
         """Everything is checked, nothing computed; raises `InputError`."""
+        if self.limit is not None:
+            self.limit.check(self.sampling.positions)
         return self.space.check(self.torques)
 
 
@@ -308,9 +249,23 @@ def sampled(request: ToleranceRequest, run: Run) -> ToleranceStudy:
     deviation = tolerances.sample(sampling.samples, sampling.seed)
     names, nominal = tuple(tolerances.widths), replace(study.evaluator, nodes=ONE_NODE)
     with clock.stage("first order"):
-        at_once = _first_order(nominal, names, deviation)
+        design = linearized(nominal, {}, names, NO_LIMITS)
+        about_design = _tangents(
+            nominal, names, np.zeros((1, len(names))), design.evaluation.ste, design.curves
+        )
+        at_once = about_design.peak_to_peak(deviation)
     with clock.stage("samples"):
-        ripple = _evaluated(study.evaluator, names, deviation, run)
+        ste, tangents = _solved(study.evaluator, names, deviation[: sampling.solved], sampling, run)
+        model = about_design.with_further(tangents)
+        held = slice(sampling.tangents, sampling.solved)
+        model = model.corrected(deviation[held], ste[held])
+    with clock.stage("model"):
+        ripple, missed = _ripple(model, deviation, ste, held)
+        period = design.evaluation.ste.shape[1] // nominal.position.size
+        distributions = tolerances.distributions
+        drawn = DrawnPairs(deviation, ste, held.start, model, distributions, period, sampling.seed)
+        designed = design.evaluation.ste[0]
+        above = request.limit and pairs_above(request.limit, drawn, designed, sampling.confidence)
     with clock.stage("confirmation"):
         table = full_table(nominal, {}, study.decided, run.cache)
         error = ripple_errors(table, nominal)[0]
@@ -320,52 +275,79 @@ def sampled(request: ToleranceRequest, run: Run) -> ToleranceStudy:
         names,
         deviation,
         ripple,
-        nominal.evaluate({}).peak_to_peak[0],
+        design.evaluation.peak_to_peak[0],
         error,
         tuple(_quantile(ripple, fraction, sampling.confidence) for fraction in sampling.fractions),
         at_once,
         sampling.confidence,
         clock.to_json(),
-        {
-            "tolerances": tolerances.to_json(),
-            "seed": sampling.seed,
-            "positions": sampling.positions,
-            "misalignment_m": request.misalignment,
-        },
+        _asked(request),
+        sampling.solved,
+        len(missed),
+        np.sqrt(np.mean(missed**2, axis=0)),
+        np.abs(missed).max(axis=0),
+        above,
     )
 
 
-def _evaluated(evaluator: Evaluator, names: tuple[str, ...], deviation: FloatArray, run: Run) -> FloatArray:
-    tasks = [deviation[k : k + IN_A_TASK] for k in range(0, deviation.shape[0], IN_A_TASK)]
-    parts = []
-    for count, part in enumerate(run.workers.run(_ripple_of_samples, (evaluator, names), tasks)):
-        parts.append(part)
-        run.progress("samples", (count + 1) / len(tasks))
-    ripple: FloatArray = np.concatenate(parts)
-    if not np.isfinite(ripple).all():
-        bad = int((~np.isfinite(ripple)).any(axis=1).sum())
-        raise SolveError(f"the contact of {bad} of {ripple.shape[0]} pairs cannot be solved", ripple)
-    return ripple
+def _asked(request: ToleranceRequest) -> Json:
+    sampling = request.sampling
+    return {
+        "tolerances": request.tolerances.to_json(),
+        "seed": sampling.seed,
+        "positions": sampling.positions,
+        "misalignment_m": request.misalignment,
+    }
 
 
-def _first_order(nominal: Evaluator, names: tuple[str, ...], deviation: FloatArray) -> FloatArray:
-    """Peak-to-peak (N, L) in m of pairs that deviate by (N, d), from curves that are linear in it.
-
-    Nothing is removed below zero by a deviation.
-    """
-    design = linearized(nominal, {}, names, NO_LIMITS)
-    pair = nominal.contact.pair
+def _tangents(
+    evaluator: Evaluator, names: tuple[str, ...], deviation: FloatArray, ste: FloatArray, by: FloatArray
+) -> TangentModel:
+    """Return the tangents about pairs that deviate by (n, d); nothing is removed below zero."""
+    pair = evaluator.contact.pair
     designed = [0.0 if name == MISALIGNMENT else figure(pair, name) for name in names]
     least = np.array([least_deviation(*each) for each in zip(designed, names, strict=True)])
-    held = np.maximum(deviation, least)
-    curves = (
-        design.evaluation.ste[0, :, k] + held @ design.curves[0, :, k].T for k in range(nominal.load.size)
-    )
-    return np.stack([np.ptp(each, axis=1) for each in curves], axis=1)
+    return TangentModel.of(least, deviation, ste, by)
 
 
-def _ripple_of_samples(shared: tuple[Evaluator, tuple[str, ...]], deviation: FloatArray) -> FloatArray:
-    """Peak-to-peak (n, L) in m of some samples (n, d): one task."""
-    evaluator, names = shared
+def _ripple(
+    model: TangentModel, deviation: FloatArray, ste: FloatArray, held: slice
+) -> tuple[FloatArray, FloatArray]:
+    """Return peak-to-peak of all pairs (N, L), of the first as solved, and what the model misses, m."""
+    solved = np.ptp(ste, axis=1)
+    further = deviation[len(solved) :]
+    ripple = np.concatenate([solved, model.peak_to_peak(further)]) if len(further) else solved
+    return ripple, model.peak_to_peak(deviation[held]) - solved[held]
+
+
+def _solved(
+    evaluator: Evaluator, names: tuple[str, ...], deviation: FloatArray, sampling: Sampling, run: Run
+) -> tuple[FloatArray, TangentModel]:
+    """Solve pairs that deviate by (n, d): transmission error (n, P, L) in m, and tangents of the first."""
+    ends = sampling.tangents, len(deviation)
+    parts = ((True, deviation[: ends[0]]), (False, deviation[ends[0] :]))
+    tasks = [(by, own[k : k + IN_A_TASK]) for by, own in parts for k in range(0, len(own), IN_A_TASK)]
+    ste, slopes = [], []
+    for count, (values, by) in enumerate(run.workers.run(_curves_of_samples, (evaluator, names), tasks)):
+        ste.append(values)
+        slopes += [] if by is None else [by]
+        run.progress("samples", (count + 1) / len(tasks))
+    curves: FloatArray = np.concatenate(ste)
+    if not np.isfinite(curves).all():
+        bad = int((~np.isfinite(curves)).any(axis=(1, 2)).sum())
+        raise SolveError(f"the contact of {bad} of {len(curves)} pairs cannot be solved", curves)
+    first = slice(0, ends[0])
+    return curves, _tangents(evaluator, names, deviation[first], curves[first], np.concatenate(slopes))
+
+
+def _curves_of_samples(
+    shared: tuple[Evaluator, tuple[str, ...]], task: tuple[bool, FloatArray]
+) -> tuple[FloatArray, FloatArray | None]:
+    """Return transmission error (n, P, L) in m of some samples (n, d), perhaps its derivatives: one task."""
+    (evaluator, names), (differentiate, deviation) = shared, task
     weight = np.full(deviation.shape[0], 1.0 / deviation.shape[0])
-    return replace(evaluator, nodes=ScatterNodes(names, deviation, weight)).evaluate({}).peak_to_peak
+    pairs = replace(evaluator, nodes=ScatterNodes(names, deviation, weight))
+    if not differentiate:
+        return pairs.evaluate({}).ste, None
+    design = linearized(pairs, {}, names, NO_LIMITS)
+    return design.evaluation.ste, design.curves

@@ -199,12 +199,12 @@ class Studies:
         "Tolerances",
         "Draw pairs within tolerances",
         "Draw pairs within tolerances (Monte Carlo): distribution of peak-to-peak STE with confidence "
-        "bounds.",
+        "bounds; share of pairs above a limit of an order, what decides, and the cheapest cure.",
         "examples/sensitivity_automotive.toml --samples 400 -o scatter.png",
         group="design",
         kind="scatter",
         stages=(("compliance", 0.2), ("samples", 0.7), ("confirmation", 0.1)),
-        version="3",
+        version="4",
     )
     sweep = StudyOf(
         _case(lambda: SWEEP),

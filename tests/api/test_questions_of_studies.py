@@ -59,7 +59,11 @@ def test_up_to_a_fidelity_is_all_before_it_in_the_order_of_cost() -> None:
 
 def test_every_input_of_a_scatter_is_another_question() -> None:
     plain = key("scatter")
-    for other in ({"tolerance_class": 7}, {"distribution": "uniform"}, {"samples": 999}, {"seed": 1}):
+    others = (
+        *({"tolerance_class": 7}, {"distribution": "uniform"}, {"samples": 999}, {"seed": 1}, {"exact": 200}),
+        *({"finishing": "honing"}, {"drawing": ["pinion.profile_slope_um=4"]}, {"limit": "1=0.5um"}),
+    )
+    for other in others:
         assert key("scatter", **other) != plain  # type: ignore[arg-type]
     assert key("scatter", tolerance_class=6, samples=1000) == plain
 

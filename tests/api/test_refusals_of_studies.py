@@ -108,6 +108,16 @@ REFUSED: dict[str, list[tuple[Json, str]]] = {
         ({"samples": 1}, "samples"),
         ({"distribution": "triangular"}, "distribution"),
         ({"misalignment_um": 20.0}, "misalignment_um"),  # in the plane
+        ({"exact": 1}, "exact"),
+        ({"finishing": "milling"}, "finishing"),
+        ({"limit": "1=0.5"}, "limit"),  # without a unit
+        ({"limit": "1=half um"}, "limit"),
+        ({"limit": "0=1um"}, "limit"),
+        ({"limit": "1=-1um"}, "limit"),
+        ({"limit": "21=1um"}, "limit.order"),  # of the spectrum, none
+        ({"drawing": ["pinion.profile_slop_um=3"]}, "drawing"),
+        ({"drawing": ["wheel.profile_slope_um=0"]}, "drawing"),
+        ({"drawing": ["wheel.helix_slope_um=3"]}, "helix_slope"),  # in the plane
     ],
     "sweep": [
         ({"over": ["tip_releif"]}, "over"),

@@ -31,7 +31,7 @@ _FEW: dict[str, Json] = {
     "frontier": {"rungs": ["thin_slices", "corrected"]},
     "sensitivity": {"misalignment_um": [0.0, 5.0], "center_distance_change_percent": [0.0]},
     "optimize": {"search": {"evaluations": 8, "sample": 4, "trials": 1, "positions": 16}},
-    "scatter": {"samples": 4},
+    "scatter": {"samples": 4, "limit": "1=0.5um"},
     "change": {"after": _RELIEVED, "speed_rpm": [300.0], "orders": 3, "tolerances": {"samples": 4}},
     "sweep": {"over": ["torque=0.5:1:0.5"], "show": ["peak_to_peak"]},
     "modes": {"speed_rpm": [0.0]},

@@ -163,6 +163,10 @@ def _scatter(figures: Json, result: Any, table: SteDatabase) -> Pairs:
     # class 6: (0.4 m_n + 0.001 d + 4) sqrt(2) = 6.25 um, in steps of half a micrometer
     yield figures["asked"]["tolerances"]["pinion.profile_slope_um"], 6.5
     yield np.shape(figures["peak_to_peak_um"]), (4, 2)
+    yield (figures["exact"], figures["held"]), (4, 3)
+    above = np.array([[amplitude > 0.5e-6 for amplitude in row] for row in result.above.amplitude])
+    yield figures["above"]["share"], above.mean(axis=0).tolist()
+    yield figures["above"]["limit_um"], 0.5
 
 
 def _sweep(figures: Json, result: Any, _table: SteDatabase) -> Pairs:

@@ -22,7 +22,8 @@ from compliance_gears import coarse
 from fe_contact import Gear, GearPair, SteDatabase, analyze, study_sensitivity
 from fe_contact.analysis.pairs import contact_lines
 from fe_contact.compliance.remote_condensation import condense_remotely
-from fe_contact.microgeometry.tolerance_study import Sampling, Tolerances, scatter
+from fe_contact.microgeometry.tolerance_study import Sampling, scatter
+from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.options import AnalysisOptions, Run
 from model_studies.workers import (
     ByDask,

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
+from fe_contact.microgeometry.order_limit import PairsAbove
 from fe_contact.microgeometry.tolerance_study import ToleranceStudy
+from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.units import UM
 from lineofaction.report.drawing import palette
-from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table, number, thousands
+from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Reference, Table, number, thousands
 from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.presentation import Presentation
 
@@ -27,23 +30,40 @@ def _scatter_figure(study: ToleranceStudy) -> Figure:
         title="Peak-to-peak transmission error within tolerances",
         caption=f"{count} pairs sampled within their tolerances. First: part of all up to a ripple. "
         f"Lower: quantiles with bounds of {100 * study.confidence:g} % confidence (dotted), and the "
-        "pair as designed (dashed).",
+        "pair as designed (dashed)." + (_CAPTION if study.above else ""),
         alternative=f"At the highest torque {part} of all pairs stay below {size} µm; as designed "
         f"{designed} µm.",
-        content=(_distribution(study), _over_torque(study)),
+        content=(*(_of_order(study, above) for above in [study.above] if above), *_panels(study)),
         table=_quantile_table(study),
     )
 
 
-def _distribution(study: ToleranceStudy) -> Panel:
+_CAPTION = " Uppermost: the same of the limited order, with its limit."
+
+
+def _panels(study: ToleranceStudy) -> tuple[Panel, Panel]:
+    lines = _shares(study, study.peak_to_peak)
+    distribution = Panel(Axis("peak to peak, µm"), Axis("share of all pairs"), lines, title="Distribution")
+    return distribution, _over_torque(study)
+
+
+def _of_order(study: ToleranceStudy, above: PairsAbove) -> Panel:
+    across = Axis(f"amplitude of mesh order {above.limit.order}, µm")
+    limit = Reference("limit", above.limit.amplitude / UM)
+    lines = _shares(study, above.amplitude)
+    return Panel(across, Axis("share of all pairs"), lines, references=(limit,), title="Limited order")
+
+
+def _shares(study: ToleranceStudy, sample: FloatArray) -> tuple[Line, ...]:
+    """Return the part of all pairs up to a length, a line for each torque."""
     lines = []
     for k, name in enumerate(thousands(study.torque.tolist())):
-        ordered = np.sort(study.peak_to_peak[:, k]) / UM
+        ordered = np.sort(sample[:, k]) / UM
         part = np.arange(1, ordered.size + 1) / ordered.size
         kept = np.unique(np.linspace(0, ordered.size - 1, min(_STEPS, ordered.size)).astype(int))
         color = palette.ordered(k, study.torque.size)
         lines.append(Line(f"{name} N m", ordered[kept], part[kept], color))
-    return Panel(Axis("peak to peak, µm"), Axis("share of all pairs"), tuple(lines), title="Distribution")
+    return tuple(lines)
 
 
 def _over_torque(study: ToleranceStudy) -> Panel:
@@ -91,17 +111,109 @@ def _influence_table(study: ToleranceStudy) -> Table:
     return Table("Influence: rank correlation of a deviation, or of its size, with peak to peak", head, rows)
 
 
+def _percent(share: float) -> str:
+    return f"{number(100.0 * share, 3)} %"
+
+
+def _amplitude(length: float) -> str:
+    """Return an amplitude in µm and in dB re 1 µm."""
+    level = f" ({20.0 * math.log10(length / UM):.1f} dB re 1 µm)" if length > 0.0 else ""
+    return f"{number(length / UM, 3)} µm{level}"
+
+
+def _verdict(study: ToleranceStudy) -> tuple[str, ...]:
+    """Say how many pairs are above the limit, what decides, what cures it; and what the model misses."""
+    lines = () if study.above is None else tuple(_above_limit(study, study.above))
+    if study.solved < len(study.peak_to_peak) or study.above is not None:
+        missed = ", ".join(
+            f"{number(rms / UM, 2)} µm at {torque} N m (at most {number(most / UM, 2)})"
+            for rms, most, torque in zip(
+                study.missed, study.missed_largest, thousands(study.torque.tolist()), strict=True
+            )
+        )
+        pairs, solved, held = (f"{each:,}" for each in (len(study.peak_to_peak), study.solved, study.held))
+        lines += (
+            f"{solved} of {pairs} pairs are analyzed whole; the model of the others misses the peak to peak "
+            f"of {held} that it does not know by {missed}, root of the mean square.",
+        )
+    return lines
+
+
+def _above_limit(study: ToleranceStudy, above: PairsAbove) -> list[str]:
+    k, limit = above.load, above.limit
+    torque = thousands(study.torque.tolist())[k]
+    band = f"{_percent(above.low[k])} to {_percent(above.high[k])} with {100 * study.confidence:g} %"
+    lines = [
+        f"{_percent(above.share[k])} of all pairs ({band} confidence) are above "
+        f"{_amplitude(limit.amplitude)} at mesh order {limit.order} and {torque} N m; as designed "
+        f"{_amplitude(above.nominal[k])}. The model puts {_percent(above.beyond[k])} of the pairs it is held "
+        "against on the other side."
+    ]
+    names = [boundary_name(name) for name in study.names]
+    most = above.decides
+    alone, all_of = (number(100.0 * float(each[most]), 2) for each in (above.first_order, above.total))
+    part = f"it makes {alone} % of the variance of the level alone, {all_of} % with others"
+    lines.append(f"{names[most]} decides: {part}.")
+    if above.cure is None:
+        none = "no pair is above" if not above.share[k] else "no tolerance a class finer lowers the share"
+        return [*lines, f"No cure: {none}."]
+    cured = _percent(above.cured[above.cure])
+    return [*lines, f"Cheapest cure: {names[above.cure]} a class finer leaves {cured} above."]
+
+
+def _limit_tables(study: ToleranceStudy) -> tuple[Table, ...]:
+    """Return shares by torque, and indices and cures by deviation, the one that decides first."""
+    above = study.above
+    if above is None:
+        return ()
+    shares = zip(
+        *(thousands(study.torque.tolist()), above.nominal, above.share, above.low, above.high),
+        *(above.missed, above.beyond),
+        strict=True,
+    )
+    by_torque = tuple(
+        (
+            *(torque, number(own / UM, 3), _percent(share), f"{_percent(low)} to {_percent(high)}"),
+            *(number(missed / UM, 2), _percent(beyond)),
+        )
+        for torque, own, share, low, high, missed, beyond in shares
+    )
+    head = ("torque, N m", "as designed, µm", "above", "bounds", "model ± µm (1 s)", "other side")
+    order = np.argsort(-above.total, kind="stable")
+    rows = tuple(
+        (
+            *(boundary_name(study.names[i]), number(above.total[i], 2), number(above.first_order[i], 2)),
+            _percent(above.cured[i]),
+        )
+        for i in order
+    )
+    caption = f"Pairs above {_amplitude(above.limit.amplitude)} at mesh order {above.limit.order}"
+    torque = thousands(study.torque.tolist())[above.load]
+    why = f"What decides at {torque} N m: Sobol' indices of the level, and the share above a class finer"
+    return (
+        Table(caption, head, by_torque),
+        Table(why, ("deviation", "with others", "alone", "above, a class finer"), rows),
+    )
+
+
+def _tables(study: ToleranceStudy) -> tuple[Table, ...]:
+    return (*_limit_tables(study), _quantile_table(study), _influence_table(study))
+
+
 def _page(study: ToleranceStudy) -> Page:
     last = study.quantiles[-1]
-    heads = (
+    heads: tuple[Headline, ...] = (
         Headline("as designed", f"{number(study.nominal[-1] / UM, 3)} µm", "at the highest torque"),
         Headline("mean", f"{number(study.mean[-1] / UM, 3)} µm"),
         Headline(f"{100 * last.fraction:g} % of all pairs below", f"{number(last.value[-1] / UM, 3)} µm"),
     )
-    tables = (_quantile_table(study), _influence_table(study))
-    section = Section("Distribution", "", (replace(_scatter_figure(study), table=None),), tables)
+    figure = replace(_scatter_figure(study), table=None)
+    section = Section("Distribution", " ".join(_verdict(study)), (figure,), _tables(study))
+    if study.above is not None:
+        share = _percent(study.above.share[study.above.load])
+        heads = (Headline("above the limit", share, f"mesh order {study.above.limit.order}"), *heads)
     lead = f"{study.peak_to_peak.shape[0]} pairs sampled within their tolerances"
     return Page("Transmission error within tolerances", lead, heads, (section,))
 
 
-PAGE = Presentation(_scatter_figure, _page, lambda study: (_quantile_table(study), _influence_table(study)))
+PAGE = Presentation(_scatter_figure, _page, lambda study: (*_verdict(study), *_tables(study)))

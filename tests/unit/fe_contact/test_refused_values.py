@@ -35,7 +35,8 @@ from fe_contact.microgeometry.confirmation import DesignLoads
 from fe_contact.microgeometry.objective import WeightedMean
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter, SobolSample
 from fe_contact.microgeometry.search import Search
-from fe_contact.microgeometry.tolerance_study import Sampling, Tolerances
+from fe_contact.microgeometry.tolerance_study import Sampling
+from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import AnalysisOptions, OperatingPoint
 

@@ -197,7 +197,7 @@ def test_the_flanks_are_told_within_the_tolerance_class() -> None:
 def test_a_quantile_of_the_pairs_is_minimized() -> None:
     """Of those that are told: the same sample at as many positions, so no pair of it is left out."""
     few: Json = {"search": FEW | {"positions": 16}, "heard": HEARD | {"load_cases": [{"name": "whole"}]}}
-    few["heard"] |= {"tolerances": {"samples": 4, "tolerance_class": 4}, "orders": 1}
+    few["heard"] |= {"tolerances": {"samples": 8, "tolerance_class": 4}, "orders": 1}
     own = searched({"variables": FREE, **few, "heard": few["heard"] | {"quantile": 0.75}})
     levels = np.quantile(own.pairs, 0.75, axis=1)
     ends = own.start.objective.value, own.optimum.objective.value

@@ -26,7 +26,8 @@ from fe_contact.geometry import FlankModification, Shaft
 from fe_contact.microgeometry.optimize import optimize
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter
 from fe_contact.microgeometry.search import Ended, NelderMead, Search, SequentialLinearProgramming
-from fe_contact.microgeometry.tolerance_study import Sampling, Tolerances, ToleranceStudy, scatter
+from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceStudy, scatter
+from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import AnalysisOptions, Run
 from lineofaction.gearbox.problems import BadInput

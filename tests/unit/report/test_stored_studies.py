@@ -23,7 +23,8 @@ from fe_contact.microgeometry.optimization import Optimization
 from fe_contact.microgeometry.optimize import optimize
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter
 from fe_contact.microgeometry.search import Search
-from fe_contact.microgeometry.tolerance_study import Sampling, iso1328_tolerances, scatter
+from fe_contact.microgeometry.tolerance_study import Sampling, scatter
+from fe_contact.microgeometry.tolerances import iso1328_tolerances
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.ste import SteDatabase

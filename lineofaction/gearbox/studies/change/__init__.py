@@ -12,7 +12,7 @@ from lineofaction.gearbox.schemas.model import BoundaryModel, Name
 from lineofaction.gearbox.schemas.studied import OverOrders
 from lineofaction.gearbox.studies.deflect import LoadCaseInput, LoadCases
 from lineofaction.gearbox.studies.listen import Position
-from lineofaction.gearbox.studies.scatter import Inputs as ToleranceInputs
+from lineofaction.gearbox.studies.scatter import ToleranceInputs
 
 PAIRS = 200
 BEARING_FORCE, SOUND_POWER = "bearing_force", "sound_power"

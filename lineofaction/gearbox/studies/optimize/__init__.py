@@ -17,7 +17,7 @@ from lineofaction.gearbox.schemas.query import MANY, ONE, ONE_OR_MANY
 from lineofaction.gearbox.schemas.studied import OverOrders
 from lineofaction.gearbox.studies.change import HeardInput
 from lineofaction.gearbox.studies.deflect import LoadCaseInput, LoadCases
-from lineofaction.gearbox.studies.scatter import Inputs as ToleranceInputs
+from lineofaction.gearbox.studies.scatter import ToleranceInputs
 
 TRIALS, HEARD_TRIALS = 3, 8
 PAIRS = 32

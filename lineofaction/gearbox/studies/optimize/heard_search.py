@@ -31,7 +31,6 @@ from fe_contact.microgeometry.search import (
     StagedLinearProgramming,
     never,
 )
-from fe_contact.microgeometry.tolerance_study import iso1328_tolerances
 from fe_contact.microgeometry.variables import effect_of, modified
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate, FloatArray
@@ -59,6 +58,7 @@ from lineofaction.gearbox.studies.optimize.heard_problem import (
     with_loads_beside,
 )
 from lineofaction.gearbox.studies.optimize.result import HeardDesign, HeardOptimization
+from lineofaction.gearbox.studies.scatter.run import tolerances_of
 from lineofaction.gearbox.units import RPM, UM
 from model_studies.progress import announce, silent
 from model_studies.stage_clock import StageClock
@@ -224,13 +224,8 @@ def _sampled(problem: HeardProblem, case: Case, question: HeardObjectiveInput) -
     """Return the problem with pairs within tolerances as nodes; what an effect that is off hides stays."""
     evaluator, stated = problem.evaluator, question.tolerances
     try:
-        tolerances = iso1328_tolerances(
-            evaluator.contact.pair,
-            stated.tolerance_class,
-            misalignment=stated.misalignment_um * UM,
-            across_face=evaluator.contact.face is not None,
-            distribution=stated.distribution,
-        )
+        across = evaluator.contact.face is not None
+        tolerances = tolerances_of(evaluator.contact.pair, stated, across_face=across)
     except InputError as error:
         if {"tolerances", "quantile"} & question.model_fields_set:
             raise error.within("heard.tolerances") from None

@@ -8,11 +8,13 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from lineofaction.gearbox.schemas.figures import Figures, Json, Part, Source
-from lineofaction.gearbox.schemas.model import BoundaryModel, Spelling
+from lineofaction.gearbox.schemas.model import BoundaryModel, Row, Spelling
+
+Drawn = Annotated[str, Field(min_length=1, max_length=200)]
 
 
-class Inputs(BoundaryModel):
-    """Tolerances of both gears by their class, and the sample."""
+class ToleranceInputs(BoundaryModel):
+    """Tolerances of both gears by their class or a drawing, and the sample."""
 
     tolerance_class: Annotated[int, Spelling("--class")] = Field(
         default=6,
@@ -21,6 +23,19 @@ class Inputs(BoundaryModel):
         le=11,
         description="Tolerance class of ISO 1328-1:2013 of both gears",
         examples=[6],
+    )
+    finishing: Literal["any", "generating_grinding", "form_grinding", "honing", "shaving", "hobbing"] = Field(
+        default="any",
+        description="How flanks are finished, from which follows, as an assumption, the part of their "
+        "tolerances that all teeth have in common; any: the whole",
+        examples=["generating_grinding"],
+    )
+    drawing: Row[Drawn] = Field(
+        default=(),
+        max_length=64,
+        description="Tolerances of a drawing in place of those of the class, to either side: "
+        "GEAR.FIGURE=VALUE, figure and unit as in the case file",
+        examples=[["pinion.profile_slope_um=4", "wheel.helix_crowning_um=2"]],
     )
     misalignment_um: float = Field(
         default=0.0,
@@ -52,6 +67,29 @@ class Inputs(BoundaryModel):
     )
 
 
+class Inputs(ToleranceInputs):
+    """Tolerances of both gears, the sample, how many of it are analyzed whole, and a limit."""
+
+    exact: int = Field(
+        default=300,
+        title="Pairs analyzed whole",
+        ge=2,
+        le=1_000_000,
+        description="Number of pairs analyzed whole; further ones are by a model from a quarter of these, "
+        "64 at most, held against the others",
+        examples=[300],
+    )
+    limit: str | None = Field(
+        default=None,
+        min_length=1,
+        max_length=100,
+        title="Limit on an order",
+        description="Limit of the amplitude of a mesh order of the transmission error: ORDER=VALUE in um, "
+        "nm, or dB re 1 um; left out: none",
+        examples=["1=0.5um"],
+    )
+
+
 class ScatterFigures(Figures):
     """Peak-to-peak STE of the sampled pairs (rows) by torque, and by what they deviate (`names`)."""
 
@@ -65,6 +103,35 @@ class ScatterFigures(Figures):
             list[float] | None, Source(lambda own: own.high if all(map(math.isfinite, own.high)) else None)
         ]
 
+    class AboveFigures(Part):
+        """Pairs above a limit by torque; what decides and what cures them at the torque with most of them.
+
+        Attributes
+        ----------
+        share, low, high
+            Part of all pairs, and its bounds.
+        missed_um, beyond
+            By how much the model misses the amplitude of pairs analyzed whole, and the part of them that it
+            puts on the other side of the limit.
+        first_order, total
+            Sobol' indices of the level in dB, by deviation.
+        cured
+            Share if the tolerance of one deviation is a class finer.
+        """
+
+        order: Annotated[int, Source("limit.order")]
+        limit_um: Annotated[float, Source("limit.amplitude")]
+        nominal_um: list[float]
+        share: list[float]
+        low: list[float]
+        high: list[float]
+        missed_um: list[float]
+        beyond: list[float]
+        at_torque: Annotated[int, Source("load")]
+        first_order: list[float]
+        total: list[float]
+        cured: list[float]
+
     torque_n_m: list[float]
     samples: Annotated[int, Source(lambda study: len(study.peak_to_peak))]
     nominal_um: list[float]
@@ -75,6 +142,11 @@ class ScatterFigures(Figures):
     quantiles: list[QuantileFigures]
     names: list[str]
     influence: list[list[float]]
+    exact: Annotated[int, Source(lambda study: study.solved or len(study.peak_to_peak))]
+    held: int
+    missed_um: list[float]
+    missed_largest_um: list[float]
+    above: AboveFigures | None
     deviation_um: list[list[float]]
     peak_to_peak_um: list[list[float]]
     first_order_um: list[list[float]]

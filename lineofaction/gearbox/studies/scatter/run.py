@@ -2,21 +2,30 @@
 
 from __future__ import annotations
 
+import difflib
+import re
+from dataclasses import replace
+from pathlib import Path
+
+from bounds import Kind
 from bounds.types import Json
-from fe_contact.microgeometry.tolerance_study import (
-    Sampling,
-    ToleranceRequest,
-    ToleranceStudy,
-    iso1328_tolerances,
-    sampled,
-)
+from fe_contact.analysis.run_plan import predicted_designs
+from fe_contact.flank.modification import FlankModification
+from fe_contact.geometry import ParallelAxes
+from fe_contact.microgeometry.order_limit import OrderLimit
+from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceRequest, ToleranceStudy, sampled
+from fe_contact.microgeometry.tolerances import Tolerances, iso1328_tolerances
+from fe_contact.microgeometry.variables import GEARS
 from lineofaction.gearbox.convert.case import PLANE, CheckedCase, boundary_errors
 from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.declared import figures
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, record_file
-from lineofaction.gearbox.studies.scatter import Inputs, ScatterFigures
-from lineofaction.gearbox.units import UM, in_um
+from lineofaction.gearbox.studies.scatter import Inputs, ScatterFigures, ToleranceInputs
+from lineofaction.gearbox.units import UM, factor, in_um
 
+_TANGENT, _ADDED = 0.4, 1e-9
+"""CPU time of the tangent about a pair over that of its solution; CPU seconds of a point by a deviation."""
 MOST_SAMPLES = 100_000
 """Of a job: its result holds every pair, 10 to 100 MB."""
 
@@ -26,7 +35,7 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
 
     def check(self, case: CheckedCase, inputs: Inputs) -> None:
         with boundary_errors():
-            _ = case.request(tolerance_request, inputs).checked
+            _ = case.request(scatter_request, inputs).checked
 
     def normalized(self, case: CheckedCase, inputs: Inputs) -> Json:
         """Return all inputs; refuse a sample too large for a job."""
@@ -35,11 +44,24 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
             raise BadInput.of("samples", inputs.samples, f"at most {MOST_SAMPLES}", advice)
         return super().normalized(case, inputs)
 
+    def predicted(self, case: CheckedCase, inputs: Inputs, cache: Path | None) -> float:
+        """Return what the bodies, the pairs analyzed whole and the model of the others take."""
+        with boundary_errors():
+            request = case.request(scatter_request, inputs)
+            predicted = predicted_designs(request.checked, cache)
+        sampling = request.sampling
+        alignments = request.checked.request.misalignment.size
+        solved = (sampling.solved + _TANGENT * sampling.tangents) / alignments
+        points = (
+            sampling.positions * len(request.torques) * sampling.tangents * len(request.tolerances.widths)
+        )
+        return predicted.bodies + solved * predicted.design + _ADDED * points * sampling.samples
+
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> ToleranceStudy:
         """Sample the pairs of a case; in a plane model helix slopes do not deviate."""
         with boundary_errors():
             run = means.analysis
-            return sampled(case.request(tolerance_request, inputs), run)
+            return sampled(case.request(scatter_request, inputs), run)
 
     def _derived(self, study: ToleranceStudy) -> Json:
         widths = study.asked["tolerances"]
@@ -54,19 +76,79 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
         }
 
 
-def tolerance_request(checked: CheckedCase, inputs: Inputs) -> ToleranceRequest:
-    """Return the pair of a case with the tolerances of its class; none of helix slopes in the plane."""
+def scatter_request(checked: CheckedCase, inputs: Inputs) -> ToleranceRequest:
+    """Return the pair of a case with its tolerances, the pairs analyzed whole, and the limit."""
+    request = tolerance_request(checked, inputs)
+    sampling = replace(request.sampling, exact=inputs.exact)
+    limit = None if inputs.limit is None else order_limit(inputs.limit)
+    return replace(request, sampling=sampling, limit=limit)
+
+
+def tolerance_request(checked: CheckedCase, inputs: ToleranceInputs) -> ToleranceRequest:
+    """Return the pair of a case with the tolerances of its class; none of helices in the plane."""
     pair, case, load = checked.pair, checked.case, checked.case.load
-    tolerances = iso1328_tolerances(
-        pair,
-        inputs.tolerance_class,
-        misalignment=inputs.misalignment_um * UM,
-        across_face=case.accuracy.model not in PLANE,
-        distribution=inputs.distribution,
-    )
+    tolerances = tolerances_of(pair, inputs, across_face=case.accuracy.model not in PLANE)
     torques = load.torque_n_m or [float(pair.torque(force)) for force in load.normal_force_n or ()]
     sampling, misalignment = Sampling(inputs.samples, inputs.seed), case.errors.misalignment_um[0] * UM
     return ToleranceRequest(pair, list(torques), tolerances, sampling, checked.options, misalignment)
+
+
+def tolerances_of(pair: ParallelAxes, inputs: ToleranceInputs, *, across_face: bool) -> Tolerances:
+    """Return the tolerances of a class, and those of a drawing in their place."""
+    of_class = iso1328_tolerances(
+        pair,
+        inputs.tolerance_class,
+        misalignment=inputs.misalignment_um * UM,
+        across_face=across_face,
+        distribution=inputs.distribution,
+        finishing=inputs.finishing,
+    )
+    stated = dict(map(_stated, inputs.drawing))
+    return replace(of_class, modification={**of_class.modification, **stated})
+
+
+_TOLERATED = {
+    f"{gear}.{figure.field}": f"{gear}.{figure.name}"
+    for gear in GEARS
+    for figure in figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
+}
+"""Figures that a drawing may bound: those of the case file, by their names in the library."""
+
+
+def _stated(text: str) -> tuple[str, float]:
+    """Return the figure and the tolerance in m that ``GEAR.FIGURE=VALUE`` says."""
+    name, _, value = (part.strip() for part in text.partition("="))
+    if name not in _TOLERATED:
+        close = difflib.get_close_matches(name[:64], _TOLERATED, n=3, cutoff=0.5)
+        advice = f"Did you mean {' or '.join(close)}?" if close else "For example pinion.profile_slope_um=4."
+        raise BadInput.of("drawing", text, "pinion or wheel, a dot, and a figure of the flanks", advice)
+    if not _NUMBER.fullmatch(value) or float(value) <= 0.0:
+        bound = f"{name}= and a tolerance above 0 in the unit of the name"
+        raise BadInput.of("drawing", text, bound, f"For example {name}=4.")
+    return _TOLERATED[name], float(value) * factor(name)
+
+
+def order_limit(text: str) -> OrderLimit:
+    """Return the limit that ``ORDER=VALUE`` says, with a unit."""
+    order, _, value = (part.strip() for part in text.partition("="))
+    number = value.rstrip("µμumndBb ")
+    unit = value.removeprefix(number).strip()
+    if not order.isdecimal() or int(order) < 1:
+        raise BadInput.of("limit", text, "a mesh order from 1, =, and an amplitude", _LIMITS)
+    if not _NUMBER.fullmatch(number):
+        raise BadInput.of("limit", text, "a mesh order, =, and a number with its unit", _LIMITS)
+    if unit.lower() == "db":
+        return OrderLimit(int(order), UM * 10.0 ** (min(float(number), 200.0) / 20.0))
+    if unit not in _UNITS:
+        raise BadInput.of("limit", text, "an amplitude in um, nm or dB re 1 um", _LIMITS)
+    if float(number) <= 0.0:
+        raise BadInput.of("limit", text, "an amplitude above 0", _LIMITS)
+    return OrderLimit(int(order), _UNITS[unit] * float(number))
+
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+_UNITS = {"um": UM, "µm": UM, "μm": UM, "nm": 1e-3 * UM}
+_LIMITS = "For example 1=0.5um, 1=500nm or 2=-12dB."
 
 
 RUN = _ScatterStudy()

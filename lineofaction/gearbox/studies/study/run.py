@@ -27,7 +27,7 @@ from dynamics.study import (
     keep_runs,
     study,
 )
-from fe_contact.microgeometry.tolerance_study import PROCESS_SPREAD, iso1328_tolerances
+from fe_contact.microgeometry.tolerances import PROCESS_SPREAD, iso1328_tolerances
 from lineofaction.gearbox.convert.case import boundary_errors, gear_pair, table_axes
 from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.convert.scene import TabledScene

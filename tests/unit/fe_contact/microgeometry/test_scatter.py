@@ -22,9 +22,7 @@ from fe_contact.microgeometry.confirmation import (
 )
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter, SobolSample
-from fe_contact.microgeometry.tolerance_study import (
-    iso1328_tolerances,
-)
+from fe_contact.microgeometry.tolerances import iso1328_tolerances
 from fe_contact.microgeometry.variables import modified
 from fe_contact.options import AnalysisOptions, Run
 from model_studies.stage_clock import StageClock
@@ -164,7 +162,10 @@ def test_a_tolerance_grows_with_every_class_and_what_it_is_of() -> None:
     assert all_of.modification["wheel.helix_slope"] == helix_slope_tolerance(pair.wheel, 7)
     assert all_of.modification["pinion.profile_slope"] == profile_slope_tolerance(pair.pinion, 7)
     flat = iso1328_tolerances(pair, 7, across_face=False).modification
-    assert set(flat) == {"pinion.profile_slope", "wheel.profile_slope"}
+    profiles = {f"{gear}.profile_{kind}" for gear in ("pinion", "wheel") for kind in ("slope", "form")}
+    assert set(flat) == profiles
+    hobbed = iso1328_tolerances(pair, 7, finishing="hobbing").modification
+    assert hobbed["wheel.helix_form"] == 0.6 * all_of.modification["wheel.helix_form"]
 
 
 @pytest.mark.parametrize(

@@ -14,8 +14,10 @@ from spur_gears import LONG_RELIEFS, PAIR
 
 from fe_contact import GearPair, analyze
 from fe_contact.errors import InputError
+from fe_contact.microgeometry.order_limit import OrderLimit
 from fe_contact.microgeometry.sweep import Sweep, SweepAxis, SweepRequest, sweep
-from fe_contact.microgeometry.tolerance_study import Sampling, Tolerances, ToleranceStudy, _quantile, scatter
+from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceStudy, _quantile, scatter
+from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.microgeometry.variables import modified
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from lineofaction.gearbox.studies.figures import figures_of
@@ -52,6 +54,56 @@ def test_a_larger_sample_begins_with_the_smaller_one(found: ToleranceStudy) -> N
         PAIR, TORQUES, SLOPES, Sampling(samples=30, seed=4, positions=16), AnalysisOptions(**DRAFT)
     )
     assert not np.any(other.deviation == found.deviation[:30])
+
+
+def test_the_least_of_tangents_stands_for_pairs_it_does_not_know(found: ToleranceStudy) -> None:
+    """Of 120 pairs, 40 solved: the others by the model are off by as much as the 30 held against it say."""
+    sampling = Sampling(samples=120, seed=3, positions=16, exact=40)
+    model = scatter(PAIR, TORQUES, SLOPES, sampling, AnalysisOptions(**DRAFT))
+    assert (model.solved, model.held, found.solved) == (40, 30, 120)
+    np.testing.assert_array_equal(model.peak_to_peak[:40], found.peak_to_peak[:40])
+    missed = (model.peak_to_peak - found.peak_to_peak)[40:]
+    assert np.all(np.sqrt(np.mean(missed**2, axis=0)) < 2.0 * model.missed)
+    assert np.all(model.missed < 0.05 * found.peak_to_peak.std(axis=0))
+    assert np.all(model.missed < 0.2 * np.abs(model.first_order - found.peak_to_peak).mean(axis=0))
+
+
+def test_quantiles_of_the_model_are_within_the_sampling_band_of_solved_pairs(found: ToleranceStudy) -> None:
+    sampling = Sampling(samples=10_000, seed=3, positions=16, exact=40)
+    model = scatter(PAIR, TORQUES, SLOPES, sampling, AnalysisOptions(**DRAFT))
+    for many, few in zip(model.quantiles, found.quantiles, strict=True):
+        assert np.all((few.low <= many.value) & (many.value <= few.high))
+        assert np.all(many.high - many.low < 0.2 * (few.high - few.low))
+
+
+def test_a_limit_counts_pairs_and_finds_what_decides() -> None:
+    limit = OrderLimit(1, 3.1e-6)
+    sampling = Sampling(samples=2000, seed=3, positions=16, exact=60)
+    options = AnalysisOptions(**DRAFT)
+    above = scatter(PAIR, TORQUES, SLOPES, sampling, options, limit=limit).above
+    assert above is not None
+    np.testing.assert_array_equal(above.share, (above.amplitude > limit.amplitude).mean(axis=0))
+    assert np.all((above.low <= above.share) & (above.share <= above.high))
+    assert 0.0 < above.share[above.load] == above.share.max() < 1.0
+    # the pinion's slope has five times the tolerance of the wheel's
+    assert above.decides == above.cure == 0
+    assert above.total[0] > 0.9 and above.total[1] < 0.1
+    assert np.all(above.first_order <= above.total + 0.05)
+    # a pair as made, whole: its order is that of the table
+    made = modified(PAIR, dict(zip(SLOPES.widths, SLOPES.sample(1, 3)[0], strict=True)))
+    table = analyze(made, torques=TORQUES, positions=16, receipt="minimal", **DRAFT)
+    curve = table.static_transmission_error[:, 1, 0, 0]
+    assert above.amplitude[0, 1] == pytest.approx(2.0 * abs(np.fft.rfft(curve)[1]) / 16, rel=1e-9)
+    # with the tolerance of a class finer, drawn anew
+    finer = Tolerances(0.0, dict(SLOPES.modification) | {"pinion.profile_slope": 10e-6 / np.sqrt(2.0)})
+    other = scatter(PAIR, TORQUES, finer, sampling, options, limit=limit).above
+    assert other is not None
+    assert other.share[above.load] == pytest.approx(above.cured[0], abs=0.02)
+
+
+def test_an_order_that_positions_do_not_resolve_is_refused() -> None:
+    with pytest.raises(InputError, match="1 to 7"):
+        scatter(PAIR, TORQUES, SLOPES, Sampling(positions=16), limit=OrderLimit(8, 1e-6))
 
 
 def test_bounds_enclose_their_quantiles_and_influence_follows_deviation(found: ToleranceStudy) -> None:

@@ -1,0 +1,101 @@
+"""Curves of pairs within tolerances without a solution each: the least of tangents about pairs solved.
+
+At a given load the transmission error is concave in the gaps: where teeth or slices part, others take over.
+Gaps are linear in the deviations of flanks and alignment, so a tangent lies above, and of several the least
+counts. What it is above in the mean is taken off, as further pairs that were solved show it; they also tell
+how far it is off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fe_contact.ste.curve_quantities import HARMONICS
+from fe_contact.types import FloatArray
+
+AT_ONCE = 4_000_000
+"""Numbers of the curves of pairs that are held in memory together."""
+
+
+@dataclass(frozen=True)
+class TangentModel:
+    """Tangents about T pairs at P positions and L loads, by d deviations.
+
+    Attributes
+    ----------
+    least : ndarray, shape (d,)
+        Deviations count from here: nothing is removed below zero, m.
+    state : ndarray, shape (T, d)
+        The pairs, m.
+    value : ndarray, shape (T, P, L)
+        Their transmission error, m.
+    by : ndarray, shape (T, P, L, d)
+        Its derivatives, m/m.
+    correction : ndarray, shape (P, L)
+        What the least tangent is above in the mean, m.
+    """
+
+    least: FloatArray
+    state: FloatArray
+    value: FloatArray
+    by: FloatArray
+    correction: FloatArray
+
+    @classmethod
+    def of(cls, least: FloatArray, state: FloatArray, value: FloatArray, by: FloatArray) -> TangentModel:
+        """Return the least of tangents, with nothing taken off."""
+        return cls(least, np.maximum(state, least), value, by, np.zeros(value.shape[1:]))
+
+    def with_further(self, other: TangentModel) -> TangentModel:
+        """Return the least of these tangents and others."""
+        state, value, by = (
+            np.concatenate([getattr(self, name), getattr(other, name)]) for name in ("state", "value", "by")
+        )
+        return TangentModel(self.least, state, value, by, self.correction)
+
+    def corrected(self, deviation: FloatArray, ste: FloatArray) -> TangentModel:
+        """Take off what it misses in the mean over pairs (n, d) whose curves (n, P, L) were solved."""
+        missed = np.concatenate(list(self.curves(deviation))) - ste
+        return replace(self, correction=self.correction + missed.mean(axis=0))
+
+    def at_load(self, load: int) -> TangentModel:
+        """Return the same at one of the loads."""
+        some = slice(load, load + 1)
+        own = self.value[..., some], self.by[:, :, some], self.correction[:, some]
+        return TangentModel(self.least, self.state, *own)
+
+    def curves(self, deviation: FloatArray) -> Iterator[FloatArray]:
+        """Yield the transmission error of pairs (n, d), some at a time, (m, P, L) in m."""
+        held = np.maximum(deviation, self.least)
+        shape = self.value.shape[1:]
+        slopes = self.by.reshape(len(self.state), -1, self.state.shape[1])
+        at_zero = self.value.reshape(len(self.state), -1) - np.einsum("tqd,td->tq", slopes, self.state)
+        some = max(1, AT_ONCE // self.correction.size)
+        for part in (held[k : k + some] for k in range(0, len(held), some)):
+            ste = part @ slopes[0].T + at_zero[0]
+            for value, by in zip(at_zero[1:], slopes[1:], strict=True):
+                np.minimum(ste, part @ by.T + value, out=ste)
+            yield ste.reshape(-1, *shape) - self.correction
+
+    def peak_to_peak(self, deviation: FloatArray) -> FloatArray:
+        """Return peak-to-peak of pairs (n, d), (n, L) in m."""
+        return np.concatenate([np.ptp(ste, axis=1) for ste in self.curves(deviation)])
+
+    def amplitude(self, deviation: FloatArray, order: int, period: int) -> FloatArray:
+        """Return the amplitude of a mesh order of pairs (n, d), (n, L) in m; see `order_amplitude`."""
+        return np.concatenate([order_amplitude(ste, order, period) for ste in self.curves(deviation)])
+
+
+def order_amplitude(ste: FloatArray, order: int, period: int) -> FloatArray:
+    """Return the amplitude of a mesh order of curves (n, P, L) at even positions over the period, (n, L)."""
+    positions = ste.shape[1]
+    angle = 2.0 * np.pi * order * period * np.arange(positions) / positions
+    return np.asarray(np.abs(np.tensordot(ste, np.exp(-1j * angle), (1, 0))) * (2.0 / positions))
+
+
+def highest_order(positions: int) -> int:
+    """Return the highest mesh order that so many positions of a base pitch resolve."""
+    return min(HARMONICS, (positions - 1) // 2)

@@ -1,0 +1,157 @@
+"""Tolerances of assembly and manufacture: how deviations are distributed between the limits of inspection."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+from scipy.special import ndtr, ndtri
+
+from bounds import SiNote
+from fe_contact.errors import InputError, integer, positive
+from fe_contact.geometry import ParallelAxes, Toothing
+from fe_contact.geometry.flank_tolerances import (
+    check_scope,
+    helix_form_tolerance,
+    helix_slope_tolerance,
+    profile_form_tolerance,
+    profile_slope_tolerance,
+)
+from fe_contact.microgeometry.scatter import MISALIGNMENT
+from fe_contact.microgeometry.variables import ACROSS_FACE, GEARS, gear_and_quantity
+from fe_contact.types import FloatArray, Json
+
+Distribution = Literal["normal", "uniform"]
+PROCESS_SPREAD = 3.0
+"""Standard deviations of the normal distribution in a tolerance, beyond which parts are rejected."""
+
+
+@dataclass(frozen=True)
+class Tolerances:
+    """Half widths of tolerance bands about the design, and the distribution within them.
+
+    Attributes
+    ----------
+    misalignment : float
+        m, >= 0.
+    modification : mapping
+        ``gear.quantity`` to m, > 0.
+    distribution : {"normal", "uniform"}
+        Normal: three standard deviations are the tolerance, and deviations beyond are rejected.
+    """
+
+    misalignment: float = 0.0
+    modification: Mapping[str, float] = field(default_factory=dict)
+    distribution: Distribution = "normal"
+
+    def __post_init__(self) -> None:
+        if self.misalignment:
+            positive("tolerances.misalignment", self.misalignment, SiNote("In m: 10 µm is 1e-5."))
+        for name, width in self.modification.items():
+            gear_and_quantity(f"tolerances.modification.{name}", name)
+            positive(f"tolerances.modification.{name}", width, SiNote("In m: 10 µm is 1e-5."))
+        if self.distribution not in ("normal", "uniform"):
+            raise InputError("tolerances.distribution", self.distribution, 'one of "normal" and "uniform"')
+        if not self.widths:
+            raise InputError("tolerances", {}, "at least one width above 0")
+
+    @property
+    def widths(self) -> dict[str, float]:
+        """Half width of every deviation, m, in a fixed order."""
+        own = {MISALIGNMENT: self.misalignment} if self.misalignment else {}
+        return own | dict(sorted(self.modification.items()))
+
+    def sample(self, count: int, seed: int) -> FloatArray:
+        """Draw deviations (count, d) in m from a scrambled Sobol' sequence.
+
+        A larger sample of the same seed begins with a smaller one.
+        """
+        from scipy.stats import qmc  # noqa: PLC0415 (start-up time)
+
+        widths = np.array(list(self.widths.values()))
+        sequence = qmc.Sobol(widths.size, rng=seed)
+        uniform = sequence.random_base2(max(count - 1, 1).bit_length())[:count]
+        if self.distribution == "uniform":
+            return np.asarray(widths * (2.0 * uniform - 1.0))
+        low = ndtr(-PROCESS_SPREAD)
+        return np.asarray(widths * ndtri(low + (1.0 - 2.0 * low) * uniform) / PROCESS_SPREAD)
+
+    @property
+    def distributions(self) -> tuple[Any, ...]:
+        """Distribution of every deviation, one of scipy's each."""
+        from scipy.stats import truncnorm, uniform  # noqa: PLC0415 (start-up time)
+
+        widths = self.widths.values()
+        if self.distribution == "uniform":
+            return tuple(uniform(-width, 2.0 * width) for width in widths)
+        ends = -PROCESS_SPREAD, PROCESS_SPREAD
+        return tuple(truncnorm(*ends, scale=width / PROCESS_SPREAD) for width in widths)
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {
+            "misalignment_m": self.misalignment,
+            "modification_m": dict(self.modification),
+            "distribution": self.distribution,
+        }
+
+
+Finishing = Literal["any", "generating_grinding", "form_grinding", "honing", "shaving", "hobbing"]
+OF_A_CLASS = {
+    "profile_slope": profile_slope_tolerance,
+    "profile_form": profile_form_tolerance,
+    "helix_slope": helix_slope_tolerance,
+    "helix_form": helix_form_tolerance,
+}
+"""Tolerances that bound the mean flank of a gear."""
+COMMON: Mapping[Finishing, tuple[float, float, float, float]] = {
+    "any": (1.0, 1.0, 1.0, 1.0),
+    "generating_grinding": (0.8, 0.9, 0.7, 0.9),
+    "form_grinding": (0.9, 0.9, 0.7, 0.9),
+    "honing": (0.7, 0.8, 0.6, 0.8),
+    "shaving": (0.7, 0.8, 0.6, 0.7),
+    "hobbing": (0.6, 0.7, 0.5, 0.6),
+}
+"""Assumed: part of each tolerance of `OF_A_CLASS` that the mean of all teeth takes.
+
+With the part c two teeth of a gear correlate by c^2. The rest, from tooth to tooth, is in orders of shafts
+and sidebands, not in mesh orders. A dressed wheel or worm makes the profile, so teeth are alike; run-out of
+the blank changes the helix slope once a revolution; a hob cuts each flank anew. They are not measured.
+"""
+
+
+def iso1328_tolerances(
+    pair: ParallelAxes,
+    tolerance_class: int,
+    *,
+    misalignment: float = 0.0,
+    across_face: bool = True,
+    distribution: Distribution = "normal",
+    finishing: Finishing = "any",
+) -> Tolerances:
+    """Return tolerances of slope and form of profile and helix of both gears by ISO 1328-1:2013.
+
+    Raises `InputError`: no such class, or a gear beyond the range of the standard.
+
+    Parameters
+    ----------
+    tolerance_class : int
+        1 (finest) to 11.
+    misalignment : float
+        Of the assembly, m; the standard has none.
+    across_face : bool
+        Whether helices deviate too; a plane model cannot have it.
+    finishing : str
+        By which flanks are finished: of `COMMON`.
+    """
+    integer("tolerance_class", tolerance_class, 1, 11)
+    widths = {}
+    for name in GEARS:
+        gear: Toothing = getattr(pair, name)
+        check_scope(name, gear)
+        for (quantity, tolerance), part in zip(OF_A_CLASS.items(), COMMON[finishing], strict=True):
+            if across_face or quantity not in ACROSS_FACE:
+                widths[f"{name}.{quantity}"] = part * tolerance(gear, tolerance_class)
+    return Tolerances(misalignment, widths, distribution)
