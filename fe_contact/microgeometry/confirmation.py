@@ -18,6 +18,7 @@ from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_request, checked_request
 from fe_contact.errors import InputError, finite, integer, within
 from fe_contact.geometry import ParallelAxes
+from fe_contact.microgeometry.confirmed_figures import confirmed_figures
 from fe_contact.microgeometry.design_problem import DesignProblem
 from fe_contact.microgeometry.evaluator import Evaluation, Evaluator
 from fe_contact.microgeometry.objective import NO_LIMITS, Limits
@@ -352,7 +353,7 @@ def confirm(
     search, nodes, counted = problem.evaluator, problem.evaluator.nodes, study.counted
     table = full_table(search, values, study.decided, cache)
     fine = replace(search.at(table.position), load=study.force, misalignment=study.loads.misalignment)
-    figures, exact = fine.confirmed(values), replace(fine, nodes=ONE_NODE)
+    figures, exact = confirmed_figures(fine, values, cache), replace(fine, nodes=ONE_NODE)
     error = ripple_errors(table, fine)
     ripple = figures.peak_to_peak
     nominal = exact.evaluate(values)

@@ -47,8 +47,8 @@ class Evaluation:
     root_stress : ndarray, shape (S, L)
         Largest principal stress in the tension roots of both gears over positions, Pa; NaN where it is not
         followed.
-    root_stress_error : ndarray, shape (S, L)
-        By the finite elements of the roots, Pa; NaN where it is not estimated.
+    root_stress_error, pressure_error, face_load_factor_error : ndarray, shape (S, L)
+        Of the discretization; NaN where it is not estimated.
     """
 
     ste: FloatArray = field(metadata=in_unit("m", "node", "position", "torque"))
@@ -61,6 +61,10 @@ class Evaluation:
     root_stress_error: FloatArray = field(
         default_factory=lambda: np.full((1, 1), np.nan), metadata=in_unit("pa", "node", "torque")
     )
+    pressure_error: FloatArray = field(
+        default_factory=lambda: np.full((1, 1), np.nan), metadata=in_unit("pa", "node", "torque")
+    )
+    face_load_factor_error: FloatArray = field(default_factory=lambda: np.full((1, 1), np.nan))
 
     def at_loads(self, some: BoolArray | IntArray) -> Evaluation:
         """Return the same at some of the loads."""
@@ -143,15 +147,6 @@ class Evaluator:
 
         return tuple(tuple(run) for _, run in groupby(range(self.nodes.weight.size), flanks))
 
-    def confirmed(self, values: Mapping[str, float]) -> Evaluation:
-        """Evaluate a design with the error of its root stress: of all nodes and loads the largest part."""
-        own = self.evaluate(values)
-        if self.roots is None:
-            return own
-        rough = replace(self, roots=self.roots.rough).evaluate(values)
-        part = self.roots.remaining * np.abs(rough.root_stress / own.root_stress - 1.0).max()
-        return replace(own, root_stress_error=part * own.root_stress)
-
     def solved(
         self, values: Mapping[str, float], nodes: Iterable[int]
     ) -> Iterator[tuple[ParallelAxes, ContactProblem, ContactSolution]]:
@@ -174,7 +169,7 @@ class Evaluator:
             for f in solved
         ]
         parts = [self.gathered(each) for each in zip(*figures, strict=True)]
-        return replace(Evaluation(*parts), root_stress_error=np.full(parts[-1].shape, np.nan))
+        return Evaluation(*parts, *[np.full(parts[-1].shape, np.nan)] * 3)
 
     def gathered(self, solved: Sequence[FloatArray]) -> FloatArray:
         """Return arrays (..., l) of all that was `solved`, each at its loads, as one (S, ..., L)."""

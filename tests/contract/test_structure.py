@@ -11,10 +11,10 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (42_242, 780),
+    ("fe_contact",): (42_319, 781),
     ("dynamics",): (42_673, 837),
-    ("lineofaction.gearbox",): (26_735, 547),
-    ("lineofaction.report",): (11_956, 226),
+    ("lineofaction.gearbox",): (26_754, 547),
+    ("lineofaction.report",): (11_953, 226),
     ("service",): (14_787, 344),
     ("lineofaction.client",): (2_674, 53),
     ("lineofaction.cli",): (5_456, 80),
@@ -22,7 +22,7 @@ BUDGETS = {
     ("bounds", "host", "model_studies"): (4_464, 155),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 833
+MOST_FILES = 834
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""

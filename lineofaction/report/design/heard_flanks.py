@@ -66,7 +66,7 @@ def _levels_table(result: HeardOptimization) -> Table:
 def _flank_table(result: HeardOptimization) -> Table:
     head: tuple[str, ...] = (
         "load", "misalignment, µm", "ripple before, µm", "± µm", "ripple after, µm", "± µm",
-        "pressure before, MPa", "after, MPa", "K_Hbeta before", "after",
+        "pressure before, MPa", "± MPa", "after, MPa", "± MPa", "K_Hbeta before", "±", "after", "±",
     )  # fmt: skip
     before, after = result.start, result.optimum
     followed = bool(np.all(np.isfinite(after.root_stress)))
@@ -79,17 +79,14 @@ def _flank_table(result: HeardOptimization) -> Table:
             number(before.peak_to_peak_error[k] / UM, 2),
             number(after.peak_to_peak[k] / UM, 3),
             number(after.peak_to_peak_error[k] / UM, 2),
-            number(before.pressure[k] / 1e6, 4),
-            number(after.pressure[k] / 1e6, 4),
-            number(before.face_load_factor[k], 3),
-            number(after.face_load_factor[k], 3),
             *(
                 text
+                for name, unit in {"pressure": 1e6, "face_load_factor": 1.0, "root_stress": 1e6}.items()
+                if followed or name != "root_stress"
                 for each in (before, after)
-                if followed
                 for text in (
-                    number(each.root_stress[k] / 1e6, 4),
-                    number(each.root_stress_error[k] / 1e6, 2),
+                    number(getattr(each, name)[k] / unit, 4),
+                    number(getattr(each, f"{name}_error")[k] / unit, 2),
                 )
             ),
         )

@@ -334,7 +334,9 @@ class HeardDesignFigures(Part):
     peak_to_peak_um: list[float]
     peak_to_peak_error_um: list[float]
     max_pressure_mpa: Annotated[list[float], Source("pressure")]
+    max_pressure_error_mpa: Annotated[list[float | None], Source("pressure_error")]
     face_load_factor: list[float]
+    face_load_factor_error: list[float | None]
     edge_load_share: list[float]
     root_stress_mpa: list[float | None]
     root_stress_error_mpa: list[float | None]
@@ -427,9 +429,15 @@ class OptimizeFigures(Figures):
         violation: float
         peak_to_peak_um: Annotated[list[Any], Source("figures.peak_to_peak")]
         face_load_factor: Annotated[list[float], Source(lambda own: own.figures.face_load_factor.max(axis=0))]
+        face_load_factor_error: Annotated[
+            list[float | None], Source(lambda own: own.figures.face_load_factor_error.max(axis=0))
+        ]
         edge_load_share: Annotated[list[float], Source(lambda own: own.figures.edge_load_share.max(axis=0))]
         harris_map: HarrisMapFigures
         max_pressure_mpa: Annotated[list[float], Source(lambda own: own.figures.pressure.max(axis=0))]
+        max_pressure_error_mpa: Annotated[
+            list[float | None], Source(lambda own: own.figures.pressure_error.max(axis=0))
+        ]
         root_stress_mpa: Annotated[
             list[float | None], Source(lambda own: own.figures.root_stress.max(axis=0))
         ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ from fe_contact.effects import EFFECTS, named
 from fe_contact.errors import InputError, SolveError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.confirmation import DesignSpace, design_study
+from fe_contact.microgeometry.confirmed_figures import confirmed_figures
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.optimization import OptimizationRequest
 from fe_contact.microgeometry.optimize import search_all
@@ -113,7 +115,7 @@ def heard_optimum(
     best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
     designs = own, problem.values(runs[best].place)
     with clock.stage("confirmation"):
-        before, after = (_confirmed(replace(heard, problem=problem), values) for values in designs)
+        before, after = (_confirmed(replace(heard, problem=problem), values, run.cache) for values in designs)
     with clock.stage("pairs"):
         rough = None if sample is None or cancel() else sample.at(request.search.exploration)
         pairs = [np.zeros(0) if rough is None else rough.levels(values, means.workers) for values in designs]
@@ -274,7 +276,7 @@ def _evaluator(
     return replace(study.evaluator, load=load, misalignment=alignment)
 
 
-def _confirmed(heard: Heard, values: dict[str, float]) -> HeardDesign:
+def _confirmed(heard: Heard, values: dict[str, float], cache: Path | None) -> HeardDesign:
     """Tell a design, its errors by what rougher contacts change of it: fewer slices, coarser meshes."""
     problem, pair = heard.problem, modified(heard.bodies.checked.request.pair, values)
     points = list(zip(np.outer(heard.torque, BESIDE_EACH), heard.misalignment, strict=True))
@@ -284,7 +286,8 @@ def _confirmed(heard: Heard, values: dict[str, float]) -> HeardDesign:
     levels = np.stack([each.level for each in contacts])
     objectives = np.array([each.objective for each in contacts])
     objective, violation = problem.evaluated(values)
-    figures, own = problem.evaluator.confirmed(values), slice(1, None, BESIDE_EACH.size)
+    figures = confirmed_figures(problem.evaluator, values, cache)
+    own = slice(1, None, BESIDE_EACH.size)
     ripple = [table.peak_to_peak(force=float(table.force[1])) for table in tables]
     return HeardDesign(
         dict(values),
@@ -300,6 +303,8 @@ def _confirmed(heard: Heard, values: dict[str, float]) -> HeardDesign:
         violation,
         figures.root_stress.max(axis=0)[own],
         figures.root_stress_error.max(axis=0)[own],
+        figures.pressure_error.max(axis=0)[own],
+        figures.face_load_factor_error.max(axis=0)[own],
     )
 
 

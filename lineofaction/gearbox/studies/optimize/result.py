@@ -45,6 +45,8 @@ class HeardDesign:
         Of the limits, in parts of them.
     root_stress, root_stress_error : (L,) arrays
         Largest in the tension roots at any node of the scatter, Pa; NaN without a limit of it.
+    pressure_error, face_load_factor_error : (L,) arrays
+        Of the discretization; NaN: not estimated.
     """
 
     values: dict[str, float]
@@ -64,6 +66,10 @@ class HeardDesign:
     root_stress_error: FloatArray = field(
         default_factory=lambda: np.full(1, np.nan), metadata=in_unit("pa", "load_case")
     )
+    pressure_error: FloatArray = field(
+        default_factory=lambda: np.full(1, np.nan), metadata=in_unit("pa", "load_case")
+    )
+    face_load_factor_error: FloatArray = field(default_factory=lambda: np.full(1, np.nan))
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,81 @@
+"""What limits hold of a design, with errors: by what rougher discretizations of the same design change."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from fe_contact.analysis.pairs.pair_contact import PairContact, pair_contact
+from fe_contact.microgeometry.evaluator import Evaluation, Evaluator
+from fe_contact.microgeometry.root_influence import RootInfluence
+
+HELD = {"pressure": 1.0, "face_load_factor": 1.5, "root_stress": 1.0}
+"""Figures of an evaluation whose errors are told in a field `NAME_error`, and the part of changes that
+is left: set on ten drawn pairs against finer meshes in more slices (benchmarks/limit_coverage.py)."""
+
+
+class _Change(NamedTuple):
+    """A design on a discretization and on a rougher one, and how much of the difference counts."""
+
+    finer: Evaluation
+    rougher: Evaluation
+    counts: float = 1.0
+
+
+def confirmed_figures(evaluator: Evaluator, values: Mapping[str, float], cache: Path | None) -> Evaluation:
+    """Evaluate a design, ``gear.quantity`` to m, with the errors of its pressure, K_Hbeta and root stress.
+
+    An error is that of positions, slices and meshes in squares: of all nodes and loads the largest part of
+    the figure, as a change may vanish at one of them by chance.
+
+    Parameters
+    ----------
+    cache : Path, optional
+        Directory of flank compliances: the coarse meshes are taken from it, or computed.
+    """
+    own = evaluator.evaluate(values)
+    changes = list(_changes(evaluator, own, values, cache))
+    errors = {f"{name}_error": _left(changes, name) * getattr(own, name) for name in HELD}
+    return replace(own, **errors)
+
+
+def _left(changes: list[_Change], name: str) -> float:
+    """Return what all changes of a figure that tell of it (not NaN) leave, in parts of it."""
+    ratios = [getattr(change.rougher, name) / getattr(change.finer, name) for change in changes]
+    parts = [
+        change.counts * np.abs(np.nan_to_num(ratio, nan=1.0) - 1.0).max()
+        for change, ratio in zip(changes, ratios, strict=True)
+    ]
+    return HELD[name] * float(np.linalg.norm(parts))
+
+
+def _changes(
+    evaluator: Evaluator, own: Evaluation, values: Mapping[str, float], cache: Path | None
+) -> Iterator[_Change]:
+    """Solve a design on rougher discretizations; all but the positions are changed at half of these.
+
+    Stations of roots lie below the load patches: wider ones tell nothing of them.
+    """
+    contact, made = evaluator.contact, evaluator.contact.plan.discretization
+    few, others = (evaluator.at(evaluator.position[first::2]) for first in (0, 1))
+
+    def on(other: PairContact, roots: RootInfluence | None = None) -> Evaluation:
+        return replace(few, contact=replace(other, varied=True), roots=roots).evaluate(values)
+
+    half = few.evaluate(values)
+    yield _Change(own, half)
+    yield _Change(own, others.evaluate(values))  # without the position of the largest where the first has it
+    if made.slices > 1:
+        yield _Change(half, on(contact.in_slices(made.coarse_slices), evaluator.roots))
+    plain = contact.in_plane_strain  # as the coarse meshes are
+    coarse = pair_contact(contact.pair, contact.plan, cache, coarse=True)
+    by_mesh = [half if each is contact else on(each) for each in (plain, plain.in_coarse_patches, coarse)]
+    yield from (_Change(*ends) for ends in pairwise(by_mesh))
+    if evaluator.roots is not None and evaluator.roots.rough is not None:
+        rough = replace(few, roots=evaluator.roots.rough).evaluate(values)
+        yield _Change(half, rough, evaluator.roots.remaining)
