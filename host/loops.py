@@ -6,6 +6,7 @@ names modules and functions that the loop calls: where an upgrade has taken one 
 
 numba optimizes each loop, makes machine code of it and wraps it for Python, and does so again in every loop
 that calls it. An inner loop is linked as it is: what Python calls is optimized once, with all that it calls.
+So is what numba itself writes in Python, as `np.zeros`.
 """
 
 # numba annotates little of what extends it
@@ -13,10 +14,11 @@ that calls it. An inner loop is linked as it is: what Python calls is optimized 
 
 from __future__ import annotations
 
+import gc
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -27,6 +29,9 @@ from numba.core.compiler import Compiler
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.dispatcher import Dispatcher
 from numba.core.registry import CPUDispatcher
+from numba.core.typing.templates import _OverloadFunctionTemplate
+from numba.extending import overload
+from numba.np import arrayobj
 
 from host import Unavailable, lock
 
@@ -58,10 +63,22 @@ def _one_at_a_time(compiled: Callable[..., Any]) -> Callable[..., Any]:
         if folder is None:
             return compiled(self, signature)
         name = f"{self.py_func.__module__}.{self.py_func.__qualname__}"
-        with global_compiler_lock, _locked(Path(folder) / f"{name}.lock"):
+        with global_compiler_lock, _locked(Path(folder) / f"{name}.lock"), _nothing_collected():
             return compiled(self, signature)
 
     return compile_or_read
+
+
+@contextmanager
+def _nothing_collected() -> Iterator[None]:
+    """Keep the collector of garbage from walking all that a compilation holds, which takes a fifth of it."""
+    was = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was:
+            gc.enable()
 
 
 @contextmanager
@@ -130,6 +147,25 @@ class _Inner(CPUDispatcher):
 
 
 _BARE = {"nopython": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+
+_decorator = _OverloadFunctionTemplate._get_jit_decorator
+
+
+def _linked(template: Any) -> Any:
+    return partial(_decorator(template), pipeline_class=_LinkedCompiler, no_cfunc_wrapper=True)
+
+
+_OverloadFunctionTemplate._get_jit_decorator = _linked
+
+
+def _raise_of_shapes(src_shapes: Any, index_shape: Any) -> None:
+    """Raise without writing the two shapes out: to compile that takes each loop two CPU seconds."""
+    raise NotImplementedError
+
+
+overload(_raise_of_shapes)(arrayobj.ol_raise_with_shape_context_generic)
+arrayobj.raise_with_shape_context = _raise_of_shapes
 
 
 def inner(**options: Any) -> Callable[[Loop], Loop]:

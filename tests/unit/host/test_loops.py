@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import subprocess
 import sys
@@ -10,8 +11,11 @@ from functools import partial
 from pathlib import Path
 from types import ModuleType
 
+import numpy as np
 import pytest
 from numba.core.caching import IndexDataCacheFile
+from numba.core.codegen import JITCodeLibrary
+from numpy.typing import NDArray
 
 from host import loops
 
@@ -100,3 +104,30 @@ def test_an_inner_loop_is_part_of_its_callers_and_python_may_call_it_too() -> No
         (linked,) = loop.overloads.values()
         assert linked.library.get_pointer_to_function(linked.fndesc.llvm_func_name) == 0
         assert not any("cpython" in each.name for each in linked.library.get_defined_functions())
+
+
+def test_what_a_loop_takes_of_numba_becomes_part_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[str] = []
+    finalize = JITCodeLibrary._finalize_final_module
+    monkeypatch.setattr(
+        JITCodeLibrary,
+        "_finalize_final_module",
+        lambda library: (made.append(library.name), finalize(library))[1],
+    )
+
+    @loops.njit
+    def spread(values: NDArray[np.float64], count: int) -> NDArray[np.float64]:
+        spread = np.zeros((count, 2))
+        spread[:, 0] = np.cumsum(np.repeat(values, 2))
+        return spread
+
+    assert spread(np.array([1.0, 2.0]), 4)[:, 0].tolist() == [1.0, 2.0, 4.0, 6.0]
+    assert not [name for name in made if "impl" in name]
+    with pytest.raises(ValueError, match="different size"):
+        spread(np.array([1.0]), 4)
+
+
+def test_the_collector_goes_on_after_compiling() -> None:
+    with loops._nothing_collected(), loops._nothing_collected():
+        assert not gc.isenabled()
+    assert gc.isenabled()
