@@ -22,7 +22,7 @@ from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.result_files import COMPLAINT, making_of, stamped
 from lineofaction.gearbox.study import Study
 from lineofaction.report.drawing.attaching import attached
-from lineofaction.report.drawing.figure import Figure, Table
+from lineofaction.report.drawing.figure import Figure, Table, panel_rows
 from lineofaction.report.drawing.image import png, still
 from lineofaction.report.drawing.interactive import plotly_figure
 from lineofaction.report.drawing.marks import (
@@ -73,6 +73,8 @@ def page_beside(study: Study, result: object, database: SteDatabase | None) -> P
         return presentation.page(result)
     return presentation.beside(result, database)
 
+
+_ACROSS = 2  # panels beside each other on a page
 
 _BOUND = f"an STE database, a run, or the result of a study ({', '.join(STUDIES)})"
 _READERS: dict[str, tuple[tuple[str, str], Callable[[Path], Any]]] = {
@@ -357,7 +359,9 @@ def write_whole(
     page = replace(page, alarms=(*(f"Warning: {text}" for text in warnings), *page.alarms))
     figures = [figure for section in page.sections for figure in section.figures]
     printed = output.suffix == ".pdf"
-    text = html(page, {figure.key: still(figure) for figure in figures}, still=printed or still_only)
+    drawn = {figure.key: png(figure, across=_ACROSS) for figure in figures}
+    stills = {key: still(image) for key, image in drawn.items()}
+    text = html(page, stills, still=printed or still_only)
     content = _printed(page, text, output) if printed else text.encode("utf-8")
     with whole_file(output) as draft:
         draft.write_bytes(content)
@@ -366,9 +370,13 @@ def write_whole(
         images.mkdir(parents=True, exist_ok=True)
         for figure in figures:
             with whole_file(images / f"{figure.key}.png") as draft:
-                draft.write_bytes(png(figure))
+                draft.write_bytes(drawn[figure.key] if _in_one_column(figure) else png(figure))
             written.append(images / f"{figure.key}.png")
     return written
+
+
+def _in_one_column(figure: Figure) -> bool:
+    return all(len(row) == 1 for row in panel_rows(figure.content, _ACROSS))
 
 
 def _printed(page: Page, text: str, output: Path) -> bytes:

@@ -14,12 +14,12 @@ BUDGETS = {
     ("fe_contact",): (42_319, 781),
     ("dynamics",): (42_673, 837),
     ("lineofaction.gearbox",): (26_754, 547),
-    ("lineofaction.report",): (11_953, 226),
+    ("lineofaction.report",): (11_961, 226),
     ("service",): (14_787, 344),
     ("lineofaction.client",): (2_674, 53),
     ("lineofaction.cli",): (5_456, 80),
     ("lineofaction.hardcases",): (3_841, 35),
-    ("bounds", "host", "model_studies"): (4_464, 155),
+    ("bounds", "host", "model_studies"): (4_500, 155),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 834

@@ -29,13 +29,13 @@ def drawn_once(condensed_bodies: Path) -> Iterator[None]:
         yield
 
 
-def _kept(draw: Callable[[Figure], bytes], folder: Path) -> Callable[[Figure], bytes]:
+def _kept(draw: Callable[..., bytes], folder: Path) -> Callable[..., bytes]:
     @wraps(draw)
-    def found(figure: Figure) -> bytes:
-        file = folder / hashlib.sha256(pickle.dumps(figure)).hexdigest()
+    def found(figure: Figure, across: int = 1) -> bytes:
+        file = folder / hashlib.sha256(pickle.dumps((figure, across))).hexdigest()
         if not file.exists():
             draft = file.with_suffix(f".{os.getpid()}")
-            draft.write_bytes(draw(figure))
+            draft.write_bytes(draw(figure, across))
             draft.replace(file)
         return file.read_bytes()
 

@@ -125,10 +125,10 @@ def png(figure: Figure, across: int = 1) -> bytes:
     return _image(figure, "png", {"Title": figure.title, "Description": figure.alternative}, across)
 
 
-def still(figure: Figure) -> bytes:
-    """Draw `figure` as a PNG file for a page: panels side by side, few colors, a third of the bytes."""
+def still(image: bytes) -> bytes:
+    """Return a PNG file in few colors, for a page: a third of the bytes."""
     buffer = BytesIO()
-    drawn = Image.open(BytesIO(png(figure, across=2))).convert("RGB")
+    drawn = Image.open(BytesIO(image)).convert("RGB")
     drawn.quantize(96, dither=Image.Dither.NONE).save(buffer, "png", optimize=True)
     return buffer.getvalue()
 
@@ -171,7 +171,7 @@ def panel_sheet(panels: tuple[Panel, ...], across: int = 1) -> Sheet:
     rows = panel_rows(panels, across)
     heights = [max(panel_height(panels[index], len(row)) for index in row) for row in rows]
     sheet = Sheet(figsize=(_WIDTH, _PANEL_HEIGHT * sum(heights) + 1.2), layout="constrained")
-    grid = sheet.add_gridspec(len(rows), across, height_ratios=heights)
+    grid = sheet.add_gridspec(len(rows), max(map(len, rows)), height_ratios=heights)
     axes: list[Axes] = [
         sheet.add_subplot(grid[row, :] if len(beside) == 1 else grid[row, column])
         for row, beside in enumerate(rows)

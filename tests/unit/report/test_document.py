@@ -21,12 +21,13 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import about
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.report import ReportInput
+from lineofaction.report import document
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.attaching import attached
 from lineofaction.report.drawing.figure import Axis, Bars, Figure, Line, Panel, counts, panel_rows
 from lineofaction.report.drawing.image import panel_sheet, png, still
 from lineofaction.report.drawing.interactive import plotly_figure
-from lineofaction.report.drawing.page import Headline, Page, html
+from lineofaction.report.drawing.page import Headline, Page, Section, html
 from lineofaction.report.ste.over_torque import ripple_over_torque
 from lineofaction.report.title_block import about_of, titled
 
@@ -153,10 +154,28 @@ def test_narrow_panels_stand_side_by_side() -> None:
 
 
 def test_a_still_picture_has_the_size_of_its_sheet_in_a_third_of_the_bytes() -> None:
-    drawn = figure(curve(), curve())
-    small, whole = still(drawn), png(drawn, across=2)
+    whole = png(figure(curve(), curve()), across=2)
+    small = still(whole)
     assert Image.open(BytesIO(small)).size == Image.open(BytesIO(whole)).size
     assert len(small) < 0.45 * len(whole)
+
+
+def test_a_page_and_its_images_draw_a_column_of_panels_once(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    column, row = figure(drawing(0.3), curve()), replace(figure(curve(), curve()), key="row")
+    calls: list[tuple[str, int]] = []
+
+    def counted(drawn: Figure, across: int = 1) -> bytes:
+        calls.append((drawn.key, across))
+        return png(drawn, across)
+
+    monkeypatch.setattr(document, "png", counted)
+    section = Section("Figures", "Two.", (column, row))
+    document.write_whole(replace(PAGE, sections=(section,)), tmp_path / "page.html", tmp_path)
+    assert calls == [(column.key, 2), ("row", 2), ("row", 1)]
+    for drawn in (column, row):
+        assert (tmp_path / f"{drawn.key}.png").read_bytes() == png(drawn)
 
 
 @pytest.mark.law
