@@ -68,6 +68,17 @@ def different(first: np.ndarray, second: np.ndarray) -> float:
     return float(np.mean(np.abs(first - second).max(axis=-1) > 12))
 
 
+@pytest.mark.parametrize("size", [(1000, 700), (1024, 768), (900, 700), (400, 660)])
+def test_a_small_window_has_room_for_the_picture(
+    drawing_browser: Browser, address: str, size: tuple[int, int]
+) -> None:
+    page = drawing_browser.new_page(viewport={"width": size[0], "height": size[1]})
+    page.goto(address)
+    page.wait_for_selector(f"{CANVAS}[data-frames]", state="attached")
+    until(lambda: (page.locator(CANVAS).bounding_box() or {"height": 0.0})["height"] > 120.0)
+    page.close()
+
+
 @pytest.mark.law
 def test_the_pair_is_drawn_turns_by_keyboard_and_sleeps(view: Visit) -> None:
     page, canvas = view.page, view.page.locator(CANVAS)
