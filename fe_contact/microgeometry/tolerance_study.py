@@ -265,7 +265,8 @@ def sampled(request: ToleranceRequest, run: Run) -> ToleranceStudy:
         distributions = tolerances.distributions
         drawn = DrawnPairs(deviation, ste, held.start, model, distributions, period, sampling.seed)
         designed = design.evaluation.ste[0]
-        above = request.limit and pairs_above(request.limit, drawn, designed, sampling.confidence)
+        limit, confidence = request.limit, sampling.confidence
+        above = None if limit is None else pairs_above(limit, drawn, designed, confidence)
     with clock.stage("confirmation"):
         table = full_table(nominal, {}, study.decided, run.cache)
         error = ripple_errors(table, nominal)[0]
