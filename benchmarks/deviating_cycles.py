@@ -22,7 +22,7 @@ from fe_contact import (
     ToothFlank,
     Wave,
 )
-from fe_contact.analysis.cycle.deviating_cycle import cycle_contact, deviating_cycle
+from fe_contact.analysis.deviating_cycle import cycle_contact, deviating_cycle
 from fe_contact.geometry.flank_tolerances import (
     cumulative_pitch_tolerance,
     helix_slope_tolerance,

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from fe_contact.allowed_error import AllowedError
     from fe_contact.analysis.analyze import analyze, ste_database
-    from fe_contact.analysis.cycle.deviating_cycle import DeviatingCycle, deviating_cycle
+    from fe_contact.analysis.deviating_cycle import DeviatingCycle, deviating_cycle
     from fe_contact.analysis.flanks.deformed_pair import DeformedPair, deformed_pairs
     from fe_contact.analysis.flanks.flank_file import ContactPattern, contact_pattern, flank_results
     from fe_contact.analysis.flanks.load_distribution import LoadDistribution
@@ -106,7 +106,7 @@ __all__ = [
 _NAMES = {
     "fe_contact.allowed_error": "AllowedError",
     "fe_contact.analysis.analyze": "analyze ste_database",
-    "fe_contact.analysis.cycle.deviating_cycle": "DeviatingCycle deviating_cycle",
+    "fe_contact.analysis.deviating_cycle": "DeviatingCycle deviating_cycle",
     "fe_contact.analysis.flanks.deformed_pair": "DeformedPair deformed_pairs",
     "fe_contact.analysis.flanks.flank_file": "ContactPattern contact_pattern flank_results",
     "fe_contact.analysis.flanks.load_distribution": "LoadDistribution",

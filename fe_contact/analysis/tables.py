@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bounds import engineering
+from fe_contact.analysis.cycle.derived_pitches import DerivedCycle, derived_cycle
 from fe_contact.analysis.pairs.contact_lines import deflected_operating_points, solve_operating_points
 from fe_contact.analysis.pairs.kept_contact import OF_SUPPORT, KeptContact, contact_fields
 from fe_contact.analysis.pairs.pair_contact import (
@@ -32,7 +33,8 @@ from fe_contact.contact import ContactModel, ContactProblem, ContactSolution
 from fe_contact.contact.model import MeetingTeeth
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import Run
-from fe_contact.planning.cost_model import Prediction, expected_tries, most_positions
+from fe_contact.planning.cost_model import Prediction, expected_tries, most_positions, unit_work
+from fe_contact.planning.cycle_seconds import CycleSeconds
 from fe_contact.planning.plan import FaceDiscretization, NodeRule, Plan
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
 from fe_contact.ste.interpolation import Axis, interpolate
@@ -221,6 +223,8 @@ class SolvedTable(SolvedRun):
         Its errors not yet estimated.
     condition : ndarray or None
         Condition numbers of the compliances, where workers found them.
+    derived : DerivedCycle, optional
+        What came of derivatives, where they were tried.
     """
 
     decided: Decided
@@ -230,6 +234,7 @@ class SolvedTable(SolvedRun):
     support: Sequence[KeptContact]
     table: SteDatabase
     condition: FloatArray | None = None
+    derived: DerivedCycle | None = None
 
     @property
     def edge_depths(self) -> list[FloatArray]:
@@ -268,17 +273,41 @@ def solve_table(
     with clock.stage("contact"):
         progress = by_cost(partial(run.progress, "contact"), prediction.parts["contact"])
         nodes = _table_nodes(points, plan, partial(progress, "positions"))
-        loads, report = (plan.load, plan.support), partial(progress, "table")
-        edges = edges_left_out(checked)
-        (kept, support), condition = solve_operating_points(
-            points, nodes.position, loads, conditioned=full, edges=edges, report=report
+        points, sets, condition, derived = _solved_places(
+            points, nodes.position, decided, full=full, report=partial(progress, "table")
         )
+        kept, support = sets
         table = assembled_table(request, points, nodes, kept, support)
         run.progress("contact", 1.0)
     solved = [(each.problem, each.solution) for each in kept]
     return SolvedTable(
-        checked, plan, points, solved, decided, prediction, nodes, kept, support, table, condition
+        checked, plan, points, solved, decided, prediction, nodes, kept, support, table, condition, derived
     )
+
+
+def _solved_places(
+    points: OperatingPoints, position: FloatArray, decided: Decided, *, full: bool, report: Report
+) -> tuple[OperatingPoints, list[list[KeptContact]], FloatArray | None, DerivedCycle | None]:
+    """Solve all places, their pitches by derivatives where that is predicted to take less.
+
+    Returns the places, what is kept of them for each set of loads, condition numbers where workers found
+    them, and what came of derivatives where they were tried.
+    """
+    checked, plan, known = decided.checked, decided.plan, None
+    loads, edges = (plan.load, plan.support), edges_left_out(checked)
+    sizes = [each.size for each in loads]
+    pair = checked.request.pair
+    work = unit_work(pair, plan, plan.discretization.slices)
+    predicted = CycleSeconds.of(work, pair, points.period, position.size, sizes)
+    if full and predicted.pays_in_table(points.period):
+        known = derived_cycle(points, position, loads, checked.request.options, edges=edges)
+        if known.tables:
+            report(1.0)
+            return known.places, known.kept, None, known
+    kept, condition = solve_operating_points(
+        points, position, loads, conditioned=full, edges=edges, report=report
+    )
+    return points, kept, condition, known
 
 
 def _subject(checked: Checked, prediction: Prediction) -> str:

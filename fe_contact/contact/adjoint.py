@@ -80,7 +80,7 @@ def adjoint(pair: ParallelAxes, problem: ContactProblem, solution: ContactSoluti
     """
     c = problem.candidates
     pushed, (middle, half) = (np.zeros((2, *solution.force.shape)) for _ in range(2))
-    _weigh(point_problems(problem), solution.force, _shares(pair, c), pushed, middle, half)
+    weigh(point_problems(problem), solution.force, _shares(pair, c), pushed, middle, half)
     pushed[:, solution.status != Status.CONVERGED] = np.nan
     stiffness, of_arm = np.einsum("rplm,pm->rpl", pushed, c.motion_arm)
     weight, added_arm = pushed[0] / stiffness[..., None], of_arm / stiffness
@@ -89,7 +89,7 @@ def adjoint(pair: ParallelAxes, problem: ContactProblem, solution: ContactSoluti
 
 
 @njit(cache=True, error_model="numpy")
-def _weigh(
+def weigh(
     every: PointProblems,
     force: FloatArray,
     shares: FloatArray,

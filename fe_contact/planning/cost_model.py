@@ -19,6 +19,7 @@ from fe_contact.contact import ContactModel, teeth_in_reach
 from fe_contact.contact.problem import POINTS
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
+from fe_contact.planning.cycle_seconds import FEWEST_PITCHES, CycleSeconds
 from fe_contact.planning.plan import FaceDiscretization, Plan, PlaneDiscretization
 from fe_contact.sampled import ALIGNMENTS, LOADS, WIDE_INTERVALS, WIDE_PROBES, some_positions
 from fe_contact.types import Json
@@ -100,10 +101,13 @@ def contact_seconds(
     tried, window = expected_tries(plan, times), _searched_pitches(plan, model.period)
     work = unit_work(pair, plan, plan.discretization.slices)
     search = work.of(tried * distances, 0) + work.in_pitches(tried * assessed, (loads,), window)
+    cycle = CycleSeconds.of(work, pair, model.period, kept, (loads, plan.support.size))
+    derived = with_errors and cycle.pays_in_table(model.period)
     table = work.of(kept * distances, 0)
-    table += work.in_pitches(kept * points, (loads, plan.support.size), model.period)
+    table += points * (cycle.derivatives if derived else cycle.exact)
     table += _FACE_CHECK if plan.discretization.slices > 1 else 0.0
-    return search, table, _errors(pair, plan, model.period, alignments) if with_errors else 0.0
+    solved = FEWEST_PITCHES if derived else model.period
+    return search, table, _errors(pair, plan, model.period, alignments, solved) if with_errors else 0.0
 
 
 def _searched_pitches(plan: Plan, period: int) -> int:
@@ -111,8 +115,11 @@ def _searched_pitches(plan: Plan, period: int) -> int:
     return 1 if period == 1 else 3 * min(plan.nodes.assessed_pitches, period)
 
 
-def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, int]) -> float:
-    """CPU seconds of rougher solutions of some of the table, middles, and held-out points of its axes."""
+def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, int], solved: int) -> float:
+    """CPU seconds of rougher solutions of some of the table, middles, and held-out points of its axes.
+
+    In as many base pitches as are `solved` of its period.
+    """
     made, loads = plan.discretization, plan.load.size
     kept = expected_positions(plan, period * alignments[0] * alignments[1])
     work = unit_work(pair, plan, made.slices)
@@ -124,11 +131,11 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
     some, rows = min(loads, LOADS), some_positions(kept).size
     skews, distances = (min(count, ALIGNMENTS) for count in alignments)
     seconds = sum(
-        w.of(rows * distances, 0) + w.in_pitches(rows * skews * distances, (some,), period) for w in rougher
+        w.of(rows * distances, 0) + w.in_pitches(rows * skews * distances, (some,), solved) for w in rougher
     )
     if plan.positions is not None or period > 1:
         middles, assessed = _SOLVED_MIDDLES * kept, min(alignments[0] * alignments[1], _JUDGED)
-        seconds += work.of(middles * alignments[1], 0) + work.in_pitches(middles * assessed, (some,), period)
+        seconds += work.of(middles * alignments[1], 0) + work.in_pitches(middles * assessed, (some,), solved)
     held_out_loads = (loads - 1) * (WIDE_PROBES if loads - 1 <= WIDE_INTERVALS else 1)
     held = rows * (held_out_loads + (alignments[0] - 1) * some)
     apart = _HELD_OUT_DISTANCES * (alignments[1] - 1)

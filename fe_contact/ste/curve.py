@@ -93,6 +93,8 @@ AT_NODES = ("discretisation", "slices", "contact_solver", PLANE, "position", MET
 BETWEEN_NODES = ("force", "misalignment", "center_distance_change")
 """Interpolation along each axis: nothing on its nodes; stored at the lower node of every interval."""
 SOURCES = AT_NODES + BETWEEN_NODES
+DERIVATIVES = "derivatives"
+"""A source at nodes that follows all others in tables of which some base pitches are not solved."""
 OF_LOAD_ARM = ("discretisation", "slices", "position")
 """Sources of the errors of the load arm at stored loads and alignments."""
 
@@ -103,7 +105,7 @@ def errors_by_source(table: SteFields, point: OperatingPoint) -> FloatArray:
     Linear between the nodes. NaN: not estimated.
     """
     values = np.moveaxis(table.curve_error, (2, 3, 4), (0, 1, 2))
-    at_nodes = values[:, :, :, : len(AT_NODES)]
+    at_nodes = np.delete(values, np.s_[len(AT_NODES) : len(SOURCES)], axis=3)
     between = []
     axes = (
         (table.force, point.force),
@@ -116,7 +118,13 @@ def errors_by_source(table: SteFields, point: OperatingPoint) -> FloatArray:
         knots, at = axes[i]
         inside = at not in knots and knots[0] < at < knots[-1]
         between.append(_interval(values[..., source, :], axes, i) if inside else np.zeros(QUANTITIES))
-    return np.concatenate([at_nodes, np.array(between)])
+    first, derivatives = np.split(at_nodes, [len(AT_NODES)])
+    return np.concatenate([first, np.array(between), derivatives])
+
+
+def source_names(errors: FloatArray) -> tuple[str, ...]:
+    """Return the names of the sources (9 or 10, ...) of the errors of a table."""
+    return (*SOURCES, DERIVATIVES)[: len(errors)]
 
 
 def all_sources(errors: FloatArray) -> FloatArray:

@@ -321,7 +321,15 @@ def joined_over_misalignment(tables: Sequence[SteDatabase]) -> SteDatabase:
         name: dimensions.index(AXIS) for name, dimensions in tables[0].stored.items() if AXIS in dimensions
     }
     joined: dict[str, Any] = {
-        name: np.concatenate([getattr(table, name) for table in tables], axis=axis)
+        name: np.concatenate(_of_all_sources([getattr(table, name) for table in tables], name), axis=axis)
         for name, axis in along.items()
     }
     return replace(tables[0], **joined)
+
+
+def _of_all_sources(errors: list[FloatArray], name: str) -> list[FloatArray]:
+    """Return arrays with as many sources of errors: one that a table lacks adds none to it."""
+    if name not in ("curve_error", "load_arm_error"):
+        return errors
+    most = max(len(each) for each in errors)
+    return [np.concatenate([each, np.zeros((most - len(each), *each.shape[1:]))]) for each in errors]

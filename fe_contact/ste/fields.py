@@ -97,7 +97,8 @@ class SteFields:
     error_estimate : (P, F, M, D) array
         Half-width of the error band of the transmission error, m, >= 0; NaN where it was not estimated.
     residuals : (P, F, M, D, 4) array
-        Equilibrium, penetration, tension, complementarity of the contact solution.
+        Equilibrium, penetration, tension, complementarity of the contact solution; NaN in base pitches that
+        were not solved but follow from derivatives.
     support_force : (S,) array
         Further loads in N, not among `force`, solved only to carry the force extraction down to lift-off and
         beyond the highest load; S may be 0.
@@ -105,9 +106,9 @@ class SteFields:
         As the arrays of the same names without `support`.
     period : int
         Whole base pitches after which everything repeats: 1 where all teeth of a gear are alike.
-    curve_error : (9, 23, F, M, D) array
+    curve_error : (9 or 10, 23, F, M, D) array
         Errors of mean, peak-to-peak, any order beside the mesh orders, and 20 harmonics in m, >= 0, by source
-        (`ste.curve.SOURCES`); NaN: not estimated.
+        (`ste.curve.SOURCES`, and `DERIVATIVES` where base pitches were not solved); NaN: not estimated.
         Empty for tables without, whose errors follow from the bands.
     edge_pressure : (P, F, M, D) array
         Largest pressure of the contacts that reach an edge of a flank, Pa: Hertz's as if the flank went on,
@@ -116,9 +117,9 @@ class SteFields:
         Arm of the load about the axis of a misalignment, m: over all points of the contact lines the mean of
         the offset from mid-face less tan(beta_b) times the way from the pitch point along the line of action.
         On spur gears `face_centroid`. Empty for tables without.
-    load_arm_error : (3, 23, F, M, D) array
-        Errors of the same quantities of it in m, >= 0, by source (`ste.curve.OF_LOAD_ARM`); NaN: not
-        estimated. Empty for tables without.
+    load_arm_error : (3 or 4, 23, F, M, D) array
+        Errors of the same quantities of it in m, >= 0, by source (`ste.curve.OF_LOAD_ARM`, and as above);
+        NaN: not estimated. Empty for tables without.
     """
 
     position: FloatArray

@@ -184,6 +184,19 @@ def _show_effects(out: Console, ledger: list[dict[str, Any]]) -> None:
         out.print(f"{trifles_title(trifles)}: {names}")
 
 
+def _of_cycle(cycle: dict[str, Any]) -> str:
+    """Return how many base pitches were solved, or why all were."""
+    if reason := cycle.get("reason"):
+        return f"all {cycle['pitches']} base pitches solved: {reason}"
+    solved, pitches = max(cycle["solved"]), cycle["pitches"]
+    pressure = engineering(100.0 * cycle["pressure_error_relative"], 2)
+    share = engineering(100.0 * cycle["share_error"], 2)
+    return (
+        f"{solved} of {pitches} base pitches solved, the others by derivatives; load shares within {share} % "
+        f"of the load, pressures within {pressure} % of the largest at 99 % of their positions"
+    )
+
+
 def _cost(receipt: dict[str, Any]) -> str:
     """Return time by stage and memory in one line, and what there is to say of the table in others."""
     seconds = {name: spent["cpu_seconds"] for name, spent in receipt["stages"].items()}
@@ -199,6 +212,8 @@ def _cost(receipt: dict[str, Any]) -> str:
     if predicted:
         pitches, seconds = predicted["pitches"], predicted["cpu_seconds"]
         text += f"\nperiod {pitches} base pitches; contact predicted {engineering(seconds, 2)} CPU s"
+    if cycle := receipt.get("cycle"):
+        text += f"\n{_of_cycle(cycle)}"
     held_out = _held_out(receipt.get("held_out", {}))
     if held_out:
         text += f"\nlargest error at held-out points between the nodes: {held_out} (in the errors there)"

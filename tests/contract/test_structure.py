@@ -11,18 +11,18 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (42_320, 781),
+    ("fe_contact",): (43_181, 800),
     ("dynamics",): (42_673, 837),
     ("lineofaction.gearbox",): (26_754, 547),
     ("lineofaction.report",): (11_961, 226),
     ("service",): (14_787, 344),
     ("lineofaction.client",): (2_674, 53),
-    ("lineofaction.cli",): (5_456, 80),
+    ("lineofaction.cli",): (5_471, 80),
     ("lineofaction.hardcases",): (3_841, 35),
     ("bounds", "host", "model_studies"): (4_500, 155),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 834
+MOST_FILES = 837
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""

@@ -16,6 +16,7 @@ from fe_contact.ste.curve_quantities import (
     PEAK_TO_PEAK,
     QUANTITIES,
 )
+from fe_contact.ste.interpolation import Axis
 from fe_contact.types import FloatArray
 
 CONFIDENCE = 0.99
@@ -30,10 +31,13 @@ class DrawnPitches:
     Attributes
     ----------
     missed : ndarray, shape (C, P, L)
-        Transmission error by the tangents of all other states less the solved one, m.
+        Transmission error, or arm of the load, by the tangents of all other states less the solved one, m.
+    position : ndarray, shape (P,)
+        In [0, 1).
     """
 
     missed: FloatArray
+    position: FloatArray
 
     @property
     def correction(self) -> FloatArray:
@@ -55,13 +59,14 @@ class DrawnPitches:
         """
         count, left = len(self.missed), self._left
         of_mean = scipy.stats.t.ppf(0.5 + 0.5 * CONFIDENCE, count - 1) / math.sqrt(count)
-        position = np.arange(left.shape[1]) / left.shape[1]
-        waves = np.exp(-2.0j * math.pi * np.arange(1, HARMONICS + 1)[:, None] * position)
-        lines = np.einsum("hp,cpl->chl", waves, left) * (2.0 / position.size)
+        spacing = Axis(self.position, 1.0).spacing
+        weight = 0.5 * (spacing + np.roll(spacing, 1))
+        waves = np.exp(-2.0j * math.pi * np.arange(1, HARMONICS + 1)[:, None] * self.position)
+        lines = np.einsum("hp,cpl->chl", waves * weight, left) * 2.0
         errors = np.empty((QUANTITIES, left.shape[2]))
-        errors[MEAN] = of_mean * left.mean(axis=1).std(axis=0, ddof=1)
+        errors[MEAN] = of_mean * np.einsum("p,cpl->cl", weight, left).std(axis=0, ddof=1)
         errors[PEAK_TO_PEAK] = np.nan
-        errors[BESIDE_MESH] = np.sqrt(2.0 * np.mean(left**2, axis=(0, 1)))
+        errors[BESIDE_MESH] = np.sqrt(2.0 * np.einsum("p,cpl->l", weight, left**2) / count)
         errors[FIRST_HARMONIC:] = of_mean * np.sqrt((np.abs(lines) ** 2).sum(axis=0) / (count - 1))
         return errors
 

@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.cycle.drawn_pitches import DrawnPitches
-from fe_contact.analysis.cycle.tangents import Tangent, ToothGaps, nominal_tangent, pitch_tangents
+from fe_contact.analysis.cycle.tangents import (
+    SolvedState,
+    Tangent,
+    ToothGaps,
+    nominal_tangent,
+    pitch_tangents,
+)
 from fe_contact.analysis.pairs.kept_contact import solved_in_parts
 from fe_contact.analysis.pairs.pair_contact import OperatingPoint
-from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.contact import Candidates, ContactProblem, ContactSolution
 from fe_contact.errors import SolveError
+from fe_contact.geometry import ParallelAxes
 from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
@@ -20,16 +31,41 @@ DRAWN = 16
 FEWEST = 8
 """Of them that count at least."""
 BATCH = 8
-"""Further pitches that are solved together."""
+"""Further pitches that are solved before the errors are looked at."""
+PART = 4
+"""Pitches that are solved together: their touching points are held at once."""
+WHOLE = 4
+"""Where one in so many pitches is to be solved, all are."""
+
+
+Rows = Callable[[ParallelAxes, Candidates], FloatArray]
+"""Quantities (Q, P, m) of candidates of which the means over the load are followed."""
+
+
+def no_rows(_pair: ParallelAxes, c: Candidates) -> FloatArray:
+    """Follow the transmission error alone."""
+    return np.empty((0, *c.gap.shape))
 
 
 @dataclass(frozen=True)
 class CycleContact:
-    """Contact of one alignment at P positions of a base pitch and L loads, in any of its pitches."""
+    """Contact of one alignment at P positions of a base pitch and L loads, in any of its pitches.
+
+    Attributes
+    ----------
+    point : OperatingPoint
+    position : ndarray, shape (P,)
+        In [0, 1).
+    load : ndarray, shape (L,)
+        N.
+    rows : callable
+        What is followed beside the transmission error.
+    """
 
     point: OperatingPoint
     position: FloatArray
     load: FloatArray
+    rows: Rows = no_rows
 
     @property
     def pitches(self) -> int:
@@ -39,9 +75,9 @@ class CycleContact:
     def exact(self, pitches: IntArray) -> FloatArray:
         """Return the transmission error in whole base pitches (t,), (t, P, L) in m."""
         (kept,) = solved_in_parts(self.point, self.position, (self.load,), pitches, edges=False)
-        return self._by_pitch(_converged(kept.solution))
+        return self.by_pitch(_converged(kept.solution).deflection)
 
-    def solved(self, pitches: IntArray) -> tuple[ContactProblem, ContactSolution]:
+    def solved(self, pitches: IntArray) -> SolvedState:
         """Solve whole base pitches.
 
         Raises
@@ -49,24 +85,28 @@ class CycleContact:
         SolveError
             A point has no solution.
         """
-        problem, solution = self.point.solve_pitches(self.position, self.load, pitches)
-        return problem, _converged(solution)
+        return self._state(*self.point.solve_pitches(self.position, self.load, pitches))
 
-    def nominal(self) -> tuple[ToothGaps, Tangent]:
-        """Return the gaps of single teeth, and the tangent about gears without them."""
+    def nominal(self) -> tuple[ToothGaps, SolvedState]:
+        """Return the gaps of single teeth, and the state of gears without them."""
         contact, model = self.point.contact, self.point.model
-        problem, solution = contact.solve(replace(model, tooth_gaps=()), self.position, self.load)
-        gaps = ToothGaps.of(contact.pair, problem.candidates, model)
-        return gaps, nominal_tangent(contact.pair, gaps, problem, solution)
+        alike = replace(model, tooth_gaps=())
+        state = self._state(*contact.solve(alike, self.position, self.load))
+        return ToothGaps.of(contact.pair, state.problem.candidates, model), state
 
-    def tangents(self, gaps: ToothGaps, pitches: IntArray) -> tuple[FloatArray, list[Tangent]]:
-        """Return the transmission error in whole base pitches (t, P, L) in m, and the tangents about them."""
-        problem, solution = self.solved(pitches)
-        tangents = pitch_tangents(self.point.contact.pair, gaps, problem, solution, pitches)
-        return self._by_pitch(solution), tangents
+    def by_pitch(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Return rows (t P, ...) by pitch, (t, P, ...)."""
+        return values.reshape(-1, self.position.size, *values.shape[1:])
 
-    def _by_pitch(self, solution: ContactSolution) -> FloatArray:
-        return solution.deflection.reshape(-1, self.position.size, self.load.size)
+    def _state(self, problem: ContactProblem, solution: ContactSolution) -> SolvedState:
+        return SolvedState(
+            problem, _converged(solution), self.rows(self.point.contact.pair, problem.candidates)
+        )
+
+
+def in_parts(pitches: IntArray) -> list[IntArray]:
+    """Return pitches in parts that are solved together."""
+    return np.split(pitches, np.arange(PART, pitches.size, PART)) if pitches.size else []
 
 
 def _converged(solution: ContactSolution) -> ContactSolution:
@@ -74,6 +114,15 @@ def _converged(solution: ContactSolution) -> ContactSolution:
         failed = int(np.count_nonzero(solution.status))
         raise SolveError(f"contact of {failed} points of a cycle was not solved", solution)
     return solution
+
+
+Keep = Callable[[SolvedState], Mapping[str, NDArray[Any]]]
+"""Arrays (P, L, ...) that are kept of states, row by row."""
+
+
+def keep_nothing(_state: SolvedState) -> Mapping[str, NDArray[Any]]:
+    """Keep nothing beside what is followed."""
+    return {}
 
 
 @dataclass(frozen=True)
@@ -84,15 +133,40 @@ class LeastTangents:
     ----------
     ste, distance : ndarray, shape (t, P, L)
         Transmission error by the least one, and how far its state is, m.
+    state : ndarray of int, shape (t, P, L)
+        Which one it is, in the order in which they were taken.
+    sums : ndarray, shape (t, P, L, Q)
+        What is followed, about the same state.
     """
 
     ste: FloatArray
     distance: FloatArray
+    state: IntArray
+    sums: FloatArray
 
-    def and_of(self, ste: FloatArray, distance: FloatArray) -> LeastTangents:
-        """Return the least with another tangent."""
-        less = ste < self.ste
-        return LeastTangents(np.where(less, ste, self.ste), np.where(less, distance, self.distance))
+    @classmethod
+    def of(cls, tangent: Tangent, gaps: ToothGaps, pitches: IntArray) -> LeastTangents:
+        """Begin with one tangent in whole base pitches (t,)."""
+        ste, distance = tangent.over(gaps, pitches)
+        sums = tangent.sums.over(gaps, pitches, np.ones(ste.shape, dtype=bool))
+        return cls(ste, distance, np.zeros(ste.shape, dtype=np.int16), sums.reshape(*ste.shape, -1))
+
+    def and_of(
+        self, number: int, tangent: Tangent, gaps: ToothGaps, pitches: IntArray, but: BoolArray
+    ) -> LeastTangents:
+        """Return the least with another tangent, in the same pitches `but` (t,) some."""
+        ste, distance = tangent.over(gaps, pitches)
+        less = (ste < self.ste) & ~but[:, None, None]
+        sums = self.sums
+        if sums.shape[3]:
+            sums = sums.copy()
+            sums[less] = tangent.sums.over(gaps, pitches, less)
+        return LeastTangents(
+            np.where(less, ste, self.ste),
+            np.where(less, distance, self.distance),
+            np.where(less, np.int16(number), self.state),
+            sums,
+        )
 
     @property
     def furthest(self) -> FloatArray:
@@ -106,49 +180,99 @@ class Envelope:
 
     Attributes
     ----------
+    contact : CycleContact
+    keep : callable
+        What is kept of the states.
     nominal : ndarray, shape (L,)
         Mean of gears without gaps of teeth, m.
-    solved : ndarray of bool, shape (T,)
-    exact : ndarray, shape (T, P, L)
-        Where it was solved, m.
+    pitches : ndarray of int, shape (K,)
+        Of the states after the first, which is that of the nominal gears.
+    exact, exact_sums : ndarray, shapes (K, P, L), (K, P, L, Q)
+        Of them: transmission error, m, and what is followed.
+    kept : dict
+        Arrays (1 + K, P, L, ...) of all states by name.
     least : LeastTangents
         In all pitches.
     drawn : ndarray of int, shape (C,)
-        Pitches that were drawn.
+        Pitches that were drawn: the first of the states.
     without : LeastTangents
         In those, of all tangents but their own.
     """
 
+    contact: CycleContact
+    keep: Keep
     gaps: ToothGaps
     nominal: FloatArray
-    solved: BoolArray
+    pitches: IntArray
     exact: FloatArray
+    exact_sums: FloatArray
+    kept: Mapping[str, NDArray[Any]]
     least: LeastTangents
     drawn: IntArray
     without: LeastTangents
 
     @classmethod
-    def of(cls, contact: CycleContact) -> Envelope:
+    def of(cls, contact: CycleContact, keep: Keep = keep_nothing) -> Envelope:
         """Begin with the nominal gears and `DRAWN` pitches of a cycle that has as many."""
-        gaps, nominal = contact.nominal()
-        least = LeastTangents(*nominal.over(gaps, np.arange(contact.pitches)))
+        gaps, state = contact.nominal()
+        tangent = nominal_tangent(gaps, state)
+        least = LeastTangents.of(tangent, gaps, np.arange(contact.pitches))
         drawn = np.random.default_rng(0).choice(contact.pitches, DRAWN, replace=False)
-        without = LeastTangents(least.ste[drawn], least.distance[drawn])
-        nothing = np.full(least.ste.shape, np.nan)
-        unsolved, mean = np.zeros(contact.pitches, dtype=bool), nominal.value.mean(axis=0)
-        return cls(gaps, mean, unsolved, nothing, least, drawn, without).about(contact, drawn)
+        without = LeastTangents.of(tangent, gaps, drawn)
+        none = np.empty((0, *least.ste.shape[1:]))
+        return cls(
+            contact,
+            keep,
+            gaps,
+            tangent.value.mean(axis=0),
+            np.empty(0, dtype=np.int64),
+            none,
+            np.empty((0, *least.sums.shape[1:])),
+            {name: values[None] for name, values in keep(state).items()},
+            least,
+            drawn,
+            without,
+        ).about(drawn)
 
-    def about(self, contact: CycleContact, pitches: IntArray) -> Envelope:
+    @classmethod
+    def about_all(cls, contact: CycleContact, pitches: IntArray, keep: Keep = keep_nothing) -> Envelope:
+        """Take the tangents about the drawn pitches and others."""
+        envelope = cls.of(contact, keep)
+        return envelope.about(np.setdiff1d(pitches, envelope.pitches))
+
+    def about(self, pitches: IntArray) -> Envelope:
         """Solve pitches and take the tangents about them too."""
-        values, tangents = contact.tangents(self.gaps, pitches)
-        solved, exact, least, without = self.solved.copy(), self.exact.copy(), self.least, self.without
-        solved[pitches], exact[pitches] = True, values
-        for pitch, tangent in zip(pitches, tangents, strict=True):
-            ste, distance = tangent.over(self.gaps, np.arange(solved.size))
-            least = least.and_of(ste, distance)
-            own = (self.drawn == pitch)[:, None, None]  # its own tangent is no test of a pitch
-            without = without.and_of(np.where(own, np.inf, ste[self.drawn]), distance[self.drawn])
-        return replace(self, solved=solved, exact=exact, least=least, without=without)
+        envelope = self
+        for part in in_parts(pitches):
+            envelope = envelope._about(part)
+        return envelope
+
+    def _about(self, pitches: IntArray) -> Envelope:
+        contact, gaps, least, without = self.contact, self.gaps, self.least, self.without
+        state, every = contact.solved(pitches), np.arange(contact.pitches)
+        tangents, nowhere = pitch_tangents(gaps, state, pitches), np.zeros(contact.pitches, dtype=bool)
+        for k, tangent in enumerate(tangents):
+            number = 1 + self.pitches.size + k
+            least = least.and_of(number, tangent, gaps, every, nowhere)
+            # its own tangent is no test of a pitch
+            without = without.and_of(number, tangent, gaps, self.drawn, self.drawn == pitches[k])
+        kept = {name: contact.by_pitch(values) for name, values in self.keep(state).items()}
+        return replace(
+            self,
+            pitches=np.concatenate([self.pitches, pitches]),
+            exact=np.concatenate([self.exact, [each.value for each in tangents]]),
+            exact_sums=np.concatenate([self.exact_sums, [each.sums.value for each in tangents]]),
+            kept={name: np.concatenate([own, kept[name]]) for name, own in self.kept.items()},
+            least=least,
+            without=without,
+        )
+
+    @property
+    def solved(self) -> BoolArray:
+        """Whether each pitch was solved, (T,)."""
+        solved = np.zeros(self.contact.pitches, dtype=bool)
+        solved[self.pitches] = True
+        return solved
 
     @property
     def next(self) -> IntArray:
@@ -159,9 +283,9 @@ class Envelope:
         ends = self._beyond.max(axis=(0, 2))
         ends = np.argsort(-ends, kind="stable")[: min(BATCH // 2, np.count_nonzero(ends > 0.0))]
         far = np.argsort(-self.least.furthest, kind="stable")
-        chosen: list[int] = []
+        chosen, solved = list[int](), self.solved
         for pitch in [*ends.tolist(), *far.tolist()]:
-            if len(chosen) < BATCH and not self.solved[pitch] and all(abs(pitch - k) > 1 for k in chosen):
+            if len(chosen) < BATCH and not solved[pitch] and all(abs(pitch - k) > 1 for k in chosen):
                 chosen.append(pitch)
         return np.array(chosen)
 
@@ -171,16 +295,38 @@ class Envelope:
 
         Pitches further than any that is left stand for none of those: they would have been solved.
         """
-        missed = self.without.ste - self.exact[self.drawn]
+        return self._missed(self.without.ste - self.exact[: self.drawn.size])
+
+    def missed_sum(self, q: int) -> DrawnPitches:
+        """Return the same of one quantity that is followed."""
+        return self._missed((self.without.sums - self.exact_sums[: self.drawn.size])[..., q])
+
+    def _missed(self, missed: FloatArray) -> DrawnPitches:
         order = np.argsort(self.without.furthest, kind="stable")
         left = self.least.furthest[~self.solved].max()
         count = max(int(np.count_nonzero(self.without.furthest <= left)), FEWEST)
-        return DrawnPitches(missed[order[:count]])
+        return DrawnPitches(missed[order[:count]], self.contact.position)
 
     @property
     def ste(self) -> FloatArray:
         """Transmission error (T, P, L), m: solved, or the least tangent less what it misses in the mean."""
-        return np.where(self.solved[:, None, None], self.exact, self.least.ste - self.missed.correction)
+        return self.exact_in(self.least.ste - self.missed.correction, self.exact)
+
+    def sum(self, q: int) -> FloatArray:
+        """Return one quantity that is followed in the same way, (T, P, L)."""
+        values = self.least.sums[..., q] - self.missed_sum(q).correction
+        return self.exact_in(values, self.exact_sums[..., q])
+
+    def exact_in(self, values: NDArray[Any], exact: NDArray[Any]) -> NDArray[Any]:
+        """Return values (T, ...) with those of the states (K, ...) in the pitches that were solved."""
+        values = values.copy()
+        values[self.pitches] = exact
+        return values
+
+    def nearest(self, name: str) -> NDArray[Any]:
+        """Return what was kept of the state whose tangent is least, (T, P, L, ...)."""
+        p, load = np.indices(self.least.state.shape[1:])
+        return np.asarray(self.kept[name][self.least.state, p, load])
 
     @property
     def quantity_errors(self) -> FloatArray:
@@ -189,15 +335,44 @@ class Envelope:
         errors[PEAK_TO_PEAK] = np.maximum(self._beyond.max(axis=1).sum(axis=0), errors[MEAN])
         return errors
 
+    def sum_errors(self, q: int) -> FloatArray:
+        """Return the same of one quantity that is followed; both ends may be missed by the most."""
+        missed = self.missed_sum(q)
+        errors = missed.quantity_errors
+        errors[PEAK_TO_PEAK] = 2.0 * missed.error
+        return errors
+
     @property
     def _beyond(self) -> FloatArray:
         """By how much pitches may stand out of the range of those solved, above and below, (2, T, L) in m.
 
         Above a tangent nothing lies but what drawn pitches show, below it no more than is missed at most.
         """
-        missed = self.missed.missed
+        missed, known = self.missed.missed, self.exact
         above = self.least.ste.max(axis=1) + np.maximum(-missed.min(axis=(0, 1)), 0.0)
         below = self.least.ste.min(axis=1) - missed.max(axis=(0, 1))
-        known = self.exact[self.solved]
         beyond = np.stack([above - known.max(axis=(0, 1)), known.min(axis=(0, 1)) - below])
         return np.where(self.solved[:, None], 0.0, np.maximum(beyond, 0.0))
+
+
+def chosen(
+    contact: CycleContact, allowed: AllowedError, part: float = 1.0, keep: Keep = keep_nothing
+) -> Envelope | None:
+    """Solve as many pitches as a part of the error allowed needs; None where that is one in `WHOLE`."""
+    envelope = Envelope.of(contact, keep)
+    envelope = envelope.about(envelope.next)
+    while not _within(allowed, part, envelope):
+        if WHOLE * envelope.pitches.size > contact.pitches:
+            return None
+        envelope = envelope.about(envelope.next)
+    return envelope
+
+
+def _within(allowed: AllowedError, part: float, envelope: Envelope) -> bool:
+    """Whether derivatives give mean and peak-to-peak within a part of what is allowed, at all loads.
+
+    The mean is that of nominal gears: deviations turn the gears, and it may be zero.
+    """
+    ste, errors = envelope.ste, envelope.quantity_errors
+    values = np.stack([envelope.nominal, np.ptp(ste, axis=(0, 1))])
+    return bool(np.all(errors[[MEAN, PEAK_TO_PEAK]] <= part * allowed.of(values)))

@@ -16,11 +16,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fe_contact.contact import Candidates, ContactModel, ContactProblem, ContactSolution
-from fe_contact.contact.adjoint import adjoint
+from fe_contact.contact.load_weights import load_sums, load_weights
 from fe_contact.contact.model import MeetingTeeth
 from fe_contact.contact.touch import rolls_at
 from fe_contact.geometry import ParallelAxes
-from fe_contact.types import FloatArray, IntArray
+from fe_contact.types import BoolArray, FloatArray, IntArray
 
 
 @dataclass(frozen=True)
@@ -70,6 +70,45 @@ def _by_tooth(pair: ParallelAxes, candidates: Candidates, gear: int, model: Cont
 
 
 @dataclass(frozen=True)
+class LoadSums:
+    """Means of Q quantities over the load about one state, to first order in the gaps of teeth.
+
+    Attributes
+    ----------
+    value : ndarray, shape (P, L, Q)
+        At the state.
+    by_tooth : tuple of ndarray, shape (J, R, P, L, Q)
+        What each tooth of either gear adds as a member of each pair.
+    at_state : ndarray, shape (P, L, Q)
+        What the teeth of the state add together.
+    """
+
+    value: FloatArray
+    by_tooth: tuple[FloatArray, FloatArray]
+    at_state: FloatArray
+
+    def over(self, gaps: ToothGaps, pitches: IntArray, where: BoolArray) -> FloatArray:
+        """Return those at points (k, Q) of whole base pitches (t,), `where` (t, P, L) tells."""
+        t, p, load = np.nonzero(where)
+        return self.value[p, load] - self.at_state[p, load] + self._added(gaps, pitches, t, p, load)
+
+    def about(self, gaps: ToothGaps, pitch: int) -> LoadSums:
+        """Return the same about the state of a base pitch."""
+        p, load = (each.ravel() for each in np.indices(self.value.shape[:2]))
+        own = self._added(gaps, np.array([pitch]), np.zeros(p.size, dtype=np.int64), p, load)
+        return replace(self, at_state=own.reshape(self.value.shape))
+
+    def _added(
+        self, gaps: ToothGaps, pitches: IntArray, t: IntArray, p: IntArray, load: IntArray
+    ) -> FloatArray:
+        added = np.zeros((t.size, self.value.shape[2]))
+        for own, teeth in zip(self.by_tooth, gaps.teeth(pitches), strict=True):
+            for j in range(gaps.pair.size):
+                added += own[j, teeth[t, j], p, load]
+        return added
+
+
+@dataclass(frozen=True)
 class Tangent:
     """Transmission error at P positions and L loads about one state, to first order in the gaps of teeth.
 
@@ -83,12 +122,15 @@ class Tangent:
         What each tooth of either gear adds as a member of each pair, m.
     at_state : ndarray, shape (J, P, L)
         The same of the teeth of the state, m.
+    sums : LoadSums
+        Of the same state.
     """
 
     value: FloatArray
     part: FloatArray
     by_tooth: tuple[FloatArray, FloatArray]
     at_state: FloatArray
+    sums: LoadSums
 
     def over(self, gaps: ToothGaps, pitches: IntArray) -> tuple[FloatArray, FloatArray]:
         """Return the transmission error in whole base pitches (t,), and how far from the state it is.
@@ -114,39 +156,57 @@ class Tangent:
         return np.stack([self.by_tooth[0][j, first[:, j]] + self.by_tooth[1][j, second[:, j]] for j in pairs])
 
 
-def nominal_tangent(
-    pair: ParallelAxes, gaps: ToothGaps, problem: ContactProblem, solution: ContactSolution
-) -> Tangent:
+@dataclass(frozen=True)
+class SolvedState:
+    """Contact of whole base pitches one after the other, and Q quantities of its candidates (Q, P, m)."""
+
+    problem: ContactProblem
+    solution: ContactSolution
+    rows: FloatArray
+
+
+def nominal_tangent(gaps: ToothGaps, state: SolvedState) -> Tangent:
     """Return the tangent about the gears without what differs from tooth to tooth."""
-    (tangent,) = _tangents(pair, gaps, problem, solution, 1)
+    (tangent,) = _tangents(gaps, state, 1)
     return tangent
 
 
-def pitch_tangents(
-    pair: ParallelAxes,
-    gaps: ToothGaps,
-    problem: ContactProblem,
-    solution: ContactSolution,
-    pitches: IntArray,
-) -> list[Tangent]:
-    """Return the tangents about whole base pitches (t,) of which problem and solution are."""
-    tangents = _tangents(pair, gaps, problem, solution, pitches.size)
+def pitch_tangents(gaps: ToothGaps, state: SolvedState, pitches: IntArray) -> list[Tangent]:
+    """Return the tangents about whole base pitches (t,) of which the state is."""
     return [
-        replace(each, at_state=each.added(gaps, pitches[k : k + 1])[:, 0]) for k, each in enumerate(tangents)
+        replace(
+            each,
+            at_state=each.added(gaps, pitches[k : k + 1])[:, 0],
+            sums=each.sums.about(gaps, int(pitches[k])),
+        )
+        for k, each in enumerate(_tangents(gaps, state, pitches.size))
     ]
 
 
-def _tangents(
-    pair: ParallelAxes, gaps: ToothGaps, problem: ContactProblem, solution: ContactSolution, states: int
-) -> list[Tangent]:
+def _tangents(gaps: ToothGaps, state: SolvedState, states: int) -> list[Tangent]:
     """Return the tangents about states, as if each were that without gaps of teeth."""
+    problem, solution = state.problem, state.solution
     arm = problem.candidates.motion_arm[:, None]
-    weight = adjoint(pair, problem, solution).weight * arm
-    shape = states, -1, weight.shape[1], gaps.pair.size, weight.shape[2] // gaps.pair.size
+    weight, weights = load_weights(problem, solution, state.rows)
+    sums = load_sums(problem, solution, state.rows)
+    pairs, loads = gaps.pair.size, solution.load.size
+    every = np.concatenate([weight[None], weights]) * arm
+    shape = len(every), states, -1, loads, pairs, every.shape[3] // pairs
+    by_state = np.transpose(every.reshape(shape), (1, 4, 2, 5, 3, 0))  # (states, J, P, M, L, 1 + Q)
     tangents = []
-    for value, own in zip(np.split(solution.deflection, states), weight.reshape(shape), strict=True):
-        by_pair = np.transpose(own, (2, 0, 3, 1))  # (J, P, M, L)
-        first, second = (np.ascontiguousarray(np.swapaxes(gap @ by_pair, 1, 2)) for gap in gaps.gears)
-        part = by_pair.sum(axis=2)
-        tangents.append(Tangent(value, part, (first, second), np.zeros(part.shape)))
+    for value, mean, own in zip(
+        np.split(solution.deflection, states), np.split(sums, states), by_state, strict=True
+    ):
+        flat = own.reshape(*own.shape[:3], -1)
+        first, second = (_each_tooth(gap @ flat, loads) for gap in gaps.gears)
+        beside = LoadSums(mean, (first[..., 1:], second[..., 1:]), np.zeros(mean.shape))
+        part = own[..., 0].sum(axis=2)
+        by_tooth = np.ascontiguousarray(first[..., 0]), np.ascontiguousarray(second[..., 0])
+        tangents.append(Tangent(value, part, by_tooth, np.zeros(part.shape), beside))
     return tangents
+
+
+def _each_tooth(added: FloatArray, loads: int) -> FloatArray:
+    """Return what teeth add (J, P, R, L (1 + Q)) by tooth first, (J, R, P, L, 1 + Q)."""
+    by_tooth = np.swapaxes(added, 1, 2)
+    return np.ascontiguousarray(by_tooth).reshape(*by_tooth.shape[:3], loads, -1)

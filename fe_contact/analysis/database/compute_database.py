@@ -30,7 +30,7 @@ from fe_contact.planning.cost_model import log_name
 from fe_contact.plausibility import merged, table_findings
 from fe_contact.solver_version import SOLVER_VERSION, software_versions
 from fe_contact.ste import Metadata, SteDatabase
-from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES, METHOD, PLANE, all_sources
+from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES, METHOD, PLANE, SOURCES, all_sources
 from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, mean_of_curves
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from fe_contact.types import FloatArray, Json, Status
@@ -131,7 +131,7 @@ def _tolerance_receipt(table: SteDatabase, allowed: AllowedError, request: Reque
     bought, lasting = bought_shares(shares, request)
     if table.metadata.receipt.get("bias"):
         lasting[AT_NODES.index(PLANE)] = 0.0
-    bought = all_sources(bought)
+    bought = all_sources(np.concatenate([bought, shares[len(SOURCES) :]]))
     used = float(np.max(bought))
     limits = {"relative": allowed.relative, "floor_m": allowed.floor}
     if np.isnan(bought).all():
@@ -199,7 +199,7 @@ def compute_pass(
     full = _full(made)
     influences = _started_influences(planned, run, before) if full else iter([{}])
     assessed, contact = _assessed(made, clock, run)
-    if not repeated and not run.workers.cost.since(before).tasks:
+    if not repeated and made.derived is None and not run.workers.cost.since(before).tasks:
         cost = {log_name(made.prediction.kind, name): time for name, time in clock.seconds.items()}
         record(run.cache, made.prediction.logged, cost)
     with clock.stage("effect ledger"):
@@ -258,7 +258,7 @@ def _assessed(made: SolvedTable, clock: StageClock, run: Run) -> tuple[AssessedT
         coarse = made.places.on_bodies(bodies)
         assessed = assessed_table(
             made.table, made.places, coarse, made.solved, made.nodes, made.checked, made.plan
-        )
+        ).with_derivatives(made.derived)
     run.progress(stage, 1.0)
     return assessed, contact
 
@@ -277,6 +277,8 @@ def _planned(made: SolvedTable) -> Json:
         "prediction": made.prediction.to_json() | {"error": error},
         "choice": made.decided.to_json(),
     }
+    if made.derived is not None:
+        planned["cycle"] = made.derived.to_json()
     cycle = made.checked.cycle
     return planned if cycle is None else planned | {"predicted": cycle.to_json()}
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fe_contact.analysis.cycle.derived_pitches import DerivedCycle
 from fe_contact.analysis.estimates.held_out_axes import AxisError, held_out_axes
 from fe_contact.analysis.estimates.position_errors import (
     PositionErrors,
@@ -24,7 +25,16 @@ from fe_contact.planning.model_error import model_errors, point_error
 from fe_contact.planning.plan import FaceDiscretization, Plan
 from fe_contact.planning.plane_bias import LEFT_OUT, PlaneBias
 from fe_contact.ste import SteDatabase
-from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES, METHOD, OF_LOAD_ARM, PLANE, SOURCES
+from fe_contact.ste.curve import (
+    AT_NODES,
+    BETWEEN_NODES,
+    DERIVATIVES,
+    METHOD,
+    OF_LOAD_ARM,
+    PLANE,
+    SOURCES,
+    source_names,
+)
 from fe_contact.ste.curve_quantities import (
     BESIDE_MESH,
     BY_SOURCE,
@@ -153,7 +163,7 @@ def _contact_error(solution: ContactSolution) -> FloatArray:
 
 def worst_residual(solution: ContactSolution) -> float:
     """Return the largest of the four residuals over all converged points."""
-    good = solution.status == Status.CONVERGED
+    good = (solution.status == Status.CONVERGED) & np.isfinite(solution.residuals[..., 0])
     return float(solution.residuals[good].max()) if good.any() else 0.0
 
 
@@ -346,12 +356,13 @@ def _summary(errors: FloatArray) -> Json:
 
     A source is not estimated if it is unknown anywhere.
     """
-    known = {name: source for name, source in zip(SOURCES, errors, strict=True) if not np.isnan(source).any()}
+    names = source_names(errors)
+    known = {name: source for name, source in zip(names, errors, strict=True) if not np.isnan(source).any()}
     largest = {
         name: {label: source[i].max(axis=(1, 2)).tolist() for label, i in BY_SOURCE.items()}
         for name, source in known.items()
     }
-    return {"curve_error": largest, "not_estimated": [name for name in SOURCES if name not in known]}
+    return {"curve_error": largest, "not_estimated": [name for name in names if name not in known]}
 
 
 @dataclass(frozen=True)
@@ -383,6 +394,20 @@ class AssessedTable:
         """Return the table with them."""
         arms = self.load_arm_error
         return replace(table, error_estimate=self.band, curve_error=self.curve_error, load_arm_error=arms)
+
+    def with_derivatives(self, derived: DerivedCycle | None) -> AssessedTable:
+        """Return them with what derivatives miss, if any base pitch of the table is by them."""
+        if derived is None or not derived.tables:
+            return self
+        errors = [table.errors[:3] for table in derived.tables]
+        band, curves, arms = map(derived.places.gathered, map(list, zip(*errors, strict=True)))
+        return replace(
+            self,
+            band=self.band + band,
+            curve_error=np.concatenate([self.curve_error, curves[None]]),
+            load_arm_error=np.concatenate([self.load_arm_error, arms[None]]),
+            by_source=self.by_source | {f"{DERIVATIVES}_m": _largest_known(band)},
+        )
 
     def to_json(self) -> Json:
         """Return what the receipt says of the errors."""

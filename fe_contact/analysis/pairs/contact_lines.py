@@ -117,12 +117,12 @@ def _deflect_block(bodies: Bodies, block: _ContactBlock) -> tuple[FloatArray, ..
     """Return the curves (rows, L, 2) of each model alone, of one set of loads: one task."""
     where, (load,) = block.candidates.position, block.loads
     return tuple(
-        _curves(point, where, load, block.pitches, block.start(k))
+        curves_of_point(point, where, load, block.pitches, block.start(k))
         for k, point in enumerate(_points(bodies, block))
     )
 
 
-def _curves(
+def curves_of_point(
     point: OperatingPoint,
     position: FloatArray,
     load: FloatArray,
@@ -394,13 +394,14 @@ def deflected_operating_points(
     load : ndarray, shape (L,)
         Normal forces, N.
     pitches : ndarray of int, shape (T,), or None
-        Base pitches; None: as `OperatingPoint.solve` takes it.
+        Base pitches; None: as `OperatingPoint.solve` takes it. Of places by derivatives they are all.
     known : sequence of Candidates, optional
         Of plain involutes at the positions, for each place.
     starts : sequence of Start, optional
         Forces near the solution at each place; without `pitches`.
     """
-    lines = _sent_lines(workers, points, position, (load,), pitches, known)
+    derived = pitches is not None and any(point.derived is not None for point in points)
+    lines = {} if derived else _sent_lines(workers, points, position, (load,), pitches, known)
     if not lines:
         solved = _deflected_here(points, position, load, pitches, known, starts)
         return list(solved)
@@ -430,7 +431,10 @@ def _deflected_here(
     for k, point in enumerate(points):
         if known is not None:
             point.contact.assemble(point.model, known[k])
-        yield _curves(point, position[k], load, pitches, None if starts is None else starts[k])
+        if point.derived is not None and pitches is not None:
+            yield point.derived.on(point, position[k], load)
+        else:
+            yield curves_of_point(point, position[k], load, pitches, None if starts is None else starts[k])
 
 
 def _started(line: _Line, starts: Sequence[Start]) -> _Line:

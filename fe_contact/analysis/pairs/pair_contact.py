@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -282,12 +282,23 @@ def _teeth(pair: ParallelAxes, distance_changes: FloatArray | None) -> int:
 # The sweep over misalignment and center distance: one contact problem per operating point of the table.
 
 
+class Derived(Protocol):
+    """Who gives the base pitches of a long period by derivatives about some of them."""
+
+    def on(self, point: OperatingPoint, position: FloatArray, load: FloatArray) -> FloatArray:
+        """Return transmission error and load arm (T P, L, 2) in m at positions (P,) and loads (L,).
+
+        Of a point with other bodies, slices or patches than those of the table, too.
+        """
+
+
 @dataclass(frozen=True)
 class OperatingPoint:
-    """One misalignment at one change of the center distance."""
+    """One misalignment at one change of the center distance; all its pitches are solved or `derived`."""
 
     contact: PairContact
     model: ContactModel
+    derived: Derived | None = None
 
     def solve(
         self,

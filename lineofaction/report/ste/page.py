@@ -208,7 +208,7 @@ def _accuracy(database: SteDatabase) -> Table:
             ("largest error estimate, µm", um(np.max(database.error_estimate[good]), 2)),
             ("median error estimate, % of STE", number(100.0 * float(np.median(relative)), 2)),
         ]
-    worst = np.max(np.abs(database.residuals[good]), axis=0)
+    worst = np.nanmax(np.abs(database.residuals[good]), axis=0)  # pitches by derivatives have none
     rows += [
         (f"largest residual, {name}", leftover(float(value), 2))
         for name, value in zip(_RESIDUALS, worst, strict=True)

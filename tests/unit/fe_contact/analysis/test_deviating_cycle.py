@@ -15,13 +15,18 @@ from fe_contact import (
     PitchDeviation,
     Run,
     RunOut,
+    SteDatabase,
     TableAxes,
     ToothFlank,
     Wave,
+    ste_database,
 )
-from fe_contact.analysis.cycle.deviating_cycle import DeviatingCycle, cycle_contact, deviating_cycle
 from fe_contact.analysis.cycle.envelope import CycleContact, Envelope
+from fe_contact.analysis.cycle.tangents import nominal_tangent, pitch_tangents
+from fe_contact.analysis.deviating_cycle import DeviatingCycle, cycle_contact, deviating_cycle
 from fe_contact.errors import InputError
+from fe_contact.planning import cycle_seconds
+from fe_contact.ste.curve import DERIVATIVES, SOURCES, source_names
 from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, quantity_changes
 
 TEETH = (17, 19)
@@ -72,7 +77,7 @@ def test_gaps_of_single_teeth_add_up_to_those_of_the_pair_that_meets():
     contact = contact_of(1.0)
     gaps, _ = contact.nominal()
     pitches = np.array([0, 1, 40, 322])
-    problem, _ = contact.solved(pitches)
+    problem = contact.solved(pitches).problem
     alike = replace(contact.point.model, tooth_gaps=())
     plain = contact.point.contact.problem(alike, contact.position).candidates.gap
     found = problem.candidates.gap.reshape(pitches.size, *plain.shape)
@@ -90,7 +95,8 @@ def test_gaps_of_single_teeth_add_up_to_those_of_the_pair_that_meets():
 def test_derivatives_are_exact_for_small_deviations():
     """But at the few positions where a pair of teeth is about to part."""
     contact = contact_of(1e-3)
-    gaps, nominal = contact.nominal()
+    gaps, state = contact.nominal()
+    nominal = nominal_tangent(gaps, state)
     pitches = np.arange(0, 323, 30)
     moved = contact.exact(pitches) - nominal.value
     found, _ = nominal.over(gaps, pitches)
@@ -103,10 +109,10 @@ def test_derivatives_are_exact_for_small_deviations():
 def test_tangents_lie_above(exact):
     """Where teeth part others take over: the transmission error is concave in the gaps, but at tip edges."""
     contact = contact_of(1.0)
-    gaps, nominal = contact.nominal()
-    pitches = np.array([3, 150])
-    values, tangents = contact.tangents(gaps, pitches)
-    assert values == pytest.approx(exact[pitches], abs=SOLVER)
+    gaps, state = contact.nominal()
+    nominal, pitches = nominal_tangent(gaps, state), np.array([3, 150])
+    tangents = pitch_tangents(gaps, contact.solved(pitches), pitches)
+    assert np.stack([each.value for each in tangents]) == pytest.approx(exact[pitches], abs=SOLVER)
     for tangent in (nominal, *tangents):
         above = tangent.over(gaps, np.arange(contact.pitches))[0] - exact
         assert np.quantile(above, 0.01) > -0.02e-6
@@ -150,7 +156,7 @@ def test_a_cycle_that_needs_many_pitches_is_solved_whole(exact, monkeypatch):
 def test_drawn_pitches_do_not_test_themselves():
     envelope = Envelope.of(contact_of(1.0))
     least = envelope.least.ste[envelope.drawn]
-    own = least == envelope.exact[envelope.drawn]
+    own = least == envelope.exact[: envelope.drawn.size]
     assert own.any()
     assert np.all(envelope.without.ste[own] > least[own])
 
@@ -175,3 +181,72 @@ def test_what_a_cycle_cannot_be_is_refused(axes, positions, field):
     with pytest.raises(InputError) as caught:
         deviating_cycle(made(1.0), axes, replace(OPTIONS, positions=positions))
     assert caught.value.field == field
+
+
+@pytest.fixture(scope="module")
+def tables() -> tuple[SteDatabase, SteDatabase]:
+    """Return the same table by derivatives, and all its pitches solved."""
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(cycle_seconds, "TABLE_SAVES", 0.0)
+        derived = ste_database(made(1.0), AXES, OPTIONS)
+        patched.setattr(cycle_seconds, "TABLE_SAVES", np.inf)
+        return derived, ste_database(made(1.0), AXES, OPTIONS)
+
+
+def test_a_table_takes_pitches_by_derivatives_and_says_how_many(tables):
+    derived, solved = tables
+    told = derived.metadata.receipt["cycle"]
+    known = np.isfinite(derived.residuals[..., 0, 0, 0])
+    assert told["pitches"] == 323
+    assert 24 < told["solved"][0] < 90
+    assert np.count_nonzero(known.all(axis=1)) == 48 * told["solved"][0]
+    for name in ("static_transmission_error", "load_share", "max_pressure", "load_arm", "tangent_compliance"):
+        own, whole = (getattr(table, name)[known[:, 0]] for table in tables)
+        assert own == pytest.approx(whole, rel=1e-6, abs=SOLVER)
+    assert "cycle" not in solved.metadata.receipt
+    assert len(solved.curve_error) == len(SOURCES)
+
+
+def test_errors_of_a_table_hold_what_derivatives_miss(tables):
+    derived, solved = tables
+    assert source_names(derived.curve_error)[-1] == DERIVATIVES
+    for name, errors in (("static_transmission_error", "curve_error"), ("load_arm", "load_arm_error")):
+        own, whole = (getattr(table, name)[..., 0, 0] for table in tables)
+        true = quantity_changes(solved.position, own, whole, 323, solved.position)
+        assert np.mean(true <= getattr(derived, errors)[-1, ..., 0, 0] + SOLVER) > 0.95
+    missed = np.abs(derived.static_transmission_error - solved.static_transmission_error)
+    assert np.mean(missed <= derived.error_estimate) > 0.95
+    for torque in (40.0, 120.0):
+        own, whole = (table.spectrum(torque=torque) for table in tables)
+        assert np.mean(np.abs(own.amplitude - whole.amplitude) <= own.error) > 0.95
+
+
+def test_shares_and_pressures_are_within_what_drawn_pitches_tell(tables):
+    derived, solved = tables
+    told = derived.metadata.receipt["cycle"]
+    share = np.abs(derived.load_share - solved.load_share).max(axis=4)
+    assert np.mean(share <= told["share_error"]) > 0.97
+    pressure = np.abs(derived.max_pressure - solved.max_pressure) / solved.max_pressure.max()
+    assert np.mean(pressure <= told["pressure_error_relative"]) > 0.97
+    assert derived.max_pressure.max() == pytest.approx(solved.max_pressure.max(), rel=0.03)
+    assert derived.load_share.sum(axis=4) == pytest.approx(1.0)
+
+
+def test_meshes_leave_what_they_leave_of_the_table_solved_whole(tables):
+    derived, solved = (table.curve_error[SOURCES.index("discretisation"), :2] for table in tables)
+    assert derived == pytest.approx(solved, rel=0.35)
+
+
+def test_a_table_by_derivatives_rises_with_load(tables):
+    derived, _ = tables
+    position = np.linspace(0.0, 323.0, 4001)[:, None]
+    loads = np.geomspace(0.5 * derived.support_force[0], derived.force[-1], 40)
+    assert np.all(np.diff(derived.ste(position, loads), axis=1) > 0.0)
+
+
+def test_a_table_that_needs_many_pitches_says_why_all_were_solved(monkeypatch):
+    monkeypatch.setattr(AnalysisOptions, "allowed", AllowedError(1e-4, 1e-11))
+    monkeypatch.setattr(cycle_seconds, "TABLE_SAVES", 0.0)
+    table = ste_database(made(1.0), TableAxes(torques=[40.0], pitches=120), OPTIONS)
+    assert "do not keep the tolerance" in table.metadata.receipt["cycle"]["reason"]
+    assert np.isfinite(table.residuals).all()

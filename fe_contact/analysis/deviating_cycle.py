@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
 
 import numpy as np
 
 from fe_contact.allowed_error import AllowedError
-from fe_contact.analysis.cycle.envelope import BATCH, DRAWN, CycleContact, Envelope
+from fe_contact.analysis.cycle.envelope import CycleContact, chosen
 from fe_contact.analysis.pairs.pair_contact import operating_points
-from fe_contact.analysis.request.model_choice import Decided, decide
+from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.tables import condensed_bodies
 from fe_contact.errors import InputError, within
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.planning.cost_model import unit_work
+from fe_contact.planning.cycle_seconds import CycleSeconds
 from fe_contact.ste.curve_quantities import (
     BESIDE_MESH,
     HARMONICS,
-    MEAN,
-    PEAK_TO_PEAK,
     QUANTITIES,
     Spectrum,
     spectrum,
@@ -33,35 +30,6 @@ from model_studies.stage_clock import StageClock
 
 POSITIONS = 64
 """In a base pitch where none are requested."""
-WHOLE = 4
-"""Where one in so many pitches is to be solved, all are."""
-_TANGENT = 0.4
-"""CPU time of the tangents about a pitch over that of its solution."""
-_ADDED = 4e-9
-"""CPU seconds to add what one tooth of one pair does to one point."""
-
-
-class CycleSeconds(NamedTuple):
-    """CPU seconds that the contact of a cycle is predicted to take: all pitches solved, or by derivatives.
-
-    The latter with the fewest pitches that they are held against.
-    """
-
-    exact: float
-    derivatives: float
-
-    @classmethod
-    def of(cls, decided: Decided) -> CycleSeconds:
-        """Predict them on condensed bodies."""
-        pair, plan, pitches = decided.checked.request.pair, decided.plan, decided.checked.model.period
-        rows, loads = plan.positions or POSITIONS, plan.load.size
-        work = unit_work(pair, plan, plan.discretization.slices)
-        states = min(DRAWN + BATCH, pitches)
-        solved = (1.0 + _TANGENT) * work.in_pitches(rows, (loads,), states)
-        teeth = 0.5 * (pair.pinion.teeth + pair.wheel.teeth) * rows * work.pitch
-        meeting = 2 * (math.ceil(pair.transverse_contact_ratio + pair.overlap_ratio) + 1)
-        added = _ADDED * meeting * states * pitches * rows * loads
-        return cls(work.in_pitches(rows, (loads,), pitches), solved + teeth + added)
 
 
 @dataclass(frozen=True)
@@ -146,7 +114,11 @@ def cycle_contact(
     request, plan = decided.checked.request, decided.plan
     bodies = condensed_bodies(decided.checked, plan, StageClock(run.workers.cost), run)
     (point,) = operating_points(request.scene, request.choices, bodies).places
-    return CycleContact(point, np.arange(positions) / positions, plan.load), CycleSeconds.of(decided)
+    work = unit_work(request.pair, plan, plan.discretization.slices)
+    predicted = CycleSeconds.of(
+        work, request.pair, decided.checked.model.period, positions, (plan.load.size,)
+    )
+    return CycleContact(point, np.arange(positions) / positions, plan.load), predicted
 
 
 def _solved(
@@ -157,24 +129,7 @@ def _solved(
     Of a position in another pitch, and of the quantities.
     """
     every, none = np.arange(contact.pitches), np.zeros((1 + QUANTITIES, contact.load.size))
-    if contact.pitches <= WHOLE * DRAWN or predicted.derivatives >= predicted.exact:
+    envelope = chosen(contact, allowed) if predicted.pays(contact.pitches) else None
+    if envelope is None:
         return contact.exact(every), every >= 0, none
-    envelope = Envelope.of(contact)
-    envelope = envelope.about(contact, envelope.next)
-    while not _within(allowed, envelope):
-        if WHOLE * np.count_nonzero(envelope.solved) > contact.pitches:
-            ste, rest = envelope.exact.copy(), every[~envelope.solved]
-            ste[rest] = contact.exact(rest)
-            return ste, every >= 0, none
-        envelope = envelope.about(contact, envelope.next)
     return envelope.ste, envelope.solved, np.vstack([envelope.missed.error, envelope.quantity_errors])
-
-
-def _within(allowed: AllowedError, envelope: Envelope) -> bool:
-    """Whether derivatives give mean and peak-to-peak within what is allowed, at all loads.
-
-    The mean is that of nominal gears: deviations turn the gears, and it may be zero.
-    """
-    ste, errors = envelope.ste, envelope.quantity_errors
-    values = np.stack([envelope.nominal, np.ptp(ste, axis=(0, 1))])
-    return bool(np.all(errors[[MEAN, PEAK_TO_PEAK]] <= allowed.of(values)))

@@ -1,0 +1,457 @@
+"""Pitches of a table by derivatives about those that are solved: its arrays, curves and their errors.
+
+What a base pitch adds to that of other teeth is found to first order: transmission error, shares of the
+load, its centroid and its arm. All else is that of the state whose tangent counts at the position; the
+largest pressure of a pair of teeth is Hertz's, as the root of its share.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fe_contact.analysis.cycle.envelope import BATCH, CycleContact, Envelope, LeastTangents, chosen, in_parts
+from fe_contact.analysis.cycle.tangents import SolvedState, ToothGaps
+from fe_contact.analysis.pairs.contact_lines import curves_of_point
+from fe_contact.analysis.pairs.kept_contact import (
+    OF_SUPPORT,
+    KeptContact,
+    contact_fields,
+    solved_in_parts,
+)
+from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoints
+from fe_contact.analysis.pairs.tip_edges import edge_depth
+from fe_contact.contact import Candidates, ContactSolution, at_edges, contact_pressure
+from fe_contact.contact.load_weights import load_sums
+from fe_contact.errors import SolveError
+from fe_contact.geometry import ParallelAxes
+from fe_contact.options import AnalysisOptions
+from fe_contact.types import FloatArray, IntArray, Json, Status
+
+PART_OF_TOLERANCE = 0.4
+"""That derivatives may take where one is requested: meshes and slices are planned to use the rest."""
+MOST_GROWN = 1.25
+"""Of the pressure of a pair of teeth over that in the state whose tangent counts."""
+_MOST_POINTS = 0.99
+_LEAST_COMPLIANCE = 0.1
+"""Of the smallest that is stored: what loads stay apart by."""
+
+
+def _arm_row(pair: ParallelAxes, c: Candidates) -> FloatArray:
+    """Follow the arm of the load, m."""
+    return np.asarray(pair.tilt_arm(c.touch.roll_1, c.face_position))[None]
+
+
+def _table_rows(pair: ParallelAxes, c: Candidates) -> FloatArray:
+    """Follow the arm of the load and its centroid, m, and the shares of the pairs."""
+    of_pair = (c.pair == np.unique(c.pair)[:, None]).astype(float)
+    rows = np.concatenate([c.face_position[None], of_pair])
+    return np.concatenate([_arm_row(pair, c), np.broadcast_to(rows[:, None], (len(rows), *c.gap.shape))])
+
+
+_ARM, _CENTROID, _SHARES = 0, 1, 2
+_OF_PAIR = "pressure of pair", "edge pressure of pair"
+_CURVES = "static_transmission_error", "load_arm"
+
+
+def _keep(point: OperatingPoint, edges: bool, state: SolvedState) -> Mapping[str, NDArray[Any]]:
+    """Return the arrays of a table of a state, and what others follow from."""
+    problem, solution = state.problem, state.solution
+    pressure = contact_pressure(problem, solution.force)
+    edge = at_edges(problem, solution.force, pressure)
+    parts = np.where(edge, 0.0, pressure), np.where(edge, pressure, 0.0)
+    of_pair = [
+        values.reshape(*values.shape[:2], -1, _per_pair(problem.candidates)).max(axis=3) for values in parts
+    ]
+    depth = edge_depth(point, problem, solution) if edges else np.zeros(solution.load.size)
+    return {
+        **contact_fields(point.contact.pair, problem, solution),
+        **dict(zip(_OF_PAIR, of_pair, strict=True)),
+        **_of_solution(solution),
+        "edge_depth": np.broadcast_to(depth, solution.deflection.shape),
+    }
+
+
+def _per_pair(c: Candidates) -> int:
+    return int(c.pair.size // np.unique(c.pair).size)
+
+
+def _keep_support(point: OperatingPoint, state: SolvedState) -> Mapping[str, NDArray[Any]]:
+    fields = contact_fields(point.contact.pair, state.problem, state.solution)
+    return {name: fields[name] for name in OF_SUPPORT} | _of_solution(state.solution)
+
+
+def _of_solution(solution: ContactSolution) -> dict[str, NDArray[Any]]:
+    unloaded = np.broadcast_to(solution.no_load[:, None], solution.deflection.shape)
+    names = "status", "iterations", "residuals", "beyond"
+    return {name: getattr(solution, name) for name in names} | {"no_load": unloaded}
+
+
+class DerivedErrors(NamedTuple):
+    """What derivatives miss at L loads.
+
+    Attributes
+    ----------
+    band : ndarray, shape (T P, L)
+        Of the transmission error at every position, m; 0 where it was solved.
+    curves, arms : ndarray, shape (23, L)
+        Of the quantities of transmission error and load arm, m.
+    share, pressure : float
+        Of the share of a pair, and of the largest pressure over that of the table: what 99 % of the drawn
+        points keep.
+    """
+
+    band: FloatArray
+    curves: FloatArray
+    arms: FloatArray
+    share: float
+    pressure: float
+
+
+@dataclass(frozen=True)
+class DerivedPitches:
+    """The base pitches about which derivatives give all others of an operating point.
+
+    Attributes
+    ----------
+    contact : CycleContact
+        Of the table.
+    pitches : ndarray of int, shape (K,)
+        Those that were solved.
+    state : ndarray of int, shape (T, P, L)
+        Which state counts, of the nominal gears and those of the pitches.
+    at_state : ndarray, shape (1 + K, P, L, 2)
+        Their transmission error and load arm, m.
+    curves : ndarray, shape (T, P, L, 2)
+        Those of all base pitches.
+    """
+
+    contact: CycleContact
+    pitches: IntArray
+    state: IntArray
+    at_state: FloatArray
+    curves: FloatArray
+
+    @classmethod
+    def of(cls, envelope: Envelope, ste: FloatArray) -> DerivedPitches:
+        """Take those of an envelope whose transmission error (T, P, L) is known."""
+        states = envelope.least.state.copy()
+        states[envelope.pitches] = 1 + np.arange(envelope.pitches.size)[:, None, None]
+        exact = [envelope.kept[name] for name in _CURVES]
+        curves = np.stack([ste, envelope.sum(_ARM)], axis=-1)
+        return cls(envelope.contact, envelope.pitches, states, np.stack(exact, axis=-1), curves)
+
+    def on(self, point: OperatingPoint, position: FloatArray, load: FloatArray) -> FloatArray:
+        """Return transmission error and load arm (T P, L, 2) in m at positions (P,) and loads (L,).
+
+        At those of the table other bodies, slices and patches change every base pitch by what they change
+        the state that counts there. Elsewhere derivatives begin anew.
+        """
+        contact = CycleContact(point, position, load, _arm_row)
+        rows, loads = (np.flatnonzero(np.isin(*each)) for each in self._known(position, load))
+        try:
+            if (rows.size, loads.size) == (position.size, load.size):
+                return self._changed(contact, rows, loads)
+            envelope = Envelope.about_all(contact, self.pitches)
+        except SolveError:
+            return curves_of_point(point, position, load, np.arange(contact.pitches))
+        return _flat(np.stack([envelope.ste, envelope.sum(_ARM)], axis=-1))
+
+    def _known(self, *wanted: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
+        return list(zip((self.contact.position, self.contact.load), wanted, strict=True))
+
+    def _changed(self, contact: CycleContact, rows: IntArray, loads: IntArray) -> FloatArray:
+        states = [contact.nominal()[1]]
+        states += [contact.solved(part) for part in in_parts(self.pitches)]
+        solved = [np.stack([each.solution.deflection, _arms(each)], axis=-1) for each in states]
+        change = contact.by_pitch(np.concatenate(solved)) - self.at_state[:, rows][:, :, loads]
+        p, load = np.indices((rows.size, loads.size))
+        there = self.state[:, rows][:, :, loads]
+        return _flat(self.curves[:, rows][:, :, loads] + change[there, p, load])
+
+
+def _arms(state: SolvedState) -> FloatArray:
+    return load_sums(state.problem, state.solution, state.rows)[..., _ARM]
+
+
+@dataclass(frozen=True)
+class DerivedTable:
+    """One operating point over a whole period, by derivatives.
+
+    Attributes
+    ----------
+    kept : tuple of KeptContact
+        Of each set of loads. Pitches that were not solved have no residuals: NaN.
+    derived : DerivedPitches
+    errors : DerivedErrors
+    """
+
+    kept: tuple[KeptContact, ...]
+    derived: DerivedPitches
+    errors: DerivedErrors
+
+
+def derived_table(
+    point: OperatingPoint,
+    position: FloatArray,
+    sets: Sequence[FloatArray],
+    options: AnalysisOptions,
+    *,
+    edges: bool,
+) -> DerivedTable | str:
+    """Solve as many base pitches as it takes to give the others; parameters of `solved_in_parts`.
+
+    Or say why all are to be solved: these are too many, a point of them has no solution, or the transmission
+    error by derivatives would not rise with load.
+    """
+    loads, support = sets
+    part = 1.0 if options.tolerance is None else PART_OF_TOLERANCE
+    contact = CycleContact(point, position, loads, _table_rows)
+    first = np.zeros(1, dtype=np.int64)
+    try:
+        envelope = chosen(contact, options.allowed, part, partial(_keep, point, edges))
+        if envelope is None:
+            return "derivatives about a quarter of the base pitches do not keep the tolerance"
+        envelope = _with_pressed(envelope.about(np.setdiff1d(first, envelope.pitches)))
+        light = CycleContact(point, position, support)
+        beside = Envelope.about_all(light, envelope.pitches, partial(_keep_support, point))
+    except SolveError as error:
+        return str(error)
+    levels = _rising(envelope, beside)
+    if levels is None:
+        return "by derivatives the transmission error would not rise with load"
+    begun = solved_in_parts(point, position, sets, first, edges=False)
+    unloaded, ste, of_support = levels
+    arrays = _arrays(envelope, ste), _support_arrays(beside, of_support)
+    kept = [
+        _kept(own, each, values, unloaded)
+        for own, each, values in zip(begun, (envelope, beside), arrays, strict=True)
+    ]
+    return DerivedTable(tuple(kept), DerivedPitches.of(envelope, ste), _errors(envelope))
+
+
+@dataclass(frozen=True)
+class DerivedCycle:
+    """What came of derivatives at all operating points of a table.
+
+    Attributes
+    ----------
+    points : OperatingPoints
+    tables : tuple of DerivedTable
+        Of every place; empty where all base pitches are to be solved.
+    reason : str
+        Why they are; else empty.
+    """
+
+    points: OperatingPoints
+    tables: tuple[DerivedTable, ...]
+    reason: str = ""
+
+    @property
+    def places(self) -> OperatingPoints:
+        """Those of the table, their pitches by derivatives."""
+        pairs = zip(self.points.places, self.tables, strict=True)
+        return replace(self.points, places=tuple(replace(point, derived=own.derived) for point, own in pairs))
+
+    @property
+    def kept(self) -> list[list[KeptContact]]:
+        """What is kept of every place, for each set of loads."""
+        return [list(each) for each in zip(*(table.kept for table in self.tables), strict=True)]
+
+    def to_json(self) -> Json:
+        """Return how many base pitches were solved at every operating point, or why all were."""
+        pitches = {"pitches": self.points.period}
+        if self.reason:
+            return pitches | {"reason": self.reason}
+        errors = [table.errors for table in self.tables]
+        return pitches | {
+            "solved": [table.derived.pitches.size for table in self.tables],
+            "share_error": max(each.share for each in errors),
+            "pressure_error_relative": max(each.pressure for each in errors),
+        }
+
+
+def derived_cycle(
+    points: OperatingPoints,
+    position: FloatArray,
+    sets: Sequence[FloatArray],
+    options: AnalysisOptions,
+    *,
+    edges: bool,
+) -> DerivedCycle:
+    """Solve as many base pitches of all places as it takes to give the others; see `derived_table`."""
+    tables = []
+    for point in points.places:
+        table = derived_table(point, position, sets, options, edges=edges)
+        if isinstance(table, str):
+            return DerivedCycle(points, (), table)
+        tables.append(table)
+    return DerivedCycle(points, tuple(tables))
+
+
+def _errors(envelope: Envelope) -> DerivedErrors:
+    band = np.where(envelope.solved[:, None, None], 0.0, envelope.missed.error)
+    band = np.broadcast_to(band, envelope.least.ste.shape)
+    return DerivedErrors(
+        _flat(band), envelope.quantity_errors, envelope.sum_errors(_ARM), *_missed_in_drawn(envelope)
+    )
+
+
+def _arrays(envelope: Envelope, ste: FloatArray) -> dict[str, NDArray[Any]]:
+    """Return the arrays of a table (T, P, L, ...) by name, in pitches that were solved as they are."""
+    share, flank, edge = _shares_and_pressures(envelope, envelope.least)
+    # those that may be largest were solved: none is told to be larger
+    flank = np.minimum(flank, envelope.kept["max_pressure"][1:].max(axis=(0, 1)))
+    derived = {
+        "static_transmission_error": ste,
+        "tangent_compliance": envelope.nearest("tangent_compliance"),
+        "load_share": share,
+        "face_centroid": envelope.sum(_CENTROID),
+        "load_arm": envelope.sum(_ARM),
+        "max_pressure": flank,
+        "edge_pressure": edge,
+        "pairs_in_contact": (share > 0.0).sum(axis=3),
+    }
+    return derived | _without_solution(envelope)
+
+
+def _shares_and_pressures(envelope: Envelope, least: LeastTangents) -> tuple[FloatArray, ...]:
+    """Return shares (t, P, L, J) and the largest pressures on flanks and at edges (t, P, L), Pa.
+
+    A pair that grows beyond `MOST_GROWN` of its pressure spreads along the face, as one that begins to carry.
+    """
+    share = np.maximum(least.sums[..., _SHARES:], 0.0)
+    share /= share.sum(axis=3, keepdims=True)
+    p, load = np.indices(least.state.shape[1:])
+    before, *of_pair = (envelope.kept[name][least.state, p, load] for name in ("load_share", *_OF_PAIR))
+    grown = np.sqrt(np.divide(share, before, out=np.zeros_like(share), where=before > 0.0))
+    flank, edge = ((each * np.minimum(grown, MOST_GROWN)).max(axis=3) for each in of_pair)
+    return share, flank, edge
+
+
+def _missed_in_drawn(envelope: Envelope) -> tuple[float, float]:
+    """Return the error of shares that 99 % of the drawn points keep, and of pressures over the largest."""
+    share, flank, _ = _shares_and_pressures(envelope, envelope.without)
+    drawn = slice(1, 1 + envelope.drawn.size)
+    exact, pressure = (envelope.kept[name][drawn] for name in ("load_share", "max_pressure"))
+    missed = np.abs(share - exact).max(axis=3), np.abs(flank - pressure) / pressure.max()
+    of_share, of_pressure = (float(np.quantile(each, _MOST_POINTS)) for each in missed)
+    return of_share, of_pressure
+
+
+def _with_pressed(envelope: Envelope) -> Envelope:
+    """Solve the pitches, too, in which the pressure is largest by what the others tell."""
+    _, flank, edge = _shares_and_pressures(envelope, envelope.least)
+    largest = np.maximum(flank, edge).max(axis=(1, 2))
+    pressed = np.argsort(-np.where(envelope.solved, 0.0, largest), kind="stable")[:BATCH]
+    return envelope.about(np.sort(pressed))
+
+
+def _support_arrays(envelope: Envelope, ste: FloatArray) -> dict[str, NDArray[Any]]:
+    nearest = {name: envelope.nearest(name) for name in OF_SUPPORT}
+    return nearest | {"static_transmission_error": ste} | _without_solution(envelope)
+
+
+def _without_solution(envelope: Envelope) -> dict[str, NDArray[Any]]:
+    """Return what a receipt says of the contact in pitches that were not solved."""
+    shape = envelope.least.ste.shape
+    return {
+        "status": np.full(shape, int(Status.CONVERGED)),
+        "iterations": envelope.nearest("iterations"),
+        "residuals": np.full((*shape, 4), np.nan),
+        "beyond": envelope.nearest("beyond"),
+    }
+
+
+def _kept(
+    first: KeptContact, envelope: Envelope, arrays: Mapping[str, NDArray[Any]], unloaded: FloatArray
+) -> KeptContact:
+    """Return what a table keeps; problem and forces are those of the first pitch."""
+    whole = {
+        name: _flat(envelope.exact_in(values, envelope.kept[name][1:])) for name, values in arrays.items()
+    }
+    solution = ContactSolution(
+        first.solution.load,
+        whole["static_transmission_error"],
+        whole["tangent_compliance"],
+        first.solution.force,
+        whole["status"],
+        whole["iterations"],
+        whole["residuals"],
+        whole["beyond"],
+        unloaded.ravel(),
+    )
+    depth = (
+        envelope.kept["edge_depth"].max(axis=(0, 1)) if "edge_depth" in envelope.kept else first.edge_depth
+    )
+    stored = {name: whole[name] for name in first.stored}
+    return KeptContact(first.problem, solution, stored, np.asarray(depth))
+
+
+def _flat(values: NDArray[Any]) -> NDArray[Any]:
+    """Return arrays (T, P, ...) row by row."""
+    return values.reshape(-1, *values.shape[2:])
+
+
+# The transmission error rises with load, from that without any.
+
+
+def _rising(envelope: Envelope, beside: Envelope) -> tuple[FloatArray, FloatArray, FloatArray] | None:
+    """Return the transmission error (T, P, ...) without load, at the loads, and at the support loads, m.
+
+    In pitches that were not solved support loads yield to the loads of the table, as far as their errors
+    let them cross. None where these do not rise.
+    """
+    loads, support = envelope.contact.load, beside.contact.load
+    force = np.concatenate([[0.0], loads, support])
+    kind = np.repeat([0, 1, 2], [1, loads.size, support.size])
+    order = np.argsort(force)
+    unloaded = _unloaded(envelope)
+    levels = np.concatenate([unloaded[..., None], envelope.ste, beside.ste], axis=2)[..., order]
+    tangents = [
+        each.kept["tangent_compliance"].min() for each in (envelope, beside) if each.contact.load.size
+    ]
+    step = _LEAST_COMPLIANCE * min(tangents) * np.diff(force[order])
+    tables = np.flatnonzero(kind[order] == 1)
+    rising = levels.copy()
+    for k in range(tables[0] - 1, -1, -1):
+        rising[..., k] = np.minimum(rising[..., k], rising[..., k + 1] - step[k])
+    for k in range(tables[0] + 1, order.size):
+        if kind[order[k]] == 2:
+            rising[..., k] = np.maximum(rising[..., k], rising[..., k - 1] + step[k - 1])
+    if not np.all(np.diff(rising, axis=2) > 0.0):
+        return None
+    rising = np.where(envelope.solved[:, None, None], levels, rising)
+    back = rising[..., np.argsort(order)]
+    return back[..., 0], back[..., 1 : 1 + loads.size], back[..., 1 + loads.size :]
+
+
+def _unloaded(envelope: Envelope) -> FloatArray:
+    """Return the transmission error without load (T, P), m: of most pitches by the gaps of their teeth.
+
+    Flanks that slope touch a little beside; what that is in the pitches solved is taken off in the mean.
+    """
+    contact = envelope.contact
+    model, own = contact.point.model, envelope.gaps
+    plain = contact.nominal()[1].problem.candidates.gap
+    by_pair = np.transpose(plain.reshape(len(plain), own.pair.size, -1), (1, 0, 2))
+    found = np.empty((model.period, len(plain)))
+    for pitch in range(model.period):
+        found[pitch] = _least_gap(by_pair, own, pitch)
+    exact = envelope.kept["no_load"][1:, :, 0]
+    missed = (found[envelope.pitches] - exact).mean(axis=0)
+    return envelope.exact_in(found - missed, exact)
+
+
+def _least_gap(plain: FloatArray, gaps: ToothGaps, pitch: int) -> FloatArray:
+    """Return the least gap (P,) of the teeth that meet in a base pitch, m."""
+    first, second = (teeth[0] for teeth in gaps.teeth(np.array([pitch])))
+    pairs = np.arange(gaps.pair.size)
+    return np.asarray(
+        (plain + gaps.gears[0][pairs, :, first] + gaps.gears[1][pairs, :, second]).min(axis=(0, 2))
+    )

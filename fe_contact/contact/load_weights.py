@@ -1,0 +1,53 @@
+"""What the gaps of candidates do to the transmission error and to sums over the load, by one adjoint."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fe_contact.contact.adjoint import weigh
+from fe_contact.contact.point_problem import point_problems
+from fe_contact.contact.problem import ContactProblem
+from fe_contact.contact.sweep import ContactSolution
+from fe_contact.types import FloatArray
+
+
+def load_sums(problem: ContactProblem, solution: ContactSolution, rows: FloatArray) -> FloatArray:
+    """Return the means of quantities of the candidates over the load, (P, L, Q).
+
+    Parameters
+    ----------
+    problem, solution
+        Of P positions, L loads and m candidates.
+    rows : ndarray, shape (Q, P, m)
+        The quantities.
+    """
+    loaded = solution.force * problem.candidates.torque_share[:, None]
+    return np.asarray(np.einsum("plm,qpm->plq", loaded, rows) / solution.load[:, None])
+
+
+def load_weights(
+    problem: ContactProblem, solution: ContactSolution, rows: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Find what normal approach taken away at each candidate does; parameters of `load_sums`.
+
+    With the terms of `adjoint`: dF = S (m dSTE - dg) and n'dF = 0.
+
+    Returns
+    -------
+    weight : ndarray, shape (P, L, m)
+        To the transmission error, 1.
+    weights : ndarray, shape (Q, P, L, m)
+        To the sums, in their unit per m.
+    """
+    c = problem.candidates
+    shares = c.torque_share * np.concatenate([np.ones((1, *c.gap.shape)), rows])
+    pushed = np.zeros((len(shares), *solution.force.shape))
+    middle, half = np.zeros((2, *solution.force.shape))
+    weigh(point_problems(problem), solution.force, shares, pushed, middle, half)
+    stiffness, *of_rows = np.einsum("rplm,pm->rpl", pushed, c.motion_arm)
+    weight = pushed[0] / stiffness[..., None]
+    weights = [
+        (more[..., None] * weight - own) / solution.load[:, None]
+        for more, own in zip(of_rows, pushed[1:], strict=True)
+    ]
+    return weight, np.stack(weights) if weights else pushed[1:]

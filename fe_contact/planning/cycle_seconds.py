@@ -1,0 +1,61 @@
+"""Cost of a long cycle, its pitches solved or by derivatives: by this it is decided which."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple, Protocol
+
+from fe_contact.geometry import ParallelAxes
+
+FEWEST_PITCHES = 24
+"""That are solved where derivatives stand for the others."""
+LONG_CYCLE = 64
+"""Base pitches: the errors of shorter cycles by derivatives would be told by too many of them."""
+TABLE_SAVES = 2.0
+"""CPU seconds that derivatives save at least where a table takes them: a cheaper one is solved whole."""
+_TANGENT = 0.4
+"""CPU time of the tangents about a pitch over that of its solution."""
+_ADDED = 4e-9
+"""CPU seconds to add what one tooth of one pair does to one point."""
+
+
+class PitchWork(Protocol):
+    """CPU seconds of the contact in base pitches."""
+
+    @property
+    def pitch(self) -> float:
+        """Of the gaps of teeth at a position."""
+
+    def in_pitches(self, rows: float, sets: Sequence[float], pitches: int) -> float:
+        """Of rows of positions in so many pitches, at sets of so many loads."""
+
+
+class CycleSeconds(NamedTuple):
+    """CPU seconds that the contact of a cycle is predicted to take: all pitches solved, or by derivatives.
+
+    The latter with the fewest pitches that they are held against.
+    """
+
+    exact: float
+    derivatives: float
+
+    @classmethod
+    def of(
+        cls, work: PitchWork, pair: ParallelAxes, period: int, rows: float, sets: Sequence[float]
+    ) -> CycleSeconds:
+        """Predict them of rows of positions at sets of so many loads, on condensed bodies."""
+        states = min(FEWEST_PITCHES, period)
+        solved = (1.0 + _TANGENT) * work.in_pitches(rows, sets, states)
+        teeth = 0.5 * (pair.pinion.teeth + pair.wheel.teeth) * rows * work.pitch
+        meeting = 2 * (math.ceil(pair.transverse_contact_ratio + pair.overlap_ratio) + 1)
+        added = _ADDED * meeting * states * period * rows * sum(sets)
+        return cls(work.in_pitches(rows, sets, period), solved + teeth + added)
+
+    def pays(self, pitches: int) -> bool:
+        """Whether derivatives are tried over a cycle of so many base pitches."""
+        return pitches > LONG_CYCLE and self.derivatives < self.exact
+
+    def pays_in_table(self, pitches: int) -> bool:
+        """Whether they are in a table, which knows more of pitches that are solved."""
+        return self.pays(pitches) and self.exact - self.derivatives > TABLE_SAVES
