@@ -13,11 +13,14 @@ from flexible_scenes import flexible_pair
 from small_table import small_table
 
 from dynamics.assembly.assemble import assemble
+from dynamics.deflection import Deflection, LoadCase, deflect
 from dynamics.linearize import ModalAnalysis, modal_analysis
+from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, Outline
+from lineofaction.gearbox.studies.deflect.run import RUN as DEFLECT
 from service.app import create_app
 from service.settings import Settings
 
-MODES, OLDER, BROKEN, TABLE = ("a" * 64, "b" * 64, "c" * 64, "d" * 64)
+MODES, OLDER, BROKEN, TABLE, BENT = ("a" * 64, "b" * 64, "c" * 64, "d" * 64, "f" * 64)
 
 
 @dataclass(frozen=True)
@@ -26,6 +29,7 @@ class Stored:
 
     http: TestClient
     modes: ModalAnalysis
+    deflection: Deflection
 
     def get(self, key: str, **query: object):
         return self.http.get(f"/v1/results/{key}/motion", params=query)
@@ -42,12 +46,17 @@ def stored(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stored]:
         BROKEN: ("modes", replace(modes, axis_motion=np.full_like(modes.axis_motion, np.nan))),
         TABLE: ("database", small_table()),
     }
+    scene = flexible_pair()
+    cases = (LoadCase("cruise"), LoadCase("top", factor=2.0))
+    bent = GearboxDeflection(deflect(scene, cases, 3), (), 1, 0.0, True, Outline.of(scene), {}, 0.0)
     app = create_app(Settings(data_directory=folder / "data"))
     with TestClient(app) as http:
         for key, (kind, result) in files.items():
             result.to_netcdf(folder / f"{key}.nc")
             app.state.context.store.put(key, kind, folder / f"{key}.nc")
-        yield Stored(http, modes)
+        DEFLECT.file.write(bent, folder / "bent.nc")
+        app.state.context.store.put(BENT, "deflection", folder / "bent.nc")
+        yield Stored(http, modes, bent.deflection)
 
 
 @pytest.mark.law
@@ -69,6 +78,21 @@ def test_every_mode_is_listed_and_moves_the_shafts_as_the_analysis_says(stored: 
     last = sum(len(group["motions"]) for group in listed["groups"]) - 1
     whirl = stored.get(MODES, number=last).json()["motion"]
     assert any(np.any(np.array(shaft["imaginary"]) != 0.0) for shaft in whirl["shafts"])
+
+
+@pytest.mark.law
+def test_a_deflection_stands_under_every_load_case(stored: Stored) -> None:
+    (group,) = stored.get(BENT).json()["groups"]
+    assert [name.partition(",")[0] for name in group["motions"]] == ["cruise", "top"]
+    motion = stored.get(BENT, number=1).json()["motion"]
+    assert motion["oscillates"] is False
+    lines = stored.deflection.cases[1].shafts
+    for index, shaft in enumerate(motion["shafts"]):
+        own = lines.shaft == index
+        along = np.linspace(*shaft["position_mm"], 33) * 1e-3
+        for k, scale in enumerate((1e-3, 1e-3, 1e-3, 1.0, 1.0, 1.0)):
+            expected = np.interp(along, lines.position[own], lines.motion[own, k])
+            np.testing.assert_allclose(np.array(shaft["real"])[:, k] * scale, expected, rtol=1e-5, atol=1e-12)
 
 
 def test_it_is_sent_once_to_who_has_it(stored: Stored) -> None:

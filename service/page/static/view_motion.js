@@ -6,7 +6,7 @@ import { make, number } from "./elements.js";
 
 export const STATIONS = 33; // along a shaft
 const SHARE = 0.08; // of the size of the unit that the largest motion is drawn with
-export const MOVING = new Set(["modes"]); // kinds of results that have motions
+export const MOVING = new Set(["modes", "deflection"]); // kinds of results that have motions
 
 /** @typedef {{name: string, position_mm: number[], real: number[][], imaginary: number[][]}} ShaftMotion six at each station: mm and rad */
 /** @typedef {{oscillates: boolean, shafts: ShaftMotion[]}} UnitMotion */

@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from bounds import leftover
+from bounds import engineering, leftover
 from bounds.types import Json
 from dynamics.deflection import CaseDeflection, MeshAlignment, deflect
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution, pressure_map
@@ -30,6 +30,7 @@ from lineofaction.gearbox.studies.deflect.agreement import (
 from lineofaction.gearbox.studies.deflect.cases import check_cases, load_cases
 from lineofaction.gearbox.studies.deflect.figures import figures_by_case, write_spectrum
 from lineofaction.gearbox.studies.deflect.result import HARMONICS, GearboxDeflection, MeshFlanks, Outline
+from lineofaction.gearbox.studies.motion import OfferedMotion, UnitMotion
 from model_studies.workers import divided, spent
 
 ALONG_FACE, ALONG_PROFILE = 41, 40
@@ -86,6 +87,10 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
     def _derived(self, result: GearboxDeflection) -> Json:
         return figures_by_case(result)
 
+    def motions(self, result: GearboxDeflection) -> list[OfferedMotion]:
+        """Return the deflection under every load case."""
+        return [_offered(result.outline.shafts, case) for case in result.deflection.cases]
+
     def failure(self, result: GearboxDeflection) -> str:
         """Say which load cases have no equilibrium, or how far meshes and bodies disagree."""
         lost = [case for case in result.deflection.cases if case.status != "converged"]
@@ -100,6 +105,17 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
                 f"after {result.passes} passes."
             )
         return ""
+
+
+def _offered(shafts: tuple[str, ...], case: CaseDeflection) -> OfferedMotion:
+    lines = case.shafts
+    found = "" if case.status == "converged" else f", {case.status.replace('_', ' ')}"
+    name = f"{case.name}, {engineering(case.torque, 4)} N m{found}"
+
+    def made() -> UnitMotion:
+        return UnitMotion(shafts, lines.shaft, lines.position, lines.motion.astype(complex), oscillates=False)
+
+    return OfferedMotion("under load", name, made)
 
 
 def scene_of(inputs: SceneInput) -> Json:
