@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import base64
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from bounds.types import Json
+from bounds.types import FloatArray, Json
+from dynamics.vibration import SurfaceShape
 from lineofaction.gearbox.problems import BadInput, DamagedFile, NotFound
 from lineofaction.gearbox.registry import study_of
 from lineofaction.gearbox.studies.motion import OfferedMotion, UnitMotion
@@ -16,6 +18,11 @@ from lineofaction.report.document import of_the_store, read_stored
 
 STATIONS = 33
 """Along a shaft."""
+MOST_FACETS = 60_000
+"""Of a surface: one with more is drawn by the corners of its triangles."""
+VELOCITY_REFERENCE = 5e-8
+"""m/s, root mean square, of 0 dB: 1 pW/m^2 of plane waves where rho c is 400 N s/m^3."""
+QUIETEST = 1e-15  # m/s
 _LENGTHS = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0], dtype=bool)
 
 
@@ -63,7 +70,40 @@ def motion_json(motion: UnitMotion) -> Json:
                 "imaginary": _rounded(in_mm.imag),
             }
         )
-    return {"oscillates": motion.oscillates, "shafts": shafts}
+    surface = None if motion.surface is None else _surface_json(motion.surface, motion.is_velocity)
+    return {"oscillates": motion.oscillates, "shafts": shafts, "surface": surface}
+
+
+def _surface_json(surface: SurfaceShape, is_velocity: bool) -> Json:
+    """Return nodes and facets of a surface with its motion; a large one by its corners alone."""
+    facets = surface.facets if 4 * len(surface.triangles) <= MOST_FACETS else surface.triangles[:, :3]
+    used, facets = np.unique(facets, return_inverse=True)
+    points, motion, facets = surface.points[used], surface.motion[used], facets.reshape(-1, 3)
+    if not (np.all(np.isfinite(points)) and np.all(np.isfinite(motion))):
+        raise DamagedFile("The stored motion of the surface has values that are not finite.")
+    corners = np.moveaxis(points[facets], 1, 0)
+    across = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+    normals = np.zeros_like(points)
+    for corner in facets.T:
+        np.add.at(normals, corner, across)
+    normals /= np.maximum(np.linalg.norm(normals, axis=1), np.finfo(float).tiny)[:, None]
+    level = None
+    if is_velocity:
+        rms = np.abs(np.sum(motion * normals, axis=1)) / np.sqrt(2.0)
+        level = _packed(20.0 * np.log10(np.maximum(rms, QUIETEST) / VELOCITY_REFERENCE))
+    return {
+        "place_mm": _packed(points / MM),
+        "normal": _packed(normals),
+        "real": _packed(motion.real / MM),
+        "imaginary": _packed(motion.imag / MM),
+        "level_db": level,
+        "facets": base64.b64encode(facets.astype("<u4").tobytes()).decode(),
+    }
+
+
+def _packed(values: FloatArray) -> str:
+    """Return 32-bit floats, little-endian, in Base64."""
+    return base64.b64encode(values.astype("<f4").tobytes()).decode()
 
 
 def _rounded(values: Any) -> list[list[float]]:

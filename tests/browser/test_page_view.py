@@ -2,21 +2,33 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from page_visit import PATIENCE, Visit, control, found_inaccessible, moved, shown
+from housing_solid import housed_scene, write_block
+from page_visit import PATIENCE, Visit, control, found_inaccessible, moved, shown, tab
 from PIL import Image
 from playwright.sync_api import Browser, Page, Playwright, expect
 from running_service import until
 
+from lineofaction.gearbox.schemas.toml import toml_text
+
 FLAGS = ("--headless", "--no-sandbox", "--disable-background-networking", "--disable-sync", "--no-first-run")
 SOFTWARE = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 CANVAS = "canvas.view"
+STIFFNESS = {
+    "teeth": [20, 20],
+    "base_radius_mm": 40.0 * math.cos(math.radians(20.0)),
+    "working_pressure_angle_deg": 20.0,
+    "face_width_mm": 25.0,
+    "stiffness_n_per_m": {"value": [4e8], "amplitude": [5e7]},
+}
 UNIT = Path(__file__).parents[2] / "examples" / "two_stage" / "two_stage.rexs"
 
 
@@ -188,6 +200,53 @@ def test_a_mode_moves_the_unit_and_the_way_back_shows_the_pair(
     assert different(pair, picture(page)) < 0.002
     assert seen.complaints == []
     page.close()
+
+
+@pytest.mark.law
+def test_the_surface_of_a_housing_moves_in_the_colors_of_its_velocity(
+    drawing_browser: Browser, address: str, analyzed: str, tmp_path: Path
+) -> None:
+    seen = shown(drawing_browser, address, analyzed)
+    page = seen.page
+    tab(page, "Sound")
+    step, file = write_block(tmp_path / "block.step"), tmp_path / "scene.toml"
+    scene = housed_scene(tmp_path)
+    scene["meshes"][0] |= {"database_file": None, "stiffness": STIFFNESS}
+    file.write_text(toml_text(scene), encoding="utf-8")
+    page.locator("#scene-file").set_input_files([file, step])
+    expect(page.get_by_text("With block.step.")).to_be_visible()
+    page.get_by_label("Compute", exact=True).select_option("vibration")
+    page.get_by_label("number", exact=True).fill("3")
+    page.get_by_role("button", name="Compute the scene").press("Enter")
+    motion, refused = page.get_by_label("Motion", exact=True), page.locator("#scene-body [role=alert]")
+    page.locator("#view select:visible, #scene-body [role=alert]").first.wait_for(timeout=PATIENCE)
+    assert refused.all_text_contents() == []
+    if page.get_by_role("button", name="Stop", exact=True).count():
+        page.get_by_role("button", name="Stop", exact=True).click()
+    motion.select_option("0")
+    expect(page.get_by_text(re.compile(r"^-?\d+ to -?\d+ dB re 50 nm/s$"))).to_be_visible()
+    expect(page.locator("#view [role=status]")).to_contain_text("rpm")
+    colored = picture(page)
+    yellow = (colored[..., 0] > 120) & (colored[..., 2] < 0.6 * colored[..., 0])
+    assert np.mean(yellow) > 0.002, "where it is loudest"
+    amplitude = page.get_by_label("Amplitude", exact=True)
+    amplitude.focus()
+    amplitude.press("Home")
+    assert different(colored, picture(page)) > 0.001
+    assert found_inaccessible(page, "#view") == {}
+    page.route("**/motion?number=0", lambda route: route.fulfill(json=damaged(route.fetch().json())))
+    motion.select_option("")
+    motion.select_option("0")
+    expect(page.locator("#view [role=status]")).to_contain_text("cannot be drawn")
+    assert seen.complaints == []
+    page.close()
+
+
+def damaged(answer: dict[str, Any]) -> dict[str, Any]:
+    """Return a motion whose surface has another number of levels than of nodes."""
+    surface = answer["motion"]["surface"]
+    surface["level_db"] = surface["level_db"][: len(surface["level_db"]) // 8 * 4]
+    return answer
 
 
 def test_a_browser_without_webgl_shows_the_drawing(browser: Browser, address: str, analyzed: str) -> None:

@@ -1,13 +1,17 @@
-"""How a unit moves by a result: its shafts along their axes, as the page animates it."""
+"""How a unit moves by a result: its shafts along their axes and the surface of its housing."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from dynamics.types import ComplexArray, FloatArray, IntArray
+
+if TYPE_CHECKING:
+    from dynamics.vibration import SurfaceShape
 
 
 @dataclass(frozen=True)
@@ -25,6 +29,10 @@ class UnitMotion:
         x, y, z (m), tilt_x, tilt_y, rotation (rad).
     oscillates : bool
         Whether the phase runs; a deflection rests.
+    surface : SurfaceShape or None
+        Of a housing, m.
+    is_velocity : bool
+        Whether the surface's motion is its velocity, m/s, which has levels; else a shape without a size.
     """
 
     shafts: tuple[str, ...]
@@ -32,6 +40,14 @@ class UnitMotion:
     position: FloatArray
     motion: ComplexArray
     oscillates: bool
+    surface: SurfaceShape | None = None
+    is_velocity: bool = False
+
+    @staticmethod
+    def of_surface(surface: SurfaceShape, *, is_velocity: bool) -> UnitMotion:
+        """Return the motion of a surface alone."""
+        none = np.empty(0, dtype=np.int64), np.empty(0), np.empty((0, 6), dtype=complex)
+        return UnitMotion((), *none, oscillates=True, surface=surface, is_velocity=is_velocity)
 
     def at_stations(self, count: int) -> dict[str, tuple[FloatArray, ComplexArray]]:
         """Return stations evenly spaced along each shaft, m, and the motion there, (count, 6)."""

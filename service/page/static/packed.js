@@ -12,7 +12,7 @@ export function base64(bytes) {
 const wordOf = (bytes) => base64(bytes).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
 
 /** @param {string} word */
-const bytesOf = (word) => Uint8Array.from(atob(word.replaceAll("-", "+").replaceAll("_", "/")), (letter) => letter.charCodeAt(0));
+export const bytesOf = (word) => Uint8Array.from(atob(word.replaceAll("-", "+").replaceAll("_", "/")), (letter) => letter.charCodeAt(0));
 
 /** @param {object} content a case, defaults left out */
 export const pack = (content) => wordOf(new TextEncoder().encode(JSON.stringify(content)));

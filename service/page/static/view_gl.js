@@ -20,7 +20,7 @@ export function program(gl, vertex, fragment) {
     gl.attachShader(made, shader);
     gl.deleteShader(shader);
   }
-  ["place", "normal", "mark"].forEach((name, k) => gl.bindAttribLocation(made, k, name));
+  ["place", "normal", "mark", "real", "imaginary"].forEach((name, k) => gl.bindAttribLocation(made, k, name));
   gl.linkProgram(made);
   if (!gl.getProgramParameter(made, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(made) ?? "no program");
   const count = gl.getProgramParameter(made, gl.ACTIVE_UNIFORMS);
@@ -28,17 +28,18 @@ export function program(gl, vertex, fragment) {
   return { program: made, at: Object.fromEntries(names.map((name) => [name, gl.getUniformLocation(made, name)])) };
 }
 
-/** @param {WebGL2RenderingContext} gl @param {Mesh} mesh @returns {Held} */
-export function held(gl, { values, indices, marked }) {
+/** @param {WebGL2RenderingContext} gl @param {Mesh} mesh @param {number[]} [parts] numbers of each attribute of a vertex @returns {Held} */
+export function held(gl, { values, indices, marked }, parts = PARTS) {
+  const width = parts.reduce((sum, size) => sum + size, 0);
   const array = gl.createVertexArray();
   gl.bindVertexArray(array);
   const [vertices, order] = [gl.createBuffer(), gl.createBuffer()];
   gl.bindBuffer(gl.ARRAY_BUFFER, vertices);
   gl.bufferData(gl.ARRAY_BUFFER, values, gl.STATIC_DRAW);
   let offset = 0;
-  PARTS.forEach((size, k) => {
+  parts.forEach((size, k) => {
     gl.enableVertexAttribArray(k);
-    gl.vertexAttribPointer(k, size, gl.FLOAT, false, 4 * WIDTH, 4 * offset);
+    gl.vertexAttribPointer(k, size, gl.FLOAT, false, 4 * width, 4 * offset);
     offset += size;
   });
   gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, order);

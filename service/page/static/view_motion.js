@@ -3,21 +3,51 @@
 
 import { get, patiently, saidIn } from "./api.js";
 import { make, number } from "./elements.js";
+import { bytesOf } from "./packed.js";
 
 export const STATIONS = 33; // along a shaft
+const RANGE = 30; // dB of the scale of levels
 const SHARE = 0.08; // of the size of the unit that the largest motion is drawn with
-export const MOVING = new Set(["modes", "deflection"]); // kinds of results that have motions
+export const MOVING = new Set(["modes", "deflection", "vibration"]); // kinds of results that have motions
 
 /** @typedef {{name: string, position_mm: number[], real: number[][], imaginary: number[][]}} ShaftMotion six at each station: mm and rad */
-/** @typedef {{oscillates: boolean, shafts: ShaftMotion[]}} UnitMotion */
+/** @typedef {{place_mm: string, normal: string, real: string, imaginary: string, level_db: string | null, facets: string}} SurfaceMotion */
+/** @typedef {{oscillates: boolean, shafts: ShaftMotion[], surface: SurfaceMotion | null}} UnitMotion */
 /** @typedef {{values: Float32Array, stations: number[]}} Moved displacement and rotation of each station; first place, distance, whether it is all one disc */
 
 /** @param {number[][]} rows */
 const whole = (rows) => rows.length === STATIONS && rows.every((row) => row.length === 6 && row.every(Number.isFinite));
 
+/** A surface as it is drawn, and the ends of its scale. @param {SurfaceMotion} surface */
+function hullOf(surface) {
+  const floats = (text) => new Float32Array(bytesOf(text).buffer);
+  const [place, normal, real, imaginary] = [surface.place_mm, surface.normal, surface.real, surface.imaginary].map(floats);
+  const levels = surface.level_db && floats(surface.level_db);
+  const indices = new Uint32Array(bytesOf(surface.facets).buffer);
+  const count = place.length / 3;
+  const fits = [normal, real, imaginary].every(({ length }) => length === 3 * count) && (!levels || levels.length === count);
+  if (!fits || ![place, normal, real, imaginary, levels ?? []].every((values) => values.every(Number.isFinite)) || indices.some((node) => node >= count)) {
+    throw new TypeError("The surface has other nodes than its motion.");
+  }
+  const top = levels ? Math.ceil(levels.reduce((most, level) => Math.max(most, level), -Infinity)) : 0;
+  const values = new Float32Array(13 * count);
+  const ends = [Infinity, -Infinity].map((value) => [value, value, value]);
+  let most = 0;
+  for (let k = 0; k < count; k += 1) {
+    const three = (array) => array.subarray(3 * k, 3 * k + 3);
+    values.set([...three(place), ...three(normal), levels ? Math.max(1 - (top - levels[k]) / RANGE, 0) : -1, ...three(real), ...three(imaginary)], 13 * k);
+    three(place).forEach((value, i) => {
+      ends[0][i] = Math.min(ends[0][i], value);
+      ends[1][i] = Math.max(ends[1][i], value);
+    });
+    most = Math.max(most, Math.hypot(...three(real), ...three(imaginary)));
+  }
+  return { mesh: { values, indices, marked: 0 }, parts: [3, 3, 1, 3, 3], most, ends, levels: levels ? [top - RANGE, top] : null };
+}
+
 export class Motion {
   /** @param {UnitMotion} motion @param {number} size of the unit in mm @param {(shaft: string, place: number) => number} reachAt how far out something is at a place of a shaft, mm */
-  constructor({ oscillates, shafts }, size, reachAt) {
+  constructor({ oscillates, shafts, surface }, size, reachAt) {
     if (!shafts.every(({ real, imaginary }) => whole(real) && whole(imaginary))) throw new TypeError("The motion has other stations than the page draws.");
     this.oscillates = oscillates;
     this.shafts = new Map(shafts.map((shaft) => [shaft.name, shaft]));
@@ -27,7 +57,8 @@ export class Motion {
       const amplitude = row.map((value, i) => Math.hypot(value, imaginary[k][i]));
       return Math.hypot(...amplitude.slice(0, 3)) + reachAt(name, low + ((high - low) * k) / (STATIONS - 1)) * Math.hypot(...amplitude.slice(3));
     }));
-    this.factor = (SHARE * size) / Math.max(...sizes, Number.MIN_VALUE);
+    this.hull = surface && hullOf(surface);
+    this.factor = (SHARE * size) / Math.max(...sizes, this.hull?.most ?? 0, 1e-30);
   }
 
   advance(seconds) {
@@ -71,7 +102,8 @@ export class Motions {
     this.list = make("select", { "aria-label": "Motion", "data-unkept": true, onchange: () => this.choose() });
     this.amplitude = make("input", { type: "range", min: "0", max: "3", step: "0.1", value: "1", "aria-label": "Amplitude", "data-unkept": true, oninput: () => this.scale() });
     this.factor = make("output", {});
-    this.block = make("span", { class: "view-controls", hidden: true }, this.list, this.amplitude, this.factor);
+    this.levels = make("span", { class: "view-scale", hidden: true });
+    this.block = make("span", { class: "view-controls", hidden: true }, this.list, this.amplitude, this.factor, this.levels);
   }
 
   /**
@@ -101,7 +133,13 @@ export class Motions {
       if (this.list.value !== value) return;
       if (this.view.wanted?.scene !== this.scene) this.before = this.view.wanted;
       await this.view.see(this.scene);
-      this.view.gearbox.move(motion);
+      try {
+        this.view.gearbox.move(motion);
+      } catch (fault) { // what a damaged answer holds
+        this.view.words.textContent = `The motion cannot be drawn: ${fault.message}`;
+        return;
+      }
+      if (motion.surface) this.view.stage.frame();
       this.view.words.textContent = this.list.selectedOptions[0].textContent;
       this.scale();
     });
@@ -111,6 +149,7 @@ export class Motions {
   rest() {
     this.list.value = "";
     this.factor.textContent = "";
+    this.levels.hidden = true;
     this.view.gearbox?.move(null);
     const { scene = null, part, open } = this.before ?? {};
     return this.view.see(scene, part, open);
@@ -126,6 +165,8 @@ export class Motions {
     if (!motion) return;
     motion.part = Number(this.amplitude.value);
     this.factor.textContent = motion.oscillates ? "" : `× ${number(motion.part * motion.factor, 2)}`;
+    this.levels.hidden = !motion.hull?.levels;
+    this.levels.textContent = motion.hull?.levels ? `${motion.hull.levels.join(" to ")} dB re 50 nm/s` : "";
     this.view.stage.wake();
   }
 }

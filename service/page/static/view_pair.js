@@ -4,7 +4,7 @@
 import { number } from "./elements.js";
 import { flankMap } from "./view_flank.js";
 import { freed, held, program, tables } from "./view_gl.js";
-import { BENT as BENDING, FLANK, MOVED, PICK, STEEL, TOOTH } from "./view_shaders.js";
+import { BENT as BENDING, FLANK, HULL, LEVELS, MOVED, PICK, STEEL, TOOTH } from "./view_shaders.js";
 import { toothMesh } from "./view_teeth.js";
 
 const SPEED = 0.4; // base pitches a second
@@ -29,8 +29,12 @@ function scaleOf(value) {
 /** By whether teeth bend or move, and by what is drawn. @param {WebGL2RenderingContext} gl */
 export function programsOf(gl) {
   const made = (define) => Object.fromEntries(Object.entries({ STEEL, FLANK, PICK }).map(([name, source]) => [name, program(gl, define + TOOTH, source)]));
-  let moved;
-  return { straight: made(""), bent: made(BENDING), get moved() { return (moved ??= made(MOVED)); } };
+  let [moved, hull] = [null, null];
+  return {
+    straight: made(""), bent: made(BENDING),
+    get moved() { return (moved ??= made(MOVED)); },
+    get hull() { return (hull ??= program(gl, HULL, LEVELS)); },
+  };
 }
 
 /** Let a program move what it draws. @param {WebGL2RenderingContext} gl @param {import("./view_motion.js").Moved} moved */

@@ -81,6 +81,44 @@ void main() {
   painted = vec4(color.rgb * lit * color.a, color.a);
 }`;
 
+const SCALE = `
+vec3 scale(float part) { // cividis, as the maps of reports
+  vec3 low = mix(vec3(0.0, 0.135, 0.305), vec3(0.34, 0.36, 0.43), clamp(2.5 * part, 0.0, 1.0));
+  vec3 high = mix(low, vec3(0.73, 0.68, 0.45), clamp(2.5 * part - 1.0, 0.0, 1.0));
+  return mix(high, vec3(1.0, 0.91, 0.27), clamp(5.0 * part - 4.0, 0.0, 1.0));
+}
+`;
+
+/** The surface of a housing at a phase. */
+export const HULL = `
+in vec3 place;
+in vec3 normal;
+in float mark; // place of its level on the scale; below 0: it has none
+in vec3 real;
+in vec3 imaginary;
+uniform mat4 view;
+uniform vec2 now; // cosine and sine of the phase, as large as it is drawn
+uniform vec3 back;
+out float lit;
+out float part;
+void main() {
+  vec3 light = normalize(back + vec3(0.1, 0.6, 0.1));
+  lit = 0.4 + 0.6 * abs(dot(normal, light));
+  part = mark;
+  gl_Position = view * vec4(place + now.x * real - now.y * imaginary, 1.0);
+}`;
+
+export const LEVELS = `
+in float lit;
+in float part;
+out vec4 painted;
+${SCALE}
+void main() {
+  float opacity = part < 0.0 ? 0.3 : 1.0;
+  vec3 own = part < 0.0 ? vec3(0.5, 0.55, 0.6) : scale(part);
+  painted = vec4(own * lit * opacity, opacity);
+}`;
+
 const PASSAGE = `
 in float lit;
 in float roll;
@@ -118,12 +156,7 @@ float pressure(float at) {
   return within * textureLod(passage, (vec2(clamp(column, 0.0, size.x - 1.0), row) + 0.5) / size, 0.0).x;
 }
 
-vec3 scale(float part) { // cividis, as the maps of reports
-  vec3 low = mix(vec3(0.0, 0.135, 0.305), vec3(0.34, 0.36, 0.43), clamp(2.5 * part, 0.0, 1.0));
-  vec3 high = mix(low, vec3(0.73, 0.68, 0.45), clamp(2.5 * part - 1.0, 0.0, 1.0));
-  return mix(high, vec3(1.0, 0.91, 0.27), clamp(5.0 * part - 4.0, 0.0, 1.0));
-}
-
+${SCALE}
 void main() {
   float carries = step(ends.x, roll) * step(roll, 1.002 * ends.y);
   float met = carries * pressure((contact.y * (roll - contact.x) + along * contact.w) / contact.z);

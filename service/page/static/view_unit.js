@@ -114,11 +114,12 @@ export class Gearbox {
       const near = discs.filter((disc) => disc.shaft === name && Math.abs(disc.position_mm - place) < shaft.length_mm / 32).map(({ reach }) => reach);
       return Math.max(diameterAt(shaft, place) / 2, ...near);
     };
+    this.letHullGo();
     this.motion = motion && new Motion(motion, this.reach, reachAt);
   }
 
   begin(gl, programs) {
-    this.programs = programs;
+    Object.assign(this, { gl, programs, hull: null });
     for (const { pair } of this.stages) pair.begin(gl, programs);
     const bodies = this.scene.shafts.map((shaft) => ({ name: shaft.name, shaft, mesh: held(gl, shaftMesh(shaft)), color: COLORS.shaft }));
     const bearings = [...(this.scene.rolling_bearings ?? []), ...(this.scene.bushings ?? [])].filter(({ shaft }) => this.shafts.has(shaft));
@@ -132,7 +133,13 @@ export class Gearbox {
   /** Let go of what it holds. */
   end(gl) {
     freed(gl, this.bodies.map(({ mesh }) => mesh));
+    this.letHullGo();
     for (const { pair } of this.stages) pair.end(gl);
+  }
+
+  letHullGo() {
+    if (this.hull) freed(this.gl, [this.hull]);
+    this.hull = null;
   }
 
   /** Color a shaft, bearing or gear. @param {string} name of none: all as they are */
@@ -144,10 +151,10 @@ export class Gearbox {
     }
   }
 
-  /** Both corners of a box about the axes. */
+  /** Both corners of a box about the axes and the housing that moves. */
   get box() {
     const corners = this.scene.shafts.flatMap(({ origin_mm: [x, y, z], length_mm: length }) => [[x, y, z], [x, y, z + length]]);
-    return [Math.min, Math.max].map((end) => [0, 1, 2].map((k) => end(...corners.map((corner) => corner[k]))));
+    return [Math.min, Math.max].map((end) => [0, 1, 2].map((k) => end(...[...corners, ...(this.motion?.hull?.ends ?? [])].map((corner) => corner[k]))));
   }
 
   /** Half of its size in mm. */
@@ -184,8 +191,27 @@ export class Gearbox {
       for (const name of GEARS) pair.gear(gl, name, frame.picking ? ["PICK"] : ["SMOOTH", "STEEL"], own, 1);
     });
     if (frame.picking) return;
+    if (this.motion?.hull) this.surface(gl, frame);
     gl.depthFunc(gl.ALWAYS); // what is marked is seen through all else
     this.revolved(gl, frame, this.bodies.filter(({ name }) => name === this.marked));
+  }
+
+  /** Draw the surface of a housing: by its levels, or so that the rest is seen through it. */
+  surface(gl, frame) {
+    const { program, at } = this.programs.hull;
+    const { hull: { mesh, parts, levels }, phase, part, factor } = this.motion;
+    this.hull ??= held(gl, mesh, parts);
+    gl.useProgram(program);
+    gl.uniformMatrix4fv(at.view, false, frame.view);
+    gl.uniform3fv(at.back, frame.back);
+    gl.uniform2f(at.now, part * factor * Math.cos(phase), part * factor * Math.sin(phase));
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    gl.depthMask(Boolean(levels)); // what has levels hides what is behind it
+    gl.bindVertexArray(this.hull.array);
+    gl.drawElements(gl.TRIANGLES, this.hull.count, gl.UNSIGNED_INT, 0);
+    gl.depthMask(true);
+    gl.disable(gl.BLEND);
   }
 
   /** Draw shafts and bearings. */

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
 
+from bounds import engineering
 from bounds.types import FloatArray, Json
 from dynamics.housings import ReducedHousing, write_surface
 from dynamics.types import ComplexArray
@@ -30,6 +32,7 @@ from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_f
 from lineofaction.gearbox.studies.excitations import order_names, with_facts_of_scene
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.housings import bearing_forces
+from lineofaction.gearbox.studies.motion import OfferedMotion, UnitMotion
 from lineofaction.gearbox.studies.vibration import Inputs, VibrationFigures
 from lineofaction.gearbox.units import RPM
 
@@ -113,6 +116,24 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, HousingVibrationResul
         analysis = replace(analysis, facts={**analysis.facts, "seconds": seconds})
         analysis = with_facts_of_scene(analysis, tabled)
         return HousingVibrationResult(analysis, housing.frequency, inputs.mode or 0, mode)
+
+    def motions(self, result: HousingVibrationResult) -> list[OfferedMotion]:
+        """Return the surface's velocity where it was looked at, and the mode that is drawn."""
+        analysis, offered = result.analysis, []
+        if (shape := analysis.deflection) is not None:
+            vibration, at = analysis.vibration, (analysis.at_speed, analysis.at_order)
+            speed, order = vibration.speed[at[0]] / RPM, vibration.order[at[1]]
+            hertz = engineering(vibration.frequency[at], 4)
+            name = f"{hertz} Hz: order {engineering(order, 4)} at {engineering(speed, 5)} rpm"
+            made = partial(UnitMotion.of_surface, shape, is_velocity=True)
+            offered.append(OfferedMotion(f"velocity of {analysis.housing}", name, made))
+        if (mode := result.mode_shape) is not None:
+            hertz = engineering(result.natural_frequency[result.mode - 1], 4)
+            made = partial(UnitMotion.of_surface, mode, is_velocity=False)
+            offered.append(
+                OfferedMotion(f"modes of {analysis.housing}", f"{hertz} Hz: mode {result.mode}", made)
+            )
+        return offered
 
     def figures(self, result: HousingVibrationResult) -> Json:
         analysis, vibration = result.analysis, result.analysis.vibration
