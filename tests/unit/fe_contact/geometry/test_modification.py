@@ -390,3 +390,13 @@ def test_a_ring_gear_is_not_ground_by_a_worm() -> None:
             modification=FlankModification(ground_helix_crowning=1e-6),
         )
     assert caught.value.field == "modification.ground_helix_crowning"
+
+
+@pytest.mark.parametrize("name", fields_of(Kind.AMOUNT, Kind.SLOPE))
+def test_only_what_may_add_material_has_more_than_the_involute_anywhere(name: str) -> None:
+    """By it samples of the gap are left out where flanks touch."""
+    length = {f"{name}_length": 0.5e-3} if f"{name}_length" in FLANK_FIELDS else {}
+    modification = FlankModification(**{name: 6e-6}, **length)
+    roll = np.linspace(*sorted((GEAR.form_roll_length, GEAR.tip_roll_length)), 41)[:, None]
+    removed = modification.material_removed(GEAR, roll, np.linspace(-0.5, 0.5, 31) * GEAR.face_width)
+    assert modification.only_removes == (removed.min() >= 0.0)
