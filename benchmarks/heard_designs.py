@@ -1,0 +1,87 @@
+"""What designs by what is heard cost, and what the best of them brings to the two-stage unit."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+import tomllib
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.figures import Figure
+from fe_contact.microgeometry.scatter import ONE_NODE
+from fe_contact.types import FloatArray
+from host import cpu_seconds
+from host.directories import cache_home
+from lineofaction.gearbox.studies.change.question import heard_mesh
+from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.optimize import Inputs
+from lineofaction.gearbox.studies.optimize.heard_problem import HeardProblem
+from lineofaction.gearbox.studies.optimize.heard_search import heard_problem, misalignments
+from lineofaction.gearbox.studies.optimize.run import request_of
+from lineofaction.gearbox.workbench import tabled
+from model_studies.workers import InProcess
+
+SUBJECT = "two-stage unit, flanks of its second stage by what is heard"
+UNIT = Path(__file__).parents[1] / "examples" / "two_stage" / "unit.py"
+DRAWN, DESIGNS = 40, 1000
+BUDGET, QUIETER = 600.0, 5.0
+"""CPU seconds of all `DESIGNS`; dB at the loudest speed."""
+
+
+def figures() -> list[Figure]:
+    """Return what designs cost once the gears are known, and levels by whole analyses of the unit."""
+    with tempfile.TemporaryDirectory() as folder:
+        command = [sys.executable, str(UNIT), "-o", folder, "--quick"]
+        done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True, env=os.environ)
+        rows = {line[:44].strip(): line[44:].split() for line in done.stdout.splitlines()}
+        before, after = map(float, rows["loudest of all speeds"])
+        costs = _costs(Path(folder))
+    return [
+        *costs,
+        Figure(SUBJECT, "loudest of all speeds before, tables deflected anew", before, "dB(A)"),
+        Figure(SUBJECT, "loudest of all speeds after, tables deflected anew", after, "dB(A)"),
+        Figure(SUBJECT, "louder by the flanks, whole analyses", after - before, "dB", -QUIETER),
+    ]
+
+
+def _costs(folder: Path) -> list[Figure]:
+    """Return the cost of `DESIGNS` designs, with what is solved once, by `DRAWN` of them."""
+    began = cpu_seconds()
+    problem = _problem(folder)
+    once = cpu_seconds() - began
+    nominal = replace(problem, evaluator=replace(problem.evaluator, nodes=ONE_NODE))
+    workers, few = InProcess(), problem.rough(16)
+    ways: dict[str, Callable[[FloatArray], object]] = {
+        "16 positions": lambda point: few.evaluated(few.values(point)),
+        "16 positions, derivatives": lambda point: few.linearize(point, workers),
+        "64 positions": lambda point: nominal.evaluated(nominal.values(point)),
+        "64 positions, derivatives": lambda point: nominal.linearize(point, workers),
+    }
+    drawn = np.random.default_rng(0).random((DRAWN, len(problem.names)))
+    rows = [Figure(SUBJECT, "tables, deflection and transfer functions, once", once, "CPU s")]
+    for name, assess in ways.items():
+        assess(drawn[0])  # loads code
+        began = cpu_seconds()
+        for point in drawn:
+            assess(point)
+        each = (cpu_seconds() - began) / DRAWN
+        rows.append(Figure(SUBJECT, f"{DESIGNS} designs, {name}", DESIGNS * each, "CPU s", BUDGET - once))
+    return rows
+
+
+def _problem(folder: Path) -> HeardProblem:
+    """Return the problem that the example searched, its gears known."""
+    study = Inputs.model_validate(tomllib.loads((folder / "deflected" / "study.toml").read_text("utf-8")))
+    subject, question = tabled(folder / "before" / "cased.toml"), study.heard
+    assert question is not None
+    mesh = heard_mesh(subject.inputs, question.mesh)
+    assert mesh.case is not None
+    means = Means(cache_home(), lambda _stage, _part: None)
+    skew = misalignments(subject, mesh, question, means)
+    return heard_problem(subject, mesh, question, request_of(mesh.case, study), skew, means).problem
