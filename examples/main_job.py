@@ -18,13 +18,10 @@ import threading
 import time
 import urllib.request
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-from main_job_summary import summary
-
 from lineofaction.client import JobState, LineOfActionClient
-from lineofaction.report.document import write_report
 
 EXAMPLES = Path(__file__).parent
 CASE, SCENE = EXAMPLES / "palermo_spur_20_20.toml", EXAMPLES / "palermo_scene.toml"
@@ -38,12 +35,11 @@ def main() -> int:
     out: Path = arguments.out.resolve()
     out.mkdir(parents=True, exist_ok=True)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that the service is stopped on the way out
-    with _service(out) as address:
+    with _service(out) as service:
+        from main_job_summary import summary  # noqa: PLC0415 (the service starts meanwhile)
+
+        address = _address(service, out / "service.log")
         times = _compute(address, out)
-        start = time.perf_counter()
-        write_report([out / "ste.nc", out / "run.nc"], out / "report.html", out / "images")
-        write_report(out / "helical.nc", out / "helical.html")
-        times["reports"] = time.perf_counter() - start
         print(summary(out / "ste.nc", out / "run.nc", out / "helical.nc", times))
         print(f"\nreports   {out / 'report.html'}\n          {out / 'helical.html'}")
         print(f"service   {address}, log in {out / 'service.log'}", flush=True)
@@ -63,15 +59,15 @@ def _arguments() -> argparse.Namespace:
 
 
 @contextmanager
-def _service(out: Path) -> Iterator[str]:
-    """Run a service on a free port and yield its address; it ends with the block."""
+def _service(out: Path) -> Iterator[subprocess.Popen[str]]:
+    """Run a service on a free port; it ends with the block."""
     data = str(out / "service")
     command = [sys.executable, "-m", "lineofaction.cli", "serve", "--port", "0"]
     command += ["--workers", "2", "--data-directory", data]
     with (out / "service.log").open("w", encoding="utf-8") as log:
         process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True)
     try:
-        yield _address(process, out / "service.log")
+        yield process
     finally:
         process.terminate()
         try:
@@ -96,22 +92,37 @@ def _address(process: subprocess.Popen[str], log: Path) -> str:
 
 
 def _compute(address: str, out: Path) -> dict[str, float]:
-    """Have the tables computed, and the dynamics on the first beside the second; wall seconds by step."""
+    """Have tables and run computed side by side and reported on; wall seconds by step."""
     times: dict[str, float] = {}
     start = time.perf_counter()
-    with LineOfActionClient(address, progress=_show_progress) as client:
+    with LineOfActionClient(address, progress=_show_progress) as client, ExitStack() as verbs:
         client.analyze.submit(HELICAL)
-        simulate = [sys.executable, "-m", "lineofaction.cli", "simulate", str(SCENE), "--service", address]
-        with subprocess.Popen([*simulate, "-o", str(out / "run.nc")], stdout=subprocess.DEVNULL) as run:
-            shutil.copyfile(client.fetch_file(client.analysis_key(CASE)), out / "ste.nc")
-            key = client.analysis_key(HELICAL)
-            shutil.copyfile(client.fetch_file(key), out / "helical.nc")
-            with urllib.request.urlopen(f"{address}/v1/results/{key}/figures"):  # the page opens on them
-                times["STE databases"] = time.perf_counter() - start
-    if run.returncode != 0:
-        raise SystemExit(f"loa simulate ended with exit code {run.returncode}")
-    times["run-up, beside them"] = time.perf_counter() - start
+        run = verbs.enter_context(_verb("simulate", SCENE, "--service", address, "-o", out / "run.nc"))
+        shutil.copyfile(client.fetch_file(client.analysis_key(CASE)), out / "ste.nc")
+        key = client.analysis_key(HELICAL)
+        shutil.copyfile(client.fetch_file(key), out / "helical.nc")
+        times["STE databases"] = time.perf_counter() - start
+        helical = verbs.enter_context(_verb("report", out / "helical.nc", "-o", out / "helical.html"))
+        with urllib.request.urlopen(f"{address}/v1/results/{key}/figures"):  # the page opens on them
+            _await(run)
+        times["run-up, beside them"] = time.perf_counter() - start
+        files = [out / "ste.nc", out / "run.nc"]
+        _await(_verb("report", *files, "-o", out / "report.html", "--images", out / "images"))
+        _await(helical)
+    times["reports, after them"] = time.perf_counter() - start - times["run-up, beside them"]
     return times
+
+
+def _verb(*arguments: object) -> subprocess.Popen[bytes]:
+    """Start a verb of loa."""
+    command = [sys.executable, "-m", "lineofaction.cli", *map(str, arguments)]
+    return subprocess.Popen(command, stdout=subprocess.DEVNULL)
+
+
+def _await(verb: subprocess.Popen[bytes]) -> None:
+    """Wait until a verb has ended; raises SystemExit if it failed."""
+    if verb.wait() != 0:
+        raise SystemExit(f"{verb.args!r} ended with exit code {verb.returncode}")
 
 
 def _show_progress(state: JobState) -> None:

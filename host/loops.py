@@ -156,7 +156,7 @@ def _linked(template: Any) -> Any:
     return partial(_decorator(template), pipeline_class=_LinkedCompiler, no_cfunc_wrapper=True)
 
 
-_OverloadFunctionTemplate._get_jit_decorator = _linked
+_OverloadFunctionTemplate._get_jit_decorator = _linked  # type: ignore[method-assign]
 
 
 def _raise_of_shapes(src_shapes: Any, index_shape: Any) -> None:

@@ -109,11 +109,12 @@ def test_an_inner_loop_is_part_of_its_callers_and_python_may_call_it_too() -> No
 def test_what_a_loop_takes_of_numba_becomes_part_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[str] = []
     finalize = JITCodeLibrary._finalize_final_module
-    monkeypatch.setattr(
-        JITCodeLibrary,
-        "_finalize_final_module",
-        lambda library: (made.append(library.name), finalize(library))[1],
-    )
+
+    def counted(library: JITCodeLibrary) -> None:
+        made.append(library.name)
+        finalize(library)
+
+    monkeypatch.setattr(JITCodeLibrary, "_finalize_final_module", counted)
 
     @loops.njit
     def spread(values: NDArray[np.float64], count: int) -> NDArray[np.float64]:
