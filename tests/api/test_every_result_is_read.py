@@ -12,6 +12,7 @@ import json
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from importlib import import_module
+from io import BytesIO
 from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
@@ -23,6 +24,7 @@ from condensed_once import find_condensed
 from declared_figures import check_declared
 from extreme_inputs import extreme_inputs
 from fastapi.testclient import TestClient
+from PIL import Image
 from pydantic import ValidationError
 from typer.testing import CliRunner
 
@@ -253,8 +255,10 @@ def read(home: Path, http: TestClient, process: str, count: int, folder: Path) -
 def test_a_few_of_every_kind_are_read(
     home: Path, http: TestClient, process: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def undrawn(_figure: Figure) -> bytes:
-        return b""
+    def undrawn(_figure: Figure, across: int = 1) -> bytes:
+        content = BytesIO()
+        Image.new("RGB", (across, 1)).save(content, "PNG")
+        return content.getvalue()
 
     monkeypatch.setattr("lineofaction.report.document.png", undrawn)
     assert read(home, http, process, FEW, tmp_path) >= FEW
