@@ -84,8 +84,9 @@ def usual_speeds(scene: SceneInput, project: Path | None, count: int) -> list[fl
     """
     study = STUDIES["deflect"]
     files = [] if project is None else _inputs_in(project, study)
+    deflected: list[Any] = [read_model(study.inputs, path) for path in files]
     speeds = [speed for drive in scene.drives[:1] for speed in drive.speed_rpm or ()]
-    speeds += [case.speed_rpm or 0.0 for path in files for case in read_model(study.inputs, path).load_cases]
+    speeds += [case.speed_rpm or 0.0 for inputs in deflected for case in inputs.load_cases]
     highest = max(map(abs, speeds), default=0.0)
     if not highest:
         bound = "given where neither a drive nor a load case has a speed"
