@@ -190,7 +190,7 @@ class Studies:
             ("search", 0.5),
             ("confirmation", 0.15),
         ),
-        version="4",
+        version="5",
         folder="optimum",
         further=(".toml",),
     )
@@ -239,7 +239,7 @@ class Studies:
         group="gearbox",
         kind="modes",
         stages=(("analysis", 0.9), ("modes", 0.1)),
-        version="4",
+        version="5",
     )
     response = StudyOf(
         _scene(lambda: RESPONSE),
