@@ -98,7 +98,8 @@ def test_pairs_are_drawn_within_the_tolerances_of_their_class(tmp_path: Path) ->
     page = tmp_path / "scatter.html"
     found = told(tmp_path, plane, "scatter", "--samples", "24", "--class", "8", "-o", page)
     assert "rank correlation" in page.read_text(encoding="utf-8")
-    assert found["names"] == ["pinion.profile_slope_um", "wheel.profile_slope_um"]
+    parts = ("profile_form_um", "profile_slope_um")
+    assert found["names"] == [f"{gear}.{part}" for gear in ("pinion", "wheel") for part in parts]
     assert len(found["peak_to_peak_um"]) == 24
     # class 8: (0.4 m_n + 0.001 d + 4) sqrt(2)^3 = 16.07 um, of which whole ones count
     assert found["asked"]["tolerances"]["pinion.profile_slope_um"] == pytest.approx(16.0, rel=1e-12)
