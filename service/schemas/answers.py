@@ -401,8 +401,13 @@ class MotionGroup(BaseModel):
 class MotionBody(BaseModel):
     """Motions of a unit that a result holds."""
 
-    groups: list[MotionGroup] = Field(description="All of them, numbered through from 0")
-    motion: MovedUnit | None = Field(description="The one of the number; null without a number")
+    groups: list[MotionGroup] = Field(
+        description="All of them, numbered through from 0",
+        examples=[[{"name": "at rest", "motions": ["412 Hz, torsion, damping 2 %"]}]],
+    )
+    motion: MovedUnit | None = Field(
+        description="The one of the number; null without a number", examples=[None]
+    )
 
 
 class UnitFile(BoundaryModel):
