@@ -426,6 +426,10 @@ ANSWERS: dict[str, Any] = {
     "/ready": {"status": "ready", "computations": {"successful": 3}},
     f"{RESULTS}/{{key}}": _RESULT,
     f"{RESULTS}/{{key}}/figures": _REPORT,
+    f"{RESULTS}/{{key}}/motion": {
+        "groups": [{"name": "at rest", "motions": ["412 Hz, torsion, damping 2 %"]}],
+        "motion": None,
+    },
 }
 """Answers that succeeded, by path."""
 
