@@ -30,10 +30,10 @@ from dynamics.deflection.mesh_alignment import (
 )
 from dynamics.linearize.operating_speeds import common_period
 from dynamics.mechanism.bearing_elements import supports_by_name
-from dynamics.mechanism.shaft_axes import shaft_axes
+from dynamics.mechanism.shaft_axes import ShaftAxes, shaft_axes
 from dynamics.scene.scene import Scene
 from dynamics.settings.load_case import LoadCase, check_forces
-from dynamics.types import FloatArray, IntArray
+from dynamics.types import FloatArray
 from model_studies import in_unit
 from model_studies.workers import InProcess, Workers, divided
 
@@ -175,21 +175,15 @@ def equivalent_load(
 
 
 @dataclass(frozen=True)
-class _ShaftLines:
-    """The axes of all shafts under a load case, mean over the mesh cycle, P points of all shafts in a row.
+class _ShaftLines(ShaftAxes):
+    """The axes of all shafts under a load case, mean over the mesh cycle.
 
     Attributes
     ----------
-    shaft : (P,) int array
-        Index of the shaft in the scene.
-    position : (P,) array
-        Along it from its left end, m, increasing within a shaft.
     motion : (P, 6) array
         x, y, z (m), tilt_x, tilt_y, rotation (rad): du_x/dz = tilt_y and du_y/dz = -tilt_x but for shear.
     """
 
-    shaft: IntArray = field(metadata={"dimensions": ("point",)})
-    position: FloatArray = field(metadata=in_unit("m", "point"))
     motion: FloatArray = field(metadata=in_unit("m", "point", "freedom"))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import section_rows
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray, IntArray
+from model_studies import in_unit
 
 
 @dataclass(frozen=True)
@@ -26,8 +27,8 @@ class ShaftAxes:
         x, y, z (m), tilt_x, tilt_y, rotation (rad) per freedom of all bodies.
     """
 
-    shaft: IntArray
-    position: FloatArray
+    shaft: IntArray = field(metadata={"dimensions": ("point",)})
+    position: FloatArray = field(metadata=in_unit("m", "point"))
     motion: FloatArray
 
 

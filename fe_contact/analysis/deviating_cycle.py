@@ -16,7 +16,7 @@ from fe_contact.errors import InputError, within
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.planning.cost_model import unit_work
-from fe_contact.planning.cycle_seconds import CycleSeconds
+from fe_contact.planning.cost_of_derivatives import CycleSeconds
 from fe_contact.ste.curve_quantities import (
     BESIDE_MESH,
     HARMONICS,

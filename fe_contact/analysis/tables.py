@@ -34,7 +34,7 @@ from fe_contact.contact.model import MeetingTeeth
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import Run
 from fe_contact.planning.cost_model import Prediction, expected_tries, most_positions, unit_work
-from fe_contact.planning.cycle_seconds import CycleSeconds
+from fe_contact.planning.cost_of_derivatives import CycleSeconds
 from fe_contact.planning.plan import FaceDiscretization, NodeRule, Plan
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
 from fe_contact.ste.interpolation import Axis, interpolate

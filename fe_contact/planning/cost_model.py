@@ -19,7 +19,7 @@ from fe_contact.contact import ContactModel, teeth_in_reach
 from fe_contact.contact.problem import POINTS
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
-from fe_contact.planning.cycle_seconds import FEWEST_PITCHES, CycleSeconds
+from fe_contact.planning.cost_of_derivatives import FEWEST_PITCHES, CycleSeconds
 from fe_contact.planning.plan import FaceDiscretization, Plan, PlaneDiscretization
 from fe_contact.sampled import ALIGNMENTS, LOADS, WIDE_INTERVALS, WIDE_PROBES, some_positions
 from fe_contact.types import Json

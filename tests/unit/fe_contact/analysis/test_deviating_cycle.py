@@ -25,7 +25,7 @@ from fe_contact.analysis.cycle.envelope import CycleContact, Envelope
 from fe_contact.analysis.cycle.tangents import nominal_tangent, pitch_tangents
 from fe_contact.analysis.deviating_cycle import DeviatingCycle, cycle_contact, deviating_cycle
 from fe_contact.errors import InputError
-from fe_contact.planning import cycle_seconds
+from fe_contact.planning import cost_of_derivatives
 from fe_contact.ste.curve import DERIVATIVES, SOURCES, source_names
 from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, quantity_changes
 
@@ -187,9 +187,9 @@ def test_what_a_cycle_cannot_be_is_refused(axes, positions, field):
 def tables() -> tuple[SteDatabase, SteDatabase]:
     """Return the same table by derivatives, and all its pitches solved."""
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(cycle_seconds, "TABLE_SAVES", 0.0)
+        patched.setattr(cost_of_derivatives, "TABLE_SAVES", 0.0)
         derived = ste_database(made(1.0), AXES, OPTIONS)
-        patched.setattr(cycle_seconds, "TABLE_SAVES", np.inf)
+        patched.setattr(cost_of_derivatives, "TABLE_SAVES", np.inf)
         return derived, ste_database(made(1.0), AXES, OPTIONS)
 
 
@@ -246,7 +246,7 @@ def test_a_table_by_derivatives_rises_with_load(tables):
 
 def test_a_table_that_needs_many_pitches_says_why_all_were_solved(monkeypatch):
     monkeypatch.setattr(AnalysisOptions, "allowed", AllowedError(1e-4, 1e-11))
-    monkeypatch.setattr(cycle_seconds, "TABLE_SAVES", 0.0)
+    monkeypatch.setattr(cost_of_derivatives, "TABLE_SAVES", 0.0)
     table = ste_database(made(1.0), TableAxes(torques=[40.0], pitches=120), OPTIONS)
     assert "do not keep the tolerance" in table.metadata.receipt["cycle"]["reason"]
     assert np.isfinite(table.residuals).all()
