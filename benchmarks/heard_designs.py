@@ -10,6 +10,7 @@ import tomllib
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -32,6 +33,9 @@ UNIT = Path(__file__).parents[1] / "examples" / "two_stage" / "unit.py"
 DRAWN, DESIGNS = 40, 1000
 BUDGET, QUIETER = 600.0, 5.0
 """CPU seconds of all `DESIGNS`; dB at the loudest speed."""
+AMOUNTS = ("tip_relief", "profile_crowning", "profile_slope", "profile_form", "helix_crowning", "helix_slope")
+GRADIENT = 2.0
+"""Cost of a level with its gradient by `AMOUNTS` of both gears, over that of the level."""
 
 
 def figures() -> list[Figure]:
@@ -41,9 +45,10 @@ def figures() -> list[Figure]:
         done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True, env=os.environ)
         rows = {line[:44].strip(): line[44:].split() for line in done.stdout.splitlines()}
         before, after = map(float, rows["loudest of all speeds"])
-        costs = _costs(Path(folder))
+        costs, gradient = _costs(Path(folder)), _gradient(Path(folder))
     return [
         *costs,
+        Figure(SUBJECT, "level and gradient by 12 amounts over the level", gradient, "", GRADIENT),
         Figure(SUBJECT, "loudest of all speeds before, tables deflected anew", before, "dB(A)"),
         Figure(SUBJECT, "loudest of all speeds after, tables deflected anew", after, "dB(A)"),
         Figure(SUBJECT, "louder by the flanks, whole analyses", after - before, "dB", -QUIETER),
@@ -75,9 +80,25 @@ def _costs(folder: Path) -> list[Figure]:
     return rows
 
 
-def _problem(folder: Path) -> HeardProblem:
-    """Return the problem that the example searched, its gears known."""
-    study = Inputs.model_validate(tomllib.loads((folder / "deflected" / "study.toml").read_text("utf-8")))
+def _gradient(folder: Path) -> float:
+    """Return the median ratio of a level with its gradient to the level, in turn at drawn designs."""
+    variables = {gear: {f"{name}_um": [0.0, 5.0] for name in AMOUNTS} for gear in ("pinion", "wheel")}
+    whole = _problem(folder, variables)
+    problem, ratios = replace(whole, evaluator=replace(whole.evaluator, nodes=ONE_NODE)), []
+    workers = InProcess()
+    for point in np.random.default_rng(1).random((DRAWN, len(problem.names))):
+        began = cpu_seconds()
+        problem.evaluated(problem.values(point))
+        between = cpu_seconds()
+        problem.linearize(point, workers)
+        ratios.append((cpu_seconds() - between) / (between - began))
+    return float(np.median(ratios))
+
+
+def _problem(folder: Path, variables: dict[str, Any] | None = None) -> HeardProblem:
+    """Return the problem that the example searched, or one of other variables; its gears are known."""
+    own = tomllib.loads((folder / "deflected" / "study.toml").read_text("utf-8"))
+    study = Inputs.model_validate(own if variables is None else own | {"variables": variables})
     subject, question = tabled(folder / "before" / "cased.toml"), study.heard
     assert question is not None
     mesh = heard_mesh(subject.inputs, question.mesh)
