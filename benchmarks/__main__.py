@@ -31,9 +31,9 @@ SUBJECTS = tuple(_IN_ORDER.split())
 
 def main(arguments: Sequence[str]) -> int:
     """Run the subjects named, or every one; the status tells whether all targets were met."""
-    asked = {word for word in arguments if not word.startswith("--")}
+    asked = set(arguments) - {"--publish"}
     if unknown := sorted(asked - set(SUBJECTS)):
-        sys.stderr.write(f"no subject {', '.join(unknown)}; one of {', '.join(SUBJECTS)}\n")
+        sys.stderr.write(f"{__doc__}\nno subject {', '.join(unknown)}; one of {', '.join(SUBJECTS)}\n")
         return 2
     machine, record = describe(), {}
     for name in [name for name in SUBJECTS if name in asked or not asked]:

@@ -8,11 +8,12 @@ from benchmarks.figures import Figure
 from benchmarks.fresh_process import measure
 
 STEPS = 10_000_000
-_FAKES = Path(__file__).parents[1] / "tests" / "fakes"
+_TESTS = Path(__file__).parents[1] / "tests"
+_FOLDERS = [str(_TESTS / "fakes"), str(_TESTS / "verification" / "dynamics")]
 _RUN = """
 import sys, time
-sys.path.insert(0, {fakes!r})
-from rotating_trains import accelerating, imposed, phase_error
+sys.path[:0] = {folders!r}
+from test_run_ups import accelerating, imposed, phase_error
 measured = {{}}
 for make in (imposed, accelerating):
     phase_error(make(1000))  # compiles where nothing is cached yet
@@ -24,7 +25,7 @@ for make in (imposed, accelerating):
 
 def figures() -> list[Figure]:
     """Return the errors and what the runs took."""
-    found = measure(_RUN.format(fakes=str(_FAKES), steps=STEPS))
+    found = measure(_RUN.format(folders=_FOLDERS, steps=STEPS))
     subject = "phase after 1e7 integrated steps"
     return [
         figure

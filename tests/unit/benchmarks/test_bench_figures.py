@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import re
 from pathlib import Path
 
 import pytest
@@ -41,6 +43,22 @@ def test_a_fresh_process_tells_its_results_and_its_time() -> None:
     result = measure("measured = {'answer': sum(range(10))}\n")
     assert result["answer"] == 45
     assert result["process_cpu_seconds"] > 0.0
+
+
+def test_what_fresh_processes_import_is_there() -> None:
+    folder = Path(bench.__file__).parent
+    pieces = [
+        node.value
+        for module in folder.glob("*.py")
+        for node in ast.walk(ast.parse(module.read_text("utf-8")))
+        if isinstance(node, ast.Constant) and isinstance(node.value, str)
+    ]
+    imports = {line for piece in pieces for line in re.findall(r"^from [\w.]+ import [\w, ]+$", piece, re.M)}
+    folders = ("", "examples", "tests/fakes", "tests/verification/dynamics")
+    found = [str(folder.parent / name) for name in folders]
+    code = "\n".join([f"import sys; sys.path[:0] = {found!r}", *sorted(imports), "measured = {}"])
+    assert len(imports) > 10
+    measure(code)
 
 
 def test_code_that_fails_is_an_error() -> None:
