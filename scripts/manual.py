@@ -1,11 +1,14 @@
 """Run what the manual shows: the files, commands and Python of its pages, and compare the output they show.
 
-    python scripts/manual.py        runs tutorials and how-to guides and renews docs/images/manual
+    python scripts/manual.py [--renew] [PAGE ...]     every tutorial and how-to guide, or those of these names
+
+Lists every line that a page shows and no command printed, beside the line of the output that is closest, and
+takes pictures into docs/images/manual. With --renew lines get the numbers of today.
 
 Blocks of a page are run in order. `toml` whose first line is ``# NAME.toml`` is saved under that name, `sh`
 has one `loa` command a line (a backslash continues it), `python` is executed. Every line of `text` is the
 beginning of a line that the command before it printed: same words, numbers within 2 %. Pages share a folder,
-so that a guide can go on with the files of a tutorial.
+so that a guide can go on with the files of a tutorial: those that made its files are run before it.
 """
 
 from __future__ import annotations
@@ -16,8 +19,10 @@ import os
 import re
 import shlex
 import shutil
+import sys
 import tempfile
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 from typer.testing import CliRunner
@@ -29,6 +34,7 @@ PICTURES = ROOT / "docs" / "images" / "manual"
 NEEDS_A_SERVICE = {"call-a-service"}  # its scripts are run by tests/flow/test_client_page.py
 _BLOCK = re.compile(r"^```(toml|sh|python|text)\n(.*?)^```$", re.M | re.S)
 _NUMBER = re.compile(r"[+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
+_MADE = re.compile(r"""^# (\S+\.toml)$|(?:-o|--out)[ ",]+([\w./-]+)|Path\("([^"]+)"\)\.write_text""", re.M)
 _PICTURE = re.compile(r"\]\((?:\.\./)*images/manual/([^)]+)\)")
 
 
@@ -42,16 +48,42 @@ def pages() -> list[Path]:
     ]
 
 
-def run_page(page: Path) -> None:
-    """Run the blocks of a page in the working directory.
+@dataclass(frozen=True)
+class Stale:
+    """A line of a page that no command printed.
+
+    Attributes
+    ----------
+    offset
+        Of its first character in the page.
+    nearest
+        The line of the output that begins most like it.
+    renewed
+        The line with the numbers of the one line of the output that has its words; None without such a line.
+    """
+
+    offset: int
+    line: str
+    nearest: str
+    renewed: str | None
+
+    def __str__(self) -> str:
+        """Write the line above what is closest to it."""
+        left = " (left, no partner)" * (self.renewed is None)
+        return f"  shown:   {self.line}\n  nearest: {self.nearest}{left}"
+
+
+def run_page(page: Path) -> Iterator[Stale]:
+    """Run the blocks of a page in the working directory and yield every line that is not what came out.
 
     Raises
     ------
     AssertionError
-        A command failed, or what the page shows is not what came out.
+        A command failed, or a file has no name.
     """
     output = ""
-    for language, text in _BLOCK.findall(page.read_text("utf-8")):
+    for block in _BLOCK.finditer(page.read_text("utf-8")):
+        language, text = block.groups()
         if language == "toml":
             name = re.match(r"# (\S+\.toml)\n", text)
             assert name, f"{page.name}: a file without its name: {text.splitlines()[0]}"
@@ -61,8 +93,43 @@ def run_page(page: Path) -> None:
         elif language == "python":
             output = _python(text, page)
         else:
-            missing = [line for line in text.splitlines() if not shown(line, output)]
-            assert not missing, f"{page.name} shows {missing}\n{output}"
+            yield from stale_lines(text, output, block.start(2))
+
+
+def stale_lines(text: str, output: str, offset: int = 0) -> Iterator[Stale]:
+    """Yield the lines of a block that are not in the output before it."""
+    for line in text.splitlines(keepends=True):
+        if not shown(line, output):
+            yield Stale(offset, line.rstrip("\n"), nearest(line, output), renewed(line.rstrip("\n"), output))
+        offset += len(line)
+
+
+def renew(page: Path, stale: list[Stale]) -> None:
+    """Write today's numbers into the lines of a page that have a partner in the output."""
+    text = page.read_text("utf-8")
+    for found in reversed(stale):
+        if found.renewed is not None:
+            text = text[: found.offset] + found.renewed + text[found.offset + len(found.line) :]
+    page.write_text(text, encoding="utf-8")
+
+
+def needed(page: Path) -> list[Path]:
+    """Return a page after those whose files it goes on with, and after what these need."""
+    before = pages()[: pages().index(page)]
+    named = set(re.findall(r"[\w.-]+", _run(page))) - _made(page)
+    makers = [next((other for other in reversed(before) if name in _made(other)), page) for name in named]
+    first = sorted({found for maker in makers if maker != page for found in needed(maker)}, key=before.index)
+    return [*first, page]
+
+
+def _run(page: Path) -> str:
+    """Return what is run of a page."""
+    return "\n".join(text for language, text in _BLOCK.findall(page.read_text("utf-8")) if language != "text")
+
+
+def _made(page: Path) -> set[str]:
+    """Return names of files and folders that a page writes."""
+    return {name.rpartition("/")[2] for names in _MADE.findall(_run(page)) for name in names if name}
 
 
 def pictures(page: Path) -> list[str]:
@@ -89,17 +156,51 @@ def _python(text: str, page: Path) -> str:
 
 def shown(line: str, output: str) -> bool:
     """Tell whether a line of the output begins with the same words and these numbers."""
-    words, numbers = _taken_apart(line)
     return any(
-        words == other[: len(words)]
-        and all(abs(a - b) <= 0.02 * max(abs(a), abs(b)) for a, b in zip(numbers, found, strict=False))
-        for other, found in map(_taken_apart, output.splitlines())
+        _has_words_of(line, other) and _alike(line, other) == len(_NUMBER.findall(line))
+        for other in output.splitlines()
     )
 
 
-def _taken_apart(line: str) -> tuple[list[str], list[float]]:
-    """Return the words of a line with a mark in place of each number, and the numbers."""
-    return _NUMBER.sub("#", line).split(), [float(number) for number in _NUMBER.findall(line)]
+def nearest(line: str, output: str) -> str:
+    """Return the line of the output that begins with most of the same words, then of the same numbers."""
+    words = _words(line)
+
+    def likeness(other: str) -> tuple[int, int]:
+        same = [a == b for a, b in zip(words, _words(other), strict=False)]
+        return [*same, False].index(False), _alike(line, other)
+
+    return max(output.splitlines(), key=likeness, default="")
+
+
+def renewed(line: str, output: str) -> str | None:
+    """Return a line with today's numbers, from the one line of the output that has its words.
+
+    Rows of a table have the same words; of them it is the one that begins with the same number.
+    """
+    partners = list(dict.fromkeys(other for other in output.splitlines() if _has_words_of(line, other)))
+    if len(partners) > 1:
+        partners = [other for other in partners if other.split()[:1] == line.split()[:1]]
+    if len(partners) != 1:
+        return None
+    numbers = iter(_NUMBER.findall(partners[0]))
+    return _NUMBER.sub(lambda _: next(numbers), line)
+
+
+def _has_words_of(line: str, other: str) -> bool:
+    words = _words(line)
+    return words == _words(other)[: len(words)]
+
+
+def _alike(line: str, other: str) -> int:
+    """Count the numbers of a line that are within 2 % of those of the other in their positions."""
+    pairs = zip(map(float, _NUMBER.findall(line)), map(float, _NUMBER.findall(other)), strict=False)
+    return sum(abs(a - b) <= 0.02 * max(abs(a), abs(b)) for a, b in pairs)
+
+
+def _words(line: str) -> list[str]:
+    """Return the words of a line with a mark in place of each number."""
+    return _NUMBER.sub("#", line).split()
 
 
 @contextlib.contextmanager
@@ -116,15 +217,29 @@ def folder() -> Iterator[Path]:
             os.chdir(before)
 
 
-def main() -> None:
-    """Run all pages and keep their pictures."""
+def main(arguments: list[str]) -> None:
+    """Run pages, say which lines are stale, and keep their pictures."""
+    names = {name for name in arguments if name != "--renew"}
+    chosen = [page for page in pages() if not names or page.stem in names]
+    unknown = names.difference(page.stem for page in chosen)
+    if unknown:
+        sys.exit(f"no page of this name: {', '.join(sorted(unknown))}")
+    left = 0
     with folder() as made:
-        for page in pages():
-            run_page(page)
+        for page in dict.fromkeys(first for last in chosen for first in needed(last)):
+            stale = list(run_page(page))
+            if page not in chosen:
+                continue
+            print(f"{page.relative_to(ROOT)}: {len(stale)} lines are not shown", *stale, sep="\n", flush=True)
+            if "--renew" in arguments:
+                renew(page, stale)
+                stale = [found for found in stale if found.renewed is None]
+            left += len(stale)
             for picture in pictures(page):
                 (PICTURES / picture).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy(made / picture, PICTURES / picture)
+    sys.exit(left > 0)
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

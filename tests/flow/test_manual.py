@@ -40,7 +40,8 @@ PAGES = [
 @pytest.mark.chain
 @pytest.mark.parametrize("page", PAGES)
 def test_the_page_runs_and_makes_its_pictures(page: Path, folder: Path) -> None:
-    manual.run_page(page)
+    stale = list(manual.run_page(page))
+    assert not stale, "\n".join([f"python scripts/manual.py --renew {page.stem}", *map(str, stale)])
     assert [name for name in manual.pictures(page) if not (folder / name).is_file()] == []
 
 
@@ -49,6 +50,46 @@ def test_a_number_that_is_wrong_is_seen() -> None:
     assert manual.shown("100 2660 ±2", output)
     assert not manual.shown("100 2760 ±2", output)
     assert not manual.shown("torque kN m", output)
+
+
+PRINTED = """mean STE at 120 N m: 16.65 µm ± 0.20 µm
+tip relief  60 N m        120 N m
+  0  0.327 ±0.03   0.563 ±0.06
+  8  0.0475 ±0.01  0.293 ±0.02
+mean force 8 N
+mean moment 9 N m
+"""
+
+
+def renewed_page(folder: Path, shown: str) -> tuple[list[str], str]:
+    page = folder / "page.md"
+    page.write_text(f"Text.\n\n```python\nprint({PRINTED!r})\n```\n\n```text\n{shown}```\n\nMore.\n", "utf-8")
+    stale = list(manual.run_page(page))
+    manual.renew(page, stale)
+    return [found.nearest for found in stale if found.renewed is None], page.read_text("utf-8")
+
+
+def test_a_stale_number_is_renewed_and_the_rest_of_its_page_left(tmp_path: Path) -> None:
+    rest = "\nmean force 8 N\n"
+    alone, text = renewed_page(tmp_path, f"mean STE at 120 N m: 15.00 µm\n8   0.06 ±0.01   0.29 ±0.02{rest}")
+    assert alone == []
+    today = f"mean STE at 120 N m: 16.65 µm\n8   0.0475 ±0.01   0.293 ±0.02{rest}"
+    assert text.endswith(f"```text\n{today}```\n\nMore.\n")
+    assert list(manual.run_page(tmp_path / "page.md")) == []
+
+
+def test_a_line_without_a_partner_is_reported_beside_the_nearest_and_left(tmp_path: Path) -> None:
+    lines = "9  0.06 ±0.01  0.30 ±0.02\nmean moment 9 kN\n"
+    alone, text = renewed_page(tmp_path, lines)
+    assert alone == ["  8  0.0475 ±0.01  0.293 ±0.02", "mean moment 9 N m"]
+    assert lines in text
+
+
+def test_a_guide_runs_after_those_whose_files_it_goes_on_with() -> None:
+    by_name = {(page.parent.name, page.stem): page for page in manual.pages()}
+    guide, spur = by_name["how-to", "quiet-flanks-by-search"], by_name["tutorials", "industrial-spur-pair"]
+    assert manual.needed(guide) == [spur, guide]
+    assert manual.needed(spur) == [spur]
 
 
 def links(page: Path) -> set[Path]:
