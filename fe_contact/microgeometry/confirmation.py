@@ -383,7 +383,7 @@ def full_table(
     skews = _misalignment_axis(search.misalignment, search.nodes.misalignment)
     full = replace(
         request,
-        pair=modified(request.pair, values),
+        pair=modified(search.contact.pair, values),
         misalignment=skews,
         options=replace(request.options.at_level(decided.mesh.level), effects=dict(search.choices)),
     )

@@ -74,8 +74,9 @@ def _compare_runs(runs: dict[str, RunResult], view: RunView, measured: MeasuredO
     differing = changed_fields({name: run.case for name, run in runs.items()})
     if differing.rows:
         sections.append(Section("Scenes", tables=(differing,)))
-    headlines = tuple(Headline(one.name, one.written, one.finding) for one in differences[:3])
-    lead = f"{signal.name}; {', '.join(f'{run.time[-1]:g} s' for run in runs.values())} of motion"
+    headlines = tuple(Headline(one.name, one.between, one.finding) for one in differences[:3])
+    lasted = ", ".join(f"{run.time[-1]:g} s" for run in runs.values())
+    lead = f"{signal.name}; {lasted} of motion; errors are those of runs, not of the tables they take"
     return Page(f"{' and '.join(runs)} compared", lead, headlines, tuple(sections))
 
 

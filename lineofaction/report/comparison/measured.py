@@ -54,8 +54,14 @@ class Difference:
         return "the second is larger" if self.value > 0.0 else "the second is smaller"
 
     def __str__(self) -> str:
-        """Write the difference with its error and what follows."""
-        return f"{self.written}: {self.finding}"
+        """Write both values, their difference with its error, and what follows."""
+        return f"{self.between}: {self.finding}"
+
+    @property
+    def between(self) -> str:
+        """Both values, and by how much the second differs: a signed number alone reads as a value."""
+        before, after = (number(each.value, 4) for each in (self.first, self.second))
+        return f"{before} to {after} {self.first.unit}, by {self.written}"
 
     @property
     def written(self) -> str:

@@ -45,6 +45,15 @@ def test_every_sample_is_the_pair_as_it_is_made(found: ToleranceStudy) -> None:
         np.testing.assert_array_equal(found.peak_to_peak[k], ripple)
 
 
+def test_the_error_is_that_of_the_pair_as_designed() -> None:
+    forms = Tolerances(0.0, {"pinion.profile_form": 8e-6, "wheel.profile_form": 8e-6})
+    options = AnalysisOptions(**DRAFT)
+    study = scatter(PAIR, TORQUES, forms, Sampling(samples=2, positions=16), options)
+    table = analyze(PAIR, torques=TORQUES, effects={"profile_modification": "on"}, **DRAFT)
+    alone = [table.peak_to_peak(torque=torque) for torque in TORQUES]
+    np.testing.assert_allclose(study.error, [ripple.error for ripple in alone], rtol=0.02)
+
+
 def test_a_larger_sample_begins_with_the_smaller_one(found: ToleranceStudy) -> None:
     more = scatter(
         PAIR, TORQUES, SLOPES, Sampling(samples=130, seed=3, positions=16), AnalysisOptions(**DRAFT)
