@@ -2,10 +2,26 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 from scipy.stats import binom, rankdata
 
 from bounds.types import FloatArray
+
+
+def quantiles(sample: FloatArray, fractions: float | tuple[float, ...]) -> FloatArray:
+    """Return what further members of a population are below with these probabilities, by samples (N, ...).
+
+    NaN of the sample are left out; NaN where none is left.
+
+    Notes
+    -----
+    A further member falls below the k-th of N with the probability k / (N + 1), whatever the distribution:
+    between the 5 % and 95 % so estimated lie 90 % of the others, where ranks k / N hold 85 % of them by 32.
+    """
+    with warnings.catch_warnings(action="ignore", category=RuntimeWarning):  # nothing left
+        return np.asarray(np.nanquantile(sample, fractions, axis=0, method="weibull"))
 
 
 def quantile_bounds(
@@ -30,7 +46,7 @@ def quantile_bounds(
     above = int(binom.ppf(1.0 - outside, count, fraction)) + 1
     low = ordered[below - 1] if below >= 1 else np.full(loads, -np.inf)
     high = ordered[above - 1] if above <= count else np.full(loads, np.inf)
-    return np.quantile(sample, fraction, axis=0), low, high
+    return quantiles(sample, fraction), low, high
 
 
 def rank_correlation(deviation: FloatArray, sample: FloatArray) -> FloatArray:

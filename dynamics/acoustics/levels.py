@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 from dynamics.checks import integer
 from dynamics.errors import InputError
 from dynamics.types import FloatArray
+from model_studies.spread import quantiles
 
 REFERENCE_POWER = 1e-12  # W
 REFERENCE_PRESSURE = 20e-6  # Pa, rms
@@ -174,7 +175,7 @@ def level_bands(
         name: [levels({**nominal, name: span.at(end)}) - middle for end in ENDS]
         for name, span in ranges.items()
     }
-    low, high = np.quantile(together, ENDS, axis=0, method="weibull")  # of further cases, not of these
+    low, high = quantiles(np.array(together), ENDS)
     below = _parts(-low, {name: -np.min(rows, axis=0) for name, rows in alone.items()})
     above = _parts(high, {name: np.max(rows, axis=0) for name, rows in alone.items()})
     return tuple(

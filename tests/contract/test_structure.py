@@ -12,14 +12,14 @@ ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
     ("fe_contact",): (43_181, 800),
-    ("dynamics",): (42_668, 837),
-    ("lineofaction.gearbox",): (26_808, 547),
-    ("lineofaction.report",): (12_008, 226),
+    ("dynamics",): (42_669, 837),
+    ("lineofaction.gearbox",): (26_811, 547),
+    ("lineofaction.report",): (12_005, 226),
     ("service",): (14_810, 345),
     ("lineofaction.client",): (2_674, 53),
     ("lineofaction.cli",): (5_471, 80),
     ("lineofaction.hardcases",): (3_841, 35),
-    ("bounds", "host", "model_studies"): (4_500, 155),
+    ("bounds", "host", "model_studies"): (4_516, 156),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 MOST_FILES = 837

@@ -16,6 +16,7 @@ from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Reference, Table, number, thousands
 from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.presentation import Presentation
+from model_studies.spread import quantiles
 
 _STEPS = 400
 
@@ -93,7 +94,7 @@ def _quantile_table(study: ToleranceStudy) -> Table:
         for quantile in study.quantiles:
             low, high = float(quantile.low[k]), float(quantile.high[k])
             ends = (number(low / UM, 3) if low else "none", number(high / UM, 3))
-            at_once = float(np.quantile(study.first_order[:, k], quantile.fraction))
+            at_once = float(quantiles(study.first_order[:, k], quantile.fraction))
             row += [number(float(quantile.value[k]) / UM, 3), " to ".join(ends), number(at_once / UM, 3)]
         rows.append(tuple(row))
     count = study.peak_to_peak.shape[0]

@@ -11,9 +11,10 @@ from bounds import engineering
 from dynamics.study import Study
 from lineofaction.gearbox.studies.study.run import in_boundary_units
 from lineofaction.report.drawing import palette
-from lineofaction.report.drawing.figure import Axis, Figure, FloatArray, HeatMap, Line, Panel, Table, number
+from lineofaction.report.drawing.figure import Axis, Figure, HeatMap, Line, Panel, Table, number
 from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.presentation import Presentation
+from model_studies.spread import quantiles
 
 SHOWN_RESPONSES, SHOWN_CURVES, SHOWN_FACTORS = 4, 6, 12
 BAR = 9.0
@@ -88,15 +89,10 @@ def _lines(study: Study, axis: int, response: int) -> tuple[Line, ...]:
     if study.samples > 1:
         for fraction in (0.05, 0.95):
             rows = [study.figure[study.value[:, axis] == level, response] for level in levels]
-            ends = np.array([_quantile(row, fraction) for row in rows])
+            ends = np.array([quantiles(row[np.isfinite(row)], fraction) for row in rows])
             name = f"{100 * fraction:g} %"
             lines.append(Line(name, levels, ends / one, palette.VERMILLION, "dot", 1.2))
     return tuple(lines)
-
-
-def _quantile(row: FloatArray, fraction: float) -> float:
-    usable = row[np.isfinite(row)]
-    return float(np.quantile(usable, fraction)) if usable.size else float("nan")
 
 
 def _distribution_figure(study: Study) -> Figure:

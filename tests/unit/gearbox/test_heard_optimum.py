@@ -28,6 +28,7 @@ from lineofaction.gearbox.studies.optimize.heard_search import heard_problem, mi
 from lineofaction.gearbox.studies.optimize.result import HeardOptimization
 from lineofaction.gearbox.studies.optimize.run import RUN, request_of
 from lineofaction.gearbox.workbench import tabled
+from model_studies.spread import quantiles
 from model_studies.workers import InProcess
 
 Json = dict[str, Any]
@@ -177,7 +178,7 @@ def test_a_pair_within_tolerances_is_as_loud_as_its_flanks() -> None:
     made = [DESIGN | {"pinion.tip_relief": DESIGN["pinion.tip_relief"] + each} for each in deviation[:, 0]]
     levels = [level(own, each) for each in made]
     np.testing.assert_allclose(pairs.levels(DESIGN, InProcess()), levels, atol=1e-6)
-    assert pairs.evaluated(DESIGN)[0] == pytest.approx(np.quantile(levels, 0.75))
+    assert pairs.evaluated(DESIGN)[0] == pytest.approx(float(quantiles(np.array(levels), 0.75)))
     scaled = replace(pairs, scale=pairs.evaluated(DESIGN)[0])
     assessed, merit = scaled.linearize(place(pairs), InProcess())
     assert assessed.objective == pytest.approx(scaled.scale)
@@ -199,7 +200,7 @@ def test_a_quantile_of_the_pairs_is_minimized() -> None:
     few: Json = {"search": FEW | {"positions": 16}, "heard": HEARD | {"load_cases": [{"name": "whole"}]}}
     few["heard"] |= {"tolerances": {"samples": 8, "tolerance_class": 4}, "orders": 1}
     own = searched({"variables": FREE, **few, "heard": few["heard"] | {"quantile": 0.75}})
-    levels = np.quantile(own.pairs, 0.75, axis=1)
+    levels = quantiles(own.pairs.T, 0.75)
     ends = own.start.objective.value, own.optimum.objective.value
     np.testing.assert_allclose(levels, ends, atol=1e-6)
     assert levels[1] < levels[0]

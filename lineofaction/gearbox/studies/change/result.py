@@ -11,7 +11,7 @@ import numpy as np
 from bounds.types import Json
 from fe_contact.types import FloatArray
 from model_studies import in_unit
-from model_studies.spread import rank_correlation
+from model_studies.spread import quantiles, rank_correlation
 
 ALL = "all"
 """The line of all orders of the mesh together: flanks change no others."""
@@ -50,7 +50,7 @@ def _banded(levels: FloatArray, below: FloatArray, above: FloatArray) -> FloatAr
 
     The spread of the pairs and the errors of the table are independent: they add up in squares.
     """
-    low, median, high = np.quantile(levels, (LOW, MEDIAN, HIGH), axis=0)
+    low, median, high = quantiles(levels, (LOW, MEDIAN, HIGH))
     below, above = np.nan_to_num(below), np.nan_to_num(above)
     return np.stack([median - np.hypot(median - low, below), median, median + np.hypot(high - median, above)])
 

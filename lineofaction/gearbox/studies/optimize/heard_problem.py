@@ -20,6 +20,7 @@ from fe_contact.microgeometry.objective import LinearProgram, Rows
 from fe_contact.microgeometry.scatter import ONE_NODE
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.studies.change.heard_flanks import HeardLoad
+from model_studies.spread import quantiles
 from model_studies.workers import InProcess, Workers, divided
 
 BESIDE_EACH = np.array([1.0 - 1e-3, 1.0, 1.0 + 1e-3])
@@ -234,7 +235,7 @@ class HeardProblem(SearchProblem):
             weight = self.evaluator.nodes.weight
             return self.heard.level(np.tensordot(weight, power, 1)), weight
         levels = np.array([self.heard.level(own) for own in power])
-        level = float(np.quantile(levels, self.quantile))
+        level = float(quantiles(levels, self.quantile))
         loud = levels >= min(level, levels.max())
         return level, loud / loud.sum()
 

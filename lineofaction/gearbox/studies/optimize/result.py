@@ -15,6 +15,7 @@ from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.types import Estimate, FloatArray
 from lineofaction.gearbox.studies.change.result import ALL, AUDIBLE, HIGH, LOW, MEDIAN
 from model_studies import in_unit
+from model_studies.spread import quantiles
 
 FALL = 25.0
 """dB below the loudest line: what is lower is not told."""
@@ -165,7 +166,7 @@ class HeardOptimization:
         """
         before, after = self.pairs
         levels = np.stack([before, after, after - before])
-        return np.asarray(np.nanquantile(levels, (LOW, MEDIAN, HIGH), axis=1).T)
+        return quantiles(levels.T, (LOW, MEDIAN, HIGH)).T
 
     @property
     def louder_share(self) -> float:
