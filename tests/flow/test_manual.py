@@ -14,7 +14,7 @@ import manual
 import pytest
 from condensed_once import find_condensed
 
-RESTS_ON = ("README.md", "docs/tutorials", "docs/how-to", "examples")
+RESTS_ON = ("README.md", "docs/studies.md", "docs/tutorials", "docs/how-to", "examples")
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 
@@ -130,8 +130,8 @@ pathlib.Path("housings.json").write_text(json.dumps([case]))
 """
 
 
-def blocks(language: str) -> list[str]:
-    return re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL)
+def blocks(language: str, page: str = README) -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", page, re.DOTALL)
 
 
 def run_python(code: str, folder: Path, warnings: str = "error") -> subprocess.CompletedProcess[str]:
@@ -162,7 +162,8 @@ def test_a_unit_sounds_in_six_lines_without_a_server(tmp_path: Path) -> None:
     example = ROOT / "examples" / "two_stage"
     shutil.copyfile(example / "two_stage.rexs", tmp_path / "unit.rexs")
     run_python(WRITE_CASE.format(example=str(example)), tmp_path)
-    code = blocks("python")[1]
+    studies = (DOCS / "studies.md").read_text("utf-8")
+    (code,) = (block for block in blocks("python", studies) if "open_unit" in block)
     assert len([line for line in code.splitlines() if line and not line.startswith("import")]) <= 6
     assert "level" in run_python(code, tmp_path, "default").stdout
 
