@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import replace
@@ -15,7 +16,8 @@ from lineofaction.gearbox.schemas.report import ReportInput, Requirement
 from lineofaction.report.drawing.page import Headline, Page, TitleBlock
 
 _NUMBER = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
-_VALUE, _BAND = re.compile(rf"({_NUMBER}) ?(.*)"), re.compile(rf"± ({_NUMBER})")
+_VALUE = re.compile(rf"({_NUMBER}) ?(.*)")
+_BAND = re.compile(rf"± ({_NUMBER})|({_NUMBER}|none) to ({_NUMBER}|none)")
 
 
 def about_of(file: Path) -> ReportInput:
@@ -65,12 +67,21 @@ def _verdicts(required: Requirement, headlines: Sequence[Headline]) -> list[str]
     """Return a sentence for each result: met, not met, or open where its error leaves it so."""
     words = []
     for one, value in _meant(required, headlines):
-        band = _BAND.match(one.remark)
-        error = float(band[1]) if band else 0.0
-        inside = required.limit - value if required.most else value - required.limit
-        verdict = "Open within the error" if abs(inside) < error else "Met" if inside >= 0.0 else "Not met"
-        stated = f" ± {band[1]}" if band else ""
+        low, high, stated = _band(one, value)
+        met = value <= required.limit if required.most else value >= required.limit
+        verdict = "Open within the error" if low < required.limit < high else "Met" if met else "Not met"
         limit = f"{'at most' if required.most else 'at least'} {required.limit:g} {required.unit}".rstrip()
         result = f"{one.value.removesuffix(required.unit).strip()}{stated} {required.unit}".rstrip()
         words.append(f"{verdict}: {one.name} is {result}; required is {limit}.")
     return words
+
+
+def _band(headline: Headline, value: float) -> tuple[float, float, str]:
+    """Return the ends of what a remark states, an error or bounds, and its words; none has no end."""
+    band = _BAND.match(headline.remark)
+    if band is None:
+        return value, value, ""
+    if band[1]:
+        return value - float(band[1]), value + float(band[1]), f" {band[0]}"
+    low, high = (math.inf if end == "none" else float(end) for end in band.groups()[1:])
+    return (-low if math.isinf(low) else low), high, f" ({band[0]})"

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from fe_contact.microgeometry.order_limit import PairsAbove
-from fe_contact.microgeometry.tolerance_study import ToleranceStudy
+from fe_contact.microgeometry.tolerance_study import Quantile, ToleranceStudy
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.units import UM
@@ -92,14 +92,18 @@ def _quantile_table(study: ToleranceStudy) -> Table:
         ):  # fmt: skip
             row.append(number(float(values[k]) / UM, digits))
         for quantile in study.quantiles:
-            low, high = float(quantile.low[k]), float(quantile.high[k])
-            ends = (number(low / UM, 3) if low else "none", number(high / UM, 3))
             at_once = float(quantiles(study.first_order[:, k], quantile.fraction))
-            row += [number(float(quantile.value[k]) / UM, 3), " to ".join(ends), number(at_once / UM, 3)]
+            row += [number(float(quantile.value[k]) / UM, 3), _bounds(quantile, k), number(at_once / UM, 3)]
         rows.append(tuple(row))
     count = study.peak_to_peak.shape[0]
     caption = f"Peak to peak of {count} pairs; to first order by the derivatives of the curves as designed"
     return Table(caption, tuple(head), tuple(rows))
+
+
+def _bounds(quantile: Quantile, k: int) -> str:
+    """Write the bounds of a quantile at the k-th torque, µm."""
+    low, high = float(quantile.low[k]), float(quantile.high[k])
+    return f"{number(low / UM, 3) if low else 'none'} to {number(high / UM, 3)}"
 
 
 def _influence_table(study: ToleranceStudy) -> Table:
@@ -203,10 +207,13 @@ def _tables(study: ToleranceStudy) -> tuple[Table, ...]:
 
 def _page(study: ToleranceStudy) -> Page:
     last = study.quantiles[-1]
+    bounds = f"{_bounds(last, -1)} with {100 * study.confidence:g} % confidence"
     heads: tuple[Headline, ...] = (
         Headline("as designed", f"{number(study.nominal[-1] / UM, 3)} µm", "at the highest torque"),
         Headline("mean", f"{number(study.mean[-1] / UM, 3)} µm"),
-        Headline(f"{100 * last.fraction:g} % of all pairs below", f"{number(last.value[-1] / UM, 3)} µm"),
+        Headline(
+            f"{100 * last.fraction:g} % of all pairs below", f"{number(last.value[-1] / UM, 3)} µm", bounds
+        ),
     )
     figure = replace(_scatter_figure(study), table=None)
     section = Section("Distribution", " ".join(_verdict(study)), (figure,), _tables(study))

@@ -35,6 +35,8 @@ RESULTS = (
     Headline("mean STE at 120 N m", "16.65 µm", "± 0.088 µm"),
     Headline("peak-to-peak STE at 120 N m", "0.436 µm", "± 0.020 µm; gears of this width +2 %"),
     Headline("largest pressure at 120 N m", "1366 MPa", "no error is stated for it"),
+    Headline("95 % of all pairs below", "0.643 µm", "0.612 to 0.700 with 95 % confidence"),
+    Headline("99 % of all pairs below", "0.671 µm", "0.643 to none with 95 % confidence"),
 )
 PAGE = Page("Gear pair 23/67", "A pair.", RESULTS, ())
 ABOUT = {"title": "First stage", "project": "EV", "number": "25-061", "revision": "B", "author": "A. Smith"}
@@ -57,6 +59,11 @@ def verdicts(*requirements: str) -> tuple[str, ...]:
         ("peak-to-peak STE at most 0.4 µm", "Not met: "),
         ("Largest pressure at 120 N m at most 1366 MPa", "Met: "),
         ("largest pressure at least 1400 MPa", "Not met: "),
+        ("95 % of all pairs below at most 0.72 µm", "Met: "),
+        ("95 % of all pairs below at most 0.65 µm", "Open within the error: "),
+        ("95 % of all pairs below at most 0.6 µm", "Not met: "),
+        ("99 % of all pairs below at most 2 µm", "Open within the error: "),
+        ("99 % of all pairs below at most 0.6 µm", "Not met: "),
     ],
 )
 def test_a_limit_is_met_only_by_more_than_the_error(requirement: str, verdict: str) -> None:
