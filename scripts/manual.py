@@ -108,6 +108,7 @@ def renew(page: Path, stale: list[Stale]) -> None:
     """Write today's numbers into the lines of a page that have a partner in the output."""
     text = page.read_text("utf-8")
     for found in reversed(stale):
+        assert text.startswith(found.line, found.offset), f"{page.name} changed while it ran"
         if found.renewed is not None:
             text = text[: found.offset] + found.renewed + text[found.offset + len(found.line) :]
     page.write_text(text, encoding="utf-8")
