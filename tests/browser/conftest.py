@@ -11,8 +11,8 @@ from types import ModuleType
 
 import pytest
 from condensed_once import find_condensed
-from page_visit import Visit, computed, served, shown
-from playwright.sync_api import Browser, Playwright, sync_playwright
+from page_visit import PATIENCE, Visit, computed, served, shown
+from playwright.sync_api import Browser, Playwright, expect, sync_playwright
 
 CLOSED_FORMS = Path(__file__).parents[1] / "unit" / "report" / "conftest.py"
 
@@ -30,6 +30,7 @@ def chromium() -> str | None:
 
 @pytest.fixture(scope="session")
 def playwright() -> Iterator[Playwright]:
+    expect.set_options(timeout=PATIENCE)  # of a busy machine; what is there is seen at once
     with sync_playwright() as started:
         yield started
 

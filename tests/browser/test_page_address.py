@@ -129,7 +129,7 @@ def test_an_unknown_address_is_said_on_the_first_screen(
     box = notice.bounding_box()
     assert box is not None and box["y"] >= 0.0 and box["y"] + box["height"] < 900.0
     expect(notice).to_contain_text("The fields of the gear pair are left empty.")
-    assert page.locator("#f-pair-normal_module_mm").input_value() == ""
+    expect(page.locator("#f-pair-normal_module_mm")).to_have_value("")
     page.route("**/execution", lambda _: None)  # the first example is not computed
     notice.get_by_role("link", name="Begin anew").press("Enter")
     expect(notice).to_be_empty()
@@ -192,12 +192,12 @@ def test_the_design_of_a_job_under_way_stands_before_its_result(browser: Browser
         job = client.submit("analyze", {"case": LONG})
         with other_browser(browser, f"{address}/#analyze={job.id}") as page:
             expect(page.locator("#analyze-job .job")).to_be_visible()
-            assert page.locator("#f-pair-normal_module_mm").input_value() == "1"
-            assert page.locator("#f-accuracy-level").input_value() == "fine"
+            expect(page.locator("#f-pair-normal_module_mm")).to_have_value("1")
+            expect(page.locator("#f-accuracy-level")).to_have_value("fine")
             expect(page.locator("#example-note")).to_have_text("The pair of this address.")
             page.get_by_role("button", name="Cancel analyze", exact=True).press("Enter")
             expect(page.locator("#notice")).to_contain_text("analyze: The job was cancelled.")
-            assert page.locator("#f-pair-normal_module_mm").input_value() == "1"
+            expect(page.locator("#f-pair-normal_module_mm")).to_have_value("1")
 
 
 def test_a_study_is_sent_with_the_design_as_edited_and_what_was_typed_for_it(

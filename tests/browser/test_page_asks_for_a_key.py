@@ -30,7 +30,7 @@ def test_it_asks_until_the_key_is_right_and_keeps_it_for_the_tab(
     page.goto(f"{address}/#rail")
     dialog = page.get_by_role("dialog", name="Access key")
     expect(dialog).to_contain_text("asks for an access key")
-    assert dialog.count() == 1, "one question for all requests that wait"
+    expect(dialog).to_have_count(1)
     assert Axe().run(page, options={"rules": {"region": {"enabled": False}}}).violations_count == 0
     page.keyboard.type("loa_wrong")
     page.keyboard.press("Enter")

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 from page_visit import Visit, answers, control, shown, tab
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Page, expect
 from running_service import until
 
 FOCUS = """() => {
@@ -95,13 +95,13 @@ def test_rail_and_dock_fold_and_the_split_moves(visit: Visit) -> None:
 
 def test_a_slider_says_its_value_with_the_unit(visit: Visit) -> None:
     slider = control(visit.page, "#live-wheel-tip_relief_um")
-    assert slider.get_attribute("aria-valuetext") == "0 µm"
+    expect(slider).to_have_attribute("aria-valuetext", "0 µm")
     count = answers(visit.page)
     slider.press("ArrowRight")
     until(lambda: answers(visit.page) > count)
     value = slider.input_value()
     assert float(value) > 0.0
-    assert slider.get_attribute("aria-valuetext") == f"{value} µm"
+    expect(slider).to_have_attribute("aria-valuetext", f"{value} µm")
 
 
 @pytest.mark.parametrize("width", [700, 320])  # 200 % of 1400 pixels; what WCAG 1.4.10 asks for

@@ -59,7 +59,7 @@ def test_another_pair_is_compared_at_the_torque_that_is_looked_at(
     visit = opened(browser, f"{address}/#database={other}&a={analyzed}&on=b")
     page = visit.page
     until(lambda: answers(page) > 0)
-    assert page.locator("#f-pair-wheel-teeth").input_value() == "24"
+    expect(page.locator("#f-pair-wheel-teeth")).to_have_value("24")
     one = curves(page, tmp_path)["A"]
     moved(page, "#live-torque_n_m", "End")
     two = curves(page, tmp_path)["A"]
@@ -79,7 +79,7 @@ def test_in_three_dimensions_misalignment_and_crowning_act(
     moved(page, "#live-misalignment_um", "End")
     expect(page.locator("#live-figures dd").first).not_to_have_text(before or "")
     moved(page, "#live-pinion-helix_crowning_um", "End")
-    assert page.locator("#live-pinion-helix_crowning_um").get_attribute("aria-valuetext") == "30 µm"
+    expect(page.locator("#live-pinion-helix_crowning_um")).to_have_attribute("aria-valuetext", "30 µm")
     tab(page, "Flanks, live")
     count = answers(page)
     page.get_by_role("button", name="As analyzed").press("Enter")
@@ -163,7 +163,7 @@ def test_a_misaligned_pair_is_pressed_harder_and_carries_less_evenly(over_face: 
     assert figure(page, "largest pressure") > 1.2 * pressure
     assert figure(page, "K_Hbeta") > 1.5 * factor
     load = page.locator("[data-figure=live_face_load]")
-    assert load.locator(".scatterlayer .trace").count() == 3, "as analyzed, now, now at the worst position"
+    expect(load.locator(".scatterlayer .trace")).to_have_count(3)
     said = load.locator(".plot").get_attribute("aria-label") or ""
     assert f"K_Hbeta {figure(page, 'K_Hbeta'):g}" in said
     page.get_by_role("button", name="As analyzed").press("Enter")

@@ -115,7 +115,7 @@ def test_every_depth_and_length_has_a_slider_and_acts_along_what_it_is_declared_
     page = visit.page
     depths, lengths = figures(FlankModification, *DEPTHS), figures(FlankModification, Kind.LENGTH)
     sliders = page.locator("#sliders input[type=range]")
-    assert sliders.count() == 2 + 2 * len(depths) + 2 * len(lengths)
+    expect(sliders).to_have_count(2 + 2 * len(depths) + 2 * len(lengths))
     for depth in depths + lengths:
         for gear in ("pinion", "wheel"):
             slider = page.locator(f"#live-{gear}-{depth.field}")
@@ -197,7 +197,7 @@ def test_plots_follow_the_width_of_the_window(visit: Visit) -> None:
 def test_both_gears_are_drawn_and_roll(visit: Visit) -> None:
     page = visit.page
     gears = page.locator("#mesh-drawing g > g")
-    assert gears.count() == 2
+    expect(gears).to_have_count(2)
     before = [gear.get_attribute("transform") for gear in gears.all()]
     page.locator("#roll").focus()
     page.keyboard.press("End")

@@ -208,6 +208,6 @@ def test_a_deflection_shows_its_tables_of_bearings(visit: Visit) -> None:
     page.get_by_role("button", name="Compute the scene").press("Enter")
     table = page.locator("#scene-body table", has_text="Bearings under the load cases")
     expect(table).to_be_visible()
-    assert table.locator("tbody tr").count() == 2
+    expect(table.locator("tbody tr")).to_have_count(2)
     expect(page.locator("#scene-body .lead")).to_have_text(re.compile(r"Nothing meshes\.$"))
     assert visit.complaints == []

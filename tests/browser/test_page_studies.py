@@ -99,7 +99,7 @@ def test_every_plot_of_a_study_is_drawn_and_has_words(visit: Visit, name: str) -
             node.locator(".scatterlayer .trace path, .barlayer .trace path, .heatmaplayer image").count() >= 1
         )
         assert len(node.get_attribute("aria-label") or "") > 40
-    assert part.locator(".plot").count() == part.locator(".plot[data-drawn=yes]").count()
+    expect(part.locator(".plot[data-drawn=yes]")).to_have_count(part.locator(".plot").count())
 
 
 def saved(page: Page, button: Locator) -> bytes:

@@ -54,7 +54,7 @@ def typed(page: Page, key: str, text: str) -> None:
     with page.expect_response("**/v1/cases/outline"):
         page.keyboard.type(text, delay=TYPED_SLOWLY)
     assert page.evaluate("document.activeElement.id") == f"f-{key}"
-    assert field.input_value() == text
+    expect(field).to_have_value(text)
 
 
 @pytest.mark.parametrize("begin", ["empty", pytest.param("helical_automotive", marks=pytest.mark.nightly)])
@@ -75,7 +75,7 @@ def test_a_pair_typed_in_reading_order_is_the_pair_that_is_planned(visit: Visit,
     expect(page.locator("#form-errors")).to_be_hidden()
     expect(page.locator("#drawing-state")).to_be_empty()
     for key, text in PAIR.items():
-        assert page.locator(f"#f-{key}").input_value() == text
+        expect(page.locator(f"#f-{key}")).to_have_value(text)
     assert "wheel with 24" in page.locator("#mesh-words").inner_text()
     assert visit.complaints == []
 
@@ -101,7 +101,7 @@ def test_a_field_that_is_being_typed_into_is_not_blamed_before_it_is_finished(vi
     page.keyboard.type("0")
     expect(page.locator("#form-errors")).to_be_hidden()
     assert teeth.get_attribute("aria-invalid") != "true"
-    assert teeth.input_value() == "20"
+    expect(teeth).to_have_value("20")
 
 
 def test_an_example_says_which_settings_it_replaces(visit: Visit) -> None:

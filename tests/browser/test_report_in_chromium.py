@@ -9,7 +9,7 @@ from types import ModuleType
 
 import pytest
 from page_visit import PATIENCE
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Page, expect
 
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.report.document import write_report
@@ -79,7 +79,7 @@ def visit(browser: Browser, report: Path) -> Visit:
 @pytest.mark.parametrize("key", CURVES)
 def test_every_curve_is_drawn(visit: Visit, key: str) -> None:
     drawn = visit.page.locator(f"#{key} .plot .scatterlayer .trace path.js-line")
-    assert drawn.count() == CURVES[key]
+    expect(drawn).to_have_count(CURVES[key])
     boxes = [drawn.nth(index).bounding_box() for index in range(CURVES[key])]
     assert all(box is not None and box["width"] > 100 for box in boxes)
 
@@ -163,10 +163,10 @@ def test_the_bar_of_buttons_hides_nothing(browser: Browser, report: Path, width:
 def test_the_numbers_open_by_keyboard(visit: Visit) -> None:
     summary = visit.page.locator("#ste summary")
     table = visit.page.locator("#ste table")
-    assert not table.is_visible()
+    expect(table).to_be_hidden()
     summary.focus()
     visit.page.keyboard.press("Enter")
-    assert table.is_visible()
+    expect(table).to_be_visible()
 
 
 def test_print_shows_pictures_with_one_title_and_what_was_opened(visit: Visit) -> None:
@@ -174,16 +174,16 @@ def test_print_shows_pictures_with_one_title_and_what_was_opened(visit: Visit) -
     page.locator("#ste details").evaluate("node => { node.open = true; }")
     page.emulate_media(media="print")
     page.evaluate("dispatchEvent(new Event('beforeprint'))")
-    assert page.locator("#ste .still").is_visible()
-    assert not page.locator("#ste .plot").is_visible()
-    assert not page.locator("#ste h3").is_visible()  # the picture has it
-    assert page.locator("#ste table").is_visible()
-    assert not page.locator("#ripple table").first.is_visible()
+    expect(page.locator("#ste .still")).to_be_visible()
+    expect(page.locator("#ste .plot")).to_be_hidden()
+    expect(page.locator("#ste h3")).to_be_hidden()  # the picture has it
+    expect(page.locator("#ste table")).to_be_visible()
+    expect(page.locator("#ripple table").first).to_be_hidden()
     unprinted = page.locator("section.unprinted h2").all_text_contents()
     assert "Case" in unprinted and any(title.startswith("Receipt") for title in unprinted)
     assert not any(section.is_visible() for section in page.locator("section.unprinted").all())
     page.emulate_media(media="screen")
-    assert page.locator("#ste h3").is_visible()
+    expect(page.locator("#ste h3")).to_be_visible()
 
 
 @pytest.fixture(scope="module")
@@ -223,6 +223,6 @@ def test_without_scripts_the_images_fake(browser: Browser, report: Path) -> None
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
     page.goto(report.as_uri())
-    assert page.locator("#ste .still").is_visible()
-    assert page.locator("h1").text_content() == "Gear pair 20/20"
+    expect(page.locator("#ste .still")).to_be_visible()
+    expect(page.locator("h1")).to_have_text("Gear pair 20/20")
     context.close()

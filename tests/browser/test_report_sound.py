@@ -79,7 +79,7 @@ def clicked(of: Locator, part: float) -> float:
 
 def test_the_sound_lasts_as_long_as_the_run(order_map: Locator) -> None:
     players = order_map.locator("audio")
-    assert players.count() == 1
+    expect(players).to_have_count(1)
     assert players.evaluate("one => one.duration") == pytest.approx(DURATION, abs=1e-3)
     expect(order_map).to_contain_text("no sound pressure")
     expect(order_map).to_contain_text("Full scale: 28 N")
@@ -114,7 +114,7 @@ def test_the_player_is_reached_by_the_keyboard(order_map: Locator) -> None:
 
 def test_two_designs_are_heard_in_turn_at_the_same_speed(levels: Locator) -> None:
     players = levels.locator("audio")
-    assert players.count() == 2
+    expect(players).to_have_count(2)
     there = clicked(levels, 0.5)
     levels.page.wait_for_function("document.querySelector('#levels audio').currentTime > 0.5")
     assert times(levels)[1] == 0.0
@@ -143,7 +143,7 @@ def test_without_scripts_the_sound_can_be_played(browser: Browser, folder: Path,
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
     page.goto((folder / "report.html").as_uri())
-    assert page.locator("#order_map audio[controls]").is_visible()
+    expect(page.locator("#order_map audio[controls]")).to_be_visible()
     context.close()
 
 
