@@ -54,14 +54,16 @@ class Difference:
         return "the second is larger" if self.value > 0.0 else "the second is smaller"
 
     def __str__(self) -> str:
-        """Write both values, their difference with its error, and what follows."""
-        return f"{self.between}: {self.finding}"
+        """Write the difference with its error and what follows."""
+        return f"{self.written}: {self.finding}"
 
     @property
     def between(self) -> str:
         """Both values, and by how much the second differs: a signed number alone reads as a value."""
-        before, after = (number(each.value, 4) for each in (self.first, self.second))
-        return f"{before} to {after} {self.first.unit}, by {self.written}"
+        before, after = (number(each.value, 3) for each in (self.first, self.second))
+        return (
+            f"{before} to {after} {self.first.unit}, by {self.written.removesuffix(self.first.unit).strip()}"
+        )
 
     @property
     def written(self) -> str:

@@ -58,7 +58,7 @@ def compare_tables(
     if differing.rows:
         sections.append(Section("Cases", tables=(differing,)))
     headlines = tuple(
-        Headline(f"{one.name} at {one.where}", one.between, one.finding)
+        Headline(f"{one.name} at {one.where}", one.written, one.finding)
         for one in differences
         if one.name == "peak to peak"
     )
