@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from fe_contact.ste import SteDatabase
     from lineofaction.client.report import Report
     from lineofaction.gearbox.schemas.figures import Figures
-    from service.schemas.answers import DatabaseEntry
+    from service.schemas.answers import DatabaseEntry, MotionBody
 
 Column = float | Collection[float]
 """One value for all points, or a list or one-dimensional array with one for each."""
@@ -178,6 +178,20 @@ class ResultCalls(Surface):
         path = f"{RESULTS}/{key}/sound"
         answer = yield from self.session.exchange.request("GET", path, params=parameters)
         return answer.content
+
+    @operation
+    def motion(self, key: str, number: int | None = None) -> Steps[MotionBody]:
+        """Return the motions that a result holds by name, and the one of a number, counted from 0.
+
+        Modes of a scene, deflections under its load cases, velocities of a housing: how a shaft moves along
+        its axis, and each node of the housing's surface. Raises `BadInput`: no such motion, or a result
+        without any; `NotFound`, `QueueFull`, `LiveUnavailable`, `Unreachable`, `ServiceError`.
+        """
+        from service.schemas.answers import MotionBody  # noqa: PLC0415 (start-up time)
+
+        parameters = {} if number is None else {"number": number}
+        path = f"{RESULTS}/{key}/motion"
+        return self.session.exchange.read(MotionBody.model_validate, "GET", path, params=parameters)
 
     @operation
     def query(

@@ -15,6 +15,8 @@ from small_table import small_table
 from dynamics.assembly.assemble import assemble
 from dynamics.deflection import Deflection, LoadCase, deflect
 from dynamics.linearize import ModalAnalysis, modal_analysis
+from lineofaction.client import LineOfActionClient as Client
+from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, Outline
 from lineofaction.gearbox.studies.deflect.run import RUN as DEFLECT
 from service.app import create_app
@@ -93,6 +95,15 @@ def test_a_deflection_stands_under_every_load_case(stored: Stored) -> None:
         for k, scale in enumerate((1e-3, 1e-3, 1e-3, 1.0, 1.0, 1.0)):
             expected = np.interp(along, lines.position[own], lines.motion[own, k])
             np.testing.assert_allclose(np.array(shaft["real"])[:, k] * scale, expected, rtol=1e-5, atol=1e-12)
+
+
+def test_a_client_reads_what_the_service_answers(stored: Stored, tmp_path: Path) -> None:
+    with Client("http://testserver", cache_dir=tmp_path, transport=stored.http._transport) as client:
+        listed = client.motion(MODES)
+        assert listed.motion is None and listed.groups[0].name == "at rest"
+        assert client.motion(MODES, 1).model_dump() == stored.get(MODES, number=1).json()
+        with pytest.raises(BadInput, match="number"):
+            client.motion(MODES, 100_000)
 
 
 def test_it_is_sent_once_to_who_has_it(stored: Stored) -> None:
