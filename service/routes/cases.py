@@ -74,12 +74,14 @@ class CaseBody(BaseModel):
 
 @router.get("/examples", summary="Example cases")
 @needs(Scope.READ)
-def example_cases() -> list[ExampleBody]:
+def example_cases(context: Ctx) -> list[ExampleBody]:
     """List the pairs that the page offers."""
     bodies = []
     for example in examples():
         case = case_json(validated(Case, example.content))
-        own = example._asdict() | {"case": case, "hash": ANALYZE.key({"case": case})}
+        key = ANALYZE.key({"case": case})
+        stored = context.store.holds(key, ANALYZE.kind)
+        own = example._asdict() | {"case": case, "hash": key, "stored": stored}
         bodies.append(ExampleBody.model_validate(own))
     return bodies
 

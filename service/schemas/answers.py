@@ -271,6 +271,7 @@ class ExampleBody(BaseModel):
     note: str
     case: Annotated[dict[str, Any], Named("Case")]
     hash: str = Field(description="Hash of its database, whether it is stored or not")
+    stored: bool = Field(description="Whether its database is stored")
 
 
 class DatabaseEntry(BaseModel):

@@ -381,7 +381,16 @@ ANSWERS: dict[str, Any] = {
     },
     "/v1/databases/{key}/ste": _LIVE,
     "/v1/plans": _PLAN,
-    "/v1/examples": [{"name": "spur", "title": "Spur 20/20", "note": "Seconds.", "case": CASE, "hash": HASH}],
+    "/v1/examples": [
+        {
+            "name": "spur",
+            "title": "Spur 20/20",
+            "note": "Seconds.",
+            "case": CASE,
+            "hash": HASH,
+            "stored": True,
+        }
+    ],
     "/v1/cases/outline": {
         "pinion": _outline(0.0, -1.0),
         "wheel": _outline(80.0, 1.0),

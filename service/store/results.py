@@ -212,6 +212,10 @@ class ResultStore:
         self.lookups.note(hit=line is not None)
         return line
 
+    def holds(self, key: str, kind: str) -> bool:
+        """Return whether a result is there; nobody has asked for it."""
+        return self._whole(key, kind) is not None
+
     def _whole(self, key: str, kind: str) -> IndexLine | None:
         line = self._find(key, kind)
         return line if line is not None and self.files.has(line.file) else None

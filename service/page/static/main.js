@@ -13,7 +13,7 @@ import { referenceOf } from "./job.js";
 import { Jobs } from "./jobs.js";
 import { Live } from "./live.js";
 import { clearNotice, sayMissing } from "./notice.js";
-import { caseOf, ordersOf, pairOf } from "./orders.js";
+import { ordersOf, pairOf } from "./orders.js";
 import { pack, unpack } from "./packed.js";
 import { showReport } from "./report.js";
 import { Results } from "./results.js";
@@ -25,7 +25,8 @@ import { Tabs, reveal } from "./tabs.js";
 import { Undo } from "./undo.js";
 import { Variants } from "./variants.js";
 
-const STARTS = ["/v1/examples", "/v1/processes/analyze", "/v1/effects", "/v1/processes", "/v1/"];
+const EXAMPLES = "/v1/examples";
+const STARTS = [EXAMPLES, "/v1/processes/analyze", "/v1/effects", "/v1/processes", "/v1/"];
 const PLACES = ["analyze", "simulate", "modes", "scene", "job"]; // beside the studies
 const OF_RESULT = { simulate: null, modes: null }; // jobs on a result, which go with it
 const USUAL_TAB = "ripple";
@@ -171,8 +172,7 @@ class Page {
 
   /** The pair that a page without an address begins with: there is a result with nothing to press. */
   async first() {
-    const { hash } = this.design.example;
-    const stored = await caseOf(hash);
+    const [{ hash, stored }] = await patiently(() => get(EXAMPLES)); // another page may have computed it since
     if (!this.address.empty) return;
     if (stored) {
       this.address.replace({ database: hash });
