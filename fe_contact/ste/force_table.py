@@ -125,7 +125,8 @@ def _share_allowed(net: FloatArray, gaps: FloatArray, room: FloatArray, dims: in
     Coefficients of a product are means of products of the factors', so that those of a cell need not be
     formed where the largest of both factors keep to the room.
     """
-    largest = (np.abs(factor).max(axis=tuple(range(dims))) for factor in (net, gaps))
+    over = tuple(range(dims))
+    largest = (np.maximum(factor.max(axis=over), -factor.min(axis=over)) for factor in (net, gaps))
     crowded = prod(largest) > (1.0 - 2e-12) * room
     room = np.broadcast_to(room, crowded.shape)[crowded]
     product = _largest_product(net[..., crowded], gaps[..., crowded], dims)

@@ -30,6 +30,9 @@ from fe_contact.types import FloatArray, IntArray
 
 SlopeRule = Callable[[Axis, FloatArray], FloatArray]
 
+_AT_ONCE = 2**17
+"""Queries that are evaluated at once: each takes half a kilobyte on its way."""
+
 
 class Validity(IntFlag):
     """Validity of a force sample; flags add up."""
@@ -142,12 +145,21 @@ class MeshForce:
         )
         if np.any(f < 0.0):
             raise InputError("force", float(f.min()), at_least(0.0, "N"), "Teeth do not pull.")
-        f = f * to_transverse
+        deflection, validity = np.empty(f.size), np.empty(f.size, dtype=np.int8)
+        for start in range(0, f.size, _AT_ONCE):
+            part = slice(start, start + _AT_ONCE)
+            at_force = f[part] * to_transverse, x[part], m[part], c[part]
+            deflection[part], validity[part] = self._deflections(*at_force)
+        return deflection.reshape(shape), validity.reshape(shape)
+
+    def _deflections(
+        self, f: FloatArray, x: FloatArray, m: FloatArray, c: FloatArray
+    ) -> tuple[FloatArray, NDArray[np.int8]]:
         at = self._stencils(x, m, c)
         lower = np.searchsorted(self.table.level, f, side="right") - 1
         deflection = self._cubic(at, lower).deflection(f, lower == len(self.table.level) - 1)
         validity = _outside(at) + Validity.ABOVE_TABLE * (f > self.table.level[-1])
-        return deflection.reshape(shape), validity.astype(np.int8).reshape(shape)
+        return deflection, validity.astype(np.int8)
 
     def _stencils(self, x: FloatArray, m: FloatArray, c: FloatArray) -> tuple[Stencil, Stencil, Stencil]:
         first, second, third = self.axes

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from held_out import held_out_error
 
+from fe_contact.ste.extraction import _LoadLevels, _refined
+
 COARSE = (266.0, 1330.0, 2660.0, 5320.0, 10640.0)
 BETWEEN = (900.0, 2000.0, 4000.0, 8000.0)
 # dense where the handovers sweep, so that the load direction is what is tested
@@ -119,3 +121,24 @@ def test_no_false_peaks_beside_the_handover(make):
         assert float(refined.peak_to_peak(force=force)) == pytest.approx(exact, rel=0.01)
     too_high = max(float(plain.peak_to_peak(force=f)) / float(truth.peak_to_peak(force=f)) for f in BETWEEN)
     assert too_high > 1.02
+
+
+def test_a_long_period_has_as_many_levels_as_can_be_held():
+    """23/67 over its hunting cycle, 64 positions a pitch: 2 million numbers of a quantity, not 6.6."""
+    k, k2, force = 3e8, 2e8, np.array([0.0, 100.0, 1000.0, 3000.0])
+    gap = np.linspace(4e-6, 6e-6, 1541 * 64)
+    deflection = np.concatenate([np.zeros((gap.size, 1)), branches(k, k2, gap[:, None], force[1:])], axis=1)
+    two = deflection > gap[:, None]
+    pairs = (np.where(two, 2, 1) * (force > 0.0))[:, None, None]
+    stiffness = np.where(two, k + k2, k) * (force > 0.0)
+    levels = _LoadLevels(force, deflection[:, None, None], stiffness[:, None, None])
+    long, short = (
+        _refined(levels, pairs),
+        _refined(_LoadLevels(force, levels.deflection[::64], levels.stiffness[::64]), pairs[::64]),
+    )
+    assert long.deflection.size <= 2_000_000 + gap.size
+    assert short.force.size == 4 + 64
+    at = np.isclose(long.force[:, None], short.force).any(axis=1)
+    assert at.sum() >= 4
+    branch = branches(k, k2, gap[:, None], long.force[long.force >= 1000.0])
+    np.testing.assert_allclose(long.deflection[:, 0, 0, long.force >= 1000.0], branch, atol=1e-12)
