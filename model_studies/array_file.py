@@ -91,7 +91,8 @@ def _variable(stored: Stored, values: Any, sizes: dict[str, int]) -> Variable:
     dimensions = stored.dimensions
     if np.iscomplexobj(values):
         dimensions = (*dimensions, PARTS)
-        values = np.stack([values.real, values.imag], axis=-1)
+        values = np.ascontiguousarray(values)
+        values = values.view(values.real.dtype).reshape(*values.shape, 2)  # no copy: responses are large
     names = tuple(_dimension(sizes, name, size) for name, size in zip(dimensions, values.shape, strict=True))
     return Variable(names, values, {"units": stored.units, "long_name": stored.long_name})
 
@@ -119,5 +120,5 @@ def _digest(documents: str, arrays: Mapping[str, Any]) -> str:
     hasher = hashlib.sha256(documents.encode())
     for name, values in arrays.items():
         hasher.update(name.encode())
-        hasher.update(np.ascontiguousarray(values).tobytes())
+        hasher.update(np.ascontiguousarray(values).data)
     return hasher.hexdigest()

@@ -13,16 +13,16 @@ from dynamics.bearings.seat import SEAT
 from dynamics.errors import InputError
 from dynamics.forces.laws import Law
 from dynamics.linearize.flank_cycles import FlankCycle
-from dynamics.linearize.harmonic_response import HarmonicResponse, excited_harmonics, response_of
+from dynamics.linearize.harmonic_response import HarmonicResponse, excited_lines, response_of
 from dynamics.linearize.linear_system import HELD_BY, LinearSystem, natural_modes
-from dynamics.linearize.load_harmonics import load_harmonics
+from dynamics.linearize.load_harmonics import load_cycles, load_harmonics
 from dynamics.linearize.operating_speeds import checked_speeds, leading_law
 from dynamics.linearize.steady_vibration import (
-    EXCITATIONS,
     Excited,
     Steady,
     gyroscopic_terms,
-    steady_vibration,
+    speed_blocks,
+    with_blocked,
 )
 from dynamics.mechanism.columns import elastic_columns, elastic_terms, housing_columns
 from dynamics.mechanism.connections import frame_couplings
@@ -30,7 +30,7 @@ from dynamics.motion.force_balance import swept_by_frames
 from dynamics.motion.observation import local_state
 from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.run_checks import checked_ledger
-from dynamics.types import ComplexArray, FloatArray, IntArray, Json
+from dynamics.types import ComplexArray, FloatArray, Json
 from host import cpu_seconds
 
 # The parts of a linearized system that take power from its vibration, each assembled by itself.
@@ -179,24 +179,30 @@ def _power_balance(at: Excited, speed: FloatArray, steady: Steady) -> _PowerBala
     Forces of complex amplitude F on coordinates of amplitude y put in Re(F conj(i w y))/2. Each part is
     assembled by itself, so the residual tells what the linear solves and the sum of the parts leave.
     """
-    u, omega = steady.displacement, steady.omega
-    rate = 1j * omega[..., None] * u
-    direction = at.system.arrays.direction
-    source = [mesh.name for mesh in at.system.scene.meshes]
-    gained = [_power(steady.force[cycle.rows].T, rate @ direction[cycle.rows].T) for cycle in at.cycles]
-    loads = load_harmonics(at.system, at.period, speed, steady.harmonics, at.time)
-    if np.any(loads):
-        source.append(LOADS)
-        gained.append(_power(loads, rate))
-    lost: dict[tuple[str, str], FloatArray] = {}
-    for name, kind, power in _losses(at, speed, u, rate):
-        lost[name, kind] = lost.get((name, kind), 0.0) + power
+    gained: dict[str, list[FloatArray]] = {mesh.name: [] for mesh in at.system.scene.meshes}
+    lost: dict[tuple[str, str], list[FloatArray]] = {}
+    loaded = False
+    for part in speed_blocks(steady.omega.shape, steady.displacement.shape[2]):
+        u, own = steady.displacement[part], dict[tuple[str, str], FloatArray]()
+        rate = 1j * steady.omega[part, :, None] * u
+        for name, cycle in zip(gained, at.cycles, strict=False):
+            along = rate @ at.system.arrays.direction[cycle.rows].T
+            gained[name].append(_power(steady.force[cycle.rows].T, along))
+        loads = load_harmonics(at.system, at.period, speed[part], steady.harmonics, at.time)
+        loaded = loaded or bool(np.any(loads))
+        gained.setdefault(LOADS, []).append(_power(loads, rate))
+        for name, kind, power in _losses(at, speed[part], u, rate):
+            own[name, kind] = own.get((name, kind), 0.0) + power
+        for key, power in own.items():
+            lost.setdefault(key, []).append(power)
+    if not loaded:
+        gained.pop(LOADS, None)
     return _PowerBalance(
-        tuple(source),
-        np.array(gained).reshape(len(source), *omega.shape),
+        tuple(gained),
+        np.array([np.concatenate(each) for each in gained.values()]).reshape(-1, *steady.omega.shape),
         tuple(name for name, _ in lost),
         tuple(kind for _, kind in lost),
-        np.array(list(lost.values())).reshape(len(lost), *omega.shape),
+        np.array([np.concatenate(each) for each in lost.values()]).reshape(-1, *steady.omega.shape),
     )
 
 
@@ -277,6 +283,8 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
         )
 
 
+MOST_BYTES = 8e9
+"""Of the arrays of a response, as of the reduction of a housing."""
 NOTHING_EXCITES = "such that one excites: transmission errors and loads are constant"
 
 
@@ -304,7 +312,8 @@ def forced_response(
     Raises
     ------
     InputError
-        If a value is out of range, the meshes have no common period, or nothing excites the scene.
+        If a value is out of range, the meshes have no common period, nothing excites the scene, or the
+        response would take more than 8 GB.
     SolveError
         If there is no static equilibrium, or one beyond the table (`STRAIGHT_ON`) that is not accepted.
     """
@@ -312,29 +321,41 @@ def forced_response(
     if not speeds.size:
         raise InputError("speed", [], "at least one speed")
     began = cpu_seconds()
-    at, harmonics = excited_harmonics(system, orders, time)
+    at, lines = excited_lines(system, orders, time, float(speeds[-1]))
+    _require_memory(at, speeds.size, lines.harmonics.size)
     system, start = at.system, at.linear.equilibrium
     ledger = checked_ledger(system, start.mesh_force)
     frequency = natural_modes(at.linear).frequency
     seconds = {"equilibrium_and_modes": cpu_seconds() - began}
     began = cpu_seconds()
-    steady, blocked = _by_both_excitations(at, speeds, harmonics, progress)
+    steady, blocked = with_blocked(at, speeds, lines.harmonics, progress)
     if not steady.harmonics.size:
         raise InputError("orders", orders, NOTHING_EXCITES, "Give a mesh a table, or let a load vary.")
-    response, other = (response_of(at, speeds, each) for each in (steady, blocked))
-    power = _power_balance(at, speeds, steady)
+    response, power = response_of(at, speeds, steady), _power_balance(at, speeds, steady)
     seconds["response"] = cpu_seconds() - began
     return ForcedResponse(
         **vars(response),
-        excitation_difference=_difference(response, other),
+        excitation_difference=_difference(response, blocked),
         natural_frequency=frequency,
         power_source=power.source,
         power_input=power.input,
         power_sink=power.sink,
         power_sink_kind=power.kind,
         power_loss=power.loss,
-        facts=_facts(at, time, seconds) | {"effect_ledger": ledger} | system.corrections,
+        facts=_facts(at, time, seconds) | lines.facts | {"effect_ledger": ledger} | system.corrections,
     )
+
+
+def _require_memory(at: Excited, speeds: int, harmonics: int) -> None:
+    """Refuse what cannot be held: by speed and harmonic motions, forces, and the power of each part."""
+    system = at.system
+    freedoms, bearings, meshes = system.arrays.mass.shape[0], len(system.supports.name), len(at.cycles)
+    loaded = 3 * freedoms if load_cycles(system, at.period) else 0
+    numbers = freedoms + loaded + 6 * bearings + 8 * meshes + system.arrays.elements.law.size
+    most = int(MOST_BYTES // (16 * numbers * max(harmonics, 1)))
+    if speeds > most:
+        bound = f"at most {most} values in {harmonics} orders of {freedoms} freedoms, as 8 GB hold"
+        raise InputError("speed", f"{speeds} values", bound, "Take wider steps, or fewer orders.")
 
 
 def _facts(at: Excited, time: float, seconds: Json) -> Json:
@@ -347,29 +368,10 @@ def _facts(at: Excited, time: float, seconds: Json) -> Json:
     }
 
 
-def _by_both_excitations(
-    at: Excited, speeds: FloatArray, harmonics: IntArray, progress: Callable[[float], None] | None
-) -> Iterator[Steady]:
-    """Yield the vibration by each of `EXCITATIONS`, each half of the work."""
-    for excitation, start in zip(EXCITATIONS, (0.0, 0.5), strict=True):
-
-        def half(fraction: float, start: float = start) -> None:
-            if progress is not None:
-                progress(start + 0.5 * fraction)
-
-        yield steady_vibration(at, speeds, harmonics, excitation, half if progress else None)
-
-
-def _difference(response: HarmonicResponse, other: HarmonicResponse) -> FloatArray:
-    """Return how unlike the largest transmission errors are, (m, H); harmonics that one lacks count whole."""
+def _difference(response: HarmonicResponse, blocked: FloatArray) -> FloatArray:
+    """Return how unlike the largest transmission errors are those (m, H) of blocked forces, (m, H)."""
     first = np.max(np.abs(response.dynamic_transmission_error), axis=1)
-    second = np.zeros_like(first)
-    index_of = {order: index for index, order in enumerate(other.order.tolist())}
-    amplitude = np.max(np.abs(other.dynamic_transmission_error), axis=1)
-    for index, order in enumerate(response.order.tolist()):
-        if order in index_of:
-            second[:, index] = amplitude[:, index_of[order]]
-    return np.asarray(np.abs(second - first) / np.max(first, initial=1e-300))
+    return np.asarray(np.abs(blocked - first) / np.max(first, initial=1e-300))
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 import numpy as np
+from scipy.fft import next_fast_len
 
 from dynamics.assembly.assemble import System
 from dynamics.checks import integer, one_of, positive
@@ -25,10 +26,12 @@ from dynamics.linearize.steady_vibration import (
     excited,
     harmonics_of,
     solved,
+    speed_blocks,
     steady_vibration,
     swept_vibration,
     unbounded,
 )
+from dynamics.linearize.strongest_lines import Lines, strongest_lines
 from dynamics.motion.force_balance import block_diagonal
 from dynamics.results.array_file import stored
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
@@ -146,12 +149,12 @@ def harmonic_response(
     speed = np.atleast_1d(np.asarray(speed, dtype=float))
     for index, value in enumerate(np.abs(speed)):
         positive(f"speed[{index}]", float(value))
-    at, harmonics = excited_harmonics(system, orders, time)
-    return response_of(at, speed, steady_vibration(at, speed, harmonics, excitation, progress=progress))
+    at, lines = excited_lines(system, orders, time, float(np.max(np.abs(speed))))
+    return response_of(at, speed, steady_vibration(at, speed, lines.harmonics, excitation, progress=progress))
 
 
-def excited_harmonics(system: System, orders: int, time: float) -> tuple[Excited, IntArray]:
-    """Return what excites `system`, and the multiples (H,) of the common period's frequency up to `orders`.
+def excited_lines(system: System, orders: int, time: float, speed: float) -> tuple[Excited, Lines]:
+    """Return what excites `system`, and the `strongest_lines` up to `orders` at most at a `speed`, rad/s.
 
     Raises
     ------
@@ -162,7 +165,7 @@ def excited_harmonics(system: System, orders: int, time: float) -> tuple[Excited
     """
     integer("orders", orders, 1, SAMPLES // 4)
     at = excited(system, time, orders)
-    return at, np.arange(1, orders * at.period.counted + 1, dtype=np.int64)
+    return at, strongest_lines(at, np.arange(1, orders * at.period.counted + 1, dtype=np.int64), speed)
 
 
 def response_of(at: Excited, speed: FloatArray, steady: Steady) -> HarmonicResponse:
@@ -226,38 +229,50 @@ def bearing_forces(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexAr
 
     Those of a motion less those of none, real and imaginary parts apart.
     """
-    system = at.system
-    q = u.reshape(omega.size, u.shape[2])
-    rate = 1j * omega.reshape(-1, 1) * q
-    elements, rest = system.arrays.elements, np.zeros(q.shape[1])
-    rows = system.arrays.direction.T
-    local = (q @ rows) @ block_diagonal(elements, at.at_rest.tangent).T
-    local = local + (rate @ rows) @ block_diagonal(elements, at.at_rest.viscous).T
-    none = system.bearing_force(np.zeros((rows.shape[1], 1)), rest[None, :], rest[None, :])
-    real, imaginary = (
-        system.bearing_force(np.ascontiguousarray(part(local.T)), part(q), part(rate)) - none
-        for part in (np.real, np.imag)
-    )
-    force = real + 1j * imaginary
-    return np.asarray(force.reshape(*force.shape[:2], *u.shape[:2]))
+    system, rest = at.system, np.zeros((1, u.shape[2]))
+    elements, rows = system.arrays.elements, system.arrays.direction.T
+    tangent, viscous = (block_diagonal(elements, part).T for part in (at.at_rest.tangent, at.at_rest.viscous))
+    none = system.bearing_force(np.zeros((rows.shape[1], 1)), rest, rest)
+    force = np.empty((*none.shape[:2], *u.shape[:2]), dtype=complex)
+    for part in speed_blocks(omega.shape, rows.shape[1]):
+        q = u[part].reshape(omega[part].size, u.shape[2])
+        rate = 1j * omega[part].reshape(-1, 1) * q
+        local = (q @ rows) @ tangent
+        local = local + (rate @ rows) @ viscous
+        real, imaginary = (
+            system.bearing_force(np.ascontiguousarray(of(local.T)), of(q), of(rate)) - none
+            for of in (np.real, np.imag)
+        )
+        force[:, :, part] = (real + 1j * imaginary).reshape(force[:, :, part].shape)
+    return force
 
 
 def extremes(amplitude: ComplexArray, order: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the least and the largest sum of all harmonics (m, S, H) over the period, (m, S) each.
 
     Over a period of more than `MOST_SAMPLES` orders in no proportion of small integers meet in all their
-    phases: the extremes of their sums are the sums of their extremes.
+    phases: the extremes of their sums are the sums of their extremes. As many as `LINES_OF_A_CYCLE` are of a
+    table as long as its hunting cycle, and meet as often as that is sampled.
     """
     harmonic = _harmonics(tuple(order.tolist()))
     samples = 8 * int(harmonic[-1] + 1) if order.size else 1
-    own = harmonic % harmonic[:1] == 0
-    if samples > MOST_SAMPLES and not np.all(own):
+    own, cycle = harmonic % harmonic[:1] == 0, order.size >= LINES_OF_A_CYCLE
+    if samples > MOST_SAMPLES and cycle and samples > MOST_PER_LINE * order.size:
+        most = np.sum(np.abs(amplitude), axis=-1)
+        return -most, most
+    if samples > MOST_SAMPLES and cycle:
+        samples = next_fast_len(samples, real=True)
+    if samples > MOST_SAMPLES and not cycle and not np.all(own):
         parts = extremes(amplitude[..., own], order[own]), extremes(amplitude[..., ~own], order[~own])
         return parts[0][0] + parts[1][0], parts[0][1] + parts[1][1]
-    lines = np.zeros((*amplitude.shape[:2], samples // 2 + 1), dtype=complex)
-    lines[..., harmonic] = amplitude * (samples / 2.0)
-    wave = np.fft.irfft(lines, samples, axis=-1)
-    return np.asarray(np.min(wave, axis=-1)), np.asarray(np.max(wave, axis=-1))
+    least, most = np.empty(amplitude.shape[:2]), np.empty(amplitude.shape[:2])
+    for part in speed_blocks((amplitude.shape[1], samples), amplitude.shape[0]):
+        few = amplitude[:, part]
+        lines = np.zeros((*few.shape[:2], samples // 2 + 1), dtype=complex)
+        lines[..., harmonic] = few * (samples / 2.0)
+        wave = np.fft.irfft(lines, samples, axis=-1)
+        least[:, part], most[:, part] = np.min(wave, axis=-1), np.max(wave, axis=-1)
+    return least, most
 
 
 @lru_cache(maxsize=64)
@@ -270,6 +285,7 @@ def _harmonics(order: tuple[float, ...]) -> IntArray:
 
 
 MOST_SAMPLES = 16_384
+LINES_OF_A_CYCLE, MOST_PER_LINE = 300, 1_000
 MOST_UNKNOWNS = 150
 LEAST_ORDERS = 8
 
@@ -343,7 +359,7 @@ def _all_harmonics(at: Excited, orders: int, speed: float) -> IntArray:
         period = mesh.table.period
         step = abs(pitches) // period
         multiples |= {step * k for k in range(1, orders * period + 1)} if step else set()
-    return np.array(sorted(multiples), dtype=np.int64)
+    return strongest_lines(at, np.array(sorted(multiples), dtype=np.int64), speed).harmonics
 
 
 def _families(at: Excited, harmonics: IntArray, orders: int) -> list[_Family]:

@@ -25,14 +25,17 @@ def load_harmonics(
 ) -> ComplexArray:
     """Return what forces and unbalances exert on the freedoms at `speed` (S,), (S, H, n), N and N m.
 
+    Without any (1, H, n): nothing at all speeds.
     Complex peak amplitudes of the multiples `harmonics` (H,) of the common period's frequency; loads by time
     have their values at `time` (s). An unbalance acts by its centrifugal force and its weight.
     """
     elements, direction = system.arrays.elements, system.arrays.direction
-    force = np.zeros((speed.size, harmonics.size, direction.shape[1]), dtype=complex)
+    loads = np.flatnonzero(among(elements.law, (Law.APPLIED_FORCE, Law.UNBALANCE)))
+    speeds = speed.size if loads.size else 1
+    force = np.zeros((speeds, harmonics.size, direction.shape[1]), dtype=complex)
     column_of = {int(harmonic): column for column, harmonic in enumerate(harmonics)}
     course = _Course(system, period, np.abs(speed), time)
-    for e in np.flatnonzero(among(elements.law, (Law.APPLIED_FORCE, Law.UNBALANCE))):
+    for e in loads:
         entry, first = int(elements.entry[e]), int(elements.first[e])
         applied = elements.law[e] == Law.APPLIED_FORCE
         rows = course.of_force(entry) if applied else course.of_unbalance(entry)

@@ -246,14 +246,38 @@ def steady_vibration(
     progress: Callable[[float], None] | None = None,
 ) -> Steady:
     """Return the vibration at `speed` (S,), of `harmonics` (H,) those that are excited."""
+    return _vibration(at, speed, harmonics, excitation, progress)[0]
+
+
+def with_blocked(
+    at: Excited, speed: FloatArray, harmonics: IntArray, progress: Callable[[float], None] | None = None
+) -> tuple[Steady, FloatArray]:
+    """Return `steady_vibration`, and the largest transmission errors over the speeds by blocked forces.
+
+    (m, H), m, in the harmonics that static errors or loads excite.
+    """
+    return _vibration(at, speed, harmonics, EXCITATIONS[0], progress, beside=EXCITATIONS[1])
+
+
+def _vibration(
+    at: Excited,
+    speed: FloatArray,
+    harmonics: IntArray,
+    excitation: str,
+    progress: Callable[[float], None] | None,
+    beside: str = "",
+) -> tuple[Steady, FloatArray]:
+    """Return `steady_vibration`, and what `_solve` returns of the excitation `beside` it, "": of none."""
     static, force = flank_forces(at, harmonics, excitation)
     loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
     kept = np.flatnonzero(_heard(force) | _heard(np.moveaxis(loads / at.linear.scale, 1, 2)))
-    harmonics, static, force = harmonics[kept], static[:, kept], force[:, kept]
+    harmonics, static, force, loads = harmonics[kept], static[:, kept], force[:, kept], loads[:, kept]
     omega = _omega(at, speed, harmonics)
     terms = gyroscopic_terms(at.system, speed) if at.turning else []
-    u, residual = _solve(at, _pushed(at, force) + loads[:, kept], omega, terms, progress=progress)
-    return Steady(harmonics, omega, static, force, u[..., 0], residual, u[..., 1:])
+    other = _pushed(at, flank_forces(at, harmonics, beside)[1]) + loads if beside else None
+    exciting = _pushed(at, force) + loads
+    u, residual, largest = _solve(at, exciting, omega, terms, beside=other, progress=progress)
+    return Steady(harmonics, omega, static, force, u[..., 0], residual, u[..., 1:]), largest
 
 
 def _heard(force: ComplexArray) -> BoolArray:
@@ -282,7 +306,7 @@ def swept_vibration(
     decay = SWEPT * np.sqrt(omega * (np.abs(rate) / np.abs(speed))[:, None])
     rows = at.system.arrays.direction[at.system.driving_rows]
     terms = gyroscopic_terms(at.system, speed) if gyroscopic else []
-    u, residual = _solve(at, pushed, omega - 1j * decay, terms, rows)
+    u, residual, _ = _solve(at, pushed, omega - 1j * decay, terms, rows)
     return Steady(harmonics, omega, static, force, u[..., 0], residual, u[..., 1:])
 
 
@@ -292,8 +316,14 @@ def with_receptances(at: Excited, speed: FloatArray, harmonics: IntArray, rows: 
     loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
     omega = _omega(at, speed, harmonics)
     terms = gyroscopic_terms(at.system, speed) if at.turning else []
-    u, residual = _solve(at, _pushed(at, force) + loads, omega, terms, rows)
+    u, residual, _ = _solve(at, _pushed(at, force) + loads, omega, terms, rows)
     return Steady(harmonics, omega, static, force, u[..., 0], residual, u[..., 1:])
+
+
+def speed_blocks(shape: tuple[int, ...], entries: int) -> list[slice]:
+    """Return the speeds of S and H harmonics that are computed at once, each with so many entries."""
+    block = max(BLOCK // max(shape[1] * entries, 1), 1)
+    return [slice(start, start + block) for start in range(0, shape[0], block)]
 
 
 def _omega(at: Excited, speed: FloatArray, harmonics: IntArray) -> FloatArray:
@@ -359,12 +389,14 @@ def _solve(
     omega: FloatArray | ComplexArray,
     terms: Sequence[Terms] = (),
     rows: FloatArray | None = None,
+    beside: ComplexArray | None = None,
     progress: Callable[[float], None] | None = None,
-) -> tuple[ComplexArray, float]:
+) -> tuple[ComplexArray, float, FloatArray]:
     """Displacements (S, H, n, 1 + f), and the relative residual; a block of speeds at a time.
 
     The first are those of `force` (S or 1, H, n) on the freedoms, the others per force along each of
-    `rows` (f, n). `terms` are those of `gyroscopic_terms` at each speed; none: nothing.
+    `rows` (f, n). `terms` are those of `gyroscopic_terms` at each speed; none: nothing. Of the forces
+    `beside` them only the largest motion along each driving line of action is returned, (m, H).
     """
     linear, per_meter = at.linear, 1.0 / at.linear.scale
     mass, damping, total = (
@@ -374,17 +406,20 @@ def _solve(
     if rows is not None:
         each = np.broadcast_to((rows * per_meter).T, (*pushed.shape[:3], rows.shape[0]))
         pushed = np.concatenate([pushed, each], axis=-1)
-    displacement = np.empty((*omega.shape, *pushed.shape[2:]), dtype=complex)
+    kept, watched = pushed.shape[3], at.system.arrays.direction[at.system.driving_rows] * per_meter
+    largest = np.zeros((len(watched), omega.shape[1]))
+    if beside is not None:
+        pushed = np.concatenate([pushed, (beside * per_meter)[..., None]], axis=-1)
+    # a freedom at a time in memory, as results have it
+    displacement = np.moveaxis(np.empty((pushed.shape[2], kept, *omega.shape), dtype=complex), (2, 3), (0, 1))
     modal = at.system.arrays.sparse.modal
     first = modal.first
     if any(np.any(part[first:]) or np.any(part[:, first:]) for term in terms for part in term):
         first = 0  # gyroscopic and frame terms are of the bodies alone, or nothing is eliminated
     small = _modal_elimination(modal, per_meter, total, damping, mass) if first else None
     parts = np.stack([total, mass, damping]).astype(complex)
-    block = max(BLOCK // max(omega.shape[1] * per_meter.size**2, 1), 1)
-    left = np.float64(0.0)
-    for start in range(0, omega.shape[0], block):
-        part = slice(start, start + block)
+    left, farthest = np.float64(0.0), np.zeros(per_meter.size)
+    for part in speed_blocks(omega.shape, per_meter.size**2):
         exciting = pushed if pushed.shape[0] == 1 else pushed[part]
         right = np.broadcast_to(exciting, (*omega[part].shape, *pushed.shape[2:]))
         swept = [
@@ -400,15 +435,18 @@ def _solve(
                 moved = small.solve(omega[part], right, turning)
                 miss = np.abs(small.product(omega[part], moved[..., :1], turning) - right[..., :1])
         left = np.maximum(left, np.max(miss, initial=0.0))  # not a number, if any of them is
-        displacement[part] = moved * per_meter[:, None]
+        farthest = np.maximum(farthest, np.max(np.abs(moved[..., 0]), axis=(0, 1), initial=0.0))
+        displacement[part] = moved[..., :kept] * per_meter[:, None]
+        if beside is not None:
+            along = np.max(np.abs(moved[..., kept] @ watched.T), axis=0, initial=0.0)
+            largest = np.maximum(largest, along.T)
         if progress is not None:
-            progress(min(start + block, omega.shape[0]) / omega.shape[0])
-    largest = max(float(np.max(np.abs(pushed[..., 0]), initial=0.0)), 1e-300)
-    farthest = np.max(np.abs(displacement[..., 0] / per_meter), axis=(0, 1), initial=0.0)
+            progress(min(part.stop, omega.shape[0]) / omega.shape[0])
+    most = max(float(np.max(np.abs(pushed[..., 0]), initial=0.0)), 1e-300)
     elastic = np.max(np.abs(total) @ farthest, initial=0.0)
-    if not np.maximum(left, np.finfo(float).eps * elastic) <= ROUNDED * largest:
+    if not np.maximum(left, np.finfo(float).eps * elastic) <= ROUNDED * most:
         raise unbounded(linear, omega)
-    return displacement, float(left / largest)
+    return displacement, float(left / most), largest
 
 
 def unbounded(linear: LinearSystem, omega: FloatArray | ComplexArray) -> SolveError:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import product
 from typing import NamedTuple
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from dynamics.identity_cache import identity_cached
 from dynamics.meshes.mesh_table import LEVERS, MeshTable
-from dynamics.meshes.packed_tables import PackedTables, kept_knots, pack_tables
+from dynamics.meshes.packed_tables import PackedTables, joined, kept_knots, pack_tables
 from dynamics.types import FloatArray, IntArray
 
 
@@ -47,9 +47,13 @@ class GridTables(NamedTuple):
     @classmethod
     def packed(cls, tables: Sequence[MeshTable]) -> GridTables:
         """Lay out `tables`; those with several operating points carry their derivatives along the axes."""
-        numbers = [_numbers(table) for table in tables]
-        kept = {id(number): number for number in numbers}  # flanks of one table share it
-        begins = dict(zip(kept, np.cumsum([0, *(number.size for number in kept.values())]), strict=False))
+        return _packed(tuple(tables))
+
+    @classmethod
+    def _laid_out(cls, tables: Sequence[MeshTable]) -> GridTables:
+        kept = {id(table): table for table in tables}  # flanks of one table share its numbers
+        numbers = {key: _numbers(table) for key, table in kept.items()}
+        begins = dict(zip(kept, np.cumsum([0, *(number.size for number in numbers.values())]), strict=False))
         axes = [
             np.ravel(getattr(t, name)) for t in tables for name in ("misalignment", "center_distance_change")
         ]
@@ -60,16 +64,16 @@ class GridTables(NamedTuple):
         return cls(
             pack_tables(tables),
             np.array(shape, dtype=np.int64).reshape(-1, 3),
-            np.array([number.shape[4] for number in numbers], dtype=np.int64),
+            np.array([numbers[id(table)].shape[4] for table in tables], dtype=np.int64),
             np.ascontiguousarray(starts, dtype=np.int64),
             np.concatenate([*axes, np.empty(0)]).astype(float),
-            np.array([begins[id(number)] for number in numbers], dtype=np.int64),
-            np.concatenate([*(number.ravel() for number in kept.values()), np.empty(0)]),
+            np.array([begins[id(table)] for table in tables], dtype=np.int64),
+            joined([number.ravel() for number in numbers.values()], ()),
         )
 
     def with_table(self, flank: int, table: MeshTable) -> GridTables:
         """Return the tables with another one of a flank, behind all others."""
-        own = GridTables.packed([table])
+        own = GridTables._laid_out([table])
         shape, channels, axis_first, first = (
             each.copy() for each in (self.shape, self.channels, self.axis_first, self.first)
         )
@@ -116,34 +120,55 @@ class GridTables(NamedTuple):
 
 
 @identity_cached
+def _packed(tables: tuple[MeshTable, ...]) -> GridTables:
+    return GridTables._laid_out(tables)
+
+
 def _numbers(table: MeshTable) -> FloatArray:
     """Return (M, D, P, L, channels, orders)."""
-    channels = [_values_of(table, name) for name in ("deflection", "stiffness")]
+    shape = np.shape(table.deflection)
+    orders = list(product(*((0, 1) if size > 1 else (0,) for size in shape[:2]), (0, 1)))
+    numbers = np.empty((*shape, 2 + 2 * len(LEVERS), len(orders)))
+    for channel, values in enumerate(_channels(table)):  # one at a time: tables of long periods are large
+        for column, order in enumerate(orders):
+            numbers[..., channel, column] = values[order]
+    return numbers
+
+
+def _channels(table: MeshTable) -> Iterator[FloatArray]:
+    """Yield the quantities with their derivatives, each (1 or 2, 1 or 2, 2, M, D, P, L)."""
+    for name in ("deflection", "stiffness"):
+        yield _values_of(table, name)
     for name in LEVERS:
         values = getattr(table, name, None)
         lever = np.zeros(np.shape(table.deflection)) if values is None else np.asarray(values, dtype=float)
+        yield _smooth(table, lever)
         in_force = np.gradient(lever, np.asarray(table.level, dtype=float), axis=3)
         in_force[..., 0], in_force[..., -1] = 0.0, 0.0  # beyond the ends it stays as it is
-        channels += [_smooth(table, lever), _smooth(table, in_force)]
-    orders = list(product(*((0, 1) if size > 1 else (0,) for size in np.shape(table.deflection)[:2]), (0, 1)))
-    return np.stack([np.stack([c[order] for order in orders], axis=-1) for c in channels], axis=-2)
+        yield _smooth(table, in_force)
+
+
+def _no_derivatives(values: FloatArray) -> FloatArray:
+    """Return values (M, D, P, L) with zeros for their derivatives along axes of several knots."""
+    numbers = np.zeros((*(min(size, 2) for size in values.shape[:2]), 2, *values.shape))
+    numbers[0, 0, 0] = values
+    return numbers
 
 
 def _values_of(table: MeshTable, name: str) -> FloatArray:
-    """Return a quantity with the derivatives that the table gives, (2, 2, 2, M, D, P, L)."""
+    """Return a quantity with the derivatives that the table gives, (1 or 2, 1 or 2, 2, M, D, P, L)."""
     derivative = getattr(table, f"{name}_derivative", None)
     if derivative is not None:
         return np.asarray(derivative, dtype=float)
     values = np.asarray(getattr(table, name), dtype=float)
-    numbers = np.zeros((2, 2, 2, *values.shape))
-    numbers[0, 0, 0], numbers[0, 0, 1] = values, getattr(table, f"{name}_slope")
+    numbers = _no_derivatives(values)
+    numbers[0, 0, 1] = getattr(table, f"{name}_slope")
     return numbers
 
 
 def _smooth(table: MeshTable, values: FloatArray) -> FloatArray:
-    """Return values (M, D, P, L) with three-point derivatives along all axes, (2, 2, 2, M, D, P, L)."""
-    numbers = np.zeros((2, 2, 2, *values.shape))
-    numbers[0, 0, 0] = values
+    """Return values (M, D, P, L) with three-point derivatives along all axes that have several knots."""
+    numbers = _no_derivatives(values)
     position, period = np.asarray(table.position, dtype=float), float(table.period)
     around = np.concatenate([position[-1:] - period, position, position[:1] + period])
     closed = np.concatenate([values[:, :, -1:], values, values[:, :, :1]], axis=2)

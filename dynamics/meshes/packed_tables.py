@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -175,12 +175,12 @@ def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
 
 @identity_cached
 def _packed(tables: tuple[MeshTable, ...]) -> PackedTables:
-    laid_out = [_laid_out(table) for table in tables]
-    parts = {id(part): part for part in laid_out}
+    kept = {id(table): table for table in tables}  # flanks of one table share its part
+    parts = {key: _laid_out(table) for key, table in kept.items()}
     index = {key: k for k, key in enumerate(parts)}
     shift = np.array([float(table.position[0]) for table in tables])
     period = np.array([float(table.period) for table in tables])
-    return by_address(_joined([*parts.values()], [index[id(part)] for part in laid_out], shift, period))
+    return by_address(_joined([*parts.values()], [index[id(table)] for table in tables], shift, period))
 
 
 def _joined(
@@ -195,30 +195,33 @@ def _joined(
         shift=shift,
         period=period,
         density=np.array([float(sizes[k][1]) for k in part_of]) / period,
-        knot=np.concatenate([*(part.knot for part in parts), np.empty(0)]),
-        per_width=np.concatenate(
-            [*(np.append(1.0 / np.diff(part.knot), 0.0) for part in parts), np.empty(0)]
-        ),
-        bucket=np.concatenate([*(part.bucket for part in parts), np.empty(0, dtype=np.int64)]),
-        row=np.concatenate([*(part.row for part in parts), np.empty((0, 8))]),
-        level=np.concatenate([*(part.level for part in parts), np.empty(0)]),
-        energy=np.concatenate([*(part.energy for part in parts), np.empty((0, ORDER + 1))]),
+        knot=joined([part.knot for part in parts], ()),
+        per_width=joined([np.append(1.0 / np.diff(part.knot), 0.0) for part in parts], ()),
+        bucket=joined([part.bucket for part in parts], ()).astype(np.int64, copy=False),
+        row=joined([part.row for part in parts], (8,)),
+        level=joined([part.level for part in parts], ()),
+        energy=joined([part.energy for part in parts], (ORDER + 1,)),
     )
 
 
-@identity_cached
+def joined(arrays: Sequence[FloatArray | IntArray], width: tuple[int, ...]) -> Any:
+    """Return arrays (k, *width) one after the other; a single one, which may be large, is not copied."""
+    return arrays[0] if len(arrays) == 1 else np.concatenate([*arrays, np.empty((0, *width))])
+
+
 def _laid_out(table: MeshTable) -> _Table:
     knot = np.append(np.asarray(table.position, dtype=float), table.position[0] + table.period)
     knot -= knot[0]
-    rows, level = _rows(table, np.diff(knot)), np.asarray(table.level, dtype=float)
+    rows, level = _rows(table, np.diff(knot)), np.array(table.level, dtype=float)
     return _Table(knot, _bucket_starts(knot), rows, level, _energy_below(rows, level))
 
 
 def _rows(table: MeshTable, width: FloatArray) -> FloatArray:
     """Return the rows (P L, 8) of a table whose intervals have a width (P,)."""
-    value = np.stack([table.deflection[0, 0], table.stiffness[0, 0]], axis=-1)
-    slope = np.stack([table.deflection_slope[0, 0], table.stiffness_slope[0, 0]], axis=-1)
-    return _cubic(value, slope, width[:, None, None]).reshape(-1, 8)
+    rows = np.empty((*np.shape(table.deflection)[2:], 2, 4))
+    rows[:, :, 0] = _cubic(table.deflection[0, 0], table.deflection_slope[0, 0], width[:, None])
+    rows[:, :, 1] = _cubic(table.stiffness[0, 0], table.stiffness_slope[0, 0], width[:, None])
+    return rows.reshape(-1, 8)
 
 
 def _bucket_starts(knot: FloatArray) -> IntArray:
@@ -230,7 +233,7 @@ def _bucket_starts(knot: FloatArray) -> IntArray:
 
 
 def _cubic(value: FloatArray, slope: FloatArray, width: FloatArray) -> FloatArray:
-    """Coefficients (P, L, 2, 4) on each interval, the last of which joins the last knot to the first."""
+    """Coefficients (P, L, 4) on each interval, the last of which joins the last knot to the first."""
     end, rise, fall = np.roll(value, -1, axis=0), slope * width, np.roll(slope, -1, axis=0) * width
     step = end - value
     return np.stack([value, rise, 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step], axis=-1)

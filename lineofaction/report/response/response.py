@@ -207,6 +207,9 @@ def _text(response: ForcedResponse) -> Iterator[Table | str]:
         "first-order theory: the other excitation changes "
         f"amplitudes by up to {engineering(worst, 2)} % of the largest"
     )
+    if left_out := response.facts.get("lines_left_out"):
+        share = engineering(100.0 * response.facts["force_left_out"], 2)
+        yield f"of a long table: {left_out} weaker orders, {share} % of the exciting force (rms), left out"
     if _loses_power(response):
         yield _power_table(response)
     left = response.power.residual

@@ -1,0 +1,79 @@
+"""The lines of a long common period that a response is solved in: the strongest of every mesh order.
+
+Over a hunting cycle of 1 541 base pitches ten mesh orders are 15 410 lines. Those of the mesh, of both shafts
+and their sidebands are some 90 an order; what lies between them is products of small ones.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dynamics.linearize.load_harmonics import load_multiples
+from dynamics.linearize.steady_vibration import Excited, flank_forces
+from dynamics.types import BoolArray, FloatArray, IntArray
+
+MOST = 500
+"""Lines of one response; periods with no more of them are solved in all."""
+
+
+class Lines(NamedTuple):
+    """What a response is solved in.
+
+    Attributes
+    ----------
+    harmonics : (H,) int array
+        Multiples of the common period's frequency, rising.
+    left_out : int
+        How many others there are.
+    share : float
+        Root of the sum of the squares of the forces that these excite over that of all, of the row of the
+        flanks where it is largest.
+    """
+
+    harmonics: IntArray
+    left_out: int = 0
+    share: float = 0.0
+
+    @property
+    def facts(self) -> dict[str, float]:
+        """The fields of a result's facts that say so; none where nothing is left out."""
+        return {"lines_left_out": self.left_out, "force_left_out": self.share} if self.left_out else {}
+
+
+def strongest_lines(at: Excited, harmonics: IntArray, speed: float) -> Lines:
+    """Return which of `harmonics` (H,) count: all up to `MOST`, else the strongest of every mesh order.
+
+    A line is as strong as the largest force that it excites along a row of the flanks, of the largest of that
+    row. Orders of the meshes and of the loads at `speed` (rad/s) always count.
+    """
+    if harmonics.size <= MOST:
+        return Lines(harmonics)
+    force = np.abs(flank_forces(at, harmonics)[1])
+    largest = np.max(force, axis=1, keepdims=True, initial=0.0)
+    size = np.max(np.divide(force, largest, out=np.zeros_like(force), where=largest > 0.0), axis=0)
+    size[_always(at, harmonics, speed)] = np.inf
+    kept = _of_every_band(size, np.rint(harmonics / at.period.counted).astype(np.int64))
+    total, rest = (np.sum(np.square(part), axis=1) for part in (force, force[:, ~kept]))
+    share = np.sqrt(np.divide(rest, total, out=np.zeros_like(rest), where=total > 0.0))
+    return Lines(harmonics[kept], int(np.count_nonzero(~kept)), float(np.max(share, initial=0.0)))
+
+
+def _always(at: Excited, harmonics: IntArray, speed: float) -> IntArray:
+    """Return where the mesh orders and those of loads are."""
+    always = np.isin(harmonics, load_multiples(at.system, at.period, speed, at.time))
+    for pitches in at.period.pitches:
+        if pitches:
+            always |= harmonics % abs(pitches) == 0
+    return np.flatnonzero(always)
+
+
+def _of_every_band(size: FloatArray, band: IntArray) -> BoolArray:
+    """Return whether each line is among the strongest of its band, of all bands as many."""
+    most = max(MOST // np.unique(band).size, 1)
+    order = np.lexsort((-size, band))
+    first = np.searchsorted(band[order], band[order], side="left")
+    kept = np.zeros(size.size, dtype=bool)
+    kept[order] = (np.arange(size.size) - first < most) | np.isinf(size[order])
+    return kept

@@ -1,0 +1,129 @@
+"""Tables of long periods: the response of one that repeats a short one, which lines are solved in, memory."""
+
+from __future__ import annotations
+
+import sys
+import tracemalloc
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from geared_scenes import gear_pair_scene, spring_table, with_mesh
+
+from dynamics.assembly.assemble import assemble
+from dynamics.errors import InputError
+from dynamics.linearize import ForcedResponse, forced_response
+from dynamics.linearize.strongest_lines import MOST
+from dynamics.meshes.grid_tables import GridTables
+
+SPEED = np.linspace(20.0, 200.0, 50)
+LONG = 67
+ALONG = ("deflection", "deflection_slope", "stiffness", "stiffness_slope", "load_arm")
+
+
+def repeated(table, times, errors=None):
+    """The table `times` over; `errors` (times,) are added to the deflections of each pitch, m."""
+    count = table.position.size
+    position = np.concatenate([table.position + k for k in range(times)])
+    long = {name: np.tile(getattr(table, name), (1, 1, times, 1)) for name in ALONG if _has(table, name)}
+    if errors is not None:
+        long["deflection"] = long["deflection"] + np.repeat(errors, count)[None, None, :, None]
+    return replace(table, position=position, period=times, **long)
+
+
+def _has(table, name):
+    return getattr(table, name, None) is not None
+
+
+def ripple():
+    return spring_table(4e8, 1e-7)
+
+
+def response(table, orders=10, speed=SPEED):
+    scene = with_mesh(gear_pair_scene(table), damping_ratio=0.05, damping=None)
+    return forced_response(assemble(scene), speed, orders)
+
+
+def test_a_long_table_that_repeats_a_short_one_has_its_response():
+    short, long = response(ripple()), response(repeated(ripple(), LONG))
+    assert LONG * 10 > MOST
+    assert "lines_left_out" in long.facts and long.facts["force_left_out"] < 1e-12
+    shared = np.isin(np.round(long.order, 9), np.round(short.order, 9))
+    assert np.count_nonzero(shared) == short.order.size
+    for name in ("static_transmission_error", "dynamic_transmission_error", "mesh_force", "displacement"):
+        expected, found = getattr(short, name), getattr(long, name)[..., shared]
+        np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-12 * np.max(np.abs(expected)))
+        rest = getattr(long, name)[..., ~shared]
+        assert np.max(np.abs(rest), initial=0.0) < 1e-6 * np.max(np.abs(expected))  # of fewer samples
+
+
+def test_of_a_long_period_every_mesh_order_keeps_its_strongest_lines_and_says_what_it_leaves_out():
+    errors = 1e-6 * np.random.default_rng(1).normal(size=LONG)
+    found = response(repeated(ripple(), LONG, errors))
+    whole = found.order.size + found.facts["lines_left_out"]
+    assert 9.8 * LONG < whole <= 10 * LONG  # a pitch alone has no mesh orders but that of the ripple
+    assert 0.9 * MOST < found.order.size <= MOST + 10
+    assert 0.0 < found.facts["force_left_out"] < 0.2
+    assert 1.0 in found.order
+    in_order = np.bincount(np.rint(found.order).astype(int), minlength=11)
+    assert in_order[1:-1].min() >= 0.6 * LONG
+    for word in ("lines_left_out", "force_left_out"):
+        assert word not in response(repeated(ripple(), 3, errors[:3])).facts
+
+
+def test_its_lines_are_those_of_the_same_response_in_all_lines(monkeypatch):
+    table = repeated(ripple(), LONG, 1e-6 * np.random.default_rng(1).normal(size=LONG))
+    some = response(table)
+    monkeypatch.setattr("dynamics.linearize.strongest_lines.MOST", 10**9)
+    every = response(table)
+    assert every.order.size > MOST and "lines_left_out" not in every.facts
+    own = np.isin(np.round(every.order * LONG), np.round(some.order * LONG))
+    for field in fields(ForcedResponse):
+        if field.metadata.get("stored") and field.metadata["stored"].dimensions[-1:] == ("order",):
+            expected, value = getattr(every, field.name), getattr(some, field.name)
+            if expected.size:
+                size = np.max(np.abs(expected[..., own]))
+                np.testing.assert_allclose(
+                    value, expected[..., own], rtol=0.0, atol=1e-12 * max(size, 1e-300)
+                )
+
+
+def peak_of(work):
+    tracemalloc.start()
+    try:
+        work()
+        return tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+
+
+def test_a_hunting_cycle_of_1541_pitches_takes_no_more_memory_than_its_lines():
+    errors = 1e-6 * np.random.default_rng(1).normal(size=1541)
+    table = repeated(ripple(), 1541, errors)
+    scene = assemble(with_mesh(gear_pair_scene(table), damping_ratio=0.05, damping=None))
+    found = forced_response(scene, SPEED)
+    lines = found.displacement.nbytes
+    assert peak_of(lambda: forced_response(scene, SPEED)) < 6 * lines + 60e6
+
+
+def test_what_cannot_be_held_is_refused_before_it_is_solved(monkeypatch):
+    module = sys.modules["dynamics.linearize.forced_response"]  # a function of the package has its name
+    monkeypatch.setattr(module, "with_blocked", lambda *_: pytest.fail("solved"))
+    table = repeated(ripple(), LONG, 1e-6 * np.random.default_rng(1).normal(size=LONG))
+    with pytest.raises(InputError, match=r"speed.*at most \d+ values in \d+ orders.*8 GB.*wider steps"):
+        response(table, speed=np.linspace(1.0, 200.0, 100_000))
+
+
+def test_a_table_is_laid_out_in_little_more_than_its_numbers():
+    table = repeated(ripple(), 500)
+    whole = sum(part.nbytes for part in _arrays(GridTables.packed([table])))
+    peak = peak_of(lambda: GridTables.packed([repeated(ripple(), 500)]))
+    assert peak < 1.6 * whole
+
+
+def _arrays(packed):
+    for part in packed:
+        if isinstance(part, np.ndarray):
+            yield part
+        else:
+            yield from (each for each in part.value if isinstance(each, np.ndarray))
