@@ -84,7 +84,7 @@ def fingerprint(*parts: Any) -> str:
     for name, value in _leaves(parts):
         array = np.asarray(value)
         digest.update(f"{name} {array.dtype.str} {array.shape};".encode())
-        digest.update(np.ascontiguousarray(array).tobytes())
+        digest.update(np.ascontiguousarray(array).data)
     return digest.hexdigest()
 
 

@@ -184,10 +184,11 @@ def _load_share(database: SteFields, position: FloatArray, point: OperatingPoint
     query = fraction[:, None] + _pairs_seen(database, position)
     met = (_pairs_seen(database, position) - pitch[:, None]) % database.period
     share = np.empty(query.shape)
-    for teeth in np.unique(met):
-        of_teeth = met == teeth
-        phase, shares = _over_phase(database, stored, int(teeth))
-        share[of_teeth] = interpolate(Axis(phase), shares, query[of_teeth])
+    order = np.argsort(met, axis=None, kind="stable")
+    all_teeth, first = np.unique(met.flat[order], return_index=True)
+    for teeth, of_teeth in zip(all_teeth.tolist(), np.split(order, first[1:]), strict=True):
+        phase, shares = _over_phase(database, stored, teeth)
+        share.flat[of_teeth] = interpolate(Axis(phase), shares, query.flat[of_teeth])
     share = np.maximum(share, 0.0)
     return np.asarray(share / share.sum(axis=1, keepdims=True))
 

@@ -11,18 +11,18 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (43_181, 800),
-    ("dynamics",): (42_669, 837),
+    ("fe_contact",): (43_200, 800),
+    ("dynamics",): (42_835, 842),
     ("lineofaction.gearbox",): (26_811, 547),
-    ("lineofaction.report",): (12_025, 226),
+    ("lineofaction.report",): (12_028, 226),
     ("service",): (14_826, 345),
     ("lineofaction.client",): (2_688, 53),
     ("lineofaction.cli",): (5_471, 80),
     ("lineofaction.hardcases",): (3_841, 35),
-    ("bounds", "host", "model_studies"): (4_516, 156),
+    ("bounds", "host", "model_studies"): (4_517, 156),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 837
+MOST_FILES = 838
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
