@@ -171,7 +171,7 @@ def excited_lines(system: System, orders: int, time: float, speed: float) -> tup
 def response_of(at: Excited, speed: FloatArray, steady: Steady) -> HarmonicResponse:
     """Say what a vibration at `speed` (S,) does to meshes and bearings."""
     system, linear = at.system, at.linear
-    dte = np.moveaxis(steady.displacement @ system.arrays.direction[system.driving_rows].T, 2, 0)
+    dte = along_rows(steady.displacement, system.arrays.direction[system.driving_rows])
     mesh_force, mean = _mesh_force(at, steady), linear.equilibrium.mesh_force
     order = steady.harmonics / at.period.counted
     moment, friction = _static_loads(at, steady.harmonics)
@@ -219,9 +219,14 @@ def _mesh_force(at: Excited, steady: Steady) -> ComplexArray:
     force = np.empty((len(at.cycles), *omega.shape), dtype=complex)
     for f, cycle in enumerate(at.cycles):
         first, p = cycle.rows.start, cycle.tangent.shape[0]
-        local = u @ system.arrays.direction[cycle.rows].T
+        local = np.moveaxis(along_rows(u, system.arrays.direction[cycle.rows]), 0, 2)
         force[f] = local @ cycle.tangent[0] + 1j * omega * (local @ viscous[first, :p]) - steady.force[first]
     return force
+
+
+def along_rows(u: ComplexArray, rows: FloatArray) -> ComplexArray:
+    """Return the coordinates (k, S, H) of rows (k, n) by motions u (S, H, n), freedom by freedom."""
+    return np.asarray(np.tensordot(rows, np.moveaxis(u, 2, 0), 1))
 
 
 def bearing_forces(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexArray:
@@ -234,7 +239,7 @@ def bearing_forces(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexAr
     tangent, viscous = (block_diagonal(elements, part).T for part in (at.at_rest.tangent, at.at_rest.viscous))
     none = system.bearing_force(np.zeros((rows.shape[1], 1)), rest, rest)
     force = np.empty((*none.shape[:2], *u.shape[:2]), dtype=complex)
-    for part in speed_blocks(omega.shape, rows.shape[1]):
+    for part in speed_blocks(omega.shape, 4 * rows.shape[1]):
         q = u[part].reshape(omega[part].size, u.shape[2])
         rate = 1j * omega[part].reshape(-1, 1) * q
         local = (q @ rows) @ tangent
