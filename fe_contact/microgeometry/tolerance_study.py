@@ -8,8 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
+from bounds import at_most
 from fe_contact.analysis.request.request import Checked
-from fe_contact.errors import SolveError, integer, within
+from fe_contact.errors import InputError, SolveError, integer, within
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.confirmation import DesignSpace, design_study, full_table, ripple_errors
 from fe_contact.microgeometry.evaluator import Evaluator, least_deviation
@@ -104,6 +105,8 @@ class Sampling:
 
 TANGENTS = 64
 """Pairs about which tangents are taken, besides the design, at most."""
+MOST_BYTES = 8e9
+"""Of curves and tangents of the pairs that are solved."""
 IN_A_TASK = 25
 """Samples of a task: half a second to some seconds. It does not depend on who does the tasks."""
 ACTING = SobolSample(1)
@@ -236,10 +239,22 @@ class ToleranceRequest:
 
     @cached_property
     def checked(self) -> Checked:
-        """Everything is checked, nothing computed; raises `InputError`."""
+        """Everything is checked, nothing computed; raises `InputError`, also where it cannot be held."""
         if self.limit is not None:
             self.limit.check(self.sampling.positions)
-        return self.space.check(self.torques)
+        checked = self.space.check(self.torques)
+        self._require_memory(checked.model.period)
+        return checked
+
+    def _require_memory(self, period: int) -> None:
+        """Refuse more solved pairs than can be held with the tangents about some of them."""
+        sampling, deviating = self.sampling, len(self.tolerances.widths)
+        curve = 8 * period * sampling.positions * len(self.torques)
+        needed = curve * (3 * sampling.solved + 2 * (sampling.tangents + 1) * deviating)
+        if needed > MOST_BYTES:
+            words = f"{sampling.solved} pairs over {period} base pitches, {needed / 1e9:.1f} GB"
+            advice = "Analyze fewer pairs whole, fewer torques, or a shorter period."
+            raise InputError("exact", words, at_most(MOST_BYTES / 1e9, "GB"), advice)
 
 
 def sampled(request: ToleranceRequest, run: Run) -> ToleranceStudy:

@@ -12,11 +12,17 @@ import pytest
 from scipy.special import ndtr
 from spur_gears import LONG_RELIEFS, PAIR
 
-from fe_contact import GearPair, analyze
+from fe_contact import GearPair, PitchDeviation, analyze
 from fe_contact.errors import InputError
 from fe_contact.microgeometry.order_limit import OrderLimit
 from fe_contact.microgeometry.sweep import Sweep, SweepAxis, SweepRequest, sweep
-from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceStudy, _quantile, scatter
+from fe_contact.microgeometry.tolerance_study import (
+    Sampling,
+    ToleranceRequest,
+    ToleranceStudy,
+    _quantile,
+    scatter,
+)
 from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.microgeometry.variables import modified
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
@@ -52,6 +58,16 @@ def test_the_error_is_that_of_the_pair_as_designed() -> None:
     table = analyze(PAIR, torques=TORQUES, effects={"profile_modification": "on"}, **DRAFT)
     alone = [table.peak_to_peak(torque=torque) for torque in TORQUES]
     np.testing.assert_allclose(study.error, [ripple.error for ripple in alone], rtol=0.02)
+
+
+def test_pairs_that_cannot_be_held_over_a_long_period_are_refused_before_they_are_solved() -> None:
+    sampling, options = Sampling(samples=1_000_000, exact=1_000_000), AnalysisOptions(**DRAFT)
+    assert ToleranceRequest(PAIR, TORQUES, SLOPES, sampling, options, 0.0).checked.model.period == 1
+    deviates = PitchDeviation(np.linspace(0.0, 5e-6, PAIR.pinion.teeth))
+    made = replace(PAIR, pinion=replace(PAIR.pinion, pitch_deviation=deviates))
+    request = ToleranceRequest(made, TORQUES, SLOPES, sampling, options, 0.0)
+    with pytest.raises(InputError, match=r"exact.* base pitches, .* GB.*at most 8 GB"):
+        _ = request.checked
 
 
 def test_a_larger_sample_begins_with_the_smaller_one(found: ToleranceStudy) -> None:
