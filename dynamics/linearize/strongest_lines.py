@@ -28,8 +28,8 @@ class Lines(NamedTuple):
     left_out : int
         How many others there are.
     share : float
-        Root of the sum of the squares of the forces that these excite over that of all, of the row of the
-        flanks where it is largest.
+        Root of the sum of the squares of the forces that these excite over that of all, of the mesh order and
+        the row of the flanks where it is largest: between the lines kept stands a floor of many weak ones.
     """
 
     harmonics: IntArray
@@ -46,18 +46,27 @@ def strongest_lines(at: Excited, harmonics: IntArray, speed: float) -> Lines:
     """Return which of `harmonics` (H,) count: all up to `MOST`, else the strongest of every mesh order.
 
     A line is as strong as the largest force that it excites along a row of the flanks, of the largest of that
-    row. Orders of the meshes and of the loads at `speed` (rad/s) always count.
+    row in its mesh order. Orders of the meshes and of the loads at `speed` (rad/s) always count.
     """
     if harmonics.size <= MOST:
         return Lines(harmonics)
     force = np.abs(flank_forces(at, harmonics)[1])
-    largest = np.max(force, axis=1, keepdims=True, initial=0.0)
-    size = np.max(np.divide(force, largest, out=np.zeros_like(force), where=largest > 0.0), axis=0)
+    bands, band = np.unique(np.rint(harmonics / at.period.counted), return_inverse=True)
+    size = np.zeros(harmonics.size)
+    for index in range(bands.size):
+        own = band == index
+        size[own] = np.max(_share(force[:, own], np.max(force[:, own], axis=1, keepdims=True)), axis=0)
     size[_always(at, harmonics, speed)] = np.inf
-    kept = _of_every_band(size, np.rint(harmonics / at.period.counted).astype(np.int64))
-    total, rest = (np.sum(np.square(part), axis=1) for part in (force, force[:, ~kept]))
-    share = np.sqrt(np.divide(rest, total, out=np.zeros_like(rest), where=total > 0.0))
-    return Lines(harmonics[kept], int(np.count_nonzero(~kept)), float(np.max(share, initial=0.0)))
+    kept = _of_every_band(size, band)
+    squares = np.square(force)
+    parts = [(squares[:, own & ~kept], squares[:, own]) for own in (band == k for k in range(bands.size))]
+    left = [np.sqrt(np.max(_share(*(part.sum(axis=1) for part in each)))) for each in parts]
+    return Lines(harmonics[kept], int(np.count_nonzero(~kept)), float(max(left)))
+
+
+def _share(part: FloatArray, whole: FloatArray) -> FloatArray:
+    """Return a part of a whole; of nothing 0."""
+    return np.divide(part, whole, out=np.zeros_like(part), where=whole > 0.0)
 
 
 def _always(at: Excited, harmonics: IntArray, speed: float) -> IntArray:

@@ -209,7 +209,10 @@ def _text(response: ForcedResponse) -> Iterator[Table | str]:
     )
     if left_out := response.facts.get("lines_left_out"):
         share = engineering(100.0 * response.facts["force_left_out"], 2)
-        yield f"of a long table: {left_out} weaker orders, {share} % of the exciting force (rms), left out"
+        yield (
+            f"of a long table: {left_out} weaker orders left out, of one mesh order {share} % of the "
+            "exciting force (rms): a floor between the orders that are shown"
+        )
     if _loses_power(response):
         yield _power_table(response)
     left = response.power.residual
