@@ -156,13 +156,11 @@ def _decimated(table: _Table, every: int) -> _Table:
     if kept.size == knot.size:
         return table
     cubic = table.row.reshape(knot.size - 1, level.size, 2, 4)
-    width = np.diff(knot)[:, None, None]
-    left, left_slope = cubic[..., 0], cubic[..., 1] / width
-    end, end_slope = cubic.sum(axis=-1), (cubic @ np.array([0.0, 1.0, 2.0, 3.0])) / width
-    span = np.diff(knot[kept])[:, None, None]
-    start, stop = kept[:-1], kept[1:] - 1
-    value, rise, fall = left[start], left_slope[start] * span, end_slope[stop] * span
-    step = end[stop] - value
+    start, stop, width = kept[:-1], kept[1:] - 1, np.diff(knot)[:, None, None]
+    first, last, span = cubic[start], cubic[stop], np.diff(knot[kept])[:, None, None]
+    value, rise = first[..., 0], first[..., 1] / width[start] * span
+    fall = (last @ np.array([0.0, 1.0, 2.0, 3.0])) / width[stop] * span
+    step = last.sum(axis=-1) - value
     rows = np.stack([value, rise, 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step], axis=-1)
     rows = np.ascontiguousarray(rows.reshape(-1, 8))
     return _Table(knot[kept], _bucket_starts(knot[kept]), rows, level, _energy_below(rows, level))
