@@ -186,6 +186,12 @@ def test_a_mode_moves_the_unit_and_the_way_back_shows_the_pair(
     expect(said).to_have_text(name)
     moved_unit = picture(page)
     assert different(pair, moved_unit) > 0.01
+    expect(page).to_have_url(re.compile("modes=.*motion=1"))
+    other = page.context.new_page()
+    other.goto(page.url)
+    expect(other.locator("#view [role=status]")).to_have_text(name)
+    expect(other).to_have_url(page.url)
+    other.close()
     amplitude.focus()
     amplitude.press("Home")
     still = picture(page)
@@ -198,6 +204,7 @@ def test_a_mode_moves_the_unit_and_the_way_back_shows_the_pair(
     assert found_inaccessible(page, "#view") == {}
     motion.select_option("")
     assert different(pair, picture(page)) < 0.002
+    expect(page).not_to_have_url(re.compile("motion="))
     assert seen.complaints == []
     page.close()
 

@@ -101,6 +101,7 @@ class Page {
     this.variants.offer();
     byId("name").value = views.get("name") ?? "";
     this.called();
+    this.design.view.motion = views.get("motion") ?? null;
     this.design.view.stand(views.get("at"));
     this.more = false; // what was typed last belongs to the entry that is left
     if (this.results.stands) this.results.retype();
@@ -191,7 +192,7 @@ class Page {
     const keep = () => {
       this.more = Boolean(this.resting);
       if (this.more) return;
-      this.address.view({ live: this.results.moved, name: byId("name").value.trim(), at: this.design.view.at });
+      this.address.view({ live: this.results.moved, name: byId("name").value.trim(), at: this.design.view.at, motion: this.design.view.motion });
       this.called();
       this.address.keep(this.typed);
       this.resting = setTimeout(rested, RESTING);

@@ -15,6 +15,8 @@ const BENT = 200; // times
 export class View {
   /** @param {HTMLElement} target hidden where the browser has no WebGL2: the drawing stands for it */
   constructor(target) {
+    /** @type {string | null} the motion of the result, by its number, as a word of the address */
+    this.motion = null;
     target.hidden = !drawable();
     if (target.hidden) return;
     this.pair = new RollingPair();

@@ -99,7 +99,7 @@ export class Motions {
   /** @param {import("./view.js").View} view */
   constructor(view) {
     this.view = view;
-    this.list = make("select", { "aria-label": "Motion", "data-unkept": true, onchange: () => this.choose() });
+    this.list = make("select", { "aria-label": "Motion", "data-unkept": true, onchange: () => this.chosen() });
     this.amplitude = make("input", { type: "range", min: "0", max: "3", step: "0.1", value: "1", "aria-label": "Amplitude", "data-unkept": true, oninput: () => this.scale() });
     this.factor = make("output", {});
     this.levels = make("span", { class: "view-scale", hidden: true });
@@ -118,11 +118,20 @@ export class Motions {
     const options = groups.map(({ name, motions }) => make("optgroup", { label: name }, ...motions.map((words) => make("option", { value: String(count++) }, words))));
     this.list.replaceChildren(make("option", { value: "" }, "at rest, no motion"), ...options);
     this.block.hidden = false;
+    this.list.value = this.view.motion ?? "";
+    if (this.list.value) this.choose();
     signal.addEventListener("abort", () => {
       if (this.href !== href) return;
       this.block.hidden = true;
       if (this.list.value) this.rest();
     });
+  }
+
+  /** The address says it. */
+  chosen() {
+    this.view.motion = this.list.value || null;
+    document.dispatchEvent(new Event("typed"));
+    return this.choose();
   }
 
   choose() {
@@ -157,7 +166,9 @@ export class Motions {
 
   /** Another thing is shown. @param {any} scene */
   seen(scene) {
-    if (scene !== this.scene) this.list.value = "";
+    if (scene === this.scene || !this.list.value) return;
+    this.list.value = "";
+    this.view.motion = null;
   }
 
   scale() {
