@@ -321,7 +321,7 @@ def forced_response(
     if not speeds.size:
         raise InputError("speed", [], "at least one speed")
     began = cpu_seconds()
-    at, lines = excited_lines(system, orders, time, float(speeds[-1]))
+    at, lines = excited_lines(system, orders, time, speeds)
     _require_memory(at, speeds.size, lines.harmonics.size)
     system, start = at.system, at.linear.equilibrium
     ledger = checked_ledger(system, start.mesh_force)

@@ -149,12 +149,12 @@ def harmonic_response(
     speed = np.atleast_1d(np.asarray(speed, dtype=float))
     for index, value in enumerate(np.abs(speed)):
         positive(f"speed[{index}]", float(value))
-    at, lines = excited_lines(system, orders, time, float(np.max(np.abs(speed))))
+    at, lines = excited_lines(system, orders, time, speed)
     return response_of(at, speed, steady_vibration(at, speed, lines.harmonics, excitation, progress=progress))
 
 
-def excited_lines(system: System, orders: int, time: float, speed: float) -> tuple[Excited, Lines]:
-    """Return what excites `system`, and the `strongest_lines` up to `orders` at most at a `speed`, rad/s.
+def excited_lines(system: System, orders: int, time: float, speed: FloatArray) -> tuple[Excited, Lines]:
+    """Return what excites `system`, and the `strongest_lines` up to `orders` at `speed` (S,), rad/s.
 
     Raises
     ------
@@ -333,7 +333,7 @@ def parametric_response(
     gyroscopic : bool
         With gyroscopic and frame terms.
     """
-    harmonics, meshes = _all_harmonics(at, orders, float(np.max(np.abs(speed)))), len(at.cycles)
+    harmonics, meshes = _all_harmonics(at, orders, speed), len(at.cycles)
     steady = swept_vibration(at, speed, rate, harmonics, gyroscopic)
     u, extra = steady.displacement.copy(), np.zeros((meshes, *steady.omega.shape), dtype=complex)
     shift = np.zeros((meshes, speed.size))
@@ -357,9 +357,9 @@ def parametric_response(
     return replace(response, mesh_force=force, least_mesh_force=least), shift
 
 
-def _all_harmonics(at: Excited, orders: int, speed: float) -> IntArray:
+def _all_harmonics(at: Excited, orders: int, speed: FloatArray) -> IntArray:
     """Return the multiples of the common period's frequency at which meshes (to `orders`) or loads excite."""
-    multiples = set(load_multiples(at.system, at.period, speed, at.time).tolist())
+    multiples = set(load_multiples(at.system, at.period, float(np.max(np.abs(speed))), at.time).tolist())
     for pitches, mesh in zip(at.period.pitches, at.system.scene.meshes, strict=True):
         period = mesh.table.period
         step = abs(pitches) // period

@@ -14,8 +14,10 @@ from dynamics.linearize.load_harmonics import load_multiples
 from dynamics.linearize.steady_vibration import Excited, flank_forces
 from dynamics.types import BoolArray, FloatArray, IntArray
 
-MOST = 500
-"""Lines of one response; periods with no more of them are solved in all."""
+ALWAYS = 500
+"""Lines that every response has; periods with no more of them are solved in all."""
+HELD = 6e6
+"""Amplitudes of speeds, lines and freedoms that a response may have beyond them: 0.1 GB."""
 
 
 class Lines(NamedTuple):
@@ -42,13 +44,15 @@ class Lines(NamedTuple):
         return {"lines_left_out": self.left_out, "force_left_out": self.share} if self.left_out else {}
 
 
-def strongest_lines(at: Excited, harmonics: IntArray, speed: float) -> Lines:
-    """Return which of `harmonics` (H,) count: all up to `MOST`, else the strongest of every mesh order.
+def strongest_lines(at: Excited, harmonics: IntArray, speed: FloatArray) -> Lines:
+    """Return which of `harmonics` (H,) count: as many as can be held, the strongest of every mesh order.
 
     A line is as strong as the largest force that it excites along a row of the flanks, of the largest of that
-    row in its mesh order. Orders of the meshes and of the loads at `speed` (rad/s) always count.
+    row in its mesh order. Orders of the meshes and of the loads at the highest `speed` (S,), rad/s, always
+    count.
     """
-    if harmonics.size <= MOST:
+    most = max(ALWAYS, int(HELD / max(speed.size * at.system.arrays.mass.shape[0], 1)))
+    if harmonics.size <= most:
         return Lines(harmonics)
     force = np.abs(flank_forces(at, harmonics)[1])
     bands, band = np.unique(np.rint(harmonics / at.period.counted), return_inverse=True)
@@ -56,8 +60,8 @@ def strongest_lines(at: Excited, harmonics: IntArray, speed: float) -> Lines:
     for index in range(bands.size):
         own = band == index
         size[own] = np.max(_share(force[:, own], np.max(force[:, own], axis=1, keepdims=True)), axis=0)
-    size[_always(at, harmonics, speed)] = np.inf
-    kept = _of_every_band(size, band)
+    size[_always(at, harmonics, float(np.max(np.abs(speed))))] = np.inf
+    kept = _of_every_band(size, band, most)
     squares = np.square(force)
     parts = [(squares[:, own & ~kept], squares[:, own]) for own in (band == k for k in range(bands.size))]
     left = [np.sqrt(np.max(_share(*(part.sum(axis=1) for part in each)))) for each in parts]
@@ -78,9 +82,9 @@ def _always(at: Excited, harmonics: IntArray, speed: float) -> IntArray:
     return np.flatnonzero(always)
 
 
-def _of_every_band(size: FloatArray, band: IntArray) -> BoolArray:
-    """Return whether each line is among the strongest of its band, of all bands as many."""
-    most = max(MOST // np.unique(band).size, 1)
+def _of_every_band(size: FloatArray, band: IntArray, most: int) -> BoolArray:
+    """Return whether each line is among the `most` strongest, of every band as many."""
+    most = max(most // np.unique(band).size, 1)
     order = np.lexsort((-size, band))
     first = np.searchsorted(band[order], band[order], side="left")
     kept = np.zeros(size.size, dtype=bool)

@@ -11,6 +11,7 @@ from dynamics.types import FloatArray
 from lineofaction.gearbox.schemas.figures import LINEAR
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing.figure import Axis, Figure, Panel, Table, number, shaded_levels
+from lineofaction.report.response.excitations import orders_left_out
 
 COARSE = 10.0 ** (1.0 / 20.0) - 1.0
 """Smearing by 1 dB: above it a window does not resolve an order."""
@@ -35,7 +36,8 @@ def force_words(facts: Json) -> tuple[tuple[str, str], ...]:
     """Say whose forces on bearings a result rests on, and how far the orders of a run hold."""
     run = of_run(facts)
     if run is None:
-        return (("forces on bearings", "linear steady response: mean mesh stiffness, flanks in contact"),)
+        about = ("forces on bearings", "linear steady response: mean mesh stiffness, flanks in contact")
+        return (about, *orders_left_out(facts))
     windows = f"{len(run['time_s'])} windows of {run['window_pitches']} base pitches"
     if run["windows_left_out"]:
         windows += f", {run['windows_left_out']} left out: standstill, or too fast a change of speed"

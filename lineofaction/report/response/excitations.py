@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds import engineering
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Bars, Figure, Panel, Table, number
 from lineofaction.report.drawing.marks import order_words
@@ -40,6 +41,15 @@ def excitation_table(facts: Mapping[str, Any]) -> Table | None:
         for row in rows
     )
     return Table("What excites: amplitudes at the static mesh forces, each with its error", head, cells)
+
+
+def orders_left_out(facts: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
+    """Say how much of a long table's excitation a response lacks; nothing where it has all."""
+    if not (count := facts.get("lines_left_out")):
+        return ()
+    share = engineering(100.0 * facts["force_left_out"], 2)
+    lacking = f"up to {share} % of the exciting force of a mesh order (rms), which totals and levels lack"
+    return (("weaker orders of a long table", f"{count} left out, {lacking}: fewer speeds hold more"),)
 
 
 def excitation_figures(facts: Mapping[str, Any]) -> tuple[Figure, ...]:

@@ -24,7 +24,7 @@ from lineofaction.report.drawing.figure import (
 from lineofaction.report.drawing.marks import order_words, shown_orders
 from lineofaction.report.drawing.page import Headline
 from lineofaction.report.presentation import dynamics_presentation
-from lineofaction.report.response.excitations import excitation_figures, excitation_table
+from lineofaction.report.response.excitations import excitation_figures, excitation_table, orders_left_out
 
 LEAST_SHARE = 1e-3
 """%, of what is listed."""
@@ -207,12 +207,7 @@ def _text(response: ForcedResponse) -> Iterator[Table | str]:
         "first-order theory: the other excitation changes "
         f"amplitudes by up to {engineering(worst, 2)} % of the largest"
     )
-    if left_out := response.facts.get("lines_left_out"):
-        share = engineering(100.0 * response.facts["force_left_out"], 2)
-        yield (
-            f"of a long table: {left_out} weaker orders left out, of one mesh order {share} % of the "
-            "exciting force (rms): a floor between the orders that are shown"
-        )
+    yield from (f"{what}: {words}" for what, words in orders_left_out(response.facts))
     if _loses_power(response):
         yield _power_table(response)
     left = response.power.residual

@@ -13,7 +13,7 @@ from geared_scenes import gear_pair_scene, spring_table, with_mesh
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.linearize import ForcedResponse, forced_response
-from dynamics.linearize.strongest_lines import MOST
+from dynamics.linearize.strongest_lines import ALWAYS
 from dynamics.meshes.grid_tables import GridTables
 
 SPEED = np.linspace(20.0, 200.0, 50)
@@ -44,9 +44,15 @@ def response(table, orders=10, speed=SPEED):
     return forced_response(assemble(scene), speed, orders)
 
 
-def test_a_long_table_that_repeats_a_short_one_has_its_response():
+@pytest.fixture
+def few(monkeypatch):
+    """As many lines as every response has."""
+    monkeypatch.setattr("dynamics.linearize.strongest_lines.HELD", 0.0)
+
+
+def test_a_long_table_that_repeats_a_short_one_has_its_response(few):
     short, long = response(ripple()), response(repeated(ripple(), LONG))
-    assert LONG * 10 > MOST
+    assert LONG * 10 > ALWAYS
     assert "lines_left_out" in long.facts and long.facts["force_left_out"] <= 1.0
     shared = np.isin(np.round(long.order, 9), np.round(short.order, 9))
     assert np.count_nonzero(shared) == short.order.size
@@ -57,12 +63,12 @@ def test_a_long_table_that_repeats_a_short_one_has_its_response():
         assert np.max(np.abs(rest), initial=0.0) < 1e-6 * np.max(np.abs(expected))  # of fewer samples
 
 
-def test_of_a_long_period_every_mesh_order_keeps_its_strongest_lines_and_says_what_it_leaves_out():
+def test_of_a_long_period_every_mesh_order_keeps_its_strongest_lines_and_says_what_it_leaves_out(few):
     errors = 1e-6 * np.random.default_rng(1).normal(size=LONG)
     found = response(repeated(ripple(), LONG, errors))
     whole = found.order.size + found.facts["lines_left_out"]
     assert 9.8 * LONG < whole <= 10 * LONG  # a pitch alone has no mesh orders but that of the ripple
-    assert 0.9 * MOST < found.order.size <= MOST + 10
+    assert 0.9 * ALWAYS < found.order.size <= ALWAYS + 10
     assert 0.0 < found.facts["force_left_out"] < 0.5
     assert 1.0 in found.order
     in_order = np.bincount(np.rint(found.order).astype(int), minlength=11)
@@ -73,10 +79,10 @@ def test_of_a_long_period_every_mesh_order_keeps_its_strongest_lines_and_says_wh
 
 def test_its_lines_are_those_of_the_same_response_in_all_lines(monkeypatch):
     table = repeated(ripple(), LONG, 1e-6 * np.random.default_rng(1).normal(size=LONG))
-    some = response(table)
-    monkeypatch.setattr("dynamics.linearize.strongest_lines.MOST", 10**9)
     every = response(table)
-    assert every.order.size > MOST and "lines_left_out" not in every.facts
+    monkeypatch.setattr("dynamics.linearize.strongest_lines.HELD", 0.0)
+    some = response(table)
+    assert every.order.size > ALWAYS and "lines_left_out" not in every.facts
     own = np.isin(np.round(every.order * LONG), np.round(some.order * LONG))
     for field in fields(ForcedResponse):
         if field.metadata.get("stored") and field.metadata["stored"].dimensions[-1:] == ("order",):
@@ -86,6 +92,18 @@ def test_its_lines_are_those_of_the_same_response_in_all_lines(monkeypatch):
                 np.testing.assert_allclose(
                     value, expected[..., own], rtol=0.0, atol=1e-12 * max(size, 1e-300)
                 )
+
+
+def test_fewer_speeds_hold_more_lines(monkeypatch):
+    table = repeated(ripple(), LONG, 1e-6 * np.random.default_rng(1).normal(size=LONG))
+    freedoms = len(response(table, speed=SPEED[:2]).freedom)
+    monkeypatch.setattr("dynamics.linearize.strongest_lines.HELD", 12.0 * freedoms * ALWAYS)
+    lines, left = zip(*(_held(response(table, speed=SPEED[:count])) for count in (50, 10, 5)), strict=True)
+    assert lines[0] < lines[1] < lines[2] and left[0] > left[1] > left[2] == 0.0
+
+
+def _held(found):
+    return found.order.size, found.facts.get("force_left_out", 0.0)
 
 
 def peak_of(work):

@@ -198,7 +198,7 @@ def test_a_table_of_several_pitches_keeps_its_mean_stiffness():
     at, speed = excited(system, 0.0, 4), np.array([60.0, 300.0])
     found, shift = parametric_response(at, speed, np.zeros(2), 4)
     largest = np.abs(found.displacement).max()
-    mean = swept_vibration(at, speed, np.zeros(2), _all_harmonics(at, 4, 300.0))
+    mean = swept_vibration(at, speed, np.zeros(2), _all_harmonics(at, 4, np.array([300.0])))
     own = response_of(at, speed, mean).displacement
     np.testing.assert_allclose(found.displacement, own, rtol=0.0, atol=1e-12 * largest)
     np.testing.assert_array_equal(shift, 0.0)
