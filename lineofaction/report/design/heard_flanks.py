@@ -107,7 +107,7 @@ def _design_table(result: HeardOptimization) -> Table:
 
 def _text(result: HeardOptimization) -> Iterator[Table | str]:
     yield f"{result.reason}."
-    yield " ".join(filter(None, (result.costs(), result.within_tolerances())))
+    yield from filter(None, (result.costs(), result.within_tolerances()))
     yield " ".join((result.ended(), *result.partings()))
     yield _design_table(result)
     yield _levels_table(result)

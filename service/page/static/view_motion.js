@@ -120,6 +120,10 @@ export class Motions {
     this.block.hidden = false;
     this.list.value = this.view.motion ?? "";
     if (this.list.value) this.choose();
+    else if (this.view.motion) {
+      this.view.words.textContent = `Motion ${this.view.motion} of the address: the result has ${count}, from 0.`;
+      this.unsaid();
+    }
     signal.addEventListener("abort", () => {
       if (this.href !== href) return;
       this.block.hidden = true;
@@ -168,7 +172,13 @@ export class Motions {
   seen(scene) {
     if (scene === this.scene || !this.list.value) return;
     this.list.value = "";
+    this.unsaid();
+  }
+
+  /** The address says none. */
+  unsaid() {
     this.view.motion = null;
+    document.dispatchEvent(new Event("typed"));
   }
 
   scale() {
