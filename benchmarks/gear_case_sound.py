@@ -60,7 +60,7 @@ def _figures_of(name: str, errors: dict[str, list[float]]) -> list[Figure]:
 
 
 def case_errors(housing: ReducedHousing) -> dict[str, list[float]]:
-    """Return the errors of each model the widths of the band, dB, and where it misses."""
+    """Return the errors of each model at the loudest lines, the widths of the band, dB; where it misses."""
     air, outer = Air(), outer_hull(housing)
     estimate = estimated_radiation(housing, housing_radiation(housing, MODELS[1], RANGE, air), air)
     names = [*(model.model_name for model in MODELS), "estimate", "lines", *NOT_LEVELS]

@@ -255,21 +255,21 @@ def bearing_forces(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexAr
 def extremes(amplitude: ComplexArray, order: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the least and the largest sum of all harmonics (m, S, H) over the period, (m, S) each.
 
-    Over a period of more than `MOST_SAMPLES` orders in no proportion of small integers meet in all their
-    phases: the extremes of their sums are the sums of their extremes. As many as `LINES_OF_A_CYCLE` are of a
-    table as long as its hunting cycle, and meet as often as that is sampled.
+    Over a period of more samples than `MOST_SAMPLES`, and than `MOST_PER_LINE` for each order, orders in no
+    proportion of small integers meet in all their phases: the extremes of their sums are the sums of their
+    extremes; of more than `MOST_PARTED`, of their amplitudes.
     """
     harmonic = _harmonics(tuple(order.tolist()))
     samples = 8 * int(harmonic[-1] + 1) if order.size else 1
-    own, cycle = harmonic % harmonic[:1] == 0, order.size >= LINES_OF_A_CYCLE
-    if samples > MOST_SAMPLES and cycle and samples > MOST_PER_LINE * order.size:
-        most = np.sum(np.abs(amplitude), axis=-1)
-        return -most, most
-    if samples > MOST_SAMPLES and cycle:
-        samples = next_fast_len(samples, real=True)
-    if samples > MOST_SAMPLES and not cycle and not np.all(own):
+    own = harmonic % harmonic[:1] == 0
+    if samples > max(MOST_SAMPLES, MOST_PER_LINE * order.size) and not np.all(own):
+        if order.size > MOST_PARTED:
+            most = np.sum(np.abs(amplitude), axis=-1)
+            return -most, most
         parts = extremes(amplitude[..., own], order[own]), extremes(amplitude[..., ~own], order[~own])
         return parts[0][0] + parts[1][0], parts[0][1] + parts[1][1]
+    if samples > MOST_SAMPLES:
+        samples = next_fast_len(samples, real=True)
     least, most = np.empty(amplitude.shape[:2]), np.empty(amplitude.shape[:2])
     for part in speed_blocks((amplitude.shape[1], samples), amplitude.shape[0]):
         few = amplitude[:, part]
@@ -289,8 +289,7 @@ def _harmonics(order: tuple[float, ...]) -> IntArray:
     return np.array(multiples, dtype=np.int64) // max(math.gcd(*multiples), 1)
 
 
-MOST_SAMPLES = 16_384
-LINES_OF_A_CYCLE, MOST_PER_LINE = 300, 1_000
+MOST_SAMPLES, MOST_PER_LINE, MOST_PARTED = 16_384, 1_000, 300
 MOST_UNKNOWNS = 150
 LEAST_ORDERS = 8
 

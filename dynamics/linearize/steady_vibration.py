@@ -402,14 +402,9 @@ def _solve(
     mass, damping, total = (
         per_meter[:, None] * a * per_meter for a in (linear.mass, linear.damping, linear.stiffness)
     )
-    pushed = (force * per_meter)[..., None]
-    if rows is not None:
-        each = np.broadcast_to((rows * per_meter).T, (*pushed.shape[:3], rows.shape[0]))
-        pushed = np.concatenate([pushed, each], axis=-1)
-    kept, watched = pushed.shape[3], at.system.arrays.direction[at.system.driving_rows] * per_meter
+    pushed = _right_sides(force, rows, beside) * per_meter[:, None]
+    kept, watched = 1 if rows is None else 1 + len(rows), at.system.arrays.direction[at.system.driving_rows]
     largest = np.zeros((len(watched), omega.shape[1]))
-    if beside is not None:
-        pushed = np.concatenate([pushed, (beside * per_meter)[..., None]], axis=-1)
     # a freedom at a time in memory, as results have it
     displacement = np.moveaxis(np.empty((pushed.shape[2], kept, *omega.shape), dtype=complex), (2, 3), (0, 1))
     modal = at.system.arrays.sparse.modal
@@ -438,7 +433,7 @@ def _solve(
         farthest = np.maximum(farthest, np.max(np.abs(moved[..., 0]), axis=(0, 1), initial=0.0))
         displacement[part] = moved[..., :kept] * per_meter[:, None]
         if beside is not None:
-            along = np.max(np.abs(moved[..., kept] @ watched.T), axis=0, initial=0.0)
+            along = np.max(np.abs(moved[..., kept] * per_meter @ watched.T), axis=0, initial=0.0)
             largest = np.maximum(largest, along.T)
         if progress is not None:
             progress(min(part.stop, omega.shape[0]) / omega.shape[0])
@@ -447,6 +442,16 @@ def _solve(
     if not np.maximum(left, np.finfo(float).eps * elastic) <= ROUNDED * most:
         raise unbounded(linear, omega)
     return displacement, float(left / most), largest
+
+
+def _right_sides(force: ComplexArray, rows: FloatArray | None, beside: ComplexArray | None) -> ComplexArray:
+    """Return `force` (S or 1, H, n), one along each of `rows` (f, n), and those `beside`, side by side."""
+    sides = [force[..., None]]
+    if rows is not None:
+        sides.append(np.broadcast_to(rows.T, (*force.shape, len(rows))))
+    if beside is not None:
+        sides.append(beside[..., None])
+    return np.concatenate(sides, axis=-1)
 
 
 def unbounded(linear: LinearSystem, omega: FloatArray | ComplexArray) -> SolveError:

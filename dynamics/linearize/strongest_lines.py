@@ -39,9 +39,9 @@ class Lines(NamedTuple):
     share: float = 0.0
 
     @property
-    def facts(self) -> dict[str, float]:
-        """The fields of a result's facts that say so; none where nothing is left out."""
-        return {"lines_left_out": self.left_out, "force_left_out": self.share} if self.left_out else {}
+    def facts(self) -> dict[str, dict[str, float]]:
+        """What a result's facts say of it; nothing where nothing is left out."""
+        return {"lines_left_out": {"count": self.left_out, "force": self.share}} if self.left_out else {}
 
 
 def strongest_lines(at: Excited, harmonics: IntArray, speed: FloatArray) -> Lines:

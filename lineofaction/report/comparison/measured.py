@@ -61,18 +61,20 @@ class Difference:
     def between(self) -> str:
         """Both values, and by how much the second differs: a signed number alone reads as a value."""
         before, after = (number(each.value, 3) for each in (self.first, self.second))
-        return (
-            f"{before} to {after} {self.first.unit}, by {self.written.removesuffix(self.first.unit).strip()}"
-        )
+        return f"{before} to {after} {self.first.unit}, by {self._bare}"
 
     @property
     def written(self) -> str:
         """The difference with its error, both to the last digit that counts."""
-        unit = self.first.unit
+        return f"{self._bare} {self.first.unit}"
+
+    @property
+    def _bare(self) -> str:
+        """The same without the unit."""
         if math.isnan(self.error):
-            return f"{number(self.value, 3)} {unit}"
+            return number(self.value, 3)
         digits = _decimals(self.error or self.value)
-        return f"{self.value:+.{digits}f} ± {self.error:.{digits}f} {unit}"
+        return f"{self.value:+.{digits}f} ± {self.error:.{digits}f}"
 
 
 def differences_table(differences: Sequence[Difference], names: Sequence[str]) -> Table:

@@ -45,11 +45,13 @@ def excitation_table(facts: Mapping[str, Any]) -> Table | None:
 
 def orders_left_out(facts: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
     """Say how much of a long table's excitation a response lacks; nothing where it has all."""
-    if not (count := facts.get("lines_left_out")):
+    if not (left_out := facts.get("lines_left_out")):
         return ()
-    share = engineering(100.0 * facts["force_left_out"], 2)
+    share = engineering(100.0 * left_out["force"], 2)
     lacking = f"up to {share} % of the exciting force of a mesh order (rms), which totals and levels lack"
-    return (("weaker orders of a long table", f"{count} left out, {lacking}: fewer speeds hold more"),)
+    return (
+        ("weaker orders of a long table", f"{left_out['count']} left out, {lacking}: fewer speeds hold more"),
+    )
 
 
 def excitation_figures(facts: Mapping[str, Any]) -> tuple[Figure, ...]:

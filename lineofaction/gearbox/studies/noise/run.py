@@ -128,8 +128,8 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
             heard = None if means.run is None else _over_time(subject, means.run, radiation)
         about = response.facts
         seconds = {**about["seconds"], "sound": spent(means.workers) - began}
-        own = {name: about.get(name) for name in ("leading_shaft", "equilibrium", "effect_ledger", "forces")}
-        own |= {name: about[name] for name in ("lines_left_out", "force_left_out") if name in about}
+        named = ("leading_shaft", "equilibrium", "effect_ledger", "forces", "lines_left_out")
+        own = {name: about.get(name) for name in named}
         own["excitations"] = about.get("excitations", [])
         own["over_time"] = heard and figures_of(
             SoundOverTimeFigures, heard, third_octave_db=sound_power_level(heard.power.T)
