@@ -32,7 +32,6 @@ from lineofaction.report.ste.curves import (
     load_labels,
     shown_loads,
     ste_curves,
-    ste_spectrum,
 )
 from lineofaction.report.ste.over_torque import (
     deviation_curves,
@@ -42,6 +41,7 @@ from lineofaction.report.ste.over_torque import (
     has_face_load,
     ripple_over_torque,
 )
+from lineofaction.report.ste.spectrum import ste_spectrum
 from lineofaction.report.ste.stiffness import budget_figure, load_sharing, mesh_stiffness
 
 _RESIDUALS = ("equilibrium", "penetration", "tension", "complementarity")
