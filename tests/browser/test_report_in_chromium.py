@@ -33,6 +33,7 @@ PANELS = {
     "ste": 2,
     "ripple": 3,
     "ste_spectrum": 1,
+    "ste_waterfall": 1,
     "load_sharing": 3,
     "mesh_stiffness": 1,
     "dynamic_error": 3,

@@ -82,7 +82,7 @@ def test_the_report_and_its_images_are_written(job: tuple[Path, str]) -> None:
     assert str(folder / "report.html") in text
     page = (folder / "report.html").read_text(encoding="utf-8")
     keys = re.findall(r'<figure id="(\w+)">', page)
-    static = ["pair_drawing", "ste", "ripple", "ste_spectrum", "load_sharing", "mesh_stiffness"]
+    static = ["pair_drawing", "ste", "ripple", "ste_spectrum", "ste_waterfall", "load_sharing", "mesh_stiffness"]
     static += ["deflection_budget", "flanks_over_torque"]
     dynamic = [
         "dynamic_error",

@@ -41,7 +41,7 @@ from lineofaction.report.ste.over_torque import (
     has_face_load,
     ripple_over_torque,
 )
-from lineofaction.report.ste.spectrum import ste_spectrum
+from lineofaction.report.ste.spectrum import ste_spectrum, ste_waterfall
 from lineofaction.report.ste.stiffness import budget_figure, load_sharing, mesh_stiffness
 
 _RESIDUALS = ("equilibrium", "penetration", "tension", "complementarity")
@@ -112,6 +112,7 @@ def _transmission_error(database: SteDatabase) -> Section:
     figures = [ste_curves(database)]
     figures += [ripple_over_torque(database)] if len(shown_loads(database)) > 1 else []
     figures += [ste_spectrum(database)]
+    figures += [ste_waterfall(database)] if len(shown_loads(database)) > 1 else []
     figures += [deviation_curves(database)] if has_deviations(database) else []
     return Section("Static transmission error", figures=tuple(figures))
 

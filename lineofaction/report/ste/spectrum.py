@@ -13,11 +13,14 @@ from lineofaction.report.drawing.figure import (
     Bars,
     Figure,
     FloatArray,
+    HeatMap,
     Panel,
     Table,
+    largest,
     um,
 )
-from lineofaction.report.ste.curves import load_curve, load_labels, middle_load
+from lineofaction.report.drawing.marks import TORQUE
+from lineofaction.report.ste.curves import load_curve, load_labels, middle_load, shown_loads
 
 ORDERS = 20
 LONG_ORDERS = 4  # over a period of many pitches, where as many lines lie between two mesh orders
@@ -31,7 +34,7 @@ def ste_spectrum(database: SteDatabase) -> Figure:
     load = middle_load(database)
     curve, label = load_curve(database, load), load_labels(database)[load]
     order, amplitude, error = _spectrum_of(curve)
-    names = [f"order {one:.4g}" for one in order] if curve.period == 1 else curve.spectrum.names
+    names = _order_names(curve, order)
     chosen = np.sort(np.argsort(-amplitude, kind="stable")[:ORDERS])
     rows = tuple((names[k].removeprefix("order "), um(amplitude[k], 3), um(error[k], 2)) for k in chosen)
     return Figure(
@@ -87,3 +90,77 @@ def _spectrum_words(label: str, names: Sequence[str], amplitude: FloatArray, err
         return f"{text}; the errors were not estimated."
     above = int(np.count_nonzero(amplitude > error))
     return f"{text}; {above} of {amplitude.size} orders exceed their error."
+
+
+_CELLS = 480  # across the map: a line of one of them is still seen
+_RANGE = 60.0  # dB between the ends of the colors
+_COLUMNS = 8  # of the table
+
+
+def ste_waterfall(database: SteDatabase) -> Figure:
+    """Draw the level of every order at every load; what is below its error stays blank."""
+    loads = shown_loads(database)
+    curves = [load_curve(database, load) for load in loads]
+    order = _spectrum_of(curves[0])[0]
+    amplitude, error = (np.stack([_spectrum_of(curve)[k] for curve in curves]) for k in (1, 2))
+    known = ~(error >= amplitude) & (amplitude > 0.0)  # also where no error was estimated
+    level = np.where(known, _level(amplitude), np.nan)
+    names = _order_names(curves[0], order)
+    middles, cells = _in_cells(order, level)
+    torque = database.torque[list(loads)]
+    top = float(np.nanmax(level)) if known.any() else 0.0
+    label = "amplitude, dB re 1 µm"
+    shade = HeatMap(middles, torque, np.maximum(cells, top - _RANGE), label, top, top - _RANGE)
+    x = Axis("mesh order", limits=(0.5 * float(order[0]), float(order[-1] + 0.5 * order[0])))
+    return Figure(
+        key="ste_waterfall",
+        title="Spectrum of the transmission error over torque",
+        caption=_waterfall_caption(order, middles, error),
+        alternative=_waterfall_words(database, names, level),
+        content=(Panel(x, Axis.over(TORQUE, torque), shade=shade),),
+        table=_waterfall_table(database, names, level),
+    )
+
+
+def _order_names(curve: Curve, order: FloatArray) -> Sequence[str]:
+    return [f"order {one:.4g}" for one in order] if curve.period == 1 else curve.spectrum.names
+
+
+def _in_cells(order: FloatArray, level: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the middles of so few cells that each is seen (n,), and the largest levels in them (F, n)."""
+    each = -(-order.size // _CELLS)
+    starts = np.arange(0, order.size, each)
+    width = np.minimum(starts + each, order.size) - starts
+    return order[starts] + 0.5 * (width - 1) * order[0], np.fmax.reduceat(level, starts, axis=1)
+
+
+def _waterfall_caption(order: FloatArray, cells: FloatArray, error: FloatArray) -> str:
+    unknown = "their errors were not estimated" if np.isnan(error).all() else "blank: below the stated error"
+    shared = -(-order.size // cells.size)
+    return (
+        f"Colors: amplitudes of the orders, {unknown}; the darkest are {_RANGE:g} dB and more below the "
+        "largest. The color of a stored load reaches half the way to the next."
+        + (f" A cell is as wide as {shared} orders and shows the largest." if shared > 1 else "")
+    )
+
+
+def _waterfall_words(database: SteDatabase, names: Sequence[str], level: FloatArray) -> str:
+    if np.isnan(level).all():
+        return "No order exceeds its error at any load."
+    load, order = np.unravel_index(int(np.nanargmax(level)), level.shape)
+    at = load_labels(database)[shown_loads(database)[load]]
+    text = f"{names[order]} at {at} is the largest: {level[load, order]:.1f} dB re 1 µm."
+    return f"{text[0].upper()}{text[1:]}"
+
+
+def _waterfall_table(database: SteDatabase, names: Sequence[str], level: FloatArray) -> Table:
+    """List the orders that are largest at any load."""
+    most = np.nan_to_num(np.fmax.reduce(level, axis=0), nan=-np.inf)
+    shown = [k for k in largest(most, _COLUMNS) if np.isfinite(most[k])]
+    labels = load_labels(database)
+    rows = tuple(
+        (labels[load], *("below its error" if np.isnan(row[k]) else f"{row[k]:.1f}" for k in shown))
+        for load, row in zip(shown_loads(database), level, strict=True)
+    )
+    head = ("torque", *(f"{names[k]}" for k in shown))
+    return Table("Levels of the largest orders, dB re 1 µm", head, rows)

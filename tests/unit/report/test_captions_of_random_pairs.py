@@ -195,6 +195,24 @@ def check_spectrum(figure: Figure, database: SteDatabase) -> None:
             assert (veil.top[k] >= bars.top[k]) == (tone.error >= tone.value) or bars.top[k] == bars.base
 
 
+def check_waterfall(figure: Figure, database: SteDatabase) -> None:
+    tones = {
+        (order, torque): tone
+        for torque, curve in curves(database).items()
+        for order, tone in enumerate(curve.harmonics, 1)
+        if not tone.error >= tone.value
+    }
+    if not tones:
+        assert figure.alternative == "No order exceeds its error at any load."
+        return
+    ((order, torque, level),) = re.findall(
+        rf"Order {NUMBER} at {NUMBER} N m is the largest: {NUMBER} dB re 1 µm", figure.alternative
+    )
+    largest = max(tone.value for tone in tones.values())
+    assert tones[int(order), torque].value == largest
+    assert says(level, 20.0 * math.log10(1e6 * largest))
+
+
 def check_load_sharing(figure: Figure, database: SteDatabase) -> None:
     text, counts = figure.alternative, database.pairs_in_contact[:, :, 0, 0]
     ((force, share, torque),) = re.findall(
@@ -311,6 +329,7 @@ CHECKS = {
     "ste": check_ste,
     "ripple": check_ripple,
     "ste_spectrum": check_spectrum,
+    "ste_waterfall": check_waterfall,
     "pair_drawing": check_drawing,
     "load_sharing": check_load_sharing,
     "deflection_budget": check_budget,

@@ -47,6 +47,7 @@ STATIC = {
     "ste",
     "ripple",
     "ste_spectrum",
+    "ste_waterfall",
     "load_sharing",
     "mesh_stiffness",
     "deflection_budget",
