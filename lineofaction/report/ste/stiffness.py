@@ -114,19 +114,26 @@ def load_sharing(database: SteDatabase) -> Figure:
     shown = shown_loads(database)
     loads = sorted({shown[0], middle_load(database), shown[-1]})
     heaviest = loads[-1]
-    most = max(float(np.nanmax(one)) for one in _pair_shares(database, heaviest)[1].values())
+    m, d = aligned_index(database)
+    most = float(np.nanmax(database.load_share[:, heaviest, m, d]))
     force = f"{number(most * float(database.force[heaviest]), 3)} N, {number(100.0 * most, 3)} % of the load"
     return Figure(
         key="load_sharing",
         title="Load sharing between tooth pairs",
         caption="One line is one pair of teeth from entering the mesh to leaving it; at every position the "
         "normal forces sum to that of the torque. Pair 0 touches at the pitch point at position 0; pair +1 "
-        "is one pitch ahead.",
+        f"is one pitch ahead.{_shown_of_all(database)}",
         alternative=f"A pair carries at most {force}, at {load_labels(database)[heaviest]}. "
         f"{_alone(database, loads)}",
         content=tuple(_sharing_panel(database, load) for load in loads),
         table=_sharing_table(database),
     )
+
+
+def _shown_of_all(database: SteDatabase) -> str:
+    """Say where a period is longer than what is drawn."""
+    shown, period = pitches_shown(database), database.period
+    return f" Shown are the first {shown} of {period} base pitches." if shown < period else ""
 
 
 def _pair_shares(database: SteDatabase, load: int) -> tuple[FloatArray, dict[int, FloatArray]]:
@@ -200,11 +207,10 @@ def _alone(database: SteDatabase, loads: list[int]) -> str:
             + ": no pair is ever alone."
         )
     m, d = aligned_index(database)
-    position, rows = shown_rows(database)
-    parts = []
+    position, parts = np.append(database.position, database.period), []
     for load in loads:
-        alone = np.nanmax(database.load_share[rows, load, m, d, :], axis=-1) > 1 - _CARRIES
-        part = 100.0 * mean_over(position, alone.astype(float))
+        alone = np.nanmax(database.load_share[:, load, m, d, :], axis=-1) > 1 - _CARRIES
+        part = 100.0 * mean_over(position, np.append(alone, alone[0]).astype(float))
         parts.append(f"{number(part, 2)} % of the mesh cycle at {load_labels(database)[load]}")
     return f"One pair carries the whole load in {', '.join(parts)}; otherwise two or more pairs share it."
 

@@ -321,6 +321,24 @@ def test_every_pair_is_followed_and_the_shares_sum_to_one(
         assert np.count_nonzero(np.diff((share > 0.0).astype(int)) == 1) <= 1
 
 
+def test_the_largest_force_on_a_pair_is_that_of_all_pitches(with_pitch_errors: Tables) -> None:
+    """Also where it lies beyond those that are drawn: three pairs share in all pitches but the last."""
+    table = with_pitch_errors(50)
+    share = table.load_share.copy()
+    share[: 49 * 64] = 1.0 / 3.0
+    most = load_sharing(replace(table, load_share=share))
+    assert "A pair carries at most 10642 N, 100 % of the load, at 400 N m." in most.alternative
+    assert "in 1.1 % of the mesh cycle at 10 N m" in most.alternative  # 0.57 of one pitch in 50
+
+
+def test_the_caption_says_where_a_period_is_longer_than_what_is_drawn(
+    with_pitch_errors: Tables, database: SteDatabase
+) -> None:
+    assert "Shown are the first 40 of 41 base pitches." in load_sharing(with_pitch_errors(41)).caption
+    for whole in (with_pitch_errors(40), with_pitch_errors(3), database):
+        assert "Shown are" not in load_sharing(whole).caption
+
+
 def test_the_static_part_is_made_without_the_secant_stiffness(
     with_pitch_errors: Tables, database: SteDatabase
 ) -> None:
