@@ -14,7 +14,7 @@ BUDGETS = {
     ("fe_contact",): (43_215, 800),
     ("dynamics",): (42_855, 843),
     ("lineofaction.gearbox",): (26_812, 547),
-    ("lineofaction.report",): (12_042, 227),
+    ("lineofaction.report",): (12_143, 228),
     ("service",): (14_826, 345),
     ("lineofaction.client",): (2_688, 53),
     ("lineofaction.cli",): (5_471, 80),
@@ -22,7 +22,7 @@ BUDGETS = {
     ("bounds", "host", "model_studies"): (4_517, 156),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 838
+MOST_FILES = 839
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
