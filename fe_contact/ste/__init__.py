@@ -5,6 +5,7 @@ from fe_contact.ste.database import SteDatabase, in_own_model
 from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.ste.force_table import ForceTable
 from fe_contact.ste.mesh_force import MeshForce, Validity
+from fe_contact.ste.tooth_loads import ToothLoads
 
 __all__ = [
     "SCHEMA_VERSION",
@@ -14,6 +15,7 @@ __all__ = [
     "Metadata",
     "PairFacts",
     "SteDatabase",
+    "ToothLoads",
     "Validity",
     "in_own_model",
 ]

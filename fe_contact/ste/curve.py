@@ -177,7 +177,7 @@ def _load_share(database: SteFields, position: FloatArray, point: OperatingPoint
     monotone between knots in phase. As many pairs as the period has pitches meet in turn. Below the smallest
     stored load the share is that load's.
     """
-    stored = _at_operating_point(database, database.load_share, point)
+    stored = at_operating_point(database, database.load_share, point)
     pitch, fraction = np.floor(position).astype(np.int64), position
     if database.period > 1:
         fraction = position - pitch
@@ -193,7 +193,7 @@ def _load_share(database: SteFields, position: FloatArray, point: OperatingPoint
     return np.asarray(share / share.sum(axis=1, keepdims=True))
 
 
-def _at_operating_point(database: SteFields, values: FloatArray, point: OperatingPoint) -> FloatArray:
+def at_operating_point(database: SteFields, values: FloatArray, point: OperatingPoint) -> FloatArray:
     """Reduce (P, F, M, D, ...) to (P, ...) at one load and alignment."""
     along_force = np.moveaxis(values, (1, 2, 3), (0, 1, 2))
     for axis, at in (
@@ -335,7 +335,7 @@ def _evaluate(
     alignment = (point.misalignment, point.center_distance_change)
     transverse = math.cos(database.facts.base_helix_angle)
     ste, _ = force.deflection_at(position, point.force * transverse, *alignment)
-    stored = _at_operating_point(database, database.error_estimate, point)
+    stored = at_operating_point(database, database.error_estimate, point)
     error = interpolate(Axis(database.position, float(database.period)), stored, position)
     smallest_load = min([database.force[0], *database.support_force[:1]])
     if point.force >= smallest_load:

@@ -20,6 +20,7 @@ from fe_contact.ste.curve_quantities import Spectrum
 from fe_contact.ste.fields import GRID, SteFields
 from fe_contact.ste.force_table import ForceTable, LevelGrid
 from fe_contact.ste.mesh_force import ForceSample, MeshForce
+from fe_contact.ste.tooth_loads import ToothLoads, tooth_loads
 from fe_contact.types import BoolArray, Estimate, FloatArray, IntArray
 
 if TYPE_CHECKING:
@@ -258,6 +259,19 @@ class SteDatabase(SteFields):
     def spectrum(self, **point: Unpack[_StoredPoint]) -> Spectrum:
         """All orders over the table's period, m; raises as `curve`."""
         return self.curve(**point).spectrum
+
+    def tooth_loads(
+        self, *, allow_failed: bool = False, **point: Unpack[_StoredPoint]
+    ) -> tuple[ToothLoads, ...]:
+        """Return the loads of each tooth of the gears whose teeth differ and are told apart by the period.
+
+        Raises as `curve`.
+        """
+        table = _without_failed(self) if allow_failed else self
+        table.require_complete()
+        load = point.get("torque"), point.get("force")
+        at = operating_point(table, *load, point.get("misalignment"), point.get("center_distance_change"))
+        return tooth_loads(table, at)
 
     def force_table(self, *, allow_failed: bool = False) -> ForceTable:
         """Return the table of plain arrays for dynamics; raises as `extraction.force_table`."""

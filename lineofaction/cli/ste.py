@@ -137,6 +137,9 @@ def _answer(database: SteDatabase, file: Path, curve: dict[str, Any]) -> Iterato
     carrying = (shares > 0.0).sum(axis=1)
     pairs = " to ".join(f"{number}" for number in dict.fromkeys([carrying.min(), carrying.max()]))
     yield f"  load sharing: {pairs} pairs carry; most on one {100.0 * shares.max():.0f} %"
+    for gear, own in curve.get("tooth_loads", {}).items():
+        times = f"{own['over_mean']:.3f} times the mean tooth"
+        yield f"  {gear}: tooth {own['most_loaded']} carries most, {own['force_n']:.0f} N, {times}"
     yield ""
     yield f"next: loa report {file}     all positions: --table, --csv"
 

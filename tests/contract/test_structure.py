@@ -11,18 +11,18 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (43_215, 800),
+    ("fe_contact",): (43_313, 803),
     ("dynamics",): (42_855, 843),
-    ("lineofaction.gearbox",): (26_812, 547),
-    ("lineofaction.report",): (12_143, 228),
+    ("lineofaction.gearbox",): (26_872, 548),
+    ("lineofaction.report",): (12_264, 231),
     ("service",): (14_826, 345),
     ("lineofaction.client",): (2_688, 53),
-    ("lineofaction.cli",): (5_471, 80),
+    ("lineofaction.cli",): (5_474, 80),
     ("lineofaction.hardcases",): (3_841, 35),
     ("bounds", "host", "model_studies"): (4_517, 156),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 839
+MOST_FILES = 841
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""

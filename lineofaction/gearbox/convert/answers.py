@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 
 import numpy as np
 
 from bounds import engineering
 from bounds.types import Json
 from fe_contact.ste import Curve, SteDatabase, in_own_model
-from fe_contact.ste.curve import PLANE
+from fe_contact.ste.curve import PLANE, OperatingPoint
 from fe_contact.ste.curve_quantities import BY_SOURCE
 from fe_contact.types import Estimate
 from lineofaction.gearbox.convert.case import boundary_errors
@@ -53,6 +54,8 @@ def curve_json(
         "load_share": curve.load_share.tolist(),
         **_figures(curve),
     }
+    if teeth := tooth_loads_json(database, curve.point):
+        answer["tooth_loads"] = teeth
     if curve.period > 1:  # over one base pitch the orders are the harmonics
         answer["order"] = curve.spectrum.order.tolist()
         answer["order_name"] = list(curve.spectrum.names)
@@ -64,6 +67,23 @@ def curve_json(
             "The curve has points without a solution. Compute the table again with other settings."
         )
     return answer
+
+
+GEARS = "pinion", "wheel"
+
+
+def tooth_loads_json(database: SteDatabase, point: OperatingPoint) -> Json:
+    """Return the loads of the teeth by the names of the gears whose teeth differ."""
+    loads = database.tooth_loads(**asdict(point), allow_failed=True)
+    return {
+        GEARS[own.gear]: {
+            "most_loaded": own.worst,
+            "force_n": float(own.force.max()),
+            "over_mean": own.over_mean,
+            "force_by_tooth_n": own.force.tolist(),
+        }
+        for own in loads
+    }
 
 
 def _figures(curve: Curve) -> Json:
@@ -84,14 +104,18 @@ def summary_json(database: SteDatabase) -> Json:
     """Return what `loa analyze` prints: figures for every load, effect ledger, receipt, failed points."""
     with boundary_errors():
         curves = [database.curve(force=float(force), allow_failed=True) for force in database.force]
+    loads = [
+        {"torque_n_m": as_typed(curve.torque), "normal_force_n": curve.point.force, **_figures(curve)}
+        for curve in curves
+    ]
+    for load, curve in zip(loads, curves, strict=True):
+        if teeth := tooth_loads_json(database, curve.point):
+            load["tooth_loads"] = teeth
     return {
         "content_hash": database.metadata.content_hash,
         "points": int(database.status.size),
         "failed_points": database.n_failed,
-        "loads": [
-            {"torque_n_m": as_typed(curve.torque), "normal_force_n": curve.point.force, **_figures(curve)}
-            for curve in curves
-        ],
+        "loads": loads,
         "effect_ledger": boundary_ledger(database.metadata.effect_ledger),
         "receipt": database.metadata.receipt,
         "warnings": database.metadata.warnings,
@@ -99,7 +123,8 @@ def summary_json(database: SteDatabase) -> Json:
 
 
 def metadata_json(database: SteDatabase) -> Json:
-    """Return what a database says about itself, with its axes."""
+    """Return what a database says about itself, with its axes, and the loads of teeth that differ."""
+    teeth = _tooth_loads_by_load(database)
     return {
         "schema_version": database.metadata.schema_version,
         "content_hash": database.metadata.content_hash,
@@ -115,7 +140,17 @@ def metadata_json(database: SteDatabase) -> Json:
         "normal_force_n": database.force.tolist(),
         "misalignment_um": [as_typed(skew, UM) for skew in database.misalignment],
         "center_distance_change_mm": [as_typed(change, MM) for change in database.center_distance_change],
+        **({"tooth_loads": teeth} if any(teeth) else {}),
     }
+
+
+def _tooth_loads_by_load(database: SteDatabase) -> list[Json]:
+    """Return the loads of teeth at every load, of the alignment nearest to zero; none with failed points."""
+    axes = database.misalignment, database.center_distance_change
+    aligned = [float(axis[np.argmin(np.abs(axis))]) for axis in axes]
+    if database.n_failed:
+        return []
+    return [tooth_loads_json(database, OperatingPoint(float(f), *aligned)) for f in database.force]
 
 
 _NOTHING = 1e-12

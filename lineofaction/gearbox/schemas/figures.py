@@ -64,7 +64,15 @@ class Figures(Part):
 
 
 class TableFigures(Figures):
-    """Figures of an STE database: its case, effects and receipt, and its axes."""
+    """Figures of an STE database: its case, effects and receipt, its axes, and loads of teeth that differ."""
+
+    class ToothLoads(Part):
+        """Largest normal force on each tooth of a gear at a load, in the order of meshing from tooth 1."""
+
+        most_loaded: int
+        force_n: float
+        over_mean: float
+        force_by_tooth_n: list[float]
 
     schema_version: int
     content_hash: str
@@ -79,6 +87,7 @@ class TableFigures(Figures):
     normal_force_n: list[float]
     misalignment_um: list[float]
     center_distance_change_mm: list[float]
+    tooth_loads: list[dict[str, ToothLoads]] | None = None
 
 
 class RunFigures(Figures):

@@ -246,6 +246,16 @@ class LiveCurve(BoundaryModel):
             description="How far the load moves the flanks of the pair apart, in µm", examples=[[[8.1, 9.2]]]
         )
 
+    class LiveToothLoads(BoundaryModel):
+        """Largest normal force on each tooth of a gear, in the order of meshing from tooth 1."""
+
+        most_loaded: int = Field(description="Number of the most loaded tooth", examples=[7])
+        force_n: float = Field(description="Its largest normal force in N", examples=[2310.0])
+        over_mean: float = Field(description="The same over the mean of all teeth", examples=[1.08])
+        force_by_tooth_n: list[float] = Field(
+            description="Largest normal force on each tooth in N", examples=[[2130.0, 2310.0]]
+        )
+
     torque_n_m: float = Field(description="Torque on the driving gear in N m", examples=[100.0])
     normal_force_n: float = Field(description="Normal tooth force in N", examples=[2660.4])
     misalignment_um: float = Field(description="Misalignment in µm", examples=[0.0])
@@ -281,7 +291,13 @@ class LiveCurve(BoundaryModel):
     order: list[float] | None = Field(
         default=None, description="Orders, if the period has several base pitches"
     )
+    order_name: list[str] | None = Field(default=None, description="What each order is")
     amplitude_um: list[float] | None = Field(default=None, description="Their amplitudes in µm")
+    amplitude_error_um: list[float] | None = Field(default=None, description="Errors of these in µm")
+    tooth_loads: dict[str, LiveToothLoads] | None = Field(
+        default=None,
+        description="Loads of each tooth by gear, where teeth differ and the period tells them apart",
+    )
     derivatives: CurveDerivatives | None = Field(
         default=None, description="Derivatives of the curve, if requested"
     )

@@ -43,6 +43,7 @@ from lineofaction.report.ste.over_torque import (
 )
 from lineofaction.report.ste.spectrum import ste_spectrum, ste_waterfall
 from lineofaction.report.ste.stiffness import budget_figure, load_sharing, mesh_stiffness
+from lineofaction.report.ste.teeth import tooth_headlines, tooth_sections
 
 _RESIDUALS = ("equilibrium", "penetration", "tension", "complementarity")
 _DECISIONS = {
@@ -74,6 +75,7 @@ def static_headlines(database: SteDatabase, force: float | None = None) -> tuple
             for (name, one), bias in zip(figures.items(), biases, strict=True)
         ),
         Headline(f"largest pressure at {label}", f"{number(1e-6 * pressure, 4)} MPa", remark),
+        *tooth_headlines(database, load),
     )
 
 
@@ -105,7 +107,9 @@ def static_results(database: SteDatabase, force: float | None = None) -> tuple[S
     pair = pair_of(database)
     sheet = () if pair is None else (data_sheet_section(pair),)
     sharing = Section("Load sharing", figures=(load_sharing(database),))
-    return (*sheet, _transmission_error(database), sharing, *_stiffness(database, force), *_flanks(database))
+    teeth = tooth_sections(database, headline_load(database, force))
+    rest = *_stiffness(database, force), *_flanks(database)
+    return (*sheet, _transmission_error(database), sharing, *teeth, *rest)
 
 
 def _transmission_error(database: SteDatabase) -> Section:

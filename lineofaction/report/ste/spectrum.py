@@ -147,7 +147,7 @@ def _waterfall_caption(order: FloatArray, cells: FloatArray, error: FloatArray) 
 def _waterfall_words(database: SteDatabase, names: Sequence[str], level: FloatArray) -> str:
     if np.isnan(level).all():
         return "No order exceeds its error at any load."
-    load, order = np.unravel_index(int(np.nanargmax(level)), level.shape)
+    load, order = divmod(int(np.nanargmax(level)), level.shape[1])
     at = load_labels(database)[shown_loads(database)[load]]
     text = f"{names[order]} at {at} is the largest: {level[load, order]:.1f} dB re 1 µm."
     return f"{text[0].upper()}{text[1:]}"

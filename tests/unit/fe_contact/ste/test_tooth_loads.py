@@ -1,0 +1,100 @@
+"""Laws of the loads of each tooth: they sum to the load, follow the deviations, and are alike without."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fe_contact import Gear, GearPair, PitchDeviation, SteDatabase, analyze
+from fe_contact.errors import SolveError
+
+EARLY, TORQUE = 7, 100.0
+TEETH = 17, 23
+
+
+def helical(pinion: dict[int, float], wheel: dict[int, float]) -> GearPair:
+    """Pair of overlap ratio 0.7 with teeth, by their numbers, that much early, m."""
+    first, second = (
+        Gear(
+            teeth,
+            3e-3,
+            20e-3,
+            25e-3,
+            helix_angle=sign * math.radians(20.0),
+            pitch_deviation=PitchDeviation(tuple(early.get(k, 0.0) for k in range(1, teeth + 1))),
+        )
+        for teeth, early, sign in zip(TEETH, (pinion, wheel), (1, -1), strict=True)
+    )
+    return GearPair(first, second)
+
+
+def table_of(pair: GearPair) -> SteDatabase:
+    return analyze(pair, torques=[30.0, TORQUE], level="draft", receipt="minimal", positions=8)
+
+
+@pytest.fixture(scope="module")
+def early() -> SteDatabase:
+    return table_of(helical({EARLY: 3e-6}, {}))
+
+
+@pytest.mark.law
+def test_the_loads_of_the_teeth_sum_to_the_load_at_each_position(early: SteDatabase) -> None:
+    """Each tooth of the pinion meets once in a period, so its row is its way through mesh."""
+    (pinion,) = early.tooth_loads(torque=TORQUE)
+    node = np.arange(early.position.size) % 8
+    pitch = early.position.astype(int)
+    columns = np.arange(early.pair.size) * 8
+    teeth = (pitch[:, None] - early.pair) % TEETH[0]
+    force = pinion.over_phase[teeth, columns + node[:, None]]
+    assert force.sum(axis=1) == pytest.approx(np.full(node.size, early.force[1]), rel=1e-12)
+    assert pinion.phase[columns[0] : columns[0] + 8] == pytest.approx(early.pair[0] + early.position[:8])
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("tooth", [1, EARLY, 17])
+def test_the_tooth_that_is_early_carries_most(early: SteDatabase, tooth: int) -> None:
+    """Its neighbors carry less, and those that never share with it as in the nominal pair."""
+    table = early if tooth == EARLY else table_of(helical({tooth: 3e-6}, {}))
+    (pinion,) = table.tooth_loads(torque=TORQUE)
+    nominal = table_of(helical({}, {}))
+    expected = float(nominal.force[1] * nominal.load_share[:, 1].max())
+    force = np.roll(pinion.force, 1 - tooth)
+    assert (pinion.gear, pinion.worst) == (0, tooth)
+    assert force[0] == pinion.force.max() > 1.03 * expected
+    assert force[[1, -1]].max() < expected
+    assert force[5:-5] == pytest.approx(np.full(7, expected), rel=1e-9)
+    assert pinion.over_mean == pytest.approx(force[0] / force.mean())
+
+
+@pytest.mark.law
+def test_over_a_hunting_cycle_a_tooth_is_largest_over_all_its_mates() -> None:
+    """Of both gears a tooth is early: each is the worst of its gear, most where the two meet."""
+    table = table_of(helical({3: 3e-6}, {20: 2e-6}))
+    assert table.period == TEETH[0] * TEETH[1]
+    pinion, wheel = table.tooth_loads(torque=TORQUE)
+    assert (pinion.gear, pinion.worst, wheel.gear, wheel.worst) == (0, 3, 1, 20)
+    most = table.force[1] * table.load_share[:, 1].max()
+    assert pinion.force.max() == pytest.approx(most) and wheel.force.max() == pytest.approx(most)
+    assert (pinion.force.size, wheel.force.size) == TEETH
+
+
+def test_teeth_that_are_alike_are_not_told_apart(early: SteDatabase) -> None:
+    assert table_of(helical({}, {})).tooth_loads(torque=TORQUE) == ()
+    assert [own.gear for own in early.tooth_loads(torque=TORQUE)] == [0]
+    (wheel,) = table_of(helical({}, {5: 3e-6})).tooth_loads(torque=TORQUE)
+    assert (wheel.gear, wheel.worst) == (1, 5)
+
+
+def test_a_table_with_failed_points_answers_from_complete_rows(early: SteDatabase) -> None:
+    status, ste = early.status.copy(), early.static_transmission_error.copy()
+    status[3, 1], ste[3, 1] = 1, np.nan
+    share = early.load_share.copy()
+    share[3, 1] = np.nan
+    failed = replace(early, status=status, static_transmission_error=ste, load_share=share)
+    with pytest.raises(SolveError):
+        failed.tooth_loads(torque=TORQUE)
+    (pinion,) = failed.tooth_loads(torque=TORQUE, allow_failed=True)
+    assert pinion.worst == EARLY and np.isfinite(pinion.force).all()

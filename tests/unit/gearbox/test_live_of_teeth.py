@@ -1,0 +1,48 @@
+"""A live answer of teeth that differ is what its schema declares, with the loads of each tooth."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from fe_contact import analyze
+from lineofaction.gearbox.convert.case import case_json, gear_pair
+from lineofaction.gearbox.convert.live import condensed_of, live_curves
+from lineofaction.gearbox.schemas.case import Case
+from lineofaction.gearbox.schemas.live import LiveCurve, LiveInput
+
+EARLY = 4
+CASE = {
+    "pair": {
+        "normal_module_mm": 1.0,
+        "helix_angle_deg": 25.0,
+        "center_distance_mm": 20.5,
+        "pinion": {
+            "teeth": 17,
+            "face_width_mm": 8.0,
+            "bore_diameter_mm": 8.0,
+            "pitch_deviation_um": [2.0 if tooth == EARLY else 0.0 for tooth in range(1, 18)],
+        },
+        "wheel": {"teeth": 20, "face_width_mm": 8.0, "bore_diameter_mm": 8.0},
+    },
+    "load": {"torque_n_m": [2.0]},
+}
+
+
+@pytest.mark.usefixtures("coarse_sectors")
+def test_a_live_answer_names_the_tooth_that_is_early(tmp_path: Path) -> None:
+    case = Case.model_validate_json(json.dumps(CASE))
+    table = analyze(
+        gear_pair(case), torques=[2.0], level="draft", positions=8, receipt="minimal", cache=tmp_path
+    )
+    echoed = json.loads(json.dumps(case_json(case)))
+    file = tmp_path / "table.nc"
+    replace(table, metadata=replace(table.metadata, case=echoed)).to_netcdf(file)
+    answer = live_curves(*condensed_of(file, tmp_path), LiveInput(torque_n_m=[2.0]))
+    curve = LiveCurve.model_validate_json(json.dumps(answer["curves"][0]))
+    assert curve.period == 17 and curve.order_name is not None and curve.order_name[0] == "pinion 1"
+    assert curve.tooth_loads is not None and list(curve.tooth_loads) == ["pinion"]
+    assert curve.tooth_loads["pinion"].most_loaded == EARLY

@@ -1,0 +1,98 @@
+"""Report, answers and `loa ste` name the most loaded tooth of each gear, where teeth differ."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import loa
+from declared_figures import check_declared
+
+from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.convert.answers import curve_json, metadata_json, summary_json
+from lineofaction.report.drawing.figure import Figure, number
+from lineofaction.report.ste.page import static_headlines, static_results
+
+Tables = Callable[..., SteDatabase]
+WORST = 5
+FORCE = 100.0 / 0.0375877
+
+
+@pytest.fixture
+def alike(with_pitch_errors: Tables) -> SteDatabase:
+    """20 pitches of 20/20 teeth, all of which carry as much."""
+    return with_pitch_errors(20)
+
+
+@pytest.fixture
+def table(alike: SteDatabase) -> SteDatabase:
+    """Three of four parts of the load on all teeth, at most, and nine of ten on one of either gear."""
+    share = np.where(alike.load_share == 1.0, 0.75, np.where(alike.load_share == 0.0, 0.25, 0.5))
+    share[alike.pairs_in_contact == 1, 2] = 0.0
+    share[alike.pairs_in_contact == 2, :] = (0.5, 0.5, 0.0)
+    worst = (alike.position >= WORST - 1) & (alike.position < WORST - 0.9)  # pair 0 near the pitch point
+    share[worst] = (0.1, 0.9, 0.0)
+    return replace(alike, load_share=share)
+
+
+def drawn(table: SteDatabase) -> dict[str, Figure]:
+    return {figure.key: figure for section in static_results(table) for figure in section.figures}
+
+
+def test_the_report_names_the_worst_tooth_of_either_gear(table: SteDatabase) -> None:
+    figure = drawn(table)["tooth_loads"]
+    force = number(0.9 * FORCE, 4)
+    times = f"{0.9 / (0.75 * 19 + 0.9) * 20:.3f}"
+    for gear, panel in zip(("pinion", "wheel"), figure.content, strict=True):
+        (bars,) = panel.bars
+        assert bars.top == pytest.approx(FORCE * np.where(bars.x == WORST, 0.9, 0.75), rel=1e-6)
+        assert (
+            f"Tooth 5 of the {gear} carries most, {force} N, {times} times the mean tooth"
+            in figure.alternative
+        )
+        head = {line.name: line for line in static_headlines(table)}[
+            f"most loaded tooth of the {gear} at 100 N m"
+        ]
+        assert (head.value, head.remark) == ("tooth 5", f"{force} N, {times} times the mean tooth")
+    assert figure.table is not None and figure.table.rows[0][:3] == ("pinion", "5", force)
+
+
+def test_nothing_is_shown_where_teeth_are_alike(alike: SteDatabase, database: SteDatabase) -> None:
+    for plain in (alike, database):
+        assert "tooth_loads" not in drawn(plain)
+        assert not any("tooth" in line.name for line in static_headlines(plain))
+        assert "tooth_loads" not in curve_json(plain, torque_n_m=100.0)
+        assert "tooth_loads" not in metadata_json(plain)
+
+
+def test_what_derivatives_may_change_is_said(table: SteDatabase) -> None:
+    receipt = table.metadata.receipt | {"cycle": {"share_error": 0.01}}
+    derived = replace(table, metadata=replace(table.metadata, receipt=receipt))
+    assert "within 27 N at 99 % of the drawn points" in drawn(derived)["tooth_loads"].caption
+    assert "derivatives" not in drawn(table)["tooth_loads"].caption
+
+
+def test_answers_hold_the_loads_of_all_teeth(table: SteDatabase) -> None:
+    answer = curve_json(table, torque_n_m=100.0)["tooth_loads"]
+    assert list(answer) == ["pinion", "wheel"]
+    assert answer["pinion"]["most_loaded"] == WORST
+    assert answer["pinion"]["force_n"] == pytest.approx(0.9 * FORCE, rel=1e-6)
+    assert len(answer["wheel"]["force_by_tooth_n"]) == 20
+    by_load = metadata_json(table)["tooth_loads"]
+    assert by_load[2] == answer == summary_json(table)["loads"][2]["tooth_loads"]
+    check_declared("database", json.loads(json.dumps(metadata_json(table))))
+
+
+def test_loa_ste_names_them(table: SteDatabase, alike: SteDatabase, tmp_path: Path) -> None:
+    for name, each in (("worst", table), ("alike", alike)):
+        each.to_netcdf(tmp_path / f"{name}.nc")
+    lines = loa("ste", tmp_path / "worst.nc", "--torque", 100).stdout.splitlines()
+    for gear in ("pinion", "wheel"):
+        (line,) = (line for line in lines if line.startswith(f"  {gear}: "))
+        assert line.startswith(f"  {gear}: tooth 5 carries most, {0.9 * FORCE:.0f} N, 1.188 times the mean")
+        assert len(line) <= 80
+    assert "carries most" not in loa("ste", tmp_path / "alike.nc", "--torque", 100).stdout
