@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from bounds import engineering
 from fe_contact.analysis.cycle.derived_pitches import DerivedCycle, derived_cycle
 from fe_contact.analysis.pairs.contact_lines import deflected_operating_points, solve_operating_points
-from fe_contact.analysis.pairs.kept_contact import OF_SUPPORT, KeptContact, contact_fields
+from fe_contact.analysis.pairs.kept_contact import OF_PAIRS, OF_SUPPORT, KeptContact, contact_fields
 from fe_contact.analysis.pairs.pair_contact import (
     OperatingPoints,
     PairContact,
@@ -400,6 +400,8 @@ def table_of_solution(
     """
     period = len(solution.deflection) // position.size
     fields = contact_fields(pair, problem, solution)
+    if period == 1:
+        del fields["pair_pressure"]
     return SteDatabase(
         position=(np.arange(period)[:, None] + position).ravel(),
         force=solution.load,
@@ -422,9 +424,13 @@ def table_fields(points: OperatingPoints, kept: Sequence[KeptContact]) -> dict[s
     pairs = np.arange(seen.min(), seen.max() + 1)
     stored = [dict(each.stored) for each in kept]
     for arrays, each in zip(stored, kept, strict=True):
-        own, share = np.unique(each.problem.candidates.pair), arrays["load_share"]
-        arrays["load_share"] = np.zeros((*share.shape[:2], pairs.size))
-        arrays["load_share"][..., own - pairs[0]] = share
+        own = np.unique(each.problem.candidates.pair)
+        if points.period == 1:
+            del arrays["pair_pressure"]
+        for name in arrays.keys() & OF_PAIRS:
+            values = arrays[name]
+            arrays[name] = np.zeros((*values.shape[:2], pairs.size))
+            arrays[name][..., own - pairs[0]] = values
     no_load = points.gathered([each.solution.no_load[:, None] for each in kept])[:, 0]
     gathered = {name: points.gathered([arrays[name] for arrays in stored]) for name in stored[0]}
     return gathered | {"pair": pairs, "no_load_transmission_error": no_load}

@@ -47,8 +47,9 @@ OPTIONAL: dict[str, tuple[str, ...]] = {
     "load_arm": GRID,
     "curve_error": CURVE_ERROR,
     "load_arm_error": ("load_arm_source", *CURVE_ERROR[1:]),
+    "pair_pressure": (*GRID, "pair"),
 }
-"""Dimensions of the arrays that older tables do not have: they are empty there."""
+"""Dimensions of the arrays that some tables do not have: they are empty there."""
 INTEGER_TYPES: dict[str, type[np.signedinteger[Any]]] = {
     "pair": np.int64,
     "pairs_in_contact": np.int16,
@@ -120,6 +121,9 @@ class SteFields:
     load_arm_error : (3 or 4, 23, F, M, D) array
         Errors of the same quantities of it in m, >= 0, by source (`ste.curve.OF_LOAD_ARM`, and as above);
         NaN: not estimated. Empty for tables without.
+    pair_pressure : (P, F, M, D, N) array
+        Largest contact pressure of each pair away from edges, Pa; `max_pressure` is that of all. Empty where
+        the period is 1, and for older tables.
     """
 
     position: FloatArray
@@ -149,6 +153,7 @@ class SteFields:
     edge_pressure: FloatArray = field(default_factory=lambda: np.empty((0,) * len(GRID)))
     load_arm: FloatArray = field(default_factory=lambda: np.empty((0,) * len(GRID)))
     load_arm_error: FloatArray = field(default_factory=lambda: np.empty((0,) * len(CURVE_ERROR)))
+    pair_pressure: FloatArray = field(default_factory=lambda: np.empty((0,) * (len(GRID) + 1)))
 
     def __post_init__(self) -> None:
         if np.size(self.support_force) == 0:
@@ -238,13 +243,11 @@ def _check_shapes(table: SteFields) -> None:
         actual = getattr(table, name).shape
         if actual != expected:
             raise DatabaseError(f"{name} has shape {actual}; ({', '.join(dimensions)}) needs {expected}")
-    for name in ("edge_pressure", "load_arm"):
+    likes = {"edge_pressure": "max_pressure", "load_arm": "max_pressure", "pair_pressure": "load_share"}
+    for name, like in likes.items():
         values = getattr(table, name)
-        _refuse(
-            values.size > 0 and values.shape != table.max_pressure.shape,
-            name,
-            "have the dimensions of max_pressure",
-        )
+        differs = values.size > 0 and values.shape != getattr(table, like).shape
+        _refuse(differs, name, f"have the dimensions of {like}")
     for name in ("curve_error", "load_arm_error"):
         errors = getattr(table, name)
         _refuse(

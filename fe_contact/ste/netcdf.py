@@ -136,6 +136,7 @@ ATTRIBUTES: dict[str, tuple[str, str]] = {
     "load_arm": ("m", "arm of the load about the axis of a misalignment"),
     "max_pressure": ("Pa", "largest contact pressure where no edge is reached"),
     "edge_pressure": ("Pa", "largest contact pressure at edges of flanks, as if they went on: indicative"),
+    "pair_pressure": ("Pa", "largest contact pressure of the tooth pair where no edge is reached"),
     "pairs_in_contact": ("1", "number of tooth pairs that carry load"),
     "status": ("1", "outcome of the contact solve"),
     "error_estimate": ("m", "half-width of the error band of the static transmission error"),

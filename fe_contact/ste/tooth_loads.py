@@ -30,47 +30,69 @@ class ToothLoads:
         0: the driving gear, 1: the driven one.
     phase : (W,) array
         Where the pair is on its way through mesh, base pitches; 0: at the pitch point in mid-face.
-    over_phase : (z, W) array
+    force_over_phase : (z, W) array
         Normal force on each tooth there, N; teeth in the order of meshing, tooth 1 first. NaN: not stored.
+    pressure_over_phase : (z, W) array
+        Largest contact pressure away from edges, Pa; (z, 0) of tables without `pair_pressure`.
     """
 
     gear: int
     phase: FloatArray
-    over_phase: FloatArray
+    force_over_phase: FloatArray
+    pressure_over_phase: FloatArray
 
     @property
     def force(self) -> FloatArray:
         """Largest normal force on each tooth, (z,) in N."""
-        return np.asarray(np.fmax.reduce(self.over_phase, axis=1))
+        return np.asarray(np.fmax.reduce(self.force_over_phase, axis=1))
 
     @property
-    def worst(self) -> int:
-        """Number of the most loaded tooth, from 1 in the order of meshing."""
-        return int(np.argmax(self.force)) + 1
+    def pressure(self) -> FloatArray:
+        """Largest contact pressure on each tooth, (z,) in Pa; NaN where it is not stored."""
+        return np.asarray(np.fmax.reduce(self.pressure_over_phase, axis=1, initial=np.nan))
+
+    @property
+    def most_loaded(self) -> tuple[int, ...]:
+        """Numbers of the teeth of the largest force, from 1; none where all teeth carry as much at most."""
+        return _worst(self.force)
 
     @property
     def over_mean(self) -> float:
-        """Largest force on the most loaded tooth over the mean of all teeth."""
+        """Largest force on a most loaded tooth over the mean of all teeth."""
         return float(self.force.max() / self.force.mean())
+
+    @property
+    def most_pressed(self) -> tuple[int, ...]:
+        """Numbers of the teeth of the largest pressure; none where all are alike or it is not stored."""
+        return _worst(self.pressure)
 
 
 def tooth_loads(table: SteFields, point: OperatingPoint) -> tuple[ToothLoads, ...]:
     """Return the loads of the teeth of each gear whose teeth the table tells apart, and which differ."""
     share = np.maximum(at_operating_point(table, table.load_share, point), 0.0)
-    force = point.force * share / share.sum(axis=1, keepdims=True)
-    found = (_of_gear(table, force, gear) for gear in (0, 1) if table.period % table.facts.teeth[gear] == 0)
-    return tuple(loads for loads in found if np.ptp(loads.force) > _ALIKE * loads.force.max())
+    values = [point.force * share / share.sum(axis=1, keepdims=True)]
+    if table.pair_pressure.size:
+        values.append(np.maximum(at_operating_point(table, table.pair_pressure, point), 0.0))
+    found = (_of_gear(table, values, gear) for gear in (0, 1) if table.period % table.facts.teeth[gear] == 0)
+    return tuple(loads for loads in found if loads.most_loaded or loads.most_pressed)
 
 
-def _of_gear(table: SteFields, values: FloatArray, gear: int) -> ToothLoads:
-    """Take the largest of values (P, N) by tooth and phase."""
-    pitch = np.floor(table.position).astype(np.int64)
+def _worst(largest: FloatArray) -> tuple[int, ...]:
+    most = np.flatnonzero(largest >= (1.0 - _ALIKE) * largest.max())
+    return tuple(int(k) + 1 for k in most) if most.size < largest.size else ()
+
+
+def _of_gear(table: SteFields, values: list[FloatArray], gear: int) -> ToothLoads:
+    """Take the largest of forces, and of pressures if there are any (P, N), by tooth and phase."""
+    pitch, teeth = np.floor(table.position).astype(np.int64), table.facts.teeth[gear]
     node, nodes = _nodes(table.position - pitch)
-    tooth = (pitch[:, None] - table.pair) % table.facts.teeth[gear]
+    tooth = (pitch[:, None] - table.pair) % teeth
     way = np.arange(table.pair.size) * nodes.size + node[:, None]
-    largest = np.full((table.facts.teeth[gear], table.pair.size * nodes.size), np.nan)
-    np.fmax.at(largest, (tooth, way), values)
-    return ToothLoads(gear, (table.pair[:, None] + nodes).ravel(), largest)
+    largest = [np.full((teeth, table.pair.size * nodes.size), np.nan) for _ in values]
+    for own, each in zip(largest, values, strict=True):
+        np.fmax.at(own, (tooth, way), each)
+    force, pressure = (*largest, np.empty((teeth, 0)))[:2]
+    return ToothLoads(gear, (table.pair[:, None] + nodes).ravel(), force, pressure)
 
 
 def _nodes(fraction: FloatArray) -> tuple[IntArray, FloatArray]:

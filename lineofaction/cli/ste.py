@@ -14,7 +14,7 @@ from bounds import engineering
 from fe_contact.ste import SteDatabase
 from lineofaction.cli.guard import warn
 from lineofaction.cli.output import console, csv_text, print_json, table
-from lineofaction.gearbox.convert.answers import curve_json
+from lineofaction.gearbox.convert.answers import curve_json, teeth_words
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import only, tables_in
 
@@ -138,8 +138,11 @@ def _answer(database: SteDatabase, file: Path, curve: dict[str, Any]) -> Iterato
     pairs = " to ".join(f"{number}" for number in dict.fromkeys([carrying.min(), carrying.max()]))
     yield f"  load sharing: {pairs} pairs carry; most on one {100.0 * shares.max():.0f} %"
     for gear, own in curve.get("tooth_loads", {}).items():
-        times = f"{own['over_mean']:.3f} times the mean tooth"
-        yield f"  {gear}: tooth {own['most_loaded']} carries most, {own['force_n']:.0f} N, {times}"
+        if worst := own["most_loaded"]:
+            times = f"{own['over_mean']:.3f} times the mean tooth"
+            yield f"  {gear}: most on {teeth_words(worst)}, {own['force_n']:.0f} N, {times}"
+        if worst := own["most_pressed"]:
+            yield f"  {gear}: largest pressure on {teeth_words(worst)}, {own['pressure_mpa']:.0f} MPa"
     yield ""
     yield f"next: loa report {file}     all positions: --table, --csv"
 

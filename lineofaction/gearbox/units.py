@@ -12,6 +12,7 @@ UM = 1e-6
 MRAD = 1e-3
 NM = 1e-9
 GPA = 1e9
+MPA = 1e6
 DEGREE = math.pi / 180.0
 G_MM = 1e-6
 RPM = 2.0 * math.pi / 60.0

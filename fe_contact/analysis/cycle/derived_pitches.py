@@ -22,6 +22,7 @@ from fe_contact.analysis.pairs.kept_contact import (
     OF_SUPPORT,
     KeptContact,
     contact_fields,
+    largest_by_pair,
     solved_in_parts,
 )
 from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoints
@@ -55,7 +56,7 @@ def _table_rows(pair: ParallelAxes, c: Candidates) -> FloatArray:
 
 
 _ARM, _CENTROID, _SHARES = 0, 1, 2
-_OF_PAIR = "pressure of pair", "edge pressure of pair"
+_EDGE_OF_PAIR = "edge pressure of pair"
 _CURVES = "static_transmission_error", "load_arm"
 
 
@@ -64,21 +65,13 @@ def _keep(point: OperatingPoint, edges: bool, state: SolvedState) -> Mapping[str
     problem, solution = state.problem, state.solution
     pressure = contact_pressure(problem, solution.force)
     edge = at_edges(problem, solution.force, pressure)
-    parts = np.where(edge, 0.0, pressure), np.where(edge, pressure, 0.0)
-    of_pair = [
-        values.reshape(*values.shape[:2], -1, _per_pair(problem.candidates)).max(axis=3) for values in parts
-    ]
     depth = edge_depth(point, problem, solution) if edges else np.zeros(solution.load.size)
     return {
         **contact_fields(point.contact.pair, problem, solution),
-        **dict(zip(_OF_PAIR, of_pair, strict=True)),
+        _EDGE_OF_PAIR: largest_by_pair(problem.candidates, np.where(edge, pressure, 0.0)),
         **_of_solution(solution),
         "edge_depth": np.broadcast_to(depth, solution.deflection.shape),
     }
-
-
-def _per_pair(c: Candidates) -> int:
-    return int(c.pair.size // np.unique(c.pair).size)
 
 
 def _keep_support(point: OperatingPoint, state: SolvedState) -> Mapping[str, NDArray[Any]]:
@@ -306,31 +299,33 @@ def _arrays(envelope: Envelope, ste: FloatArray) -> dict[str, NDArray[Any]]:
     """Return the arrays of a table (T, P, L, ...) by name, in pitches that were solved as they are."""
     share, flank, edge = _shares_and_pressures(envelope, envelope.least)
     # those that may be largest were solved: none is told to be larger
-    flank = np.minimum(flank, envelope.kept["max_pressure"][1:].max(axis=(0, 1)))
+    flank = np.minimum(flank, envelope.kept["max_pressure"][1:].max(axis=(0, 1))[:, None])
     derived = {
         "static_transmission_error": ste,
         "tangent_compliance": envelope.nearest("tangent_compliance"),
         "load_share": share,
         "face_centroid": envelope.sum(_CENTROID),
         "load_arm": envelope.sum(_ARM),
-        "max_pressure": flank,
-        "edge_pressure": edge,
+        "max_pressure": flank.max(axis=3),
+        "pair_pressure": flank,
+        "edge_pressure": edge.max(axis=3),
         "pairs_in_contact": (share > 0.0).sum(axis=3),
     }
     return derived | _without_solution(envelope)
 
 
 def _shares_and_pressures(envelope: Envelope, least: LeastTangents) -> tuple[FloatArray, ...]:
-    """Return shares (t, P, L, J) and the largest pressures on flanks and at edges (t, P, L), Pa.
+    """Return shares and the largest pressures on flanks and at edges, Pa, of the pairs (t, P, L, J).
 
     A pair that grows beyond `MOST_GROWN` of its pressure spreads along the face, as one that begins to carry.
     """
     share = np.maximum(least.sums[..., _SHARES:], 0.0)
     share /= share.sum(axis=3, keepdims=True)
     p, load = np.indices(least.state.shape[1:])
-    before, *of_pair = (envelope.kept[name][least.state, p, load] for name in ("load_share", *_OF_PAIR))
+    kept = "load_share", "pair_pressure", _EDGE_OF_PAIR
+    before, *of_pair = (envelope.kept[name][least.state, p, load] for name in kept)
     grown = np.sqrt(np.divide(share, before, out=np.zeros_like(share), where=before > 0.0))
-    flank, edge = ((each * np.minimum(grown, MOST_GROWN)).max(axis=3) for each in of_pair)
+    flank, edge = (each * np.minimum(grown, MOST_GROWN) for each in of_pair)
     return share, flank, edge
 
 
@@ -339,7 +334,7 @@ def _missed_in_drawn(envelope: Envelope) -> tuple[float, float]:
     share, flank, _ = _shares_and_pressures(envelope, envelope.without)
     drawn = slice(1, 1 + envelope.drawn.size)
     exact, pressure = (envelope.kept[name][drawn] for name in ("load_share", "max_pressure"))
-    missed = np.abs(share - exact).max(axis=3), np.abs(flank - pressure) / pressure.max()
+    missed = np.abs(share - exact).max(axis=3), np.abs(flank.max(axis=3) - pressure) / pressure.max()
     of_share, of_pressure = (float(np.quantile(each, _MOST_POINTS)) for each in missed)
     return of_share, of_pressure
 
@@ -347,7 +342,7 @@ def _missed_in_drawn(envelope: Envelope) -> tuple[float, float]:
 def _with_pressed(envelope: Envelope) -> Envelope:
     """Solve the pitches, too, in which the pressure is largest by what the others tell."""
     _, flank, edge = _shares_and_pressures(envelope, envelope.least)
-    largest = np.maximum(flank, edge).max(axis=(1, 2))
+    largest = np.maximum(flank, edge).max(axis=(1, 2, 3))
     pressed = np.argsort(-np.where(envelope.solved, 0.0, largest), kind="stable")[:BATCH]
     return envelope.about(np.sort(pressed))
 

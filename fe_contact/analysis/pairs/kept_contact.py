@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from fe_contact.analysis.pairs.pair_contact import OperatingPoint
 from fe_contact.analysis.pairs.tip_edges import edge_depth
-from fe_contact.contact import ContactProblem, ContactSolution, at_edges, contact_pressure
+from fe_contact.contact import Candidates, ContactProblem, ContactSolution, at_edges, contact_pressure
 from fe_contact.contact.sweep import solve_sets
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.cost_model import POINTS_AT_ONCE
@@ -139,7 +139,7 @@ def _one_after_another(parts: Sequence[KeptContact]) -> KeptContact:
 def contact_fields(
     pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution
 ) -> dict[str, NDArray[Any]]:
-    """Arrays (P, F, ...) of one operating point by name in the database; load shares of its pairs."""
+    """Arrays (P, F, ...) of one operating point by name in the database; `OF_PAIRS` by its own pairs."""
     candidates = problem.candidates
     good = solution.status == Status.CONVERGED
     loaded = solution.force * candidates.torque_share[:, None, :]
@@ -147,6 +147,7 @@ def contact_fields(
     pressure = contact_pressure(problem, solution.force)
     edge = at_edges(problem, solution.force, pressure)
     of_pair = candidates.pair[:, None] == np.unique(candidates.pair)
+    pressed = largest_by_pair(candidates, np.where(edge, 0.0, pressure))
     centroid = (loaded @ candidates.face_position) / total
     along_path = pair.tilt_arm(candidates.touch.roll_1, 0.0)
     return {
@@ -155,12 +156,23 @@ def contact_fields(
         "load_share": (loaded @ of_pair) / total[..., None],
         "face_centroid": centroid,
         "load_arm": centroid + np.einsum("pfm,pm->pf", loaded, along_path) / total,
-        "max_pressure": np.where(good, np.where(edge, 0.0, pressure).max(axis=2), np.nan),
+        "max_pressure": np.where(good, pressed.max(axis=2), np.nan),
+        "pair_pressure": np.where(good[..., None], pressed, np.nan),
         "edge_pressure": np.where(good, np.where(edge, pressure, 0.0).max(axis=2), np.nan),
         "pairs_in_contact": _pairs_in_contact(solution.force, of_pair),
         "status": solution.status,
         "residuals": solution.residuals,
     }
+
+
+OF_PAIRS = ("load_share", "pair_pressure")
+"""Those with an axis of pairs."""
+
+
+def largest_by_pair(candidates: Candidates, values: FloatArray) -> FloatArray:
+    """Return the largest of values (P, F, m) of the candidates of each pair, (P, F, N)."""
+    pairs = np.unique(candidates.pair).size
+    return np.asarray(values.reshape(*values.shape[:2], pairs, -1).max(axis=3))
 
 
 OF_SUPPORT = ("static_transmission_error", "tangent_compliance", "pairs_in_contact")

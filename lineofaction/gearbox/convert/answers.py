@@ -9,13 +9,13 @@ import numpy as np
 
 from bounds import engineering
 from bounds.types import Json
-from fe_contact.ste import Curve, SteDatabase, in_own_model
+from fe_contact.ste import Curve, SteDatabase, ToothLoads, in_own_model
 from fe_contact.ste.curve import PLANE, OperatingPoint
 from fe_contact.ste.curve_quantities import BY_SOURCE
 from fe_contact.types import Estimate
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.problems import JobFailed
-from lineofaction.gearbox.units import MM, UM, as_typed, boundary_ledger
+from lineofaction.gearbox.units import MM, MPA, UM, as_typed, boundary_ledger
 
 
 def curve_json(
@@ -75,15 +75,29 @@ GEARS = "pinion", "wheel"
 def tooth_loads_json(database: SteDatabase, point: OperatingPoint) -> Json:
     """Return the loads of the teeth by the names of the gears whose teeth differ."""
     loads = database.tooth_loads(**asdict(point), allow_failed=True)
-    return {
-        GEARS[own.gear]: {
-            "most_loaded": own.worst,
-            "force_n": float(own.force.max()),
-            "over_mean": own.over_mean,
-            "force_by_tooth_n": own.force.tolist(),
-        }
-        for own in loads
+    return {GEARS[own.gear]: _tooth_loads(own) for own in loads}
+
+
+def teeth_words(teeth: Sequence[int]) -> str:
+    """Name teeth by their numbers: "tooth 7", "teeth 1 and 10", "tooth 1 and 4 more"."""
+    first, *others = teeth
+    if not others:
+        return f"tooth {first}"
+    return f"teeth {first} and {others[0]}" if len(others) == 1 else f"tooth {first} and {len(others)} more"
+
+
+def _tooth_loads(own: ToothLoads) -> Json:
+    answer: Json = {
+        "most_loaded": list(own.most_loaded),
+        "force_n": float(own.force.max()),
+        "over_mean": own.over_mean,
+        "force_by_tooth_n": own.force.tolist(),
+        "most_pressed": list(own.most_pressed),
     }
+    if np.isfinite(own.pressure).all():
+        answer["pressure_mpa"] = float(own.pressure.max()) / MPA
+        answer["pressure_by_tooth_mpa"] = (own.pressure / MPA).tolist()
+    return answer
 
 
 def _figures(curve: Curve) -> Json:

@@ -29,7 +29,7 @@ from lineofaction.gearbox.problems import BadInput, Fault, NotAnalyzed, NotFound
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.live import LiveInput
 from lineofaction.gearbox.schemas.reading import validated
-from lineofaction.gearbox.units import DEGREE, MM, UM, factor, in_um
+from lineofaction.gearbox.units import DEGREE, MM, MPA, UM, factor, in_um
 
 
 def plan_of(case: CheckedCase, time_budget_s: float | None, cache: Path | None) -> RunPlan:
@@ -81,7 +81,6 @@ def _flank(flank: FlankDerivatives, k: int) -> Json:
 # What happens on the flanks of a live question: pressure over the flank, load over the face, K_Hbeta.
 
 
-_MPA = 1e6
 _N_PER_MM = 1e3
 _DIGITS = 5
 
@@ -93,12 +92,12 @@ def _flanks_json(flanks: LoadDistribution) -> Json:
     worst = int(load.max(axis=-1).argmax())
     over_face = flanks.face_position.size > 1
     return {
-        "largest_pressure_mpa": float(flanks.clear_pressure.max() / _MPA),
-        "edge_pressure_mpa": flanks.edge_pressure / _MPA,
+        "largest_pressure_mpa": float(flanks.clear_pressure.max() / MPA),
+        "edge_pressure_mpa": flanks.edge_pressure / MPA,
         "k_h_beta": flanks.mean_face_load_factor if over_face else None,
         "roll_length_mm": _short(roll / MM),
         "face_position_mm": _short(flanks.face_position / MM),
-        "pressure_mpa": _short(pressure / _MPA),
+        "pressure_mpa": _short(pressure / MPA),
         "mean_load_n_per_mm": _short(load.mean(axis=0) / _N_PER_MM),
         "worst_load_n_per_mm": _short(load[worst] / _N_PER_MM),
         "worst_position": float(flanks.position[worst]),
@@ -132,7 +131,7 @@ def _passage_json(flanks: LoadDistribution, apart: FloatArray) -> Json:
         "first_place": low / _STEPS,
         "step": 1.0 / _STEPS,
         "face_position_mm": _short(face / MM),
-        "pressure_mpa": np.rint(laid(flanks.pressure) / _MPA).astype(int).tolist(),
+        "pressure_mpa": np.rint(laid(flanks.pressure) / MPA).astype(int).tolist(),
         "apart_um": np.round(laid(apart) / UM, 2).tolist(),
     }
 

@@ -67,12 +67,15 @@ class TableFigures(Figures):
     """Figures of an STE database: its case, effects and receipt, its axes, and loads of teeth that differ."""
 
     class ToothLoads(Part):
-        """Largest normal force on each tooth of a gear at a load, in the order of meshing from tooth 1."""
+        """Largest force and pressure on each tooth of a gear at a load; tooth 1 meshes first."""
 
-        most_loaded: int
+        most_loaded: list[int]
         force_n: float
         over_mean: float
         force_by_tooth_n: list[float]
+        most_pressed: list[int]
+        pressure_mpa: float | None = None
+        pressure_by_tooth_mpa: list[float] | None = None
 
     schema_version: int
     content_hash: str

@@ -247,13 +247,25 @@ class LiveCurve(BoundaryModel):
         )
 
     class LiveToothLoads(BoundaryModel):
-        """Largest normal force on each tooth of a gear, in the order of meshing from tooth 1."""
+        """Largest force and pressure on each tooth of a gear, in the order of meshing from tooth 1."""
 
-        most_loaded: int = Field(description="Number of the most loaded tooth", examples=[7])
-        force_n: float = Field(description="Its largest normal force in N", examples=[2310.0])
+        most_loaded: list[int] = Field(
+            description="Numbers of the teeth of the largest force; empty: all carry as much", examples=[[7]]
+        )
+        force_n: float = Field(description="The largest normal force on a tooth in N", examples=[2310.0])
         over_mean: float = Field(description="The same over the mean of all teeth", examples=[1.08])
         force_by_tooth_n: list[float] = Field(
             description="Largest normal force on each tooth in N", examples=[[2130.0, 2310.0]]
+        )
+        most_pressed: list[int] = Field(
+            description="Numbers of the teeth of the largest pressure; empty: all alike, or not known",
+            examples=[[7]],
+        )
+        pressure_mpa: float | None = Field(
+            default=None, description="Largest pressure on a tooth, off edges, in MPa", examples=[1710.0]
+        )
+        pressure_by_tooth_mpa: list[float] | None = Field(
+            default=None, description="That on each tooth in MPa", examples=[[1520.0, 1710.0]]
         )
 
     torque_n_m: float = Field(description="Torque on the driving gear in N m", examples=[100.0])

@@ -43,7 +43,7 @@ from lineofaction.report.ste.over_torque import (
 )
 from lineofaction.report.ste.spectrum import ste_spectrum, ste_waterfall
 from lineofaction.report.ste.stiffness import budget_figure, load_sharing, mesh_stiffness
-from lineofaction.report.ste.teeth import tooth_headlines, tooth_sections
+from lineofaction.report.ste.teeth import UNBOUNDED, tooth_headlines, tooth_sections
 
 _RESIDUALS = ("equilibrium", "penetration", "tension", "complementarity")
 _DECISIONS = {
@@ -55,17 +55,13 @@ _DECISIONS = {
 }
 
 
-_UNBOUNDED = "no error is stated for it"
-"""Why the largest pressure has no error: where it is largest differs between meshes and between slices."""
-
-
 def static_headlines(database: SteDatabase, force: float | None = None) -> tuple[Headline, ...]:
     """Mean and peak-to-peak STE and the largest pressure at the stored load nearest to `force` (N)."""
     load = headline_load(database, force)
     at = (slice(None), load, *aligned_index(database))
     pressure = float(np.nanmax(database.max_pressure[at]))
     edge = float(np.nanmax(database.edge_pressure[at])) if database.edge_pressure.size else 0.0
-    remark = f"{_UNBOUNDED}{edge_words(edge)}"
+    remark = f"{UNBOUNDED}{edge_words(edge)}"
     curve, label = load_curve(database, load), load_labels(database)[load]
     figures = {"mean": curve.mean, "peak-to-peak": curve.peak_to_peak}
     biases = _biases(database.metadata.receipt)

@@ -1,16 +1,19 @@
-"""Loads of each tooth, where the teeth of a gear differ: the most loaded one, and all of them."""
+"""Loads and pressures of each tooth, where the teeth of a gear differ: the worst one, and all of them."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from fe_contact.ste import SteDatabase, ToothLoads
-from lineofaction.gearbox.convert.answers import GEARS
+from fe_contact.types import BoolArray
+from lineofaction.gearbox.convert.answers import GEARS, teeth_words
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
     Axis,
     Bars,
     Figure,
+    HeatMap,
+    Line,
     Note,
     Panel,
     Reference,
@@ -20,10 +23,15 @@ from lineofaction.report.drawing.figure import (
 from lineofaction.report.drawing.page import Headline, Section
 from lineofaction.report.ste.curves import aligned, load_labels
 
+UNBOUNDED = "no error is stated for it"
+"""Why the largest pressure has no error: where it is largest differs between meshes and between slices."""
+_WAY = "way of the pair through mesh, base pitches (0 = at the pitch point in mid-face)"
 _COLORS = palette.BLUE, palette.VERMILLION
 _WIDTH = 0.8  # of a bar
 _ABOVE = 1.15  # of the largest: for the number of its tooth
 _RANKED = 5  # teeth of a gear in the table
+_NAMED = 3  # of equal ones in the picture
+_STEPS, _TICKS = (1, 2, 5, 10, 20, 50, 100), 12  # between ticks of teeth, and how many there are at most
 
 
 def teeth_at(database: SteDatabase, load: int) -> tuple[ToothLoads, ...]:
@@ -38,29 +46,41 @@ def teeth_at(database: SteDatabase, load: int) -> tuple[ToothLoads, ...]:
 
 
 def tooth_headlines(database: SteDatabase, load: int) -> tuple[Headline, ...]:
-    """Name the most loaded tooth of each gear whose teeth differ."""
+    """Name the teeth of the largest force and of the largest pressure of each gear whose teeth differ."""
     label = load_labels(database)[load]
-    return tuple(
-        Headline(f"most loaded tooth of the {GEARS[own.gear]} at {label}", f"tooth {own.worst}", _size(own))
-        for own in teeth_at(database, load)
-    )
+    headlines = []
+    for own in teeth_at(database, load):
+        at = f"tooth of the {GEARS[own.gear]} at {label}"
+        if own.most_loaded:
+            headlines.append(Headline(f"most loaded {at}", teeth_words(own.most_loaded), _size(own)))
+        if own.most_pressed:
+            remark = f"{_megapascal(own.pressure.max())}; {UNBOUNDED}"
+            headlines.append(Headline(f"most pressed {at}", teeth_words(own.most_pressed), remark))
+    return tuple(headlines)
 
 
 def _size(own: ToothLoads) -> str:
     return f"{number(own.force.max(), 4)} N, {own.over_mean:.3f} times the mean tooth"
 
 
+def _megapascal(pressure: float) -> str:
+    return f"{number(1e-6 * float(pressure), 4)} MPa"
+
+
 def tooth_sections(database: SteDatabase, load: int) -> tuple[Section, ...]:
-    """Show the largest load on each tooth where teeth differ."""
+    """Show the largest load on each tooth where teeth differ, and the pressure on its way through mesh."""
     teeth = teeth_at(database, load)
-    return (Section("Load of each tooth", figures=(_loads(database, load, teeth),)),) if teeth else ()
+    loaded = tuple(own for own in teeth if own.most_loaded)
+    pressed = tuple(own for own in teeth if own.most_pressed)
+    figures = [_loads(database, load, loaded)] if loaded else []
+    figures += [_pressures(database, load, pressed)] if pressed else []
+    return (Section("Load of each tooth", figures=tuple(figures)),) if figures else ()
 
 
 def _loads(database: SteDatabase, load: int, teeth: tuple[ToothLoads, ...]) -> Figure:
-    label = load_labels(database)[load]
     return Figure(
         key="tooth_loads",
-        title=f"Largest load on each tooth at {label}",
+        title=f"Largest load on each tooth at {load_labels(database)[load]}",
         caption="The largest normal force on a tooth over all mates that it meets in the "
         f"{database.period} base pitches of the table. Teeth count in the order of meshing: tooth 1 of both "
         f"gears touches at the pitch point at position 0.{_derived(database, load)}",
@@ -73,8 +93,8 @@ def _loads(database: SteDatabase, load: int, teeth: tuple[ToothLoads, ...]) -> F
 def _finding(own: ToothLoads) -> str:
     least = int(np.argmin(own.force))
     return (
-        f"Tooth {own.worst} of the {GEARS[own.gear]} carries most, {_size(own)}; tooth {least + 1} least, "
-        f"{number(own.force[least], 4)} N."
+        f"The largest force on the {GEARS[own.gear]} is on {teeth_words(own.most_loaded)}, {_size(own)}; "
+        f"on tooth {least + 1} it is least, {number(own.force[least], 4)} N."
     )
 
 
@@ -88,17 +108,35 @@ def _derived(database: SteDatabase, load: int) -> str:
 
 
 def _bars(own: ToothLoads) -> Panel:
-    tooth, force = np.arange(1.0, own.force.size + 1.0), own.force
-    name, most, mean = GEARS[own.gear], float(force.max()), float(force.mean())
-    late = own.worst > 0.5 * force.size
+    force, name = own.force, GEARS[own.gear]
+    most, mean = float(force.max()), float(force.mean())
     return Panel(
-        Axis(f"tooth of the {name}", limits=(0.4, force.size + 0.6)),
+        _tooth_axis(own),
         Axis("largest normal force, N", limits=(0.0, _ABOVE * most)),
         references=(Reference("", mean, "horizontal"),),
         title=f"{name.capitalize()}; dashed: mean {number(mean, 4)} N",
-        notes=(Note(own.worst + (0.5 if late else -0.5), most, f"tooth {own.worst}", left=late),),
-        bars=(Bars(name, tooth, force, 0.0, _WIDTH, _COLORS[own.gear]),),
+        notes=_notes(own.most_loaded, most, force.size),
+        bars=(Bars("force", np.arange(1.0, force.size + 1.0), force, 0.0, _WIDTH, _COLORS[own.gear]),),
     )
+
+
+def _notes(teeth: tuple[int, ...], height: float, count: int) -> tuple[Note, ...]:
+    """Write the numbers of the worst teeth above their bars, if these are few."""
+    if len(teeth) > _NAMED:
+        return ()
+    late = [tooth > 0.5 * count for tooth in teeth]
+    return tuple(
+        Note(tooth + (0.5 if left else -0.5), height, str(tooth), left=left)
+        for tooth, left in zip(teeth, late, strict=True)
+    )
+
+
+def _tooth_axis(own: ToothLoads) -> Axis:
+    """Return the axis of teeth, named at whole numbers."""
+    count = own.force.size
+    step = next((size for size in _STEPS if count <= _TICKS * size), count)
+    names = tuple((float(tooth), str(tooth)) for tooth in range(step, count + 1, step))
+    return Axis(f"tooth of the {GEARS[own.gear]}", limits=(0.5, count + 0.5), names=names)
 
 
 def _table(teeth: tuple[ToothLoads, ...]) -> Table:
@@ -115,3 +153,69 @@ def _table(teeth: tuple[ToothLoads, ...]) -> Table:
     return Table(
         "Most loaded teeth", ("gear", "tooth", "largest normal force, N", "over the mean tooth"), rows
     )
+
+
+def _pressures(database: SteDatabase, load: int, teeth: tuple[ToothLoads, ...]) -> Figure:
+    missed = database.metadata.receipt.get("cycle", {}).get("pressure_error_relative")
+    most = max(float(own.pressure.max()) for own in teeth)
+    derived = (
+        ""
+        if missed is None
+        else f" Base pitches by derivatives: within {_megapascal(missed * most)} at 99 % of the drawn points."
+    )
+    return Figure(
+        key="tooth_pressures",
+        title=f"Pressure on each tooth at {load_labels(database)[load]}",
+        caption="Maps: the largest Hertz pressure anywhere on a tooth, away from edges, as its pair passes "
+        "through mesh, the largest of all its mates; blank: nothing touches. Curves: the most pressed tooth "
+        f"beside the mean of all teeth.{derived}",
+        alternative=" ".join(_pressed_words(own) for own in teeth),
+        content=tuple(panel for own in teeth for panel in (_map(own), _way(own))),
+        table=_pressure_table(teeth),
+    )
+
+
+def _pressed_words(own: ToothLoads) -> str:
+    least = int(np.argmin(own.pressure))
+    return (
+        f"The largest pressure on the {GEARS[own.gear]} is on {teeth_words(own.most_pressed)}, "
+        f"{_megapascal(own.pressure.max())}; on tooth {least + 1} it is least, "
+        f"{_megapascal(own.pressure[least])}."
+    )
+
+
+def _in_mesh(own: ToothLoads) -> tuple[Axis, BoolArray]:
+    """Return the axis of the way through mesh, and which columns lie between where any tooth is pressed."""
+    pressed = np.flatnonzero((own.pressure_over_phase > 0.0).any(axis=0))
+    inside = np.zeros(own.phase.size, dtype=bool)
+    inside[max(pressed[0] - 1, 0) : pressed[-1] + 2] = True
+    return Axis.over(_WAY, own.phase[inside]), inside
+
+
+def _map(own: ToothLoads) -> Panel:
+    x, inside = _in_mesh(own)
+    pressure = 1e-6 * own.pressure_over_phase[:, inside]
+    teeth, touching = np.arange(1.0, len(pressure) + 1.0), np.where(pressure > 0.0, pressure, np.nan)
+    shade = HeatMap.spanning(own.phase[inside], teeth, touching, "Hertz pressure, MPa")
+    return Panel(x, _tooth_axis(own), title=GEARS[own.gear].capitalize(), shade=shade)
+
+
+def _way(own: ToothLoads) -> Panel:
+    x, inside = _in_mesh(own)
+    pressure = 1e-6 * own.pressure_over_phase[:, inside]
+    phase, worst = own.phase[inside], own.most_pressed[0]
+    lines = (
+        Line(f"tooth {worst} of the {GEARS[own.gear]}", phase, pressure[worst - 1], _COLORS[own.gear]),
+        Line("mean of all teeth", phase, np.nanmean(pressure, axis=0), palette.MUTED, "dash"),
+    )
+    y = Axis("largest Hertz pressure, MPa", limits=(0.0, 1.05 * float(np.nanmax(pressure))))
+    return Panel(x, y, lines)
+
+
+def _pressure_table(teeth: tuple[ToothLoads, ...]) -> Table:
+    rows = tuple(
+        (GEARS[own.gear], str(tooth + 1), number(1e-6 * own.pressure[tooth], 4))
+        for own in teeth
+        for tooth in np.argsort(-own.pressure, kind="stable")[:_RANKED]
+    )
+    return Table("Most pressed teeth", ("gear", "tooth", "largest pressure, MPa"), rows)
