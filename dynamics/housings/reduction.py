@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import eigh, null_space
 
-from bounds import at_most
+from bounds import MOST_BYTES, at_most
 from dynamics.errors import InputError, ResultError, SolveError
 from dynamics.housings.assembled_housing import (
     ACCEPTED,
@@ -222,7 +222,7 @@ class CostLimit(NamedTuple):
     """What a reduction may cost: CPU seconds and bytes."""
 
     seconds: float = 600.0
-    bytes: float = 8e9
+    bytes: float = MOST_BYTES
 
 
 def reduction_cost(freedoms: int, modes: int, motions: int) -> Cost:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from dynamics.bearings.seat import SEAT
 from dynamics.errors import InputError
 from dynamics.forces.laws import Law
 from dynamics.linearize.flank_cycles import FlankCycle
-from dynamics.linearize.harmonic_response import HarmonicResponse, excited_lines, response_of
+from dynamics.linearize.harmonic_response import HarmonicResponse, excited_lines, floor_of, response_of
 from dynamics.linearize.linear_system import HELD_BY, LinearSystem, natural_modes
 from dynamics.linearize.load_harmonics import load_cycles, load_harmonics
 from dynamics.linearize.operating_speeds import checked_speeds, leading_law
@@ -24,6 +25,7 @@ from dynamics.linearize.steady_vibration import (
     speed_blocks,
     with_blocked,
 )
+from dynamics.linearize.strongest_lines import require_memory
 from dynamics.mechanism.columns import elastic_columns, elastic_terms, housing_columns
 from dynamics.mechanism.connections import frame_couplings
 from dynamics.motion.force_balance import swept_by_frames
@@ -247,6 +249,8 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
         With the mean mesh stiffness.
     power_source, power_input, power_sink, power_sink_kind, power_loss
         The fields of `power`; empty in files of versions without it.
+    bearing_floor, bearing_floor_error : (b, S) arrays
+        Empty where no orders are left out.
     facts : dict
         Plain JSON: `leading_shaft`, `time`, `equilibrium`, `seconds` (CPU by stage), `effect_ledger`.
     """
@@ -273,7 +277,25 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
         default_factory=lambda: np.empty((0, 0, 0)),
         metadata=stored("W", "mean power lost", "sink", "speed", "order"),
     )
+    bearing_floor: FloatArray = field(
+        default_factory=lambda: np.empty((0, 0)),
+        metadata=stored("N2", "mean square force of the orders left out", "bearing", "speed"),
+    )
+    bearing_floor_error: FloatArray = field(
+        default_factory=lambda: np.empty((0, 0)),
+        metadata=stored("N2", "by how much it may be off", "bearing", "speed"),
+    )
     facts: Json = field(default_factory=dict)
+
+    @property
+    def bearing_mean_square(self) -> FloatArray:
+        """Mean square of the force on each bearing, all orders together, those left out too, (b, S), N^2."""
+        listed = 0.5 * np.sum(np.abs(self.bearing_force[:, :3]) ** 2, axis=(1, 3))
+        return listed + self.bearing_floor if self.bearing_floor.size else listed
+
+    def to_netcdf(self, path: str | Path) -> None:
+        """Write a netCDF-4 file, without `floor`; it appears whole or not at all."""
+        ArrayFile.to_netcdf(replace(self, floor=None), path)
 
     @property
     def power(self) -> _PowerBalance:
@@ -283,8 +305,6 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
         )
 
 
-MOST_BYTES = 8e9
-"""Of the arrays of a response, as of the reduction of a housing."""
 NOTHING_EXCITES = "such that one excites: transmission errors and loads are constant"
 
 
@@ -332,6 +352,7 @@ def forced_response(
     if not steady.harmonics.size:
         raise InputError("orders", orders, NOTHING_EXCITES, "Give a mesh a table, or let a load vary.")
     response, power = response_of(at, speeds, steady), _power_balance(at, speeds, steady)
+    response = replace(response, floor=floor_of(at, speeds, lines))
     seconds["response"] = cpu_seconds() - began
     return ForcedResponse(
         **vars(response),
@@ -342,8 +363,24 @@ def forced_response(
         power_sink=power.sink,
         power_sink_kind=power.kind,
         power_loss=power.loss,
-        facts=_facts(at, time, seconds) | lines.facts | {"effect_ledger": ledger} | system.corrections,
+        **_bearing_floor(response),
+        facts=_facts(at, time, seconds)
+        | lines.facts(response.floor is not None)
+        | {"effect_ledger": ledger}
+        | system.corrections,
     )
+
+
+def _bearing_floor(response: HarmonicResponse) -> dict[str, FloatArray]:
+    """Return what a forced response has of the forces in the orders left out; nothing where none is."""
+    if (floor := response.floor) is None:
+        return {}
+    square = [floor.of_bearing(index) for index in range(len(floor.bearing))]
+    shape = (-1, floor.pace.size)
+    return {
+        "bearing_floor": np.reshape([np.sum(each.power, axis=1) for each in square], shape),
+        "bearing_floor_error": np.reshape([np.sum(each.missed, axis=1) for each in square], shape),
+    }
 
 
 def _require_memory(at: Excited, speeds: int, harmonics: int) -> None:
@@ -352,10 +389,7 @@ def _require_memory(at: Excited, speeds: int, harmonics: int) -> None:
     freedoms, bearings, meshes = system.arrays.mass.shape[0], len(system.supports.name), len(at.cycles)
     loaded = 3 * freedoms if load_cycles(system, at.period) else 0
     numbers = freedoms + loaded + 6 * bearings + 8 * meshes + system.arrays.elements.law.size
-    most = int(MOST_BYTES // (16 * numbers * max(harmonics, 1)))
-    if speeds > most:
-        bound = f"at most {most} values in {harmonics} orders of {freedoms} freedoms, as 8 GB hold"
-        raise InputError("speed", f"{speeds} values", bound, "Take wider steps, or fewer orders.")
+    require_memory(speeds, harmonics, numbers, freedoms)
 
 
 def _facts(at: Excited, time: float, seconds: Json) -> Json:

@@ -16,6 +16,8 @@ from dynamics.checks import integer, one_of, positive
 from dynamics.errors import SolveError
 from dynamics.forces.laws import Law
 from dynamics.linearize.flank_cycles import SAMPLES
+from dynamics.linearize.line_floor import LineFloor, floor_frequencies, floor_inputs
+from dynamics.linearize.linear_system import unbounded
 from dynamics.linearize.load_harmonics import load_multiples
 from dynamics.linearize.operating_speeds import LARGEST_DENOMINATOR
 from dynamics.linearize.steady_vibration import (
@@ -25,11 +27,11 @@ from dynamics.linearize.steady_vibration import (
     Steady,
     excited,
     harmonics_of,
+    receptances,
     solved,
     speed_blocks,
     steady_vibration,
     swept_vibration,
-    unbounded,
 )
 from dynamics.linearize.strongest_lines import Lines, strongest_lines
 from dynamics.motion.force_balance import block_diagonal
@@ -67,6 +69,8 @@ class HarmonicResponse:
         Where it is negative flanks part, and no linear answer holds.
     residual : float
         Largest force left by the linear solves, of the largest exciting force.
+    floor : LineFloor or None
+        What the lines left out of a long period do together; None where none is, and of files.
     """
 
     mesh: tuple[str, ...]
@@ -102,6 +106,7 @@ class HarmonicResponse:
     friction_force: ComplexArray = field(
         default_factory=_none, metadata=stored("N", "complex amplitude of the excitation", "mesh", "order")
     )
+    floor: LineFloor | None = None
 
     @property
     def in_contact(self) -> BoolArray:
@@ -150,7 +155,8 @@ def harmonic_response(
     for index, value in enumerate(np.abs(speed)):
         positive(f"speed[{index}]", float(value))
     at, lines = excited_lines(system, orders, time, speed)
-    return response_of(at, speed, steady_vibration(at, speed, lines.harmonics, excitation, progress=progress))
+    steady = steady_vibration(at, speed, lines.harmonics, excitation, progress=progress)
+    return replace(response_of(at, speed, steady), floor=floor_of(at, speed, lines))
 
 
 def excited_lines(system: System, orders: int, time: float, speed: FloatArray) -> tuple[Excited, Lines]:
@@ -166,6 +172,27 @@ def excited_lines(system: System, orders: int, time: float, speed: FloatArray) -
     integer("orders", orders, 1, SAMPLES // 4)
     at = excited(system, time, orders)
     return at, strongest_lines(at, np.arange(1, orders * at.period.counted + 1, dtype=np.int64), speed)
+
+
+def floor_of(at: Excited, speed: FloatArray, lines: Lines) -> LineFloor | None:
+    """Return what the lines left out do together at `speed` (S,); None without any, or if a frame turns."""
+    if not lines.left_out.size or at.turning:
+        return None
+    pace = np.array([1.0 / at.period.duration(float(value)) for value in speed])
+    inputs, force = floor_inputs(at, lines.left_out), []
+    hertz = floor_frequencies(at, lines.left_out[0] * np.min(pace), lines.left_out[-1] * np.max(pace))
+    for part in speed_blocks((hertz.size, 1), inputs.row.size):
+        omega = 2.0 * math.pi * hertz[part]
+        by_input = np.moveaxis(receptances(at, omega, inputs.row)[:, 0], 2, 1)
+        force.append(bearing_forces(at, np.repeat(omega[:, None], len(inputs.row), axis=1), by_input))
+    return LineFloor(
+        bearing=at.system.supports.name,
+        pace=pace,
+        harmonic=lines.left_out,
+        inputs=inputs.size,
+        frequency=hertz,
+        bearing_force=np.concatenate(force, axis=2),
+    )
 
 
 def response_of(at: Excited, speed: FloatArray, steady: Steady) -> HarmonicResponse:

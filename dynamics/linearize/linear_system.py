@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh, null_space
 
+from bounds import engineering
 from dynamics.assembly.assemble import System
 from dynamics.assembly.references import drive_springs
 from dynamics.errors import InputError, SolveError
@@ -304,3 +305,22 @@ def _solve(linear: LinearSystem) -> tuple[FloatArray, FloatArray]:
     square, vectors = eigh(rest.T @ stiffness @ rest, rest.T @ mass @ rest)
     shapes = np.concatenate([still, (rest @ vectors).T])
     return np.concatenate([np.zeros(still.shape[0]), square]), np.asarray(shapes * per_meter)
+
+
+def unbounded(linear: LinearSystem, omega: FloatArray | ComplexArray) -> SolveError:
+    """Return the refusal of a vibration that nothing bounds at one of the frequencies, rad/s.
+
+    It names the mode with the least distance from a frequency and damping, both in parts of its own.
+    """
+    modes, excited = natural_modes(linear), np.unique(np.abs(omega)) / (2.0 * math.pi)
+    held = np.flatnonzero(modes.frequency)
+    words = "a harmonic of the speed excites an undamped mode"
+    if held.size:
+        own = modes.frequency[held]
+        off = np.abs(excited[:, None] / own - 1.0) + modes.damping_ratio[held]
+        at, mode = np.unravel_index(np.argmin(off), off.shape)
+        part = modes.freedom[int(np.argmax(modes.kinetic_energy[held[mode]]))]
+        words = f"{excited[at]:.6g} Hz excite the mode at {own[mode]:.6g} Hz, in which {part} moves most and "
+        words += f"whose damping ratio is {engineering(modes.damping_ratio[held[mode]], 1)}"
+    advice = "Give the meshes, shafts or supports damping, or leave that speed out"
+    return SolveError(f"the vibration is unbounded: {words}. {advice}")

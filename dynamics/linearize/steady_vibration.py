@@ -9,15 +9,13 @@ from typing import TypeVar
 
 import numpy as np
 
-from bounds import engineering
 from dynamics.arrays.sparse_rows import ModalFreedoms
 from dynamics.assembly.assemble import System
-from dynamics.errors import SolveError
 from dynamics.forces.laws import Law
 from dynamics.kernels.local_state import LocalState
 from dynamics.linearize.campbell import terms_at
 from dynamics.linearize.flank_cycles import SAMPLES, FlankCycle, averaged, flank_cycles, resting
-from dynamics.linearize.linear_system import LinearSystem, about_running, linearize, natural_modes
+from dynamics.linearize.linear_system import LinearSystem, about_running, linearize, unbounded
 from dynamics.linearize.load_harmonics import load_harmonics
 from dynamics.linearize.operating_speeds import CommonPeriod, common_period, law_speeds
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
@@ -320,6 +318,15 @@ def with_receptances(at: Excited, speed: FloatArray, harmonics: IntArray, rows: 
     return Steady(harmonics, omega, static, force, u[..., 0], residual, u[..., 1:])
 
 
+def receptances(at: Excited, omega: FloatArray, rows: FloatArray) -> ComplexArray:
+    """Return the displacements (G, 1, n, f) per force along each of `rows` (f, n) at `omega` (G,), rad/s.
+
+    Where no frame turns they are the same at every speed.
+    """
+    together = np.sum(rows, axis=0, dtype=complex)[None, None]
+    return _solve(at, together, omega[:, None], rows=rows)[0][..., 1:]
+
+
 def speed_blocks(shape: tuple[int, ...], entries: int) -> list[slice]:
     """Return the speeds of S and H harmonics that are computed at once, each with so many entries."""
     block = max(BLOCK // max(shape[1] * entries, 1), 1)
@@ -452,25 +459,6 @@ def _right_sides(force: ComplexArray, rows: FloatArray | None, beside: ComplexAr
     if beside is not None:
         sides.append(beside[..., None])
     return np.concatenate(sides, axis=-1)
-
-
-def unbounded(linear: LinearSystem, omega: FloatArray | ComplexArray) -> SolveError:
-    """Return the refusal of a vibration that nothing bounds at one of the frequencies, rad/s.
-
-    It names the mode with the least distance from a frequency and damping, both in parts of its own.
-    """
-    modes, excited = natural_modes(linear), np.unique(np.abs(omega)) / (2.0 * math.pi)
-    held = np.flatnonzero(modes.frequency)
-    words = "a harmonic of the speed excites an undamped mode"
-    if held.size:
-        own = modes.frequency[held]
-        off = np.abs(excited[:, None] / own - 1.0) + modes.damping_ratio[held]
-        at, mode = np.unravel_index(np.argmin(off), off.shape)
-        part = modes.freedom[int(np.argmax(modes.kinetic_energy[held[mode]]))]
-        words = f"{excited[at]:.6g} Hz excite the mode at {own[mode]:.6g} Hz, in which {part} moves most and "
-        words += f"whose damping ratio is {engineering(modes.damping_ratio[held[mode]], 1)}"
-    advice = "Give the meshes, shafts or supports damping, or leave that speed out"
-    return SolveError(f"the vibration is unbounded: {words}. {advice}")
 
 
 def solved(matrix: Values, right: Values) -> Values:

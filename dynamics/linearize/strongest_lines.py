@@ -10,9 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bounds import MOST_BYTES
+from dynamics.errors import InputError
 from dynamics.linearize.load_harmonics import load_multiples
 from dynamics.linearize.steady_vibration import Excited, flank_forces
-from dynamics.types import BoolArray, FloatArray, IntArray
+from dynamics.types import BoolArray, FloatArray, IntArray, Json
 
 ALWAYS = 500
 """Lines that every response has; periods with no more of them are solved in all."""
@@ -27,21 +29,22 @@ class Lines(NamedTuple):
     ----------
     harmonics : (H,) int array
         Multiples of the common period's frequency, rising.
-    left_out : int
-        How many others there are.
+    left_out : (L,) int array
+        The others that excite, rising.
     share : float
         Root of the sum of the squares of the forces that these excite over that of all, of the mesh order and
         the row of the flanks where it is largest: between the lines kept stands a floor of many weak ones.
     """
 
     harmonics: IntArray
-    left_out: int = 0
+    left_out: IntArray
     share: float = 0.0
 
-    @property
-    def facts(self) -> dict[str, dict[str, float]]:
-        """What a result's facts say of it; nothing where nothing is left out."""
-        return {"lines_left_out": {"count": self.left_out, "force": self.share}} if self.left_out else {}
+    def facts(self, in_totals: bool) -> Json:
+        """Return what facts say of those left out, and whether totals have them; nothing without any."""
+        if not self.left_out.size:
+            return {}
+        return {"lines_left_out": {"count": self.left_out.size, "force": self.share, "in_totals": in_totals}}
 
 
 def strongest_lines(at: Excited, harmonics: IntArray, speed: FloatArray) -> Lines:
@@ -53,7 +56,7 @@ def strongest_lines(at: Excited, harmonics: IntArray, speed: FloatArray) -> Line
     """
     most = max(ALWAYS, int(HELD / max(speed.size * at.system.arrays.mass.shape[0], 1)))
     if harmonics.size <= most:
-        return Lines(harmonics)
+        return Lines(harmonics, harmonics[:0])
     force = np.abs(flank_forces(at, harmonics)[1])
     bands, band = np.unique(np.rint(harmonics / at.period.counted), return_inverse=True)
     size = np.zeros(harmonics.size)
@@ -65,7 +68,19 @@ def strongest_lines(at: Excited, harmonics: IntArray, speed: FloatArray) -> Line
     squares = np.square(force)
     parts = [(squares[:, own & ~kept], squares[:, own]) for own in (band == k for k in range(bands.size))]
     left = [np.sqrt(np.max(_share(*(part.sum(axis=1) for part in each)))) for each in parts]
-    return Lines(harmonics[kept], int(np.count_nonzero(~kept)), float(max(left)))
+    return Lines(harmonics[kept], harmonics[~kept & np.any(force, axis=0)], float(max(left)))
+
+
+def require_memory(speeds: int, lines: int, numbers: int, freedoms: int) -> None:
+    """Refuse more speeds than can be held with so many complex `numbers` for each of them and each line.
+
+    Raises `InputError`: there are too many.
+    """
+    most = int(MOST_BYTES // (16 * numbers * max(lines, 1)))
+    if speeds > most:
+        held = f"as {MOST_BYTES / 1e9:g} GB hold"
+        bound = f"at most {most} values in {lines} orders of {freedoms} freedoms, {held}"
+        raise InputError("speed", f"{speeds} values", bound, "Take wider steps, or fewer orders.")
 
 
 def _share(part: FloatArray, whole: FloatArray) -> FloatArray:

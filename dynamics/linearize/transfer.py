@@ -40,6 +40,7 @@ from dynamics.linearize.steady_vibration import (
     solved,
     with_receptances,
 )
+from dynamics.linearize.strongest_lines import require_memory, strongest_lines
 from dynamics.motion.force_balance import block_diagonal
 from dynamics.results.array_file import ArrayFile, stored
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
@@ -259,6 +260,8 @@ def flank_transfer(
 ) -> FlankTransfer:
     """Return the transfer functions of a scene about its loaded equilibrium.
 
+    Of tables of long periods in the `strongest_lines` of its own flanks, the mesh orders always among them.
+
     Parameters
     ----------
     system : System
@@ -276,7 +279,8 @@ def flank_transfer(
     Raises
     ------
     InputError
-        If a value is out of range, or the meshes have no common period.
+        If a value is out of range, the meshes have no common period, or the functions would take more than
+        8 GB.
     SolveError
         If there is no static equilibrium, or a vibration is unbounded.
     """
@@ -285,7 +289,8 @@ def flank_transfer(
         raise InputError("speed", [], "at least one speed")
     integer("orders", orders, 1, SAMPLES // 4)
     at = excited(system, time, orders)
-    harmonics = _harmonics(at, orders, float(speed[-1]))
+    harmonics = strongest_lines(at, _harmonics(at, orders, float(speed[-1])), speed).harmonics
+    _require_memory(at, speed.size, harmonics.size)
     file = None if cache is None else cache / f"transfer-{_content_key(at, speed, harmonics, orders)}.nc"
     return kept_in(
         file,
@@ -304,6 +309,13 @@ def _harmonics(at: Excited, orders: int, speed: float) -> IntArray:
     loads = load_multiples(at.system, at.period, speed, at.time).tolist()
     multiples = {k for step in steps for k in range(step, highest + 1, step)}
     return np.array(sorted(multiples | {k for k in loads if k <= highest}), dtype=np.int64)
+
+
+def _require_memory(at: Excited, speeds: int, lines: int) -> None:
+    """Refuse what cannot be held: motions of rows and forces of bearings per input, while they are joined."""
+    rows, bearings = _rows(at).size, len(at.system.supports.name)
+    freedoms = at.system.arrays.mass.shape[0]
+    require_memory(speeds, lines, 2 * (1 + rows) * (rows + 6 * bearings), freedoms)
 
 
 def _parts(at: Excited) -> list[slice]:

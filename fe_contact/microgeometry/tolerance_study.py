@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from bounds import at_most
+from bounds import MOST_BYTES, at_most
 from fe_contact.analysis.request.request import Checked
 from fe_contact.errors import InputError, SolveError, integer, within
 from fe_contact.geometry import ParallelAxes
@@ -105,8 +105,6 @@ class Sampling:
 
 TANGENTS = 64
 """Pairs about which tangents are taken, besides the design, at most."""
-MOST_BYTES = 8e9
-"""Of curves and tangents of the pairs that are solved."""
 IN_A_TASK = 25
 """Samples of a task: half a second to some seconds. It does not depend on who does the tasks."""
 ACTING = SobolSample(1)

@@ -44,14 +44,14 @@ def excitation_table(facts: Mapping[str, Any]) -> Table | None:
 
 
 def orders_left_out(facts: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
-    """Say how much of a long table's excitation a response lacks; nothing where it has all."""
+    """Say how much of a long table's excitation a response does not list; nothing where it lists all."""
     if not (left_out := facts.get("lines_left_out")):
         return ()
     share = engineering(100.0 * left_out["force"], 2)
-    lacking = f"up to {share} % of the exciting force of a mesh order (rms), which totals and levels lack"
-    return (
-        ("weaker orders of a long table", f"{left_out['count']} left out, {lacking}: fewer speeds hold more"),
-    )
+    part = f"up to {share} % of the exciting force of a mesh order (rms)"
+    totals = "have" if left_out.get("in_totals") else "lack"
+    words = f"{left_out['count']} not listed, {part}, which totals {totals}: fewer speeds list more"
+    return (("weaker orders of a long table", words),)
 
 
 def excitation_figures(facts: Mapping[str, Any]) -> tuple[Figure, ...]:

@@ -208,10 +208,23 @@ def _text(response: ForcedResponse) -> Iterator[Table | str]:
         f"amplitudes by up to {engineering(worst, 2)} % of the largest"
     )
     yield from (f"{what}: {words}" for what, words in orders_left_out(response.facts))
+    yield from _left_out_words(response)
     if _loses_power(response):
         yield _power_table(response)
     left = response.power.residual
     yield f"residual of the solves {leftover(response.residual)}, of the power balance {leftover(left)}"
+
+
+def _left_out_words(response: ForcedResponse) -> Iterator[str]:
+    """Say what the orders that are not listed make of the bearing force that is largest in all orders."""
+    if response.bearing_floor.size:
+        square, floor = response.bearing_mean_square, response.bearing_floor
+        at = np.unravel_index(int(np.argmax(square)), square.shape)
+        rms = float(np.sqrt(square[at]))
+        words = f"{number(float(np.sqrt(floor[at])), 3)} N of it in the orders not listed"
+        error = engineering(rms - float(np.sqrt(max(square[at] - response.bearing_floor_error[at], 0.0))), 2)
+        where = f"{response.bearing[at[0]]} at {number(float(response.speed[at[1]]) / RPM, 4)} rpm"
+        yield f"largest rms force of all orders: {number(rms, 4)} ± {error} N on {where}, {words}"
 
 
 PAGE = dynamics_presentation("Forced response", _figures, _headlines, _text)

@@ -50,9 +50,16 @@ class ResponseFigures(Figures):
         excitation_difference: list[float]
 
     class BearingResponse(Part):
-        """Amplitudes of a bearing force by order, then by speed."""
+        """Amplitudes of a bearing force by order, then by speed; root mean squares of all orders by speed.
+
+        `left_out_rms_n` is the part of `rms_n` that orders of long tables make which are not listed, and
+        `rms_error_n` what it may be off for them.
+        """
 
         force_n: list[list[float]]
+        rms_n: list[float]
+        left_out_rms_n: list[float]
+        rms_error_n: list[float]
 
     class PeakFigures(Part):
         """A peak over speed."""

@@ -30,7 +30,7 @@ class _ResponseStudy(SceneStudy[Inputs, ResponseFigures, ForcedResponse]):
             "order_name": order_names(response.order, response.facts),
             "meshes": {name: _mesh(row) for name, row in rows(response, response.mesh).items()},
             "bearings": {
-                name: {"force": np.sqrt(np.sum(np.abs(force[b, :3]) ** 2, axis=0)).T}
+                name: {"force": np.sqrt(np.sum(np.abs(force[b, :3]) ** 2, axis=0)).T, **_rms(response, b)}
                 for b, name in enumerate(response.bearing)
             },
             "peaks": peaks(response),
@@ -52,6 +52,18 @@ def _mesh(row: Row) -> tuple[Any, ...]:
         "dynamic_transmission_error": np.abs(row.dynamic_transmission_error).T,
         "mesh_force": np.abs(row.mesh_force).T,
     }
+
+
+def _rms(response: ForcedResponse, bearing: int) -> Json:
+    """Return root mean squares of all orders of a bearing force together by speed, N."""
+    square = response.bearing_mean_square[bearing]
+    left_out, off = (
+        part[bearing] if part.size else np.zeros(square.size)
+        for part in (response.bearing_floor, response.bearing_floor_error)
+    )
+    rms = np.sqrt(square)
+    least = np.sqrt(np.maximum(square - off, 0.0))
+    return {"rms": rms, "left_out_rms": np.sqrt(left_out), "rms_error": rms - least}
 
 
 RUN = _ResponseStudy()

@@ -4,35 +4,21 @@ from __future__ import annotations
 
 import sys
 import tracemalloc
-from dataclasses import fields, replace
+from dataclasses import fields
 
 import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table, with_mesh
+from long_tables import repeated
 
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
-from dynamics.linearize import ForcedResponse, forced_response
+from dynamics.linearize import ForcedResponse, flank_transfer, forced_response
 from dynamics.linearize.strongest_lines import ALWAYS
 from dynamics.meshes.grid_tables import GridTables
 
 SPEED = np.linspace(20.0, 200.0, 50)
 LONG = 67
-ALONG = ("deflection", "deflection_slope", "stiffness", "stiffness_slope", "load_arm")
-
-
-def repeated(table, times, errors=None):
-    """The table `times` over; `errors` (times,) are added to the deflections of each pitch, m."""
-    count = table.position.size
-    position = np.concatenate([table.position + k for k in range(times)])
-    long = {name: np.tile(getattr(table, name), (1, 1, times, 1)) for name in ALONG if _has(table, name)}
-    if errors is not None:
-        long["deflection"] = long["deflection"] + np.repeat(errors, count)[None, None, :, None]
-    return replace(table, position=position, period=times, **long)
-
-
-def _has(table, name):
-    return getattr(table, name, None) is not None
 
 
 def ripple():
@@ -129,6 +115,25 @@ def test_what_cannot_be_held_is_refused_before_it_is_solved(monkeypatch):
     table = repeated(ripple(), LONG, 1e-6 * np.random.default_rng(1).normal(size=LONG))
     with pytest.raises(InputError, match=r"speed.*at most \d+ values in \d+ orders.*8 GB.*wider steps"):
         response(table, speed=np.linspace(1.0, 200.0, 100_000))
+
+
+def test_transfer_functions_are_those_of_the_strongest_lines(monkeypatch):
+    table = repeated(ripple(), LONG, 1e-6 * np.random.default_rng(1).normal(size=LONG))
+    system = assemble(with_mesh(gear_pair_scene(table), damping_ratio=0.05, damping=None))
+    every = flank_transfer(system, SPEED)
+    monkeypatch.setattr("dynamics.linearize.strongest_lines.HELD", 0.0)
+    some = flank_transfer(system, SPEED)
+    assert every.harmonics.size > ALWAYS >= some.harmonics.size
+    assert np.all(np.isin(LONG * np.arange(1, 11), some.harmonics))
+    own = np.isin(every.harmonics, some.harmonics)
+    np.testing.assert_array_equal(some.bearing_force, every.bearing_force[:, :, :, own])
+
+
+def test_transfer_functions_that_cannot_be_held_are_refused_before_they_are_solved(monkeypatch):
+    monkeypatch.setattr("dynamics.linearize.transfer.with_receptances", lambda *_: pytest.fail("solved"))
+    system = assemble(gear_pair_scene(repeated(ripple(), LONG)))
+    with pytest.raises(InputError, match=r"speed.*at most \d+ values in \d+ orders.*8 GB.*wider steps"):
+        flank_transfer(system, np.linspace(1.0, 200.0, 50_000))
 
 
 def test_a_table_is_laid_out_in_little_more_than_its_numbers():

@@ -1,0 +1,159 @@
+"""The floor of a long period: what the lines that a response leaves out do together, by transfer functions.
+
+Lines of different frequency add up in power. Over the frequency a unit force does the same at every speed, as
+long as no frame turns: its transfer functions are solved once, on frequencies that are close where modes are.
+Every power or mean square of a line is a Hermitian form of its forces, as with `FlankTransfer`; between the
+frequencies the form is linear.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from dynamics.linearize.linear_system import natural_modes
+from dynamics.linearize.steady_vibration import Excited, flank_forces
+from dynamics.types import ComplexArray, FloatArray, IntArray
+
+WIDEST = 0.01
+"""Of a step between frequencies, of the frequency: no wider where no mode is near."""
+OF_MODE = 0.25
+"""Of the damping ratio of a mode, or of the distance from it where that is larger: a step's at most."""
+LEAST_RATIO = 1e-4
+COUNTED = 1e-10
+"""Of the power of all lines, that a direction of the rows has to have."""
+BINS = 8
+"""In a third octave, in which powers are returned."""
+
+
+class FloorPower(NamedTuple):
+    """Power or mean square of lines left out at S speeds in K bins of frequency.
+
+    Attributes
+    ----------
+    frequency : (S, K) array
+        Mean of those lines in a bin that have power, Hz.
+    power, missed : (S, K) arrays
+        And by how much it may be off, of its unit: what straight lines between the frequencies miss at most.
+    """
+
+    frequency: FloatArray
+    power: FloatArray
+    missed: FloatArray
+
+
+@dataclass(frozen=True)
+class LineFloor:
+    """Transfer functions at G frequencies of e inputs, and the inputs in L lines at S speeds.
+
+    Attributes
+    ----------
+    pace : (S,) array
+        Frequency of the common period at the speeds, Hz.
+    harmonic : (L,) int array
+        Its multiples that the lines are.
+    inputs : (e, L) complex array
+        Complex peak amplitudes.
+    frequency : (G,) array
+        Hz, rising; those of the lines at all speeds lie among them.
+    bearing_force : (b, 3 or 6, G, e) complex array
+        Forces of bearings per input.
+    """
+
+    bearing: tuple[str, ...]
+    pace: FloatArray
+    harmonic: IntArray
+    inputs: ComplexArray
+    frequency: FloatArray
+    bearing_force: ComplexArray
+
+    def power(self, matrix: ComplexArray) -> FloorPower:
+        """Return a power or mean square of all lines: y^H M y of their inputs y, by `matrix` M (G, e, e)."""
+        forms, products = [_real_terms(each) for each in (matrix, self._bent(matrix))], _products(self.inputs)
+        first, last = self._bin(self.frequency[[0, -1]])
+        made = np.zeros((3, self.pace.size, int(last - first) + 1))
+        for row, pace in enumerate(self.pace):
+            hertz = self.harmonic * pace
+            power, off = (self._along(hertz, products, form) for form in forms)
+            power = np.maximum(power, 0.0)
+            for part, values in zip(made, (power * hertz, power, np.abs(off)), strict=True):
+                part[row] = np.bincount(self._bin(hertz) - first, values, part.shape[1])
+        middle = 10.0 ** (((np.arange(first, last + 1) + 0.5) / BINS - 0.5) / 10.0)
+        mean = np.divide(made[0], made[1], out=np.tile(middle, (self.pace.size, 1)), where=made[1] > 0.0)
+        return FloorPower(mean, made[1], made[2])
+
+    def of_bearing(self, index: int) -> FloorPower:
+        """Return the mean square of the force on a bearing, all directions together, N^2."""
+        force = np.moveaxis(self.bearing_force[index, :3], 0, 2)
+        return self.power(0.5 * force.conj() @ np.swapaxes(force, 1, 2))
+
+    def _along(self, hertz: FloatArray, products: list[FloatArray], form: list[FloatArray]) -> FloatArray:
+        terms = zip(products, form, strict=True)
+        return np.sum([own * np.interp(hertz, self.frequency, term) for own, term in terms], axis=0)
+
+    @staticmethod
+    def _bin(hertz: FloatArray) -> IntArray:
+        """Return bins of frequencies; the edges of third octaves are among theirs."""
+        return np.floor((10.0 * np.log10(hertz) + 0.5) * BINS).astype(np.int64)
+
+    def _bent(self, matrix: ComplexArray) -> ComplexArray:
+        """Return what a straight line from a frequency to the next misses midway, of forms (G, e, e)."""
+        step = np.diff(self.frequency)[:, None, None]
+        bend = 2.0 * np.diff(np.diff(matrix, axis=0) / step, axis=0) / (step[1:] + step[:-1])
+        missed = np.square(np.maximum(step[1:], step[:-1])) * bend / 8.0
+        return np.concatenate([missed[:1], missed, missed[-1:]])
+
+
+def _real_terms(matrix: ComplexArray) -> list[FloatArray]:
+    """Return the terms (G,) of Hermitian forms that `_products` multiply, diagonals first."""
+    own = range(matrix.shape[1])
+    mixed = [matrix[:, a, b] for a in own for b in own[a + 1 :]]
+    return [matrix[:, a, a].real for a in own] + [part for each in mixed for part in (each.real, each.imag)]
+
+
+def _products(inputs: ComplexArray) -> list[FloatArray]:
+    own = range(len(inputs))
+    squares = [np.square(np.abs(each)) for each in inputs]
+    mixed = [2.0 * inputs[a].conj() * inputs[b] for a in own for b in own[a + 1 :]]
+    return squares + [part for each in mixed for part in (each.real, -each.imag)]
+
+
+class FloorInputs(NamedTuple):
+    """Directions in which lines excite the rows of the flanks, and by how much.
+
+    Attributes
+    ----------
+    row : (e, n) array
+        Generalized forces per input.
+    size : (e, L) complex array
+        Complex peak amplitudes.
+    """
+
+    row: FloatArray
+    size: ComplexArray
+
+
+def floor_inputs(at: Excited, left_out: IntArray) -> FloorInputs:
+    """Return what excites in lines (L,): in as few directions as hold their power."""
+    force = flank_forces(at, left_out)[1]
+    size = np.max(np.abs(force), axis=1, keepdims=True)
+    rows = np.flatnonzero(size)
+    scaled = force[rows] / size[rows]
+    parts = np.concatenate([scaled.real, scaled.imag], axis=1)
+    direction, strength = np.linalg.svd(parts, full_matrices=False)[:2]
+    direction = direction[:, np.square(strength) > COUNTED * np.sum(np.square(strength))]
+    return FloorInputs((direction * size[rows]).T @ at.system.arrays.direction[rows], direction.T @ scaled)
+
+
+def floor_frequencies(at: Excited, lowest: float, highest: float) -> FloatArray:
+    """Return frequencies (G,) from `lowest` to `highest`, Hz, that resolve every mode of the system."""
+    modes, last = natural_modes(at.linear), highest * (1.0 + WIDEST)
+    own = modes.frequency > 0.0
+    natural, ratio = modes.frequency[own], np.maximum(modes.damping_ratio[own], LEAST_RATIO)
+    hertz = [lowest * (1.0 - WIDEST)]
+    while hertz[-1] < last:
+        near = OF_MODE * np.maximum(ratio, np.abs(hertz[-1] / natural - 1.0))
+        hertz.append(hertz[-1] * (1.0 + min(WIDEST, float(np.min(near, initial=WIDEST)))))
+    return np.array(hertz)
