@@ -14,6 +14,7 @@ from dynamics.acoustics.levels import a_weighting, sound_power_level
 from dynamics.acoustics.radiation import RadiationModel, resistance
 from dynamics.checks import increasing
 from dynamics.errors import InputError
+from dynamics.linearize.line_floor import FloorPower
 from dynamics.orders.third_octaves import band_number, nominal_center
 from dynamics.results.array_file import stored
 from dynamics.types import BoolArray, ComplexArray, FloatArray
@@ -136,10 +137,13 @@ class OrderPower:
         Hz, above zero.
     power : (K, B) array
         W.
+    floor : FloorPower, optional
+        Of orders that are not among these: totals and bands have it.
     """
 
     frequency: FloatArray
     power: FloatArray
+    floor: FloorPower | None = None
 
     def __post_init__(self) -> None:
         frequency, power = np.asarray(self.frequency, dtype=float), np.asarray(self.power, dtype=float)
@@ -166,24 +170,66 @@ class OrderPower:
         return sound_power_level(self.weighted_power)
 
     @property
+    def weighted_floor(self) -> FloatArray:
+        """Return the A-weighted power of orders that are not among these, (B,), W; 0 without any."""
+        return self._of_floor("power")
+
+    @property
+    def weighted_error(self) -> FloatArray:
+        """Return by how much the A-weighted power of all orders may be off for them, (B,), W."""
+        return self._of_floor("missed")
+
+    def _of_floor(self, name: str, weighted: bool = True) -> FloatArray:
+        if self.floor is None:
+            return np.zeros(self.power.shape[1])
+        weight = 10.0 ** (a_weighting(self.floor.frequency) / 10.0) if weighted else 1.0
+        return np.asarray(np.sum(weight * getattr(self.floor, name), axis=1))
+
+    @property
+    def total_weighted_power(self) -> FloatArray:
+        """Return the A-weighted power of all orders together, (B,), W."""
+        return np.asarray(self.weighted_power.sum(axis=0) + self.weighted_floor)
+
+    @property
+    def floor_level(self) -> FloatArray | None:
+        """Return the A-weighted level of orders that are not among these, (B,), dB(A); None without any."""
+        return None if self.floor is None else sound_power_level(self.weighted_floor)
+
+    @property
+    def total_error(self) -> FloatArray | None:
+        """Return by how much `total_weighted_level` may be off for them, (B,), dB; None without any."""
+        if self.floor is None:
+            return None
+        total = self.total_weighted_power
+        least = np.maximum(total - self.weighted_error, self.weighted_power.sum(axis=0))
+        return self.total_weighted_level - sound_power_level(least)
+
+    @property
     def total_level(self) -> FloatArray:
         """Return the level of all orders together, (B,), dB."""
-        return sound_power_level(self.power.sum(axis=0))
+        return sound_power_level(self.power.sum(axis=0) + self._of_floor("power", weighted=False))
 
     @property
     def total_weighted_level(self) -> FloatArray:
         """Return the A-weighted level of all orders together, (B,), dB(A)."""
-        return sound_power_level(self.weighted_power.sum(axis=0))
+        return sound_power_level(self.total_weighted_power)
 
     def third_octaves(self) -> tuple[FloatArray, FloatArray]:
         """Return nominal centers (J,) in Hz and powers (J, B) of the bands that any order passes.
 
         An order is a tone: the band that holds its frequency takes all of it.
         """
-        band = band_number(self.frequency)
-        bands = np.arange(band.min(), band.max() + 1)
-        power = np.stack([np.sum(np.where(band == number, self.power, 0.0), axis=0) for number in bands])
-        return nominal_center(bands), power
+        parts = [(band_number(self.frequency), self.power)]
+        if self.floor is not None:
+            heard = np.any(self.floor.power > 0.0, axis=0)
+            parts.append((band_number(self.floor.frequency[:, heard].T), self.floor.power[:, heard].T))
+        ends = [end for band, _ in parts if band.size for end in (band.min(), band.max())]
+        bands = np.arange(min(ends), max(ends) + 1)
+        sums = [
+            [np.sum(np.where(band == number, power, 0.0), axis=0) for number in bands]
+            for band, power in parts
+        ]
+        return nominal_center(bands), np.sum(sums, axis=0)
 
 
 def order_power(resistance: ModalResistance, frequency: FloatArray, velocity: ComplexArray) -> OrderPower:

@@ -15,6 +15,7 @@ from dynamics.errors import InputError
 from dynamics.forces.laws import Law
 from dynamics.linearize.flank_cycles import FlankCycle
 from dynamics.linearize.harmonic_response import HarmonicResponse, excited_lines, floor_of, response_of
+from dynamics.linearize.line_floor import LineFloor
 from dynamics.linearize.linear_system import HELD_BY, LinearSystem, natural_modes
 from dynamics.linearize.load_harmonics import load_cycles, load_harmonics
 from dynamics.linearize.operating_speeds import checked_speeds, leading_law
@@ -291,7 +292,7 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
     def bearing_mean_square(self) -> FloatArray:
         """Mean square of the force on each bearing, all orders together, those left out too, (b, S), N^2."""
         listed = 0.5 * np.sum(np.abs(self.bearing_force[:, :3]) ** 2, axis=(1, 3))
-        return listed + self.bearing_floor if self.bearing_floor.size else listed
+        return np.asarray(listed + self.bearing_floor if self.bearing_floor.size else listed)
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write a netCDF-4 file, without `floor`; it appears whole or not at all."""
@@ -353,6 +354,7 @@ def forced_response(
         raise InputError("orders", orders, NOTHING_EXCITES, "Give a mesh a table, or let a load vary.")
     response, power = response_of(at, speeds, steady), _power_balance(at, speeds, steady)
     response = replace(response, floor=floor_of(at, speeds, lines))
+    floor = _bearing_floor(response.floor)
     seconds["response"] = cpu_seconds() - began
     return ForcedResponse(
         **vars(response),
@@ -363,7 +365,8 @@ def forced_response(
         power_sink=power.sink,
         power_sink_kind=power.kind,
         power_loss=power.loss,
-        **_bearing_floor(response),
+        bearing_floor=floor[0],
+        bearing_floor_error=floor[1],
         facts=_facts(at, time, seconds)
         | lines.facts(response.floor is not None)
         | {"effect_ledger": ledger}
@@ -371,16 +374,15 @@ def forced_response(
     )
 
 
-def _bearing_floor(response: HarmonicResponse) -> dict[str, FloatArray]:
-    """Return what a forced response has of the forces in the orders left out; nothing where none is."""
-    if (floor := response.floor) is None:
-        return {}
-    square = [floor.of_bearing(index) for index in range(len(floor.bearing))]
-    shape = (-1, floor.pace.size)
-    return {
-        "bearing_floor": np.reshape([np.sum(each.power, axis=1) for each in square], shape),
-        "bearing_floor_error": np.reshape([np.sum(each.missed, axis=1) for each in square], shape),
-    }
+def _bearing_floor(floor: LineFloor | None) -> tuple[FloatArray, FloatArray]:
+    """Return mean squares of bearing forces in orders left out, (b, S), N^2, and their errors."""
+    if floor is None:
+        return np.empty((0, 0)), np.empty((0, 0))
+    square, shape = [floor.of_bearing(index) for index in range(len(floor.bearing))], (-1, floor.pace.size)
+    return (
+        np.reshape([np.sum(each.power, axis=1) for each in square], shape),
+        np.reshape([np.sum(each.missed, axis=1) for each in square], shape),
+    )
 
 
 def _require_memory(at: Excited, speeds: int, harmonics: int) -> None:

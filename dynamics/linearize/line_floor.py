@@ -8,6 +8,7 @@ frequencies the form is linear.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -42,6 +43,15 @@ class FloorPower(NamedTuple):
     frequency: FloatArray
     power: FloatArray
     missed: FloatArray
+
+    @classmethod
+    def of_all(cls, parts: Sequence[FloorPower]) -> FloorPower:
+        """Return the sum of several powers of the same lines."""
+        power = np.sum([part.power for part in parts], axis=0)
+        share = [part.power / np.maximum(power, 1e-300) for part in parts]
+        mean = np.sum([part.frequency * own for part, own in zip(parts, share, strict=True)], axis=0)
+        frequency = np.where(power > 0.0, mean, parts[0].frequency)
+        return cls(frequency, power, np.sum([part.missed for part in parts], axis=0))
 
 
 @dataclass(frozen=True)
@@ -91,7 +101,7 @@ class LineFloor:
 
     def _along(self, hertz: FloatArray, products: list[FloatArray], form: list[FloatArray]) -> FloatArray:
         terms = zip(products, form, strict=True)
-        return np.sum([own * np.interp(hertz, self.frequency, term) for own, term in terms], axis=0)
+        return np.asarray(sum(own * np.interp(hertz, self.frequency, term) for own, term in terms))
 
     @staticmethod
     def _bin(hertz: FloatArray) -> IntArray:
@@ -149,11 +159,11 @@ def floor_inputs(at: Excited, left_out: IntArray) -> FloorInputs:
 
 def floor_frequencies(at: Excited, lowest: float, highest: float) -> FloatArray:
     """Return frequencies (G,) from `lowest` to `highest`, Hz, that resolve every mode of the system."""
-    modes, last = natural_modes(at.linear), highest * (1.0 + WIDEST)
+    modes = natural_modes(at.linear)
     own = modes.frequency > 0.0
     natural, ratio = modes.frequency[own], np.maximum(modes.damping_ratio[own], LEAST_RATIO)
-    hertz = [lowest * (1.0 - WIDEST)]
-    while hertz[-1] < last:
+    hertz = [lowest]
+    while hertz[-1] < highest:
         near = OF_MODE * np.maximum(ratio, np.abs(hertz[-1] / natural - 1.0))
         hertz.append(hertz[-1] * (1.0 + min(WIDEST, float(np.min(near, initial=WIDEST)))))
-    return np.array(hertz)
+    return np.array([*hertz[:-1], highest])

@@ -102,6 +102,10 @@ class TransferredResponse:
         """Whether all driving flanks stay in contact at each speed, (S,) bool."""
         return np.asarray(np.all(self.least_mesh_force > 0.0, axis=0))
 
+    @property
+    def floor(self) -> None:
+        """None: other flanks respond in the lines of the transfer functions alone."""
+
 
 @dataclass(frozen=True)
 class FlankTransfer(ArrayFile):

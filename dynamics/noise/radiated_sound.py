@@ -13,6 +13,8 @@ from dynamics.acoustics import Hull, OrderPower, sound_power_level
 from dynamics.acoustics.levels import a_weighting
 from dynamics.errors import InputError
 from dynamics.housings.reduced_housing import ReducedHousing
+from dynamics.linearize.line_floor import FloorPower
+from dynamics.noise.floor_sound import radiated_floor
 from dynamics.noise.housing_radiation import HousingRadiation
 from dynamics.noise.panel_sound import PanelSound
 from dynamics.results.array_file import ArrayFile, stored
@@ -58,6 +60,11 @@ def _power(velocity: ComplexArray, force: ComplexArray) -> FloatArray:
 
 
 POWER = ("speed", "order")
+BINS = ("speed", "bin")
+
+
+def _no_bins() -> FloatArray:
+    return np.empty((0, 0))
 
 
 @dataclass(frozen=True)
@@ -83,6 +90,8 @@ class RadiatedSound(ArrayFile):
         `valid_frequency` in Hz, to which the modes kept carry the motion).
     panel_node, panel_corner, panel_power : (N, 3), (T, 3), (T,) arrays
         Of all housings at the loudest order and speed (`PanelSound`); empty where they were not looked at.
+    floor_frequency, floor_power, floor_missed : (S, K) arrays
+        The fields of `floor`; empty where every order is listed.
     """
 
     SCHEMA = "lineofaction radiated sound"
@@ -126,6 +135,15 @@ class RadiatedSound(ArrayFile):
         default_factory=lambda: np.empty(0),
         metadata=stored("W", "radiated sound power of each panel", "panel"),
     )
+    floor_frequency: FloatArray = field(
+        default_factory=_no_bins, metadata=stored("Hz", "mean frequency of orders left out, in bins", *BINS)
+    )
+    floor_power: FloatArray = field(
+        default_factory=_no_bins, metadata=stored("W", "sound power of orders left out", *BINS)
+    )
+    floor_missed: FloatArray = field(
+        default_factory=_no_bins, metadata=stored("W", "by how much that may be off", *BINS)
+    )
 
     @classmethod
     def of_all(cls, sounds: Sequence[RadiatedSound]) -> RadiatedSound:
@@ -160,6 +178,7 @@ class RadiatedSound(ArrayFile):
             in_contact=first.in_contact,
             facts={"radiation": radiation},
             **joined,
+            **_floor_fields([floor for sound in sounds if (floor := sound.floor) is not None]),
         )
 
     @property
@@ -170,14 +189,29 @@ class RadiatedSound(ArrayFile):
         return PanelSound(Hull(self.panel_node, self.panel_corner), self.panel_power)
 
     @property
+    def floor(self) -> FloorPower | None:
+        """Return the power of the orders that are not listed; None where every one is."""
+        if not self.floor_power.size:
+            return None
+        return FloorPower(self.floor_frequency, self.floor_power, self.floor_missed)
+
+    @property
     def orders(self) -> OrderPower:
         """Return levels, A-weighted levels and third octaves: orders first, then speeds."""
-        return OrderPower(self.frequency.T, self.power.T)
+        return OrderPower(self.frequency.T, self.power.T, self.floor)
 
     @property
     def without_bearing(self) -> FloatArray:
         """Return the power that is left without the force of each bearing, (b, S, H), W."""
         return np.maximum(self.power - 2.0 * self.bearing_share + self.bearing_alone, 0.0)
+
+
+def _floor_fields(floors: Sequence[FloorPower]) -> dict[str, Any]:
+    """Return what `RadiatedSound` has of the orders left out, of all housings together; nothing without."""
+    if not floors:
+        return {}
+    whole = FloorPower.of_all(floors)
+    return {f"floor_{name}": values for name, values in whole._asdict().items()}
 
 
 def radiated_sound(
@@ -217,6 +251,7 @@ def radiated_sound(
     alone = np.where(owner == np.arange(len(names))[:, None], force, 0.0)  # of each bearing
     amplitudes = modal_amplitudes(housing, response.frequency.ravel(), alone)
     powers = _powers(response.frequency, amplitudes, housing, radiation)
+    floor = response.floor
     about = {
         "model_name": radiation.model_name,
         "area": radiation.area,
@@ -233,6 +268,7 @@ def radiated_sound(
         in_contact=response.in_contact,
         facts={"radiation": {name: about}},
         **powers,
+        **_floor_fields([] if floor is None else [radiated_floor(floor, housing, names, radiation)]),
     )
 
 

@@ -26,7 +26,9 @@ from dynamics.checks import one_of
 from dynamics.housings.modification import with_damping, with_frequencies, with_modes, with_mounts
 from dynamics.housings.reduced_housing import ReducedHousing, scene_housing
 from dynamics.linearize import harmonic_response
+from dynamics.linearize.line_floor import FloorPower
 from dynamics.meshes import GearMesh
+from dynamics.noise.floor_sound import radiated_floor
 from dynamics.scene import Scene
 from dynamics.types import FloatArray, IntArray
 from dynamics.vibration import BearingHarmonics, housing_motion, seat_forces
@@ -66,7 +68,7 @@ class SoundModel:
 def _radiated_power(model: SoundModel, response: BearingHarmonics) -> OrderPower:
     """Return the sound power of a response by order and speed, the sum over all housings."""
     frequency = response.frequency.T
-    power = np.zeros(frequency.shape)
+    power, floors = np.zeros(frequency.shape), list[FloorPower]()
     for part in model.scene.housings:
         if part.name in model.housings:
             housing = model.housings[part.name]
@@ -74,7 +76,10 @@ def _radiated_power(model: SoundModel, response: BearingHarmonics) -> OrderPower
             motion = housing_motion(housing, response.frequency, force)
             velocity = np.swapaxes(2j * np.pi * response.frequency[..., None] * motion, 0, 1)
             power += order_power(model.resistance[part.name], frequency, velocity).power
-    return OrderPower(frequency, power)
+            if response.floor is not None:
+                own = radiated_floor(response.floor, housing, part.bushings, model.resistance[part.name])
+                floors.append(own)
+    return OrderPower(frequency, power, FloorPower.of_all(floors) if floors else None)
 
 
 def forced_power(model: SoundModel, speed: FloatArray, orders: int) -> tuple[FloatArray, OrderPower]:
@@ -265,7 +270,10 @@ class SoundBand:
         loudest = np.searchsorted(self.speed, self.loudest_speed)
 
         def levels(off: FloatArray) -> FloatArray:
-            shifted = OrderPower(power.frequency, power.power * 10.0 ** (off / 10.0))
+            shifted = replace(power, power=power.power * 10.0 ** (off / 10.0))
+            if (floor := power.floor) is not None:  # off as much as the orders together
+                part = (shifted.power.sum(axis=0) / power.power.sum(axis=0))[:, None]
+                shifted = replace(shifted, floor=floor._replace(power=part * floor.power))
             return _levels(self.order, loudest, self.order, shifted)
 
         own = levels(np.zeros(power.power.shape))
@@ -356,7 +364,8 @@ def _band(
         for index, missed in enumerate(np.abs(difference).tolist()):
             bands[index] = bands[index].with_error(name, missed, missed)
     band = SoundBand(speed, order, bands[0], bands[1], (), speed[loudest], (), ())._of_bands(bands)
-    total = nominal.weighted_power.sum(axis=0)
+    total = nominal.total_weighted_power
+    band = _with_floor_error(band, speed, nominal)
     missed = _missed_by_steps(speed, total)
     peaks = zip(band.largest, nominal.weighted_power, strict=True)
     return replace(
@@ -364,6 +373,23 @@ def _band(
         largest_total=_with_peak(band.largest_total, speed, total),
         mean_total=band.mean_total.with_error("speed_steps", missed, missed),
         largest=tuple(_with_peak(level, speed, power) for level, power in peaks),
+    )
+
+
+def _with_floor_error(band: SoundBand, speed: FloatArray, power: OrderPower) -> SoundBand:
+    """Return the bands of totals with the error of the orders that are not listed; without any the same."""
+    if power.floor is None:
+        return band
+    total, name = power.total_weighted_power, "orders_left_out"
+    off = np.array(power.total_error).tolist()
+    mean, missed = mean_power(speed, total), mean_power(speed, power.weighted_error)
+    least = float(sound_power_level(mean) - sound_power_level(max(mean - missed, 0.0)))
+    largest = off[int(np.argmax(total))]
+    return replace(
+        band,
+        largest_total=band.largest_total.with_error(name, largest, largest),
+        mean_total=band.mean_total.with_error(name, least, least),
+        total=tuple(each.with_error(name, own, own) for each, own in zip(band.total, off, strict=True)),
     )
 
 
@@ -405,7 +431,7 @@ def largest_level(speed: FloatArray, power: OrderPower) -> float:
 
     Smooth in whatever shifts a resonance, where the speeds resolve it.
     """
-    total = power.weighted_power.sum(axis=0)
+    total = power.total_weighted_power
     return float(sound_power_level(total.max())) + _missed_between(speed, total)
 
 
@@ -414,7 +440,7 @@ def _levels(order: FloatArray, loudest: IntArray, own: FloatArray, power: OrderP
     weighted = np.zeros((order.size, power.power.shape[1]))
     kept = np.isin(own, order)
     weighted[np.searchsorted(order, own[kept])] = power.weighted_power[kept]
-    total = weighted.sum(axis=0)
+    total = weighted.sum(axis=0) + power.weighted_floor
     there = weighted[np.arange(order.size), loudest]
     whole = [total.max(), mean_power(power.frequency[0], total)]
     return sound_power_level(np.concatenate([whole, weighted.max(axis=1), there, total]))

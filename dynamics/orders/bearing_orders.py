@@ -176,6 +176,10 @@ class BearingOrders:
     remainder: FloatArray
     facts: Json = field(default_factory=dict)
 
+    @property
+    def floor(self) -> None:
+        """None: what its orders do not hold is the `remainder`."""
+
 
 @dataclass(frozen=True)
 class _Row:

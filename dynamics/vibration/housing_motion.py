@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from bounds import Quantity, Text
 from dynamics.errors import InputError
 from dynamics.housings.reduced_housing import ReducedHousing
+from dynamics.linearize.line_floor import LineFloor
 from dynamics.orders import bearing_signals
 from dynamics.orders.resampling import interpolated
 from dynamics.results import RunResult
@@ -59,6 +60,10 @@ class BearingHarmonics(BearingForces, Protocol):
     @property
     def in_contact(self) -> BoolArray:
         """Whether all driving flanks stay in contact at each speed, (S,)."""
+
+    @property
+    def floor(self) -> LineFloor | None:
+        """Forces in the lines of a long period that are not listed; None where every line is."""
 
 
 class ReportedHarmonics(BearingHarmonics, Protocol):

@@ -19,8 +19,14 @@ from dynamics.acoustics import outer_hull
 from dynamics.acoustics.levels import FLOOR
 from dynamics.errors import InputError
 from dynamics.housings.reduced_housing import PointMotion, ReducedHousing
+from dynamics.linearize.line_floor import LineFloor
 from dynamics.types import BoolArray, ComplexArray, FloatArray
-from dynamics.vibration.housing_motion import BearingHarmonics, housing_motion, seat_forces
+from dynamics.vibration.housing_motion import (
+    BearingHarmonics,
+    housing_motion,
+    modal_amplitudes,
+    seat_forces,
+)
 
 
 class MotionQuantity(StrEnum):
@@ -130,6 +136,9 @@ class HousingVibration:
         Of the outer hull, normal to it, mean over area and time, m^2/s^2; 0 without a surface.
     highest_valid_frequency : float
         `ReducedHousing.valid_frequency`, Hz.
+    floor, floor_missed : (k, S) arrays, optional
+        Mean square velocity of each point in the orders of long tables that are not listed, and by how much
+        it may be off, m^2/s^2; None where every order is.
     """
 
     point: tuple[str, ...]
@@ -140,6 +149,8 @@ class HousingVibration:
     velocity: ComplexArray
     mean_square_velocity: FloatArray
     highest_valid_frequency: float
+    floor: FloatArray | None = None
+    floor_missed: FloatArray | None = None
 
     @property
     def valid(self) -> BoolArray:
@@ -150,6 +161,22 @@ class HousingVibration:
     def rms(self) -> FloatArray:
         """Root mean square of each point's velocity, all directions together, (k, S, H), m/s."""
         return np.asarray(np.sqrt(0.5 * np.sum(np.abs(self.velocity) ** 2, axis=1)))
+
+    @property
+    def overall(self) -> FloatArray:
+        """Root mean square velocity of each point, all directions and orders together, (k, S), m/s."""
+        return self._with_floor(0.0)
+
+    @property
+    def overall_error(self) -> FloatArray:
+        """By how much `overall` may be off for the orders that are not listed, (k, S), m/s."""
+        return self.overall - self._with_floor(1.0)
+
+    def _with_floor(self, missed: float) -> FloatArray:
+        if self.floor is None or self.floor_missed is None:
+            return overall(self.rms)
+        listed = np.sum(np.square(self.rms), axis=-1)
+        return np.asarray(np.sqrt(listed + np.maximum(self.floor - missed * self.floor_missed, 0.0)))
 
     def of(self, quantity: MotionQuantity) -> ComplexArray:
         """Return peak amplitudes of another quantity of the points, (k, 3, S, H)."""
@@ -206,4 +233,20 @@ def housing_vibration(
         np.einsum("kcr,shr->kcsh", rows, rate),
         mean_square(rate, weight),
         housing.valid_frequency,
+        *(_point_floor(response.floor, housing, bearings, rows) if response.floor is not None else ()),
+    )
+
+
+def _point_floor(
+    floor: LineFloor, housing: ReducedHousing, bearings: Sequence[str] | None, rows: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the mean squares of the velocity of points (k, 3, r) in the lines left out, and their errors."""
+    amplitude = modal_amplitudes(housing, floor.frequency, seat_forces(floor, housing, bearings))
+    rate = 2j * np.pi * floor.frequency[:, None, None] * (amplitude @ housing.modes[1].T)
+    moved = [rate @ own.T for own in rows]
+    made = [floor.power(0.5 * own.conj() @ np.swapaxes(own, 1, 2)) for own in moved]
+    shape = (len(rows), floor.pace.size)
+    return (
+        np.reshape([np.sum(each.power, axis=1) for each in made], shape),
+        np.reshape([np.sum(each.missed, axis=1) for each in made], shape),
     )

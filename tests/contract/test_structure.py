@@ -11,18 +11,18 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (43_352, 804),
-    ("dynamics",): (42_855, 843),
-    ("lineofaction.gearbox",): (26_901, 549),
-    ("lineofaction.report",): (12_364, 231),
+    ("fe_contact",): (43_350, 804),
+    ("dynamics",): (43_321, 853),
+    ("lineofaction.gearbox",): (26_953, 549),
+    ("lineofaction.report",): (12_380, 231),
     ("service",): (14_826, 345),
     ("lineofaction.client",): (2_688, 53),
     ("lineofaction.cli",): (5_477, 80),
     ("lineofaction.hardcases",): (3_841, 35),
-    ("bounds", "host", "model_studies"): (4_517, 156),
+    ("bounds", "host", "model_studies"): (4_521, 156),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 841
+MOST_FILES = 843
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""

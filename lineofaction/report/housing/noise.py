@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds import engineering
 from bounds.types import Json
 from dynamics.acoustics import OrderPower, a_weighting, sound_power_level
 from dynamics.noise import LoudPoint, RadiatedSound, loudest
@@ -250,6 +251,8 @@ def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
     total, points = sound.orders.total_weighted_level, loudest(sound, 1)
     at = int(total.argmax())
     where = f"at {number(float(sound.speed[at]) / RPM, 4)} rpm, all orders"
+    if (floor := sound.orders.floor_level) is not None and (off := sound.orders.total_error) is not None:
+        where += f", of it {floor[at]:.1f} dB(A) ± {engineering(float(off[at]), 2)} dB in those not listed"
     if (band := sound.facts["band"]) is not None:
         where += f"; {ends(band['largest_total'])} over the ranges of guesses"
         where += "".join(f"; {words}" for words in narrowest(sound.facts))

@@ -183,7 +183,11 @@ class PressureFigures(Part):
 
 
 class NoiseFigures(Figures):
-    """Sound power levels re 1 pW by order, then by speed; third octaves; the loudest points."""
+    """Sound power levels re 1 pW by order, then by speed; third octaves; the loudest points.
+
+    Totals and bands have the orders of long tables that are not listed: `left_out_db_a`, null where all are,
+    and `total_error_db`, what the total may be off for them.
+    """
 
     class BearingSound(Part):
         """Levels by order, then by speed: by the force of a bearing alone, and of what is left without it."""
@@ -219,6 +223,8 @@ class NoiseFigures(Figures):
     level_db_a: Annotated[list[list[float]], Source("orders.weighted_level")]
     total_level_db: Annotated[list[float], Source("orders.total_level")]
     total_level_db_a: Annotated[list[float], Source("orders.total_weighted_level")]
+    left_out_db_a: Annotated[list[float] | None, Source("orders.floor_level")]
+    total_error_db: Annotated[list[float] | None, Source("orders.total_error")]
     third_octave_hz: list[float]
     third_octave_db: list[list[float]]
     radiation_efficiency: list[list[float]]

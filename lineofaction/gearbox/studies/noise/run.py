@@ -25,6 +25,7 @@ from dynamics.acoustics.levels import FLOOR, REFERENCE_PRESSURE
 from dynamics.acoustics.model_comparison import WORK
 from dynamics.acoustics.recording import LOWEST
 from dynamics.housings import ReducedHousing, write_surface
+from dynamics.linearize.line_floor import LineFloor
 from dynamics.noise import (
     CorrectedRadiation,
     EstimatedRadiation,
@@ -46,10 +47,11 @@ from dynamics.noise import (
 from dynamics.noise.estimated_radiation import LEAST
 from dynamics.noise.estimated_radiation import NAME as ESTIMATE
 from dynamics.noise.exact_lines import BUDGET, EXACT, FLAT, line_cost
+from dynamics.noise.floor_sound import mean_square_floor
 from dynamics.noise.housing_radiation import resolved_frequency
 from dynamics.noise.sound_over_time import BLOCK
 from dynamics.results import RunResult
-from dynamics.types import FloatArray
+from dynamics.types import ComplexArray, FloatArray
 from dynamics.vibration import BearingHarmonics, seat_forces
 from dynamics.work_cost import on_this_host
 from lineofaction.gearbox.convert.case import boundary_errors
@@ -279,6 +281,8 @@ def _radiation(
 ) -> HousingRadiation:
     """Return the radiation of a housing at the orders, and at the ends of what is heard of a run."""
     hertz = response.frequency
+    if response.floor is not None:
+        hertz = np.append(hertz.ravel(), response.floor.frequency[[0, -1]])
     if means.run is not None:
         ends = [LOWEST, float(means.run.receipt["sampling"]["pass_frequency"])]
         hertz = np.append(hertz.ravel(), ends)
@@ -390,12 +394,14 @@ def _pressure_at(
     Raises `InputError`: the microphone is not in the air.
     """
     hertz = response.frequency
-    pressure = np.zeros(hertz.shape, dtype=complex)
+    pressure, floors = np.zeros(hertz.shape, dtype=complex), list[ComplexArray]()
     for source in sources:
         estimate = source.radiation if isinstance(source.radiation, EstimatedRadiation) else None
         path = pressure_transfer(source.body, microphone, hertz.ravel(), estimate=estimate)
         force = seat_forces(response, source.body, source.bearings)
         pressure += np.sum(force * path.reshape(force.shape), axis=-1)
+        if response.floor is not None:
+            floors.append(_pressure_floor(response.floor, source, microphone))
     weighted = 0.5 * np.abs(pressure) ** 2 * 10.0 ** (a_weighting(hertz) / 10.0)
     level = _decibels(weighted)
     at = np.argmax(level, axis=0)
@@ -408,8 +414,20 @@ def _pressure_at(
             off = None if of_power is None else of_power[end] - of_power["level_db_a"]
             own[end] = None if off is None else own["level_db_a"] + off
         rows.append(own)
-    total = _decibels(np.sum(weighted, axis=1))
+    whole = np.sum(weighted, axis=1)
+    if response.floor is not None:
+        left_out = mean_square_floor(response.floor, np.sum(floors, axis=0))
+        whole = whole + np.sum(left_out.power * 10.0 ** (a_weighting(left_out.frequency) / 10.0), axis=1)
+    total = _decibels(whole)
     return {"microphone": microphone.tolist(), "level": level.T, "total_level": total, "orders": rows}
+
+
+def _pressure_floor(floor: LineFloor, source: _SoundSource, microphone: FloatArray) -> ComplexArray:
+    """Return the sound pressure of a source per input of the lines left out, (G, e)."""
+    estimate = source.radiation if isinstance(source.radiation, EstimatedRadiation) else None
+    path = pressure_transfer(source.body, microphone, floor.frequency, estimate=estimate)
+    force = seat_forces(floor, source.body, source.bearings)
+    return np.asarray(np.sum(force * path.reshape(len(force), 1, -1), axis=-1))
 
 
 def _decibels(square: FloatArray) -> FloatArray:

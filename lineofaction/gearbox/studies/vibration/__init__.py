@@ -47,11 +47,17 @@ class VibrationFigures(Figures):
     """Velocities by order and speed, and what makes the motion at one of them."""
 
     class PointVelocity(Part):
-        """Velocity of a point, root mean square, by order, then by speed; x, y, z in the scene's frame."""
+        """Velocity of a point, root mean square, by order, then by speed; x, y, z in the scene's frame.
+
+        `left_out_mm_per_s` is the part of the overall velocity in orders of long tables that are not listed,
+        `overall_error_mm_per_s` what it may be off for them.
+        """
 
         velocity_mm_per_s: list[list[float]]
         velocity_xyz_mm_per_s: list[list[list[float]]]
         overall_mm_per_s: list[float]
+        left_out_mm_per_s: list[float]
+        overall_error_mm_per_s: list[float]
         level_db: list[list[float]]
 
     class Contributions(Part):

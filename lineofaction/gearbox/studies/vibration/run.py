@@ -12,7 +12,6 @@ import numpy as np
 from bounds import engineering
 from bounds.types import FloatArray, Json
 from dynamics.housings import ReducedHousing, write_surface
-from dynamics.types import ComplexArray
 from dynamics.vibration import (
     SurfaceShape,
     VibrationAnalysis,
@@ -21,6 +20,7 @@ from dynamics.vibration import (
     overall,
     vibration_level,
 )
+from dynamics.vibration.housing_vibration import HousingVibration
 from dynamics.vibration.vibration_analysis import Shares
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import boundary_errors
@@ -145,7 +145,7 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, HousingVibrationResul
             housing=analysis.housing,
             natural_frequency=result.natural_frequency,
             orders_beyond=vibration.order[~np.all(vibration.valid, axis=0)],
-            points={name: _point(vibration.velocity[k]) for k, name in enumerate(vibration.point)},
+            points={name: _point(vibration, k) for k, name in enumerate(vibration.point)},
             surface=None if analysis.deflection is None else np.sqrt(vibration.mean_square_velocity).T,
             contributions={
                 "speed": vibration.speed[analysis.at_speed],
@@ -167,14 +167,17 @@ def _chosen(tabled: TabledScene, name: str | None) -> tuple[str, ReducedHousing]
     raise BadInput.of("housings", len(tabled.housings), "a housing with a surface or points", _ADVICE)
 
 
-def _point(velocity: ComplexArray) -> Json:
-    """Return the velocities of a point, (3, S, H), as root mean squares."""
-    xyz = np.abs(velocity) / np.sqrt(2.0)
+def _point(vibration: HousingVibration, point: int) -> Json:
+    """Return the velocities of a point as root mean squares."""
+    xyz = np.abs(vibration.velocity[point]) / np.sqrt(2.0)
     rms = np.sqrt(np.sum(xyz**2, axis=0))
+    floor = np.zeros(vibration.speed.size) if vibration.floor is None else vibration.floor[point]
     return {
         "velocity": rms.T,
         "velocity_xyz": np.swapaxes(xyz, 1, 2),
-        "overall": overall(rms),
+        "overall": overall(rms) if vibration.floor is None else vibration.overall[point],
+        "left_out": np.sqrt(floor),
+        "overall_error": vibration.overall_error[point],
         "level": vibration_level(rms.T),
     }
 
