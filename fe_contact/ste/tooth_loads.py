@@ -69,11 +69,14 @@ class ToothLoads:
 
 def tooth_loads(table: SteFields, point: OperatingPoint) -> tuple[ToothLoads, ...]:
     """Return the loads of the teeth of each gear whose teeth the table tells apart, and which differ."""
+    gears = [gear for gear in (0, 1) if table.period % table.facts.teeth[gear] == 0]
+    if not gears:
+        return ()
     share = np.maximum(at_operating_point(table, table.load_share, point), 0.0)
     values = [point.force * share / share.sum(axis=1, keepdims=True)]
     if table.pair_pressure.size:
         values.append(np.maximum(at_operating_point(table, table.pair_pressure, point), 0.0))
-    found = (_of_gear(table, values, gear) for gear in (0, 1) if table.period % table.facts.teeth[gear] == 0)
+    found = [_of_gear(table, values, gear) for gear in gears]
     return tuple(loads for loads in found if loads.most_loaded or loads.most_pressed)
 
 
