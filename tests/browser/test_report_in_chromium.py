@@ -199,7 +199,7 @@ def test_a_pdf_has_few_pages_of_a4_and_no_empty_one(printed: bytes) -> None:
     boxes = re.findall(rb"/MediaBox \[0 0 ([\d.]+) ([\d.]+)\]", printed)
     assert printed.startswith(b"%PDF-")
     assert len(printed) < 3_000_000
-    assert 3 <= len(boxes) <= 14  # of three results, 21 plots
+    assert 3 <= len(boxes) <= 15  # of three results, 22 plots
     for width, height in boxes:
         assert float(width) / 72.0 * 25.4 == pytest.approx(210.0, abs=0.5)
         assert float(height) / 72.0 * 25.4 == pytest.approx(297.0, abs=0.5)

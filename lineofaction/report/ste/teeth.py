@@ -71,9 +71,8 @@ def tooth_sections(database: SteDatabase, load: int) -> tuple[Section, ...]:
     """Show the largest load on each tooth where teeth differ, and the pressure on its way through mesh."""
     teeth = teeth_at(database, load)
     loaded = tuple(own for own in teeth if own.most_loaded)
-    pressed = tuple(own for own in teeth if own.most_pressed)
     figures = [_loads(database, load, loaded)] if loaded else []
-    figures += [_pressures(database, load, pressed)] if pressed else []
+    figures += [_pressures(database, load, own) for own in teeth if own.most_pressed]
     return (Section("Load of each tooth", figures=tuple(figures)),) if figures else ()
 
 
@@ -155,32 +154,25 @@ def _table(teeth: tuple[ToothLoads, ...]) -> Table:
     )
 
 
-def _pressures(database: SteDatabase, load: int, teeth: tuple[ToothLoads, ...]) -> Figure:
+def _pressures(database: SteDatabase, load: int, own: ToothLoads) -> Figure:
     missed = database.metadata.receipt.get("cycle", {}).get("pressure_error_relative")
-    most = max(float(own.pressure.max()) for own in teeth)
+    most, least = float(own.pressure.max()), int(np.argmin(own.pressure))
     derived = (
         ""
         if missed is None
         else f" Base pitches by derivatives: within {_megapascal(missed * most)} at 99 % of the drawn points."
     )
+    name = GEARS[own.gear]
     return Figure(
-        key="tooth_pressures",
-        title=f"Pressure on each tooth at {load_labels(database)[load]}",
-        caption="Maps: the largest Hertz pressure anywhere on a tooth, away from edges, as its pair passes "
+        key=f"tooth_pressures_{name}",
+        title=f"Pressure on each tooth of the {name} at {load_labels(database)[load]}",
+        caption="Map: the largest Hertz pressure anywhere on a tooth, away from edges, as its pair passes "
         "through mesh, the largest of all its mates; blank: nothing touches. Curves: the most pressed tooth "
         f"beside the mean of all teeth.{derived}",
-        alternative=" ".join(_pressed_words(own) for own in teeth),
-        content=tuple(panel for own in teeth for panel in (_map(own), _way(own))),
-        table=_pressure_table(teeth),
-    )
-
-
-def _pressed_words(own: ToothLoads) -> str:
-    least = int(np.argmin(own.pressure))
-    return (
-        f"The largest pressure on the {GEARS[own.gear]} is on {teeth_words(own.most_pressed)}, "
-        f"{_megapascal(own.pressure.max())}; on tooth {least + 1} it is least, "
-        f"{_megapascal(own.pressure[least])}."
+        alternative=f"The largest pressure on the {name} is on {teeth_words(own.most_pressed)}, "
+        f"{_megapascal(most)}; on tooth {least + 1} it is least, {_megapascal(own.pressure[least])}.",
+        content=(_map(own), _way(own)),
+        table=_pressure_table(own),
     )
 
 
@@ -197,7 +189,7 @@ def _map(own: ToothLoads) -> Panel:
     pressure = 1e-6 * own.pressure_over_phase[:, inside]
     teeth, touching = np.arange(1.0, len(pressure) + 1.0), np.where(pressure > 0.0, pressure, np.nan)
     shade = HeatMap.spanning(own.phase[inside], teeth, touching, "Hertz pressure, MPa")
-    return Panel(x, _tooth_axis(own), title=GEARS[own.gear].capitalize(), shade=shade)
+    return Panel(x, _tooth_axis(own), shade=shade)
 
 
 def _way(own: ToothLoads) -> Panel:
@@ -205,17 +197,16 @@ def _way(own: ToothLoads) -> Panel:
     pressure = 1e-6 * own.pressure_over_phase[:, inside]
     phase, worst = own.phase[inside], own.most_pressed[0]
     lines = (
-        Line(f"tooth {worst} of the {GEARS[own.gear]}", phase, pressure[worst - 1], _COLORS[own.gear]),
+        Line(f"tooth {worst}", phase, pressure[worst - 1], _COLORS[own.gear]),
         Line("mean of all teeth", phase, np.nanmean(pressure, axis=0), palette.MUTED, "dash"),
     )
     y = Axis("largest Hertz pressure, MPa", limits=(0.0, 1.05 * float(np.nanmax(pressure))))
     return Panel(x, y, lines)
 
 
-def _pressure_table(teeth: tuple[ToothLoads, ...]) -> Table:
+def _pressure_table(own: ToothLoads) -> Table:
     rows = tuple(
-        (GEARS[own.gear], str(tooth + 1), number(1e-6 * own.pressure[tooth], 4))
-        for own in teeth
+        (str(tooth + 1), number(1e-6 * own.pressure[tooth], 4))
         for tooth in np.argsort(-own.pressure, kind="stable")[:_RANKED]
     )
-    return Table("Most pressed teeth", ("gear", "tooth", "largest pressure, MPa"), rows)
+    return Table(f"Most pressed teeth of the {GEARS[own.gear]}", ("tooth", "largest pressure, MPa"), rows)
