@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,15 +91,22 @@ def _interpolated(database: SteDatabase, pitches: int, per_pitch: int) -> tuple[
     return once, database.ste(once[:, None], database.force, *aligned(database))
 
 
+_CURVES: WeakKeyDictionary[SteDatabase, dict[int, Curve]] = WeakKeyDictionary()
+"""By load: figures of one page share them."""
+
+
 def load_curve(database: SteDatabase, load: int) -> Curve:
     """Return the curve at a stored load, from the complete rows where points failed."""
-    misalignment, change = aligned(database)
-    return database.curve(
-        force=float(database.force[load]),
-        misalignment=misalignment,
-        center_distance_change=change,
-        allow_failed=True,
-    )
+    known = _CURVES.setdefault(database, {})
+    if load not in known:
+        misalignment, change = aligned(database)
+        known[load] = database.curve(
+            force=float(database.force[load]),
+            misalignment=misalignment,
+            center_distance_change=change,
+            allow_failed=True,
+        )
+    return known[load]
 
 
 def shown_loads(database: SteDatabase) -> tuple[int, ...]:

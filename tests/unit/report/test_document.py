@@ -186,6 +186,17 @@ def test_a_page_and_its_images_draw_a_column_of_panels_once(
 
 
 @pytest.mark.law
+def test_bars_are_one_artist_within_the_limits_of_single_ones() -> None:
+    order = np.arange(1.0, 2001.0)
+    top = np.where(order % 7 == 0, np.nan, 2.0 + np.cos(order))
+    bars = Bars("lines", order, top, 0.5, 0.8, palette.BLUE)
+    (axes,) = panel_sheet((Panel(Axis("mesh order"), Axis("µm"), (), bars=(bars,)),)).axes
+    assert len(axes.patches) == 0 and len(axes.collections) == 1
+    assert np.allclose(axes.dataLim.extents, (0.6, 0.5, 2000.4, np.nanmax(top)))
+    assert axes.get_ylim()[0] == 0.5 and axes.get_ylim()[1] > np.nanmax(top)  # they stand on the axis
+
+
+@pytest.mark.law
 def test_orders_have_whole_ticks() -> None:
     order = np.arange(1.0, 21.0)
     bars = Bars("lines", order, order, 0.0, 0.8, palette.BLUE)
