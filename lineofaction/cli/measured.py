@@ -2,36 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from bounds import engineering
 from bounds.types import Json
-from fe_contact.geometry import Toothing
 from lineofaction.cli.guard import warn
 from lineofaction.cli.output import check_writable, console, print_json, print_written, table
-from lineofaction.gearbox.convert.case import case_json, gear_pair
+from lineofaction.gearbox.convert.case import case_json
 from lineofaction.gearbox.input_file import InputFile
+from lineofaction.gearbox.inspection.as_made import Inspected, measured_case
 from lineofaction.gearbox.inspection.evaluation import Split
-from lineofaction.gearbox.inspection.measured_gear import Chart, MeasuredGear, inspected, measured_gear
-from lineofaction.gearbox.inspection.sheet import FIELD, Flank, read_sheet, sheet_text
+from lineofaction.gearbox.inspection.measured_gear import MeasuredGear, inspected
+from lineofaction.gearbox.inspection.sheet import FIELD, sheet_text
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.schemas import Case, read_model, validated
+from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.gearbox.schemas.files import read_text
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.toml import toml_text
 from lineofaction.gearbox.units import MM, UM
-
-_PITCH_FIELDS = ("pitch_deviation_um", "single_pitch_deviation_um")
-
-
-@dataclass(frozen=True)
-class Inspected:
-    """Which gear of the case was inspected, and which of its flanks carry the load."""
-
-    gear: str
-    loaded: Flank
-    cutoff_mm: float | None
 
 
 def run_measured(
@@ -39,20 +27,16 @@ def run_measured(
 ) -> None:
     """Write the case with what was measured, or without a sheet the sheet of the case."""
     case = read_model(Case, file)
-    gear: Toothing = getattr(gear_pair(case), of.gear)
-    chart = Chart(gear, of.loaded, of.gear == "pinion")
     if output is not None:
         check_writable(output)
     if sheet is None:
-        _write(output, sheet_text(inspected(chart)))
+        _write(output, sheet_text(inspected(of.chart(case))))
         return
     try:
         text = read_text(sheet, str(sheet))
     except BadInput as error:
         raise error.within(FIELD) from None
-    cutoff = None if of.cutoff_mm is None else of.cutoff_mm * MM
-    found = measured_gear(read_sheet(text, gear, str(sheet)), chart, str(sheet), cutoff)
-    changed = _with_fields(case, of.gear, found)
+    changed, found = measured_case(case, text, str(sheet), of)
     warn(left_out_warnings(found.left_out, "case"))
     written = [] if output is None else [output]
     if output is not None:
@@ -70,20 +54,6 @@ def _write(output: Path | None, text: str) -> None:
     else:
         output.write_text(text, encoding="utf-8")
         print_written([output])
-
-
-def _with_fields(case: Case, name: str, found: MeasuredGear) -> Case:
-    """Return the case with the measured fields in place of those it had; it is one that can be read."""
-    content = case_json(case)
-    gear = content["pair"][name]
-    replaced = set(found.fields)
-    if replaced & set(_PITCH_FIELDS):
-        replaced |= set(_PITCH_FIELDS)
-    kept = {key: value for key, value in gear.items() if key not in replaced}
-    content["pair"][name] = {**kept, **found.fields}
-    changed = validated(Case, content)
-    gear_pair(changed)
-    return changed
 
 
 def _show(found: MeasuredGear) -> None:

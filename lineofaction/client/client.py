@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import os
+import warnings
 from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import replace
@@ -152,6 +153,23 @@ class _LookupCalls(Surface):
         return (yield from self._answer("/v1/cases/to-toml", body, _text))
 
     @operation
+    def case_as_measured(
+        self, case: CaseLike, sheet: Path, gear: str, loaded: str = "right", cutoff_mm: float | None = None
+    ) -> Steps[schemas.Case]:
+        """Return a case with the pitches and traces of one gear's inspection (CSV) on its loaded flanks.
+
+        Raises `BadInput`: a line of the sheet that is none, or a trace that cannot be evaluated; warns of
+        points that are left out.
+        """
+        measured = {"csv": _read(sheet).decode(), "gear": gear, "loaded": loaded, "cutoff_mm": cutoff_mm}
+        return self._as_made(case, {"measured": measured})
+
+    @operation
+    def case_of_class(self, case: CaseLike, tolerance_class: int, seed: int = 0) -> Steps[schemas.Case]:
+        """Return a case with both gears drawn within a class of ISO 1328-1:2013; equal seeds, equal gears."""
+        return self._as_made(case, {"tolerance_class": tolerance_class, "seed": seed})
+
+    @operation
     def scene_from_toml(self, toml: str) -> Steps[schemas.SceneInput]:
         """Return the scene in the text of a scene file; raises `BadInput` with the lines at fault."""
         return self._validated("/v1/scenes/from-toml", toml, "scene", schemas.SceneInput)
@@ -175,16 +193,20 @@ class _LookupCalls(Surface):
         assume : sequence of str
             Values over the file's, ``"14.helix_angle_reference_diameter=-12"``.
         """
-        try:
-            data = Path(file).read_bytes()
-        except OSError as error:
-            raise BadInput.of("file", str(file), f"a file that can be read ({error.strerror})") from None
-        body = {"rexs_base64": base64.b64encode(data).decode(), "assume": list(assume)}
+        body = {"rexs_base64": base64.b64encode(_read(file)).decode(), "assume": list(assume)}
         unit: UnitBody = yield from self._answer("/v1/units/open", body, _model("UnitBody").model_validate)
         return unit
 
     def _answer(self, path: str, body: dict[str, Any], reader: Callable[[Any], T]) -> Steps[T]:
         return self.session.exchange.read(reader, "POST", path, json=body)
+
+    def _as_made(self, case: CaseLike, how: dict[str, Any]) -> Steps[schemas.Case]:
+        def made(answer: dict[str, Any]) -> schemas.Case:
+            for text in answer["left_out"]:
+                warnings.warn(f"left out of the case: {text}", stacklevel=2)
+            return schemas.validated(schemas.Case, answer["case"])
+
+        return self._answer("/v1/cases/as-made", {"inputs": subject_inputs("case", case), **how}, made)
 
     def _validated(self, path: str, toml: str, name: str, model: type[M]) -> Steps[M]:
         return self._answer(path, {"toml": toml}, lambda answer: schemas.validated(model, answer[name]))
@@ -193,6 +215,13 @@ class _LookupCalls(Surface):
         return self.session.exchange.read(
             lambda answer: tuple(map(_model(model).model_validate, answer)), "GET", path
         )
+
+
+def _read(file: Path) -> bytes:
+    try:
+        return Path(file).read_bytes()
+    except OSError as error:
+        raise BadInput.of("file", str(file), f"a file that can be read ({error.strerror})") from None
 
 
 def _text(answer: dict[str, Any]) -> str:

@@ -143,6 +143,7 @@ BODIES: dict[str, Json] = {
         "[pair.wheel]\nteeth = 20\nface_width_mm = 25.0\nbore_diameter_mm = 40.0\n"
         "[load]\ntorque_n_m = [100.0]\n"
     },
+    "/v1/cases/as-made": {"inputs": {"case": CASE}, "tolerance_class": 6, "seed": 1},
     "/v1/scenes/to-toml": {"inputs": {"scene": SCENE}},
     "/v1/scenes/from-toml": {"toml": _SCENE_FILE},
     "/v1/units/open": {"rexs_base64": b64encode(_REXS_FILE).decode()},
@@ -400,6 +401,7 @@ ANSWERS: dict[str, Any] = {
     },
     "/v1/cases/from-toml": {"case": CASE},
     "/v1/cases/to-toml": BODIES["/v1/cases/from-toml"],
+    "/v1/cases/as-made": {"case": CASE, "left_out": []},
     "/v1/scenes/from-toml": BODIES["/v1/scenes/to-toml"]["inputs"],
     "/v1/scenes/to-toml": BODIES["/v1/scenes/from-toml"],
     "/v1/units/open": {

@@ -19,7 +19,8 @@ from small_table import small_table
 
 from dynamics.results import RunResult
 from host.extras import MODULES
-from lineofaction.client import OfflineWarning, ResultCache
+from lineofaction.client import LineOfActionClient, OfflineWarning, ResultCache
+from lineofaction.gearbox.problems import BadInput
 
 RESTS_ON = ("docs/client.md", "docs/how-to/call-a-service.md", "examples")
 ROOT = Path(__file__).parents[2]
@@ -60,14 +61,15 @@ def _as_a_user(
 @pytest.mark.chain
 def test_the_scripts_of_the_page_run_one_after_the_other(capsys: pytest.CaptureFixture[str]) -> None:
     scripts = re.findall(r"```python\n(.*?)```", RECIPES, re.DOTALL)
-    assert len(scripts) == 14  # the first one, and the recipes
+    assert len(scripts) == 15  # the first one, and the recipes
     names: dict[str, Any] = {}
     printed = []
     for script in scripts:
         exec(compile(script, "docs/how-to/call-a-service.md", "exec"), names)
         printed.append(capsys.readouterr().out)
-    table, followed, waited, many, batched, awaited, study, arrays, live, before, lists = printed[:11]
-    labeled, shown, run_up = printed[11:]
+    table, followed, waited, many, batched, awaited, study, arrays, live, before, made, lists = printed[:12]
+    labeled, shown, run_up = printed[12:]
+    assert re.search(r"^(pinion|wheel) \d+ [\d.]+ µm$", made, re.MULTILINE) and "mesh 1 " in made
     assert re.search(r"Estimate\(value=2\.\d+e-06, error=.*unit='m'\)", table)
     assert followed.splitlines()[-1] == "analyze: done"
     assert names["table"].identical(names["ste"])
@@ -87,6 +89,21 @@ def test_the_scripts_of_the_page_run_one_after_the_other(capsys: pytest.CaptureF
     assert labeled.splitlines()[0].startswith("Tip relief 20 µm, released ('ev-3',) 20/20")
     assert shown == "" and "<details>" in names["report"]._repr_html_()
     assert float(run_up) == pytest.approx(100.0 / (0.04 * np.cos(np.radians(20.0))), rel=2e-3)
+
+
+def test_the_sheet_of_an_inspection_goes_into_a_case(tmp_path: Path) -> None:
+    sheet = tmp_path / "pinion.csv"
+    rows = "".join(f"{tooth},left,pitch,{tooth % 2}\n" for tooth in range(1, 21))
+    sheet.write_text(f"tooth,flank,trace,deviation_um\n{rows}", encoding="utf-8")
+    with LineOfActionClient() as client:
+        case = client.case_as_measured(ROOT / "examples" / "palermo_spur_20_20.toml", sheet, "pinion", "left")
+        assert len(case.pair.pinion.pitch_deviation_um) == 20
+        assert case.pair.wheel.pitch_deviation_um == ()
+        with pytest.raises(BadInput, match="a file that can be read"):
+            client.case_as_measured(case, tmp_path / "none.csv", "pinion")
+        with pytest.raises(BadInput, match="line 2"):
+            sheet.write_text("tooth,flank,trace,deviation_um\n21,left,pitch,0\n", encoding="utf-8")
+            client.case_as_measured(case, sheet, "pinion")
 
 
 @pytest.mark.chain  # by the bodies that the scripts had condensed
