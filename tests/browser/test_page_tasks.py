@@ -1,4 +1,4 @@
-"""Three tasks of a new user in the browser alone, action by action as the documentation has them."""
+"""Four tasks of a new user in the browser alone, action by action as the documentation has them."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Hand:
 
     def did(self, task: str) -> None:
         """See that a task took the actions of the documentation, and few."""
-        (text,) = (part for part in TASKS if part.startswith(task))
+        (text,) = (part for part in TASKS if part.startswith(f"{task}\n"))
         assert self.actions == len(re.findall(r"^\d+\. ", text, re.MULTILINE)) < MOST
 
 
@@ -65,14 +65,18 @@ def seen(browser: Browser, address: str) -> Iterator[Visit]:
     visit.page.close()
 
 
-@pytest.mark.nightly
-def test_an_own_pair_is_typed_analyzed_relieved_and_sent(seen: Visit, browser: Browser) -> None:
-    page, hand = seen.page, Hand(seen)
+def type_pair(hand: Hand) -> None:
     hand.on("#example").select_option("empty")
     for field, text in PAIR.items():
         hand.on(f"#f-pair-{field}").fill(text)
     hand.show("Loads")
     hand.on("#f-load-torque_n_m").fill("40")
+
+
+@pytest.mark.nightly
+def test_an_own_pair_is_typed_analyzed_relieved_and_sent(seen: Visit, browser: Browser) -> None:
+    page, hand = seen.page, Hand(seen)
+    type_pair(hand)
     hand.analyze()
     expect(page.locator("#live-figures")).to_contain_text(re.compile("peak to peak.*±"))
     hand.move("#live-pinion-tip_relief_um")
@@ -85,6 +89,27 @@ def test_an_own_pair_is_typed_analyzed_relieved_and_sent(seen: Visit, browser: B
     most = page.locator("#live-pinion-tip_relief_um").input_value()
     expect(other.locator("#live-pinion-tip_relief_um")).to_have_value(most)
     other.close()
+
+
+@pytest.mark.nightly
+def test_an_own_pair_with_a_run_out_shows_a_revolution_and_its_sidebands(seen: Visit) -> None:
+    page, hand = seen.page, Hand(seen)
+    type_pair(hand)
+    hand.show("Teeth as made")
+    hand.on("#f-pair-pinion-run_out-eccentricity_um").fill("10")
+    expect(page.locator("#plan")).to_contain_text("of one processor")
+    hand.analyze()
+    title = page.locator("[data-figure=live_ste] h3")
+    expect(title).to_have_text("Transmission error over 21 base pitches")
+    expect(page.locator("#results-design")).to_be_empty()
+    hand.on(page.get_by_role("tab", name="Orders", exact=True)).click()
+    orders = page.locator("[data-figure=live_harmonics] .plot")
+    expect(orders).to_have_attribute(
+        "aria-label", re.compile(r"pinion 1 \d.*mesh 1 \d.*mesh \d [-+] pinion 1")
+    )
+    names = orders.locator(".bartext").filter(has_text="mesh 1 ± pinion 1")
+    expect(names).to_have_count(1)
+    hand.did("My own pair as it is made")
 
 
 @pytest.mark.nightly

@@ -13,16 +13,16 @@ ROOT = Path(__file__).parents[2]
 BUDGETS = {
     ("fe_contact",): (43_353, 804),
     ("dynamics",): (43_321, 853),
-    ("lineofaction.gearbox",): (26_953, 549),
+    ("lineofaction.gearbox",): (27_092, 552),
     ("lineofaction.report",): (12_387, 231),
-    ("service",): (14_826, 345),
-    ("lineofaction.client",): (2_688, 53),
-    ("lineofaction.cli",): (5_477, 80),
+    ("service",): (14_894, 350),
+    ("lineofaction.client",): (2_717, 53),
+    ("lineofaction.cli",): (5_447, 79),
     ("lineofaction.hardcases",): (3_841, 35),
     ("bounds", "host", "model_studies"): (4_521, 156),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 843
+MOST_FILES = 844
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""

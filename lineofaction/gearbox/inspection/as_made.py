@@ -78,7 +78,7 @@ def _with_fields(case: Case, fields: Mapping[str, Mapping[str, Any]]) -> Case:
     for name, own in fields.items():
         replaced = {*own, *(_PITCHES if {*own} & {*_PITCHES} else ())}
         kept = {key: value for key, value in content["pair"][name].items() if key not in replaced}
-        content["pair"][name] = kept | own
+        content["pair"][name] = {**kept, **own}
     changed = validated(Case, content)
     gear_pair(changed)
     return changed

@@ -103,6 +103,7 @@ Loads = Annotated[Listed[Load], Field(min_length=1, max_length=256)]
 Misalignments = Annotated[Listed[Misalignment], Field(min_length=1, max_length=64)]
 CenterDistanceChanges = Annotated[Listed[CenterDistanceChange], Field(min_length=1, max_length=64)]
 _WISHES = ("tolerance", "time_budget_s", "level")
+_USUAL_TOLERANCE = 0.01
 Switch = Literal["on", "off", "auto"]
 EffectName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
 
@@ -219,6 +220,7 @@ class Case(BoundaryModel):
             le=0.5,
             description="Allowed relative error of mean and peak-to-peak STE",
             examples=[0.01],
+            json_schema_extra={"x-alone": {"value": _USUAL_TOLERANCE, "without": [*_WISHES[1:]]}},
         )
         tolerance_floor_nm: float = Field(
             default=20.0,
@@ -272,7 +274,7 @@ class Case(BoundaryModel):
         def _default_wish(cls, data: Any) -> Any:
             """Ask for the default tolerance when nothing is requested, so that the echo says so."""
             if isinstance(data, dict) and all(data.get(name) is None for name in _WISHES):
-                return {**data, "tolerance": 0.01}
+                return {**data, "tolerance": _USUAL_TOLERANCE}
             return data
 
         @model_validator(mode="after")

@@ -2,6 +2,7 @@
 /** Case files: opened into the form, saved from it. */
 
 import { Problem, guarded, post } from "./api.js";
+import { offerAsMade } from "./as_made.js";
 import { byId, save } from "./elements.js";
 import { OpenedUnit, isUnit } from "./unit.js";
 
@@ -17,6 +18,7 @@ export class CaseFiles {
       const { toml } = await post("/v1/cases/to-toml", { inputs: { case: design.case } });
       save(toml, `${design.name || "case"}.toml`, "application/toml");
     }));
+    offerAsMade(design, (action) => this.careful(action));
     byId("import-file").addEventListener("change", (event) => this.careful(() => this.open(event.target)));
   }
 

@@ -1,13 +1,17 @@
 // @ts-check
 /** What two designs differ in, in the words of the form. */
 
-import { at, same } from "./schema.js";
+import { at } from "./schema.js";
 
 /** @typedef {import("./field.js").Field} Field */
 /** @typedef {{field: Field, words: string, before: string, now: string}} Difference */
 
-/** @param {Field} field @param {object} content */
-const valueIn = (field, content) => at(content, field.path) ?? field.schema.default ?? null;
+/** What a field has in a case; left out, what the service takes. @param {Field} field @param {object} content */
+function valueIn({ path, schema }, content) {
+  const stated = (name) => (at(content, [...path.slice(0, -1), name]) ?? null) !== null;
+  const { value, without } = schema["x-alone"] ?? {}; // what it is where others are left out too
+  return at(content, path) ?? schema.default ?? (without && !without.some(stated) ? value : null);
+}
 
 /**
  * Every field in which two cases differ.
@@ -17,7 +21,8 @@ const valueIn = (field, content) => at(content, field.path) ?? field.schema.defa
  * @returns {Difference[]}
  */
 export function differences(fields, before, now) {
-  return [...fields].filter((field) => !same(valueIn(field, before), valueIn(field, now))).map((field) => ({
+  const textIn = (field, content) => field.textOf(valueIn(field, content)); // of tables as they are typed, without what is left out
+  return [...fields].filter((field) => textIn(field, before) !== textIn(field, now)).map((field) => ({
     field, words: field.words, before: field.wordsFor(at(before, field.path)), now: field.wordsFor(at(now, field.path)),
   }));
 }

@@ -113,6 +113,12 @@ export class Design {
     this.look();
   }
 
+  /** Edit many fields at once. @param {object} content a case @param {string} note where it comes from */
+  renew(content, note) {
+    this.show(content, { example: "", note });
+    this.settled();
+  }
+
   /** Show what was typed when the address was left. */
   restore({ fields, origin }) {
     this.form.clear();

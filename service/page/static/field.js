@@ -31,6 +31,22 @@ export function numberIn(text) {
 
 export const numbersIn = (text) => text.split(/[,;\s]+/).filter(Boolean).map(numberIn);
 
+/** Tables of numbers as they are typed: "11, 0.2; 92, 0.1" by the order of the columns; null: they hold more than numbers. */
+function rowsText(rows, columns) {
+  const names = Object.keys(columns);
+  const usual = names.map((name) => columns[name].default ?? null);
+  const texts = rows.map((row) => {
+    const values = names.map((name, k) => row[name] ?? usual[k]);
+    const end = values.findLastIndex((value, k) => value !== usual[k]) + 1;
+    const more = Object.entries(row).some(([name, value]) => !names.includes(name) && value !== null);
+    return more || values.slice(0, end).includes(null) ? null : values.slice(0, end).join(", ");
+  });
+  return texts.includes(null) ? null : texts.join("; ");
+}
+
+const rowsIn = (text, columns) => text.split(";").filter((row) => row.trim()).map(
+  (row) => Object.fromEntries(numbersIn(row).map((value, k) => [Object.keys(columns)[k] ?? `number ${k + 1}`, value])));
+
 export class Field {
   /** @param {object} leaf of a schema @param {string} label @param {string} [part] of the page, in the id of the control */
   constructor(leaf, label, part = "f") {
@@ -43,7 +59,7 @@ export class Field {
     this.input = this.control();
     this.message = make("p", { class: "fault", id: `${this.id}-fault`, hidden: true });
     const unit = unitOf(this.name);
-    this.wide = this.kind === "list" || this.kind === "json";
+    this.wide = ["list", "rows", "json"].includes(this.kind);
     const shown = unit ? make("span", { class: "unit", "aria-hidden": "true" }, unit) : null;
     this.entry = make("div", { class: "entry" }, this.input, shown);
   }
@@ -81,7 +97,8 @@ export class Field {
         ...options.filter((text) => text !== this.defaultText).map((text) => make("option", { value: text }, spokenChoice(text))),
       );
     }
-    const placeholder = this.kind === "json" ? "none" : this.defaultText;
+    const columns = Object.keys(this.schema.columns ?? {}).map((name) => [wordsOf(name).toLowerCase(), unitOf(name)].join(" ").trim());
+    const placeholder = { json: "none", rows: `${columns.slice(0, 3).join(", ")}; …` }[this.kind] ?? this.defaultText;
     const keys = this.kind === "number" ? "decimal" : "text";
     return make("input", { ...common, type: "text", inputmode: keys, autocomplete: "off", placeholder });
   }
@@ -94,7 +111,8 @@ export class Field {
   textOf(value) {
     if (value === undefined || value === null || same(value, this.schema.default)) return "";
     if (this.kind === "list") return value.join(", ");
-    return this.kind === "json" ? JSON.stringify(value) : String(value);
+    const rows = this.kind === "rows" ? rowsText(value, this.schema.columns) : null;
+    return rows ?? (["rows", "json"].includes(this.kind) ? JSON.stringify(value) : String(value));
   }
 
   /** A value as it is read in a sentence. */
@@ -111,7 +129,8 @@ export class Field {
     if (this.kind === "number") return numberIn(text);
     if (this.kind === "switch") return text === "true";
     if (this.kind === "list") return numbersIn(text);
-    if (this.kind === "json") {
+    if (this.kind === "rows" && !text.startsWith("[")) return rowsIn(text, this.schema.columns);
+    if (["rows", "json"].includes(this.kind)) {
       try {
         return JSON.parse(text);
       } catch {

@@ -11,9 +11,11 @@ const MAIN = new Set([
   "tip_relief_length_mm", "helix_crowning_um", "internal",
 ]);
 const TEETH = /^(addendum|dedendum|root_radius|tip_diameter|thickness|cutter)/;
+const AS_MADE = /^(single_pitch|pitch_deviation|run_out|waves|tooth_flanks)/;
 const GROUPS = {
   "Teeth": (name) => TEETH.test(name),
   "Flank modifications": ofFlank,
+  "Teeth as made": (name) => AS_MADE.test(name),
   "Body, seat and shaft": () => true,
 };
 
@@ -96,22 +98,24 @@ export class CaseForm {
   gearTable(caption, names, gears) {
     const heads = ["", "Pinion", "Wheel"].map((text, k) => (
       k === 0 ? make("td") : make("th", { scope: "col" }, text)));
-    const rows = names.map((name) => {
-      const words = name.split(".").map(wordsOf).join(" · ");
-      const cells = gears.map((gear, k) => {
-        if (!gear.has(name)) return make("td");
-        const field = this.add(gear.get(name), words);
-        field.input.setAttribute("aria-label", `${field.spoken}, ${["pinion", "wheel"][k]}`);
-        return make("td", {}, field.entry, field.message);
-      });
-      const field = this.fields.get((gears[0].get(name) || gears[1].get(name)).path.join("."));
-      const label = make("th", { scope: "row" }, field.spoken, make("span", { class: "hint" }, field.hint));
-      return make("tr", {}, label, ...cells);
+    const rows = names.flatMap((name) => {
+      const fields = gears.map((gear, k) => gear.has(name) && this.ofGear(gear.get(name), ["pinion", "wheel"][k]));
+      const [field] = fields.filter(Boolean);
+      const label = (text) => make("th", { scope: "row" }, text, make("span", { class: "hint" }, field.hint));
+      const cell = (one, facts = {}) => (one ? make("td", facts, one.entry, one.message) : make("td"));
+      if (!field.wide) return make("tr", {}, label(field.spoken), ...fields.map((one) => cell(one)));
+      return fields.filter(Boolean).map((one) => make("tr", {}, label(one.input.ariaLabel), cell(one, { colspan: 2 })));
     });
     return make(
       "table", { class: "gears", "aria-label": caption },
       make("thead", {}, make("tr", {}, ...heads)), make("tbody", {}, ...rows),
     );
+  }
+
+  ofGear(leaf, gear) {
+    const field = this.add(leaf, leaf.path.slice(2).map(wordsOf).join(" · "));
+    field.input.setAttribute("aria-label", `${field.spoken}, ${gear}`);
+    return field;
   }
 
   effects(effects) {

@@ -2,10 +2,10 @@
 
 import { Problem, pause, post } from "./api.js";
 import { button, byId, dataTable, figures, folded, make, number } from "./elements.js";
-import { SHOWN_HARMONICS, harmonicsFigure, sharingFigure, steFigure } from "./live_figures.js";
+import { SHOWN_HARMONICS, harmonicsFigure, sharingFigure, steFigure, strongestOrders } from "./live_figures.js";
 import { faultsOf } from "./job.js";
 import { LiveFlanks, liveBlock } from "./live_flanks.js";
-import { mainFigures, numbersOf, sourcesOf } from "./live_numbers.js";
+import { mainFigures, numbersOf, ordersOf, sourcesOf } from "./live_numbers.js";
 import { LiveSound } from "./live_sound.js";
 import { plot } from "./plots.js";
 import { Sliders } from "./sliders.js";
@@ -46,14 +46,13 @@ export class Live {
     this.before = null;
     this.waiting = null;
     byId("live-none").hidden = known !== null;
-    byId("live-body").hidden = known === null;
+    byId("live-body").hidden = byId("quick").hidden = !known || known.long;
     this.known = known && { ...known, highest: known.torques.at(-1) };
-    if (known) {
-      this.controls();
-      this.plots();
-    } else {
+    if (known) this.controls();
+    if (known && !known.long) this.plots();
+    else {
       this.design.view.press(null);
-      for (const id of ["live-figures", "sliders", "quick", ...Object.values(PLACES)]) byId(id).replaceChildren();
+      for (const id of [...(known ? [] : ["live-figures", "sliders", "quick"]), ...Object.values(PLACES)]) byId(id).replaceChildren();
     }
   }
 
@@ -95,7 +94,7 @@ export class Live {
   /** Ask for where the sliders are now; while an answer is on its way only the newest wish is kept. @param {boolean} [preview] as they move */
   async ask(preview = true) {
     clearTimeout(this.resting);
-    if (!this.known) return;
+    if (!this.known || this.known.long) return;
     this.waiting = { ...this.sliders.moved, torque_n_m: [this.sliders.value("torque_n_m")], preview };
     if (this.busy) return;
     this.busy = true;
@@ -174,7 +173,7 @@ export class Live {
 
   plots() {
     this.blocks = {
-      ste: liveBlock("live_ste", "Transmission error over two base pitches", "Gray, once it is analyzed here: as analyzed, at the same torque and aligned."),
+      ste: liveBlock("live_ste", "Transmission error", "Gray, once it is analyzed here: as analyzed, at the same torque and aligned."),
       harmonics: liveBlock("live_harmonics", "Mesh harmonics", "Amplitudes of the mesh frequency and its multiples."),
       sharing: liveBlock("live_load_share", "Load sharing", "Part of the load on each pair of teeth."),
     };
@@ -208,16 +207,32 @@ export class Live {
     ]);
   }
 
+  /** Say over how many pitches a curve goes, and which orders it has. */
+  named({ period }) {
+    const words = period > 1
+      ? [`Transmission error over ${period} base pitches`, "Orders of teeth that differ",
+        "Of the mesh (mesh 1), of a shaft (pinion 1: its run-out; pinion 11: 11 waves, a ghost order), and sidebands (mesh 1 - pinion 1)."]
+      : ["Transmission error over two base pitches", "Mesh harmonics", "Amplitudes of the mesh frequency and its multiples."];
+    const { ste, harmonics } = this.blocks;
+    ste.block.querySelector("h3").textContent = words[0];
+    harmonics.block.querySelector("h3").textContent = words[1];
+    harmonics.block.querySelector("figcaption").textContent = words[2];
+  }
+
   describe(shown) {
-    const numbers = [dataTable(numbersOf(shown)), dataTable(sourcesOf(shown.at(-1).curve))];
+    const now = shown.at(-1).curve;
+    const tables = [numbersOf(shown), ...(now.period > 1 ? [ordersOf(now)] : []), sourcesOf(now)];
+    const numbers = tables.map((table) => dataTable(table));
     this.numbers.replaceChildren(make("summary", {}, "Numbers"), ...numbers);
     const ripple = shown.map(({ name, curve }) => `${name} ${number(curve.peak_to_peak_um, 3)} µm`).reverse().join(", ");
-    const now = shown.at(-1).curve;
+    this.named(now);
     this.blocks.ste.node.setAttribute(
       "aria-label", `Transmission error: peak to peak ${ripple}; mean ${number(now.mean_um, 4)} µm now.`,
     );
-    const tones = now.harmonics_um.slice(0, SHOWN_HARMONICS).map((value) => number(value, 3)).join(", ");
-    this.blocks.harmonics.node.setAttribute("aria-label", `Mesh harmonics 1 to ${SHOWN_HARMONICS}: ${tones} µm.`);
+    const tones = now.period > 1
+      ? `Strongest orders: ${strongestOrders(now, SHOWN_HARMONICS).map(({ name, amplitude }) => `${name} ${number(amplitude, 3)}`).join(", ")} µm.`
+      : `Mesh harmonics 1 to ${SHOWN_HARMONICS}: ${now.harmonics_um.slice(0, SHOWN_HARMONICS).map((value) => number(value, 3)).join(", ")} µm.`;
+    this.blocks.harmonics.node.setAttribute("aria-label", tones);
     this.blocks.sharing.node.setAttribute("aria-label", "Load share of each tooth pair over the base pitch.");
   }
 }

@@ -5,6 +5,8 @@ const PAIRS = [ // by index, as in the report (drawing/palette.py)
   "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9",
 ];
 export const SHOWN_HARMONICS = 8;
+const [STRONGEST, LABELED, HIGHEST] = [60, 16, 4.2]; // lines drawn and named, mesh order
+const APART = 0.09; // mesh orders between names
 
 /**
  * @typedef {{name: string, curve: object, color: string, width: number, dash: string}} Shown a curve as it is drawn
@@ -41,8 +43,44 @@ export function steFigure(shown) {
   return { data, layout: layout("position, base pitches", "transmission error less its mean, µm") };
 }
 
+/** The strongest orders of a curve up to the fourth of the mesh, by name: of the mesh, of a shaft, or beside the mesh. @param {any} curve */
+export function strongestOrders({ order, order_name: names, amplitude_um: amplitudes }, most = STRONGEST) {
+  const lines = order.map((at, k) => ({ order: at, name: names[k], amplitude: amplitudes[k] })).filter((line) => line.order < HIGHEST);
+  return lines.sort((one, other) => other.amplitude - one.amplitude).slice(0, most);
+}
+
+/** What stands at lines, the strongest first: a line beside a stronger one is named at that one, "mesh 1 (± pinion 1)". */
+function labelsOf(lines) {
+  const beside = (line, other) => Math.abs(line.order - other.order) < APART;
+  return lines.map((line, rank) => {
+    if (lines.slice(0, rank).some((other) => beside(line, other))) return "";
+    const sides = lines.filter(({ name }) => name.startsWith(`${line.name} `)).map(({ name }) => name.slice(line.name.length + 3));
+    return [line.name, ...new Set(sides.map((side) => `± ${side}`))].join(" ");
+  });
+}
+
+/** Orders of teeth that differ: mesh, shafts, sidebands and ghost orders, named at their lines. @param {Shown[]} shown */
+function ordersFigure(shown) {
+  const data = shown.map(({ name, curve, color }, k) => {
+    const lines = curve.period > 1 ? strongestOrders(curve) : curve.harmonics_um.slice(0, 4).map((amplitude, at) => (
+      { order: at + 1, name: `mesh ${at + 1}`, amplitude }));
+    const labels = k === shown.length - 1 ? labelsOf(lines.slice(0, LABELED)) : [];
+    return {
+      type: "bar", name, x: lines.map((line) => line.order), y: lines.map(({ amplitude }) => amplitude), width: 0.02, marker: { color },
+      text: labels, textposition: "outside", textangle: -90, constraintext: "none", cliponaxis: false, customdata: lines.map((line) => line.name),
+      hovertemplate: "%{customdata}: %{y:.3g} µm",
+    };
+  });
+  const top = Math.log10(Math.max(...data.flatMap(({ y }) => y)));
+  const made = layout("order of the mesh", "amplitude, µm", { barmode: "overlay", hovermode: "closest" });
+  Object.assign(made.yaxis, { type: "log", range: [top - 3.5, top + 1.2], dtick: 1 });
+  Object.assign(made.xaxis, { range: [-0.05, HIGHEST], dtick: 1 });
+  return { data, layout: made };
+}
+
 /** @param {Shown[]} shown */
 export function harmonicsFigure(shown) {
+  if (shown.at(-1).curve.period > 1) return ordersFigure(shown);
   const order = Array.from({ length: SHOWN_HARMONICS }, (_, k) => k + 1);
   const data = shown.map(({ name, curve, color }) => ({
     type: "bar", name, x: order, y: curve.harmonics_um.slice(0, SHOWN_HARMONICS), marker: { color },

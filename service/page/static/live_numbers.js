@@ -1,7 +1,7 @@
 /** The numbers of the live curves: main figures with error and change, and all of them as a table. */
 
 import { number } from "./elements.js";
-import { SHOWN_HARMONICS } from "./live_figures.js";
+import { SHOWN_HARMONICS, strongestOrders } from "./live_figures.js";
 
 const plusMinus = (error, coming) => (Number.isFinite(error) ? `± ${number(error, 2)}` : coming ? "± …" : "");
 
@@ -54,4 +54,10 @@ export function numbersOf(shown) {
     head: ["figure", ...shown.map(({ name }) => name)],
     rows: [row("peak to peak", (curve) => curve.peak_to_peak_um), row("mean", (curve) => curve.mean_um), ...tones],
   };
+}
+
+/** The strongest orders of teeth that differ, by name. @param {any} curve */
+export function ordersOf(curve) {
+  const rows = strongestOrders(curve, 20).map(({ order, name, amplitude }) => [name, number(order), number(amplitude, 3)]);
+  return { caption: "Strongest orders", head: ["order", "of the mesh", "amplitude, µm"], rows };
 }

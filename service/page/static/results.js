@@ -4,13 +4,14 @@
 import { get, guarded, patiently } from "./api.js";
 import { retype, typedIn } from "./controls.js";
 import { DesignNote } from "./design_note.js";
-import { byId, folded, make } from "./elements.js";
+import { byId, figures, folded, make } from "./elements.js";
 import { sayMissing } from "./notice.js";
 import { pack, unpack } from "./packed.js";
 import { fetchPlotly } from "./plotly.js";
 import { showReport } from "./report.js";
 
 const PLANE = /plane/;
+const LONGEST = 256; // base pitches over which curves follow sliders
 const OWN = ["live-body", "quick", "dynamics-body"]; // parts of the page whose controls belong to one result
 const TABS = { // where the figures of the report stand; those of no other tab are with the tables
   ripple: ["ste", "ripple", "ripple_over_torque"], flank: ["flanks_over_torque", "face_load", "pair_drawing"],
@@ -91,11 +92,13 @@ export class Results {
     if (signal.aborted) return;
     const plane = PLANE.test(facts.receipt?.plan?.model ?? "");
     const torques = facts.torque_n_m;
-    const known = { key, case: facts.case, torques, torque: torques[Math.floor(torques.length / 2)], plane };
+    const long = facts.period > LONGEST;
+    const known = { key, case: facts.case, torques, torque: torques[Math.floor(torques.length / 2)], plane, long };
     byId("results-none").hidden = true;
-    await reported;
+    const report = await reported;
     if (signal.aborted) return;
     this.offer(known);
+    if (long) this.asAnalyzed(facts.period, report);
     this.shown = key;
   }
 
@@ -106,6 +109,14 @@ export class Results {
     this.unreport();
     const report = await showReport(byId("results-body"), result, { making: true, signal, place, alarms: byId("results-alarms") });
     if (report) byId("dock-words").textContent = `${report.title}, ${report.lead}.`;
+    return report;
+  }
+
+  /** Show figures as analyzed where no curves follow sliders. @param {number} period @param {any} report */
+  asAnalyzed(period, { headlines }) {
+    figures(byId("live-figures"), headlines.map(({ name, value, remark }) => [name, value, remark]));
+    for (const tab of Object.keys(TABS)) byId(`report-${tab}`).parentElement.open = true;
+    byId("dock-words").append(` Over ${period} base pitches curves are as analyzed: sliders take at most ${LONGEST}.`);
   }
 
   /** Show what the first example gave when the program was made: nothing is computed. */

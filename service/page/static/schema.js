@@ -27,20 +27,31 @@ export function leaves(given, root, path = [], required = true) {
       ([name, inner]) => leaves(inner, root, [...path, name], needed.has(name)),
     );
   }
-  return [{ path, schema, nullable, required }];
+  return [{ path, schema: { ...schema, ...columnsOf(schema.items, root) }, nullable, required }];
 }
+
+/** The numbers of the tables that a list holds, by name. */
+function columnsOf(items, root) {
+  const { properties } = items ? resolved(items, root).schema : {};
+  if (!properties) return {};
+  const plain = Object.entries(properties).map(([name, inner]) => [name, resolved(inner, root).schema]);
+  return { columns: Object.fromEntries(plain.filter(([, { type }]) => NUMBERS.includes(type))) };
+}
+
+const NUMBERS = ["integer", "number"];
 
 export function kindOf(schema) {
   if (schema.enum) return "choice";
   if (schema.type === "boolean") return "switch";
-  if (schema.type === "integer" || schema.type === "number") return "number";
-  if (schema.type === "array" && ["number", "integer", "string"].includes(schema.items?.type)) return "list";
+  if (NUMBERS.includes(schema.type)) return "number";
+  if (schema.type === "array" && [...NUMBERS, "string"].includes(schema.items?.type)) return "list";
+  if (schema.columns) return "rows";
   return "json";
 }
 
-/** Whether a field of a gear is of its flanks: a figure declared to act along them, or one of their two tables. */
+/** Whether a field of a gear is of its flanks: a figure declared to act along them, or their grid. */
 export function ofFlank(name, schema) {
-  return Boolean(schema["x-along"]?.length) || /^(flank_grid|pitch_deviation)/.test(name);
+  return Boolean(schema["x-along"]?.length) || /^flank_grid/.test(name);
 }
 
 export function at(content, path) {

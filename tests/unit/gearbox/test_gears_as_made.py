@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from bounds.types import Json
 from fe_contact.geometry import flank_tolerances as of_class
 from lineofaction.gearbox.convert.case import case_json, gear_pair
 from lineofaction.gearbox.inspection.as_made import Inspected, drawn_case, measured_case
@@ -18,7 +19,11 @@ ROUNDING = 2e-9  # m: fields are written to a nanometer
 
 def helical(pinion: int = 23, wheel: int = 67, angle: float = 20.0) -> Case:
     gear = {"face_width_mm": 20.0, "bore_diameter_mm": 12.0}
-    pair = {"normal_module_mm": 2.0, "helix_angle_deg": angle, "center_distance_mm": 97.0 if angle else 90.0}
+    pair: Json = {
+        "normal_module_mm": 2.0,
+        "helix_angle_deg": angle,
+        "center_distance_mm": 97.0 if angle else 90.0,
+    }
     pair |= {"pinion": gear | {"teeth": pinion}, "wheel": gear | {"teeth": wheel}}
     return validated(Case, {"pair": pair, "load": {"torque_n_m": [50.0]}})
 
@@ -50,7 +55,7 @@ def test_drawn_gears_are_within_their_class(tolerance_class: int, seed: int) -> 
 def test_equal_seeds_draw_equal_gears_and_a_spur_pair_stays_plane() -> None:
     first, again, other = (drawn_case(helical(angle=0.0), 6, seed) for seed in (1, 1, 2))
     assert first == again != other
-    assert all(flank.helix_slope_um == 0.0 for flank in first.pair.pinion.tooth_flanks)
+    assert all(flank.helix_slope == 0.0 for flank in gear_pair(first).pinion.tooth_flanks)
     assert first.pair.pinion.pitch_deviation_um != first.pair.wheel.pitch_deviation_um
 
 
@@ -67,7 +72,7 @@ def test_what_a_drawn_gear_measures_is_what_was_drawn() -> None:
     assert found.left_out == []
     assert again.pair.wheel.pitch_deviation_um == pytest.approx(drawn.pair.wheel.pitch_deviation_um, abs=1e-4)
     slopes, measured = (
-        [flank.profile_slope_um for flank in case.pair.wheel.tooth_flanks] for case in (drawn, again)
+        [1e6 * flank.profile_slope for flank in gear_pair(case).wheel.tooth_flanks] for case in (drawn, again)
     )
     assert measured == pytest.approx(slopes, abs=0.05)
 
