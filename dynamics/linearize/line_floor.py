@@ -8,7 +8,7 @@ frequencies the form is linear.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -22,6 +22,8 @@ WIDEST = 0.01
 """Of a step between frequencies, of the frequency: no wider where no mode is near."""
 OF_MODE = 0.25
 """Of the damping ratio of a mode, or of the distance from it where that is larger: a step's at most."""
+MISSED = 1.0 / 7.0
+"""Of a second difference, that a straight line misses at most: an eighth of a parabola, more of others."""
 LEAST_RATIO = 1e-4
 COUNTED = 1e-10
 """Of the power of all lines, that a direction of the rows has to have."""
@@ -81,14 +83,15 @@ class LineFloor:
 
     def power(self, matrix: ComplexArray) -> FloorPower:
         """Return a power or mean square of all lines: y^H M y of their inputs y, by `matrix` M (G, e, e)."""
-        forms, products = [_real_terms(each) for each in (matrix, self._bent(matrix))], _products(self.inputs)
+        form, products = _real_terms(matrix), _products(self.inputs)
+        bent, sizes = [_of_three(np.abs(term)) for term in _real_terms(self._bent(matrix))], np.abs(products)
         first, last = self._bin(self.frequency[[0, -1]])
         made = np.zeros((3, self.pace.size, int(last - first) + 1))
         for row, pace in enumerate(self.pace):
             hertz = self.harmonic * pace
-            power, off = (self._along(hertz, products, form) for form in forms)
-            power = np.maximum(power, 0.0)
-            for part, values in zip(made, (power * hertz, power, np.abs(off)), strict=True):
+            power = np.maximum(self._along(hertz, products, form), 0.0)
+            off = self._along(hertz, sizes, bent)
+            for part, values in zip(made, (power * hertz, power, off), strict=True):
                 part[row] = np.bincount(self._bin(hertz) - first, values, part.shape[1])
         middle = 10.0 ** (((np.arange(first, last + 1) + 0.5) / BINS - 0.5) / 10.0)
         mean = np.divide(made[0], made[1], out=np.tile(middle, (self.pace.size, 1)), where=made[1] > 0.0)
@@ -99,7 +102,7 @@ class LineFloor:
         force = np.moveaxis(self.bearing_force[index, :3], 0, 2)
         return self.power(0.5 * force.conj() @ np.swapaxes(force, 1, 2))
 
-    def _along(self, hertz: FloatArray, products: list[FloatArray], form: list[FloatArray]) -> FloatArray:
+    def _along(self, hertz: FloatArray, products: Iterable[FloatArray], form: list[FloatArray]) -> FloatArray:
         terms = zip(products, form, strict=True)
         return np.asarray(sum(own * np.interp(hertz, self.frequency, term) for own, term in terms))
 
@@ -112,8 +115,14 @@ class LineFloor:
         """Return what a straight line from a frequency to the next misses midway, of forms (G, e, e)."""
         step = np.diff(self.frequency)[:, None, None]
         bend = 2.0 * np.diff(np.diff(matrix, axis=0) / step, axis=0) / (step[1:] + step[:-1])
-        missed = np.square(np.maximum(step[1:], step[:-1])) * bend / 8.0
+        missed = np.square(np.maximum(step[1:], step[:-1])) * bend * MISSED
         return np.concatenate([missed[:1], missed, missed[-1:]])
+
+
+def _of_three(size: FloatArray) -> FloatArray:
+    """Return the largest of sizes (G,) and those beside them: where a form bends back, its bend is 0."""
+    wide = np.pad(size, 1, mode="edge")
+    return np.maximum(np.maximum(wide[:-2], wide[2:]), size)
 
 
 def _real_terms(matrix: ComplexArray) -> list[FloatArray]:

@@ -228,7 +228,7 @@ def _draw_bars(ax: Axes, bars: Bars) -> Any:
     base, top = np.broadcast_arrays(bars.base, bars.top)
     corners = np.stack([left, base, left, top, right, top, right, base], axis=-1).reshape(-1, 4, 2)
     look: dict[str, Any] = {"facecolor": bars.color, "alpha": 0.35 if bars.veiled else 1.0, "lw": 0}
-    drawn = ax.add_collection(PolyCollection(corners, **look))
+    drawn = ax.add_collection(PolyCollection(list(corners), **look))
     drawn.sticky_edges.y.extend(np.unique(base).tolist())
     ax.update_datalim(corners.reshape(-1, 2))
     ax.autoscale_view()
