@@ -43,13 +43,18 @@ _RING_HAS = both(given("rim_diameter_mm"), left_out("bore_diameter_mm", "blank",
 _GEAR_HAS = both(given("bore_diameter_mm"), left_out(*(figure.field for figure in _RING_ONLY)))
 
 
+def _of_either_kind(schema: dict[str, Any]) -> None:
+    """Say in a schema what belongs to which kind, and what a ring gear has where nothing is stated."""
+    schema |= stated({"if": _IS_RING, "then": _RING_HAS, "else": _GEAR_HAS})
+    for name, value in _DEFAULTS.items():
+        schema["properties"][name]["x-usual"] = {"value": value, "with": ["internal"]}
+
+
 @with_fields(as_fields(replace(figure, default=None) for figure in (*_GEAR_ONLY, *_RING_ONLY)))
 class WheelInput(ToothingInput):
     """The driven gear. What only one kind has is left out by the other."""
 
-    model_config = ConfigDict(
-        json_schema_extra=stated({"if": _IS_RING, "then": _RING_HAS, "else": _GEAR_HAS})
-    )
+    model_config = ConfigDict(json_schema_extra=_of_either_kind)
 
     internal: bool = Field(
         default=False, description="Whether the wheel is a ring gear around the pinion", examples=[True]
@@ -220,7 +225,7 @@ class Case(BoundaryModel):
             le=0.5,
             description="Allowed relative error of mean and peak-to-peak STE",
             examples=[0.01],
-            json_schema_extra={"x-alone": {"value": _USUAL_TOLERANCE, "without": [*_WISHES[1:]]}},
+            json_schema_extra={"x-usual": {"value": _USUAL_TOLERANCE, "without": [*_WISHES[1:]]}},
         )
         tolerance_floor_nm: float = Field(
             default=20.0,

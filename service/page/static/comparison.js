@@ -8,9 +8,10 @@ import { at } from "./schema.js";
 
 /** What a field has in a case; left out, what the service takes. @param {Field} field @param {object} content */
 function valueIn({ path, schema }, content) {
-  const stated = (name) => (at(content, [...path.slice(0, -1), name]) ?? null) !== null;
-  const { value, without } = schema["x-alone"] ?? {}; // what it is where others are left out too
-  return at(content, path) ?? schema.default ?? (without && !without.some(stated) ? value : null);
+  const stated = (name) => Boolean(at(content, [...path.slice(0, -1), name]));
+  const { value, with: needed = [], without = [] } = schema["x-usual"] ?? {}; // by what is stated beside it
+  const usual = needed.every(stated) && !without.some(stated) ? value : undefined;
+  return at(content, path) ?? usual ?? schema.default ?? null;
 }
 
 /**
