@@ -30,6 +30,7 @@ const STARTS = [EXAMPLES, "/v1/processes/analyze", "/v1/effects", "/v1/processes
 const PLACES = ["analyze", "simulate", "modes", "scene", "job"]; // beside the studies
 const OF_RESULT = { simulate: null, modes: null }; // jobs on a result, which go with it
 const USUAL_TAB = "ripple";
+const MOST = 1_500_000; // characters of a design that an address carries
 const RESTING = 150; // milliseconds between two writings of what is typed
 
 class Page {
@@ -159,7 +160,10 @@ class Page {
   carry() {
     const base = this.results.note.content ?? this.base ?? (this.address.empty ? this.design.example.case : null);
     const own = base === null || this.design.differences(base).length > 0;
-    this.address.look("case", own ? pack(this.design.case) : null);
+    const word = own ? pack(this.design.case) : null;
+    const long = word !== null && word.length > MOST;
+    this.address.look("case", long ? null : word);
+    if (long) byId("example-replaced").textContent = "The design is too long for the address: save it to send it.";
   }
 
   /** Show what jobs were submitted with where such jobs are submitted. @param {import("./orders.js").Order[]} orders */
