@@ -174,7 +174,9 @@ def _dispatch(name: str, branch: Callable[[Law, Compiled], str], otherwise: str)
         lines += [f"    {'if' if law == 0 else 'elif'} kind == {int(law)}:", f"        {branch(law, row)}"]
     functions = [each for row in COMPILED.values() for each in (row.force, row.energy) if each is not None]
     names = {each.__name__: each for each in functions} | {"__name__": __name__}
-    exec("\n".join([*lines, f"    {otherwise}"]), names)
+    text = "\n".join([*lines, f"    {otherwise}"])
+    exec(text, names)
+    names[name].__source__ = text  # no file has it
     return inner(names[name])
 
 

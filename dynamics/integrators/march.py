@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.assemble import System
 from dynamics.forces.elements import FLANK, SPATIAL_FLANK, Elements, potential
-from dynamics.integrators.advance import Control, advance, prepare_samples, prepare_steps
+from dynamics.integrators.advance import Control, prepare_samples, prepare_steps
 from dynamics.integrators.method_choice import choose_method
 from dynamics.integrators.sampler import (
     Sampler,
@@ -22,6 +22,7 @@ from dynamics.integrators.sampler import (
 )
 from dynamics.integrators.state_sink import BLOCK, StateSink
 from dynamics.integrators.static import StaticSolution
+from dynamics.integrators.structure_code import StructureCode
 from dynamics.integrators.tableaus import EXPLICIT_EMBEDDED_ORDER, IMPLICIT_EMBEDDED_ORDER
 from dynamics.integrators.workspace import Count, Power, Workspace, geometric_steps
 from dynamics.kernels.by_address import by_address
@@ -30,6 +31,7 @@ from dynamics.kernels.local_state import LocalState
 from dynamics.motion.observation import local_state, observe_laws
 from dynamics.motion.sampled_states import Widths
 from dynamics.scene import Integration
+from dynamics.structure_code.arrays import Known
 from dynamics.types import FloatArray, IntArray, Json, RunStatus
 from model_studies.stage_clock import TimeTaken
 
@@ -215,6 +217,13 @@ class March:
         return self.work, self.ring
 
     @property
+    def structure(self) -> dict[Any, Known]:
+        """What `advance` gets by address, and what of it belongs to the structure of the run."""
+        known = {"work": Known.DIMENSIONS, "ring": Known.DIMENSIONS}
+        fixed = {each: known.get(name, Known.ALL) for name, each in self.compiled._asdict().items()}
+        return {**fixed, by_address(self.widths.states(0)): Known.WIDTHS}
+
+    @property
     def widths(self) -> Widths:
         """Sizes of the sampled states."""
         channels, rows = self.sampler.filtered, self.ring.local.force.size
@@ -316,9 +325,10 @@ def march_on(
     work = BLOCK_WORK if progress is None and cancel is None else 0  # at least, samples times freedoms
     least, longest = work / (max(march.work.q.size, 1) * rate), BLOCK / rate
     block = min(max(duration / CHUNKS, least), longest)
+    code = StructureCode(march.control.implicit, march.structure)
     while True:
         stop = min(float(march.work.time[0]) + block, duration)
-        status = _advance_to(march, stop, sink)
+        status = _advance_to(march, code, stop, sink)
         if progress is not None:
             progress(min(float(march.work.time[0]) / max(duration, 1e-300), 1.0), "time integration")
         if not status.usable or march.work.time[0] >= duration:
@@ -329,14 +339,14 @@ def march_on(
             after_block()
 
 
-def _advance_to(march: March, stop: float, sink: StateSink) -> RunStatus:
+def _advance_to(march: March, code: StructureCode, stop: float, sink: StateSink) -> RunStatus:
     """Step until the time passes `stop`; the last step may pass it by the largest one."""
     rate, counts = march.system.sampling.rate, march.work.counts
     first = int(counts[Count.OUTPUT])
     last = int(np.floor((stop + float(march.work.step_sizes[0])) * rate)) + 2
     room = sink.room(first, max(min(last, march.samples) - first, 1 if first == 0 else 0))
     counts[Count.FIRST_ROW] = first
-    status = RunStatus(advance(*march.compiled, stop, by_address(room)))
+    status = RunStatus(code.advance(march.compiled, stop, by_address(room)))
     sink.keep(first, int(counts[Count.OUTPUT]) - first)
     return status
 

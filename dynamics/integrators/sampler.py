@@ -18,7 +18,7 @@ from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.assemble import NO_SIGNALS, BearingForce, System
 from dynamics.forces.elements import evaluate_all, has_unbalance, make_local
 from dynamics.integrators.workspace import Count, Workspace
-from dynamics.kernels.by_address import by_address
+from dynamics.kernels.by_address import by_address, with_numbers
 from dynamics.kernels.compiled import compiled, inner
 from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
@@ -43,6 +43,7 @@ HIGH_PASS = np.array([1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0]) / 64.0
 THIRD = 1.0 / 3.0
 
 
+@with_numbers("level", "whole")
 class Sampler(NamedTuple):
     """The filter and the series that sample the steps.
 

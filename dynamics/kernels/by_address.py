@@ -12,6 +12,7 @@ what it reads. Attributes work alike on the tuple and on its address, in Python 
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Callable
 from ctypes import addressof, c_char
 from itertools import accumulate
 from numbers import Integral
@@ -36,18 +37,34 @@ SCALARS = {bool: types.boolean, int: types.int64, float: types.float64}
 ITEMS = {"d": types.float64, "l": types.int64, "q": types.int64, "?": types.boolean}
 
 Tuple = TypeVar("Tuple")
+TupleClass = TypeVar("TupleClass", bound=type)
+
+
+_numbers: dict[type, frozenset[str]] = {}
+
+
+def with_numbers(*names: str) -> Callable[[TupleClass], TupleClass]:
+    """Say which arrays of integers of a class differ between runs of scenes of one structure."""
+
+    def said(cls: TupleClass) -> TupleClass:
+        _numbers[cls] = frozenset(names)
+        return cls
+
+    return said
 
 
 class _AddressType(types.Type):
     """The compiled type of an address: the fields of the tuple there, each with its type and first word.
 
-    `size` is how many words it takes.
+    `size` is how many words it takes; `numbers` are arrays of integers that are no part of a structure.
     """
 
-    def __init__(self, name: str, fields: tuple[tuple[str, Any, int], ...], size: int) -> None:
+    def __init__(
+        self, name: str, fields: tuple[tuple[str, Any, int], ...], size: int, numbers: frozenset[str]
+    ) -> None:
         digest = hashlib.sha256(repr(fields).encode()).hexdigest()
         super().__init__(f"{name}At{digest[:12]}")  # short: it becomes part of every symbol
-        self.fields, self.size = fields, size
+        self.fields, self.size, self.numbers = fields, size, numbers
 
     def find(self, name: str) -> tuple[Any, int] | None:
         """Return type and first word of a field."""
@@ -138,7 +155,7 @@ _seen: dict[type, tuple[list[Any], _AddressType]] = {}
 def _address_type(cls: Any, kinds: list[Any]) -> _AddressType:
     first = [0, *accumulate(map(_size, kinds))]
     fields = zip(cls._fields, map(_field_type, kinds), first[:-1], strict=True)
-    return _AddressType(cls.__name__, tuple(fields), first[-1])
+    return _AddressType(cls.__name__, tuple(fields), first[-1], _numbers.get(cls, frozenset()))
 
 
 def _size(kind: Any) -> int:

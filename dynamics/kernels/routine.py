@@ -53,7 +53,7 @@ class Routine:
         if self.prepared:
             return
         values = iter(tuples)
-        hints = self._arguments
+        hints = self.arguments
         kinds = tuple(SCALARS.get(hint) or by_address(next(values))._numba_type_ for hint in hints)
         self._dispatcher.compile(kinds)
         overload = self._dispatcher.overloads[kinds]
@@ -65,20 +65,22 @@ class Routine:
 
     def typed(self, values: tuple[Any, ...]) -> Any:
         """Return the compiled signature: numbers as annotated, tuples as given."""
-        kinds = (SCALARS.get(hint, kind) for hint, kind in zip(self._arguments, values, strict=True))
+        kinds = (SCALARS.get(hint, kind) for hint, kind in zip(self.arguments, values, strict=True))
         return signature(self._result, *kinds)
 
     @cached_property
-    def _hints(self) -> dict[str, Any]:
+    def hints(self) -> dict[str, Any]:
+        """Types of arguments and result by name."""
         return get_type_hints(self._function)
 
     @cached_property
-    def _arguments(self) -> list[Any]:
-        return [self._hints[name] for name in inspect.signature(self._function).parameters]
+    def arguments(self) -> list[Any]:
+        """Types of the arguments in their order."""
+        return [self.hints[name] for name in inspect.signature(self._function).parameters]
 
     @property
     def _result(self) -> Any:
-        hint = self._hints["return"]
+        hint = self.hints["return"]
         if parts := get_args(hint):
             return types.UniTuple(SCALARS[parts[0]], len(parts))
         return types.none if hint is type(None) else SCALARS[hint]

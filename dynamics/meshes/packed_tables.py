@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dynamics.identity_cache import identity_cached
-from dynamics.kernels.by_address import by_address
+from dynamics.kernels.by_address import by_address, with_numbers
 from dynamics.kernels.compiled import compiled
 from dynamics.meshes.mesh_table import MeshTable
 from dynamics.types import FloatArray, IntArray
@@ -53,6 +53,7 @@ BUCKETS_PER_KNOT = 4
 LEAST = 4  # knots of a table that can be decimated
 
 
+@with_numbers("offset")
 class PackedTables(NamedTuple):
     """Tables of several flanks, one after the other in flat arrays; flanks of one table share it.
 

@@ -12,7 +12,7 @@ ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
     ("fe_contact",): (43_353, 804),
-    ("dynamics",): (43_330, 853),
+    ("dynamics",): (44_802, 880),
     ("lineofaction.gearbox",): (27_097, 552),
     ("lineofaction.report",): (12_387, 231),
     ("service",): (14_894, 350),
@@ -22,7 +22,7 @@ BUDGETS = {
     ("bounds", "host", "model_studies"): (4_521, 156),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 844
+MOST_FILES = 854
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""

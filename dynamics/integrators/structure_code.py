@@ -1,0 +1,84 @@
+"""Runs in code of their own for their structure, where they take longer than compiling it.
+
+The code does what the ordinary loops do, to the last bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any, cast
+
+from dynamics.integrators.advance import advance
+from dynamics.structure_code.arithmetic import Unsupported
+from dynamics.structure_code.arrays import Known
+from dynamics.structure_code.machine_code import CodeStore, MachineCode
+from dynamics.structure_code.module import Module
+from dynamics.structure_code.structure import structure_key
+from host import cpu_seconds
+
+WORTHWHILE = 1.0
+"""CPU time of ordinary loops from which a structure gets code of its own, over that of compiling it."""
+SEEN = 0.1
+"""The same for a structure that has been run as long before."""
+LEAST = 0.5
+"""CPU s of the smallest structure."""
+SECONDS_PER_EXPRESSION = 8e-5
+"""Measured from 15 000 expressions (a pair of 5 freedoms) to 95 000 (elastic shafts, 65 freedoms)."""
+
+_spent: dict[str, float] = {}
+_written: dict[str, Module | None] = {}
+"""Modules to be compiled; None: what cannot be written out."""
+
+
+@cache
+def _store() -> CodeStore:
+    return CodeStore(Path(str(advance.stats.cache_path)))
+
+
+class StructureCode:
+    """What moves a run on: the ordinary loops, or code for the structure of the run."""
+
+    def __init__(self, implicit: bool, tuples: Mapping[Any, Known]) -> None:
+        """Look for the code of the structure of `tuples`, the arguments of `advance` by address."""
+        self._tuples, self._code, self._seen = tuples, None, False
+        self._key = None if implicit else structure_key(tuples)
+        if self._key is not None:
+            self._code, self._seen = _store().get(self._key), _store().seen(self._key)
+
+    def advance(self, passed: Any, stop: float, out: Any) -> int:
+        """Do what `advance` does, and count the time that ordinary loops take."""
+        if self._code is not None:
+            return self._code.call("advance", *passed, stop, out)
+        ordinary, began = cast(Any, advance), cpu_seconds()
+        status = int(ordinary(*passed, stop, out))
+        if self._key is not None:
+            _spent[self._key] = _spent.get(self._key, 0.0) + cpu_seconds() - began
+            self._code = self._worthwhile(self._key)
+        return status
+
+    def _worthwhile(self, key: str) -> MachineCode | None:
+        """Return new code where ordinary loops have taken long enough for it."""
+        share = SEEN if self._seen else WORTHWHILE
+        if _spent[key] >= SEEN * LEAST:
+            _store().note(key)  # the next run makes it sooner
+        if _spent[key] < share * LEAST:
+            return None
+        if key not in _written:
+            _written[key] = _module(self._tuples)
+        module = _written[key]
+        if module is None or _spent[key] < share * SECONDS_PER_EXPRESSION * module.expressions:
+            return None
+        del _written[key]
+        return _store().add(key, module)
+
+
+def _module(tuples: Mapping[Any, Known]) -> Module | None:
+    """Write out `advance`; None where a law cannot be, or where no source is at hand."""
+    module = Module()
+    try:
+        module.export(advance, tuples)
+    except (Unsupported, OSError):
+        return None
+    return module

@@ -1,0 +1,120 @@
+"""Machine code of modules, kept in memory and, for other processes, beside that of the ordinary loops."""
+
+# llvmlite annotates little
+# mypy: disable-error-code="no-untyped-call"
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from contextlib import suppress
+from ctypes import CFUNCTYPE, c_double, c_int64, c_void_p
+from hashlib import sha256
+from pathlib import Path
+from tempfile import NamedTemporaryFile
+from threading import Lock
+from typing import Any
+
+import llvmlite.binding as llvm
+
+from dynamics.structure_code.module import Module
+
+KEPT_IN_MEMORY, KEPT_IN_FILES = 32, 256
+SUFFIX = ".structure"
+
+
+class MachineCode:
+    """Machine code ready to run; it stays as long as this object."""
+
+    def __init__(self, code: bytes) -> None:
+        empty = llvm.parse_assembly("")
+        empty.triple = llvm.get_process_triple()
+        self._engine = llvm.create_mcjit_compiler(empty, _machine())
+        self._engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+        self._engine.finalize_object()
+
+    def call(self, name: str, *arguments: Any) -> int:
+        """Call a function of tuples by address and floats without the interpreter's lock."""
+        kinds = [c_double if isinstance(each, float) else c_void_p for each in arguments]
+        function = CFUNCTYPE(c_int64, *kinds)(self._engine.get_function_address(name))
+        passed = (each if isinstance(each, float) else each._address for each in arguments)
+        return int(function(*passed))
+
+
+def _machine() -> Any:
+    """Return the processor at hand as a target; an engine takes it for its own."""
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    own = {"cpu": llvm.get_host_cpu_name(), "features": llvm.get_host_cpu_features().flatten()}
+    return llvm.Target.from_default_triple().create_target_machine(opt=3, jit=True, **own)
+
+
+def compiled(module: Module) -> bytes:
+    """Return the machine code of a module.
+
+    Scalars stay apart: gathering them into vectors costs more than it saves where entries are few.
+    """
+    parsed, target = llvm.parse_assembly(str(module.module)), _machine()
+    parsed.triple, parsed.data_layout = llvm.get_process_triple(), str(target.target_data)
+    parsed.verify()
+    options = llvm.create_pipeline_tuning_options(speed_level=2)
+    options.loop_vectorization, options.slp_vectorization = True, False
+    builder = llvm.create_pass_builder(target, options)
+    builder.getModulePassManager().run(parsed, builder)
+    return bytes(target.emit_object(parsed))
+
+
+class CodeStore:
+    """Code by structure: in memory, and in files of `folder` with a digest of what they hold.
+
+    An empty file says that the structure has been run. What cannot be read or written is made anew.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder, self._lock = folder, Lock()
+        self._held: OrderedDict[str, MachineCode] = OrderedDict()
+
+    def get(self, key: str) -> MachineCode | None:
+        """Return the code of a structure if there is some."""
+        with self._lock:
+            if key in self._held:
+                self._held.move_to_end(key)
+                return self._held[key]
+        with suppress(OSError):
+            held = self._file(key).read_bytes()
+            if len(held) > 32 and sha256(held[32:]).digest() == held[:32]:
+                return self._hold(key, MachineCode(held[32:]))
+        return None
+
+    def seen(self, key: str) -> bool:
+        """Return whether a process has run the structure."""
+        return self._file(key).exists()
+
+    def note(self, key: str) -> None:
+        """Note that a process has run the structure."""
+        if not self.seen(key):
+            self._write(key, b"")
+
+    def add(self, key: str, module: Module) -> MachineCode:
+        """Make the code of a structure."""
+        code = compiled(module)
+        self._write(key, sha256(code).digest() + code)
+        return self._hold(key, MachineCode(code))
+
+    def _hold(self, key: str, code: MachineCode) -> MachineCode:
+        with self._lock:
+            self._held[key] = code
+            while len(self._held) > KEPT_IN_MEMORY:
+                self._held.popitem(last=False)
+        return code
+
+    def _file(self, key: str) -> Path:
+        return self._folder / (key + SUFFIX)
+
+    def _write(self, key: str, content: bytes) -> None:
+        with suppress(OSError):
+            with NamedTemporaryFile(dir=self._folder, delete=False) as new:
+                new.write(content)
+            Path(new.name).replace(self._file(key))
+            files = sorted(self._folder.glob("*" + SUFFIX), key=lambda file: file.stat().st_mtime)
+            for old in files[:-KEPT_IN_FILES]:
+                old.unlink()

@@ -1,0 +1,132 @@
+"""Routines written out for the tuples they get, as one module of instructions."""
+
+# llvmlite annotates little
+# mypy: disable-error-code="no-untyped-call"
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from inspect import signature, unwrap
+from typing import Any, get_args, get_type_hints
+
+from llvmlite import ir
+
+from dynamics.kernels.by_address import WORD, by_value
+from dynamics.kernels.routine import Routine
+from dynamics.structure_code.arithmetic import TYPES, Unsupported, Value
+from dynamics.structure_code.arrays import Group, Known
+from dynamics.structure_code.statements import Statements
+
+POINTER = WORD.as_pointer()
+MOST_EXPRESSIONS = 150_000
+"""Beyond it compiling takes longer than runs do."""
+FEW_EXPRESSIONS = 500
+"""Of a function that is written for known numbers though it could be for any: a frame's terms have 300."""
+
+
+class Module:
+    """Functions of routines, each for the tuples it is called with.
+
+    Attributes
+    ----------
+    expressions : int
+        Read so far: what compiling takes grows with them.
+    """
+
+    def __init__(self) -> None:
+        self.module = ir.Module("structure")
+        self._functions: dict[tuple[Any, ...], Any] = {}
+        self._aliases: dict[int, tuple[Any, Any]] = {}
+        self._root = self.module.add_metadata(["arrays"])
+        self.expressions = 0
+
+    def count(self) -> None:
+        """Count an expression; too many are `Unsupported`."""
+        self.expressions += 1
+        if self.expressions > MOST_EXPRESSIONS:
+            raise Unsupported("the structure is too large")
+
+    def alias(self, array: Any) -> Any:
+        """Return what tells the accesses of an array from those of others, which have another first item."""
+        address = array.__array_interface__["data"][0] if array.size else -id(array)
+        if address not in self._aliases:
+            kind = self.module.add_metadata([str(len(self._aliases)), self._root, WORD(0)])
+            self._aliases[address] = self.module.add_metadata([kind, kind, WORD(0)]), array
+        return self._aliases[address][0]
+
+    def export(self, function: Any, tuples: Mapping[Any, Known]) -> None:
+        """Write a compiled function of `tuples` by address and of floats, which returns a status."""
+        python = unwrap(function)
+        hints = get_type_hints(python)
+        kinds = [TYPES.get(hints[name], POINTER) for name in signature(python).parameters]
+        own = ir.Function(self.module, ir.FunctionType(WORD, kinds), python.__name__)
+        groups = (Group(by_value(each), each._numba_type_, None, known) for each, known in tuples.items())
+        number = Value(None)
+        self._write(python, own, [next(groups) if kind is POINTER else number for kind in kinds])
+
+    def function(self, routine: Routine, values: Sequence[Any]) -> Any:
+        """Return the function of `routine` for these tuples and numbers of any value.
+
+        Where it reads known items by a number, and cannot otherwise be written or is short, it is one for the
+        known numbers among `values`.
+        """
+        tuples = tuple(id(each.value) for each in values if isinstance(each, Group))
+        key: tuple[Any, ...] = (routine.symbol, tuples)
+        if key not in self._functions:
+            self._functions[key] = self._written(routine, [_anything(each) for each in values])
+        if self._functions[key] is None:
+            known = tuple(None if isinstance(each, Group | Value) else each for each in values)
+            key = *key, known
+            if key not in self._functions:
+                self._functions[key] = self._written(routine, values)
+        return self._functions[key]
+
+    def _written(self, routine: Routine, values: Sequence[Any]) -> Any:
+        """Return a new function, or None if it needs numbers that are not known."""
+        result = routine.hints["return"]
+        parts = [TYPES[part] for part in get_args(result)]
+        kind = ir.LiteralStructType(parts) if parts else TYPES.get(result, ir.VoidType())
+        kinds = [TYPES.get(hint, POINTER) for hint in routine.arguments]
+        function = ir.Function(self.module, ir.FunctionType(kind, kinds), f"own{len(self.module.functions)}")
+        function.linkage = "internal"
+        return function if self._write(unwrap(routine), function, values) else None
+
+    def _write(self, python: Any, function: Any, values: Sequence[Any]) -> bool:
+        """Write `python` for these tuples and numbers; return whether it is what a caller wants."""
+        arguments = [
+            replace(value, pointer=argument) if isinstance(value, Group) else _operand(value, argument)
+            for value, argument in zip(values, function.args, strict=True)
+        ]
+        statements, anything = Statements(self, function), any(value is None for value in values)
+        before = self.expressions
+        try:
+            self._end(statements, statements.inline(python, arguments), function.function_type.return_type)
+        except Unsupported:
+            if not (statements.lost and anything):
+                raise
+            before = self.expressions
+            function.blocks.clear()
+            function.linkage = ""  # of a declaration, which nothing calls
+        return not (statements.lost and anything) or self.expressions - before > FEW_EXPRESSIONS
+
+    def _end(self, statements: Statements, found: Any, kind: Any) -> None:
+        if kind == ir.VoidType():
+            statements.b.ret_void()
+        elif isinstance(kind, ir.LiteralStructType):
+            made: Any = ir.Constant(kind, ir.Undefined)
+            for k, part in enumerate(kind.elements):
+                made = statements.b.insert_value(made, statements.cast(found[k], part), k)
+            statements.b.ret(made)
+        else:
+            statements.b.ret(statements.cast(found, kind))
+        statements.finish()
+
+
+def _anything(value: Any) -> Any:
+    """Return a tuple as it is, None for a number of any value."""
+    return value if isinstance(value, Group) else None
+
+
+def _operand(value: Any, argument: Any) -> Any:
+    return Value(argument) if value is None or isinstance(value, Value) else value

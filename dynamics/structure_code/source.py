@@ -1,0 +1,64 @@
+"""The source of compiled loops as Python's grammar has it."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import textwrap
+from collections import Counter
+from functools import cache
+from typing import Any
+
+SOURCE = "__source__"
+"""Attribute with the text of a function that no file has."""
+
+
+def python_of(function: Any) -> Any:
+    """Return the function in Python of a compiled one."""
+    return getattr(function, "py_func", None) or inspect.unwrap(function)
+
+
+@cache
+def tree_of(function: Any) -> ast.FunctionDef:
+    """Return the definition of a function in Python."""
+    text = getattr(function, SOURCE, None) or textwrap.dedent(inspect.getsource(function))
+    node = ast.parse(text).body[0]
+    assert isinstance(node, ast.FunctionDef)
+    return node
+
+
+@cache
+def assigned_in(node: ast.AST) -> frozenset[str]:
+    """Return the names that a statement assigns."""
+    names = (each for each in ast.walk(node) if isinstance(each, ast.Name))
+    return frozenset(each.id for each in names if isinstance(each.ctx, ast.Store))
+
+
+@cache
+def reads_in(node: ast.AST) -> Counter[str]:
+    """Return how often a statement reads each name."""
+    changed = (each.target for each in ast.walk(node) if isinstance(each, ast.AugAssign))
+    names = [each for each in ast.walk(node) if isinstance(each, ast.Name)]
+    read = [each for each in names if isinstance(each.ctx, ast.Load)]
+    return Counter(each.id for each in (*read, *changed) if isinstance(each, ast.Name))
+
+
+@cache
+def has_in(node: ast.AST, kind: type[ast.AST]) -> bool:
+    """Return whether a statement holds a node of a kind."""
+    return any(isinstance(each, kind) for each in ast.walk(node))
+
+
+@cache
+def is_plain(node: ast.For) -> bool:
+    """Return whether a loop calls nothing but conversions, and decides nothing."""
+    calls = (ast.unparse(each.func) for each in ast.walk(node) if isinstance(each, ast.Call))
+    decides = any(has_in(node, kind) for kind in (ast.If, ast.While, ast.Continue, ast.Return))
+    nested = any(has_in(each, ast.For) for each in node.body)
+    return not decides and not nested and set(calls) <= {"range", "np.uint64"}
+
+
+@cache
+def reading(target: ast.expr) -> ast.expr:
+    """Return the expression that reads what an assignment in place writes."""
+    return ast.parse(ast.unparse(target), mode="eval").body
