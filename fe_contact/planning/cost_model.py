@@ -19,7 +19,7 @@ from fe_contact.contact import ContactModel, teeth_in_reach
 from fe_contact.contact.problem import POINTS
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
-from fe_contact.planning.cost_of_derivatives import FEWEST_PITCHES, CycleSeconds
+from fe_contact.planning.cost_of_derivatives import CycleSeconds, expected_pitches
 from fe_contact.planning.plan import FaceDiscretization, Plan, PlaneDiscretization
 from fe_contact.sampled import ALIGNMENTS, LOADS, WIDE_INTERVALS, WIDE_PROBES, some_positions
 from fe_contact.types import Json
@@ -104,9 +104,9 @@ def contact_seconds(
     cycle = CycleSeconds.of(work, pair, model.period, kept, (loads, plan.support.size))
     derived = with_errors and cycle.pays_in_table(model.period)
     table = work.of(kept * distances, 0)
-    table += points * (cycle.derivatives if derived else cycle.exact)
+    table += points * (cycle.expected if derived else cycle.exact)
     table += _FACE_CHECK if plan.discretization.slices > 1 else 0.0
-    solved = FEWEST_PITCHES if derived else model.period
+    solved = expected_pitches(model.period) if derived else model.period
     return search, table, _errors(pair, plan, model.period, alignments, solved) if with_errors else 0.0
 
 

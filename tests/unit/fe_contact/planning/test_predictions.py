@@ -23,6 +23,7 @@ from fe_contact.planning.cost_model import (
     memory_of_contact,
     predict_run,
 )
+from fe_contact.planning.cost_of_derivatives import expected_pitches
 from fe_contact.planning.planned import ExpectedError, MeshOption, _mesh_for_time, _mesh_for_tolerance
 from model_studies.run_log import FILE as LOG
 
@@ -221,3 +222,13 @@ def test_kept_compliances_take_the_memory_of_their_files(tmp_path, monkeypatch):
     beside = 1.25 * 3_000_000  # the mirror image of one, and a gathered block
     assert kept == int(cost_model.PROCESS_BYTES + memory_of_contact(gears, plan, 1, (1, 1)) + alike + beside)
     assert kept < fresh
+
+
+@pytest.mark.parametrize(("period", "solved"), [(1541, 137), (391, 41)])
+def test_pitches_expected_by_derivatives_are_those_of_measured_gears(period, solved):
+    """Gears of class 6, 23/67 and 17/23, as counted in their receipts."""
+    assert expected_pitches(period) == pytest.approx(solved, rel=0.15)
+
+
+def test_no_more_pitches_are_expected_than_there_are():
+    assert [expected_pitches(period) for period in (1, 10, 24, 40)] == [1, 10, 24, 24]
