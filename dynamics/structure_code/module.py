@@ -103,11 +103,11 @@ class Module:
         try:
             self._end(statements, statements.inline(python, arguments), function.function_type.return_type)
         except Unsupported:
+            function.blocks.clear()
+            function.linkage = ""  # of a declaration, which nothing calls
             if not (statements.lost and anything):
                 raise
             before = self.expressions
-            function.blocks.clear()
-            function.linkage = ""  # of a declaration, which nothing calls
         return not (statements.lost and anything) or self.expressions - before > FEW_EXPRESSIONS
 
     def _end(self, statements: Statements, found: Any, kind: Any) -> None:

@@ -151,3 +151,32 @@ def sums_in_any_order(plan: Plan, work: Work, at: float) -> int:
 def test_what_cannot_be_equal_is_refused(function):
     with pytest.raises(Unsupported):
         own_code(function, *sample(1))
+
+
+@routine
+def _refused(work: Work) -> float:
+    return float(_COUNTS[work.hint[0]])
+
+
+@routine
+def _by_kind(plan: Plan, work: Work, row: int) -> float:
+    if plan.kind[row] == 3:
+        return _refused(work)
+    return work.x[row]
+
+
+@compiled
+def of_kinds(plan: Plan, work: Work, at: float) -> int:
+    """Rows of which none is of the kind that cannot be written out."""
+    for row in range(plan.kind.size):
+        work.y[row] = at * _by_kind(plan, work, row)
+    return 0
+
+
+def test_what_only_other_structures_need_is_left_out():
+    plan, shown = sample(2)
+    _by_kind.prepare(by_address(plan), by_address(shown))
+    ours, theirs = sample(2)[1], sample(2)[1]
+    of_kinds(by_address(plan), by_address(theirs), 0.3)
+    own_code(of_kinds, plan, shown).call("of_kinds", by_address(plan), by_address(ours), 0.3)
+    np.testing.assert_array_equal(ours.y, theirs.y)
