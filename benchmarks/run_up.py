@@ -30,9 +30,11 @@ given, _ = scene_of(Path({scene!r}))
 scene = dynamic_scene(given, {{mesh.name: SteDatabase.from_netcdf({table!r}) for mesh in given.meshes}})
 simulate(scene)
 started = time.process_time()
+simulate(scene)  # makes the code of the structure, if there is none yet
+begun = time.process_time()
 run = simulate(scene)
-again = time.process_time()
-measured = {{"started": started, "again": again - started}}
+again = time.process_time() - begun
+measured = {{"started": started, "again": again}}
 """
 _ERRORS = (
     _RUN

@@ -43,3 +43,12 @@ def refuse(_inputs: dict[str, Any]) -> dict[str, Any]:
 
 def defect(_inputs: dict[str, Any]) -> dict[str, Any]:
     raise RuntimeError("secret text of a defect")
+
+
+def speak(inputs: dict[str, Any]) -> dict[str, Any]:
+    """Answer with a number that JSON may not have, and words of that name."""
+    return {
+        "number": float(inputs["number"]),
+        "word": "NaN and Infinity",
+        "list": [0.1, 1e-7, True, None, "µ"],
+    }

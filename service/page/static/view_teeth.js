@@ -6,6 +6,7 @@ import { Meshing } from "./view_gl.js";
 const SHARP = 0.85; // cosine of the angle between neighboring normals at an edge
 const TWIST = 0.06; // rad between layers at most
 const OVERLAP = 1e-4; // rad
+const COARSE = 0.2; // rad between the normals of neighboring points of a tooth that nobody looks at closely
 const ALONG = 6; // layers at least: a bent tooth curves over the face
 
 /** @typedef {{teeth: number, tooth_mm: number[][], radius_mm: Record<string, number>, angle_deg: number, centre_mm: number[], turn: number, face_mm: number[], twist_deg_per_mm: number}} Gear */
@@ -26,10 +27,16 @@ function columns(points, outwards) {
   });
 }
 
-/** Fewer points, edges kept. @param {number[][]} points @param {number} step */
-function thinned(points, step) {
+/** Fewer points: edges, ends, and where the normal has turned since the last one. @param {number[][]} points @param {number} turn rad */
+function thinned(points, turn) {
   const marked = columns(points, 1);
-  return points.filter((_, k) => k % step === 0 || k === points.length - 1 || marked[k].normals[0] !== marked[k].normals[1]);
+  let last = marked[0].normals[1];
+  return points.filter((_, k) => {
+    const [own, next] = marked[k].normals;
+    const kept = k % (points.length - 1) === 0 || own !== next || last[0] * own[0] + last[1] * own[1] < Math.cos(turn);
+    if (kept) last = next;
+    return kept;
+  });
 }
 
 /** Neighbors overlap by a hair: no light falls between them. @param {number[][]} points from left to right */
@@ -53,7 +60,7 @@ function rollAt({ radius_mm: { base } }, [x, y], normal, side) {
  * @param {Gear} gear @param {boolean} ring @param {boolean} coarse
  */
 export function toothMesh(gear, ring, coarse) {
-  const points = seamless(coarse ? thinned(gear.tooth_mm, 3) : gear.tooth_mm);
+  const points = seamless(coarse ? thinned(gear.tooth_mm, COARSE) : gear.tooth_mm);
   const made = new Meshing();
   const outwards = ring ? -1 : 1;
   const [low, high] = gear.face_mm;

@@ -18,6 +18,7 @@ from running_service import PATIENCE_S, lives, until
 from structlog.testing import capture_logs
 
 from lineofaction.gearbox.problems import LiveUnavailable, QueueFull, ServiceError, Superseded, Unexpected
+from service.live.child import worked
 from service.live.order import LiveOrder
 from service.live.pool import KeptAnswers, LiveLimits, LivePool
 from service.version import modules_digest
@@ -221,10 +222,24 @@ def test_a_refusal_passes_as_it_was_told_and_a_defect_by_number(pool: LivePool, 
     assert "secret" in (tmp_path / "log" / "live.log").read_text()
 
 
+@pytest.mark.parametrize("number", ["nan", "inf", "-inf"])
+def test_a_number_that_json_has_not_is_a_defect(number: str) -> None:
+    head, body = worked(LiveOrder("live_fake_work:speak", {"number": number}), note=lambda: None)
+    assert (head.kind, body) == ("defect", b"")
+
+
+def test_words_and_numbers_come_as_they_are() -> None:
+    head, body = worked(LiveOrder("live_fake_work:speak", {"number": "0.3"}))
+    expected = {"number": 0.3, "word": "NaN and Infinity", "list": [0.1, 1e-7, True, None, "µ"]}
+    assert (head.kind, head.length) == ("answer", len(body))
+    assert json.loads(body) == expected
+
+
 SERVICE = """
 import sys
 from pathlib import Path
 from service.live.pool import LivePool
+from service.live.child import worked
 from service.live.order import LiveOrder
 pool = LivePool(Path(sys.argv[1]), 512)
 pool.ask(LiveOrder("live_fake_work:echo", {"word": "a"})).result()
