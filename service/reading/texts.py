@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from lineofaction.gearbox.convert.case import case_json
+from lineofaction.gearbox.convert.case import case_as_filed
 from lineofaction.gearbox.inspection.as_made import Inspected, drawn_case, measured_case
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
@@ -73,7 +73,7 @@ def case_of_toml(inputs: Json, folder: Path) -> Json:
 
     The files are written into a folder.
     """
-    return {"case": case_json(validated(Case, _table(inputs, folder, _written_out)))}
+    return {"case": case_as_filed(validated(Case, _table(inputs, folder, _written_out)))}
 
 
 def case_as_made(inputs: Json, _folder: Path) -> Json:
@@ -81,10 +81,10 @@ def case_as_made(inputs: Json, _folder: Path) -> Json:
     case, sheet = validated(Case, inputs["inputs"]["case"]), inputs["measured"]
     if sheet is None:
         drawn = drawn_case(case, inputs["tolerance_class"], inputs["seed"])
-        return {"case": case_json(drawn), "left_out": []}
+        return {"case": case_as_filed(drawn), "left_out": []}
     of = Inspected(sheet["gear"], sheet["loaded"], sheet["cutoff_mm"])
     made, found = measured_case(case, sheet["csv"], "csv", of)
-    return {"case": case_json(made), "left_out": found.left_out}
+    return {"case": case_as_filed(made), "left_out": found.left_out}
 
 
 def scene_of_toml(inputs: Json, folder: Path) -> Json:

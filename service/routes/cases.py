@@ -34,6 +34,7 @@ _MOST_FILES = 16
 
 router = APIRouter(tags=["cases"], route_class=ScopedRoute)
 case_json = on_demand("lineofaction.gearbox.convert.case:case_json")
+case_as_filed = on_demand("lineofaction.gearbox.convert.case:case_as_filed")
 outline_json = on_demand("lineofaction.gearbox.convert.live:outline_json")
 
 
@@ -169,7 +170,7 @@ async def case_as_made(body: AsMadeRequest, context: Ctx, request: Request) -> R
 @needs(Scope.READ, body=CaseRequest)
 def case_to_toml(body: CaseRequest) -> TomlBody:
     """Write the case with all defaults as a file's text."""
-    return TomlBody(toml=toml_text(case_json(body.inputs.case)))
+    return TomlBody(toml=toml_text(case_as_filed(body.inputs.case)))
 
 
 scenes_router = APIRouter(tags=["scenes"], route_class=ScopedRoute)

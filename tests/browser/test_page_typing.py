@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Iterator
 from contextlib import suppress
 
@@ -157,3 +158,41 @@ def test_an_edit_gives_up_the_plan_that_the_edit_before_asked_for(visit: Visit) 
 
 def test_a_request_given_up_while_its_answer_is_read_is_no_answer(visit: Visit) -> None:
     assert visit.page.evaluate(GIVEN_UP) == ["Problem", 0]
+
+
+OPENED = """[pair]
+normal_module_mm = 2.5
+center_distance_mm = 56.25
+[pair.pinion]
+teeth = 21
+face_width_mm = 18.0
+bore_diameter_mm = 20.0
+[pair.wheel]
+teeth = 24
+face_width_mm = 17.5
+bore_diameter_mm = 22.0
+[load]
+torque_n_m = [10, 40]
+[complaint]
+frequency_hz = 400.0
+speed_rpm = 1142.0
+[report]
+title = "Pump drive, as ordered"
+requirements = ["peak-to-peak STE at most 6 µm", "largest pressure at most 1000 MPa"]
+"""
+
+
+@pytest.mark.law
+def test_an_opened_case_keeps_its_complaint_and_its_title_block(visit: Visit) -> None:
+    page = visit.page
+    page.locator("#import-file").set_input_files(
+        {"name": "own.toml", "mimeType": "application/toml", "buffer": OPENED.encode()}
+    )
+    expect(control(page, "#f-complaint-frequency_hz")).to_have_value("400")
+    expect(control(page, "#f-report-title")).to_have_value("Pump drive, as ordered")
+    with page.expect_download() as saved:
+        page.locator("#export-toml").click()
+    text = saved.value.path().read_text("utf-8")
+    kept, given = tomllib.loads(text), tomllib.loads(OPENED)
+    assert (kept["complaint"], kept["report"]) == (given["complaint"], given["report"])
+    assert visit.complaints == []

@@ -177,6 +177,12 @@ def case_json(case: Case) -> Json:
     return case.model_dump(mode="json")
 
 
+def case_as_filed(case: Case) -> Json:
+    """Return the case with its title block, on which no result depends: what a file has."""
+    block = {} if case.report is None else {"report": case.report.model_dump(mode="json")}
+    return case_json(case) | block
+
+
 # Whether a case can be computed: what a schema cannot check and a request can afford.
 
 THICK = 10.0

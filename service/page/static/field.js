@@ -59,7 +59,7 @@ export class Field {
     this.input = this.control();
     this.message = make("p", { class: "fault", id: `${this.id}-fault`, hidden: true });
     const unit = unitOf(this.name);
-    this.wide = ["list", "rows", "json"].includes(this.kind);
+    this.wide = ["list", "sentences", "rows", "json"].includes(this.kind);
     const shown = unit ? make("span", { class: "unit", "aria-hidden": "true" }, unit) : null;
     this.entry = make("div", { class: "entry" }, this.input, shown);
   }
@@ -111,6 +111,7 @@ export class Field {
   textOf(value) {
     if (value === undefined || value === null || same(value, this.schema.default)) return "";
     if (this.kind === "list") return value.join(", ");
+    if (this.kind === "sentences") return value.join("; ");
     const rows = this.kind === "rows" ? rowsText(value, this.schema.columns) : null;
     return rows ?? (["rows", "json"].includes(this.kind) ? JSON.stringify(value) : String(value));
   }
@@ -129,6 +130,7 @@ export class Field {
     if (this.kind === "number") return numberIn(text);
     if (this.kind === "switch") return text === "true";
     if (this.kind === "list") return numbersIn(text);
+    if (this.kind === "sentences") return text.split(";").map((each) => each.trim()).filter(Boolean);
     if (this.kind === "rows" && !text.startsWith("[")) return rowsIn(text, this.schema.columns);
     if (["rows", "json"].includes(this.kind)) {
       try {

@@ -38,7 +38,9 @@ export class CaseForm {
       this.plain("Loads", "load", part("load"), root),
       this.plain("Assembly errors", "errors", part("errors"), root),
       this.plain("Accuracy", "accuracy", part("accuracy"), root, ["tolerance", "level", "model"]),
+      this.plain("Complaint", "complaint", part("complaint"), root, ["frequency_hz", "order", "speed_rpm", "road_speed_km_h"]),
       this.effects(effects),
+      this.plain("Report", "report", part("report"), root, ["title", "project"]),
     );
     byId("case-form").addEventListener("input", (event) => {
       this.fields.get(event.target.name)?.fault("");

@@ -39,11 +39,14 @@ function columnsOf(items, root) {
 }
 
 const NUMBERS = ["integer", "number"];
+const SENTENCE = 100; // characters of a text that may have commas and spaces: longer than a name
 
 export function kindOf(schema) {
   if (schema.enum) return "choice";
   if (schema.type === "boolean") return "switch";
+  if (schema.type === "string") return "text";
   if (NUMBERS.includes(schema.type)) return "number";
+  if (schema.type === "array" && schema.items?.maxLength >= SENTENCE) return "sentences";
   if (schema.type === "array" && [...NUMBERS, "string"].includes(schema.items?.type)) return "list";
   if (schema.columns) return "rows";
   return "json";
