@@ -18,8 +18,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeAlias
 
-from pydantic_core import to_json
-
 from host import kill_own_group, lower_priority
 from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import ServiceError
@@ -55,14 +53,6 @@ def _listen(orders: queue.SimpleQueue[bytes]) -> None:
     kill_own_group()
 
 
-def _text(answer: object) -> bytes:
-    """Write an answer as JSON; one with a number that JSON has not is refused."""
-    text = to_json(answer)
-    if b"NaN" in text or b"Infinity" in text:  # the word of a text, or such a number: json tells them apart
-        return json.dumps(answer, allow_nan=False, separators=(",", ":")).encode()
-    return text
-
-
 def worked(order: LiveOrder, *further: Path, note: Note = traceback.print_exc) -> tuple[AnswerHead, bytes]:
     """Do the work; the text of an exception leaves only if it was raised on purpose.
 
@@ -77,7 +67,7 @@ def worked(order: LiveOrder, *further: Path, note: Note = traceback.print_exc) -
     try:
         module, _, name = order.entry.partition(":")
         work: LiveWork = getattr(importlib.import_module(module), name)
-        answer = _text(work(order.inputs, *further))
+        answer = json.dumps(work(order.inputs, *further), allow_nan=False, separators=(",", ":")).encode()
     except MemoryError:
         return AnswerHead("memory"), b""
     except Exception as error:  # noqa: BLE001 (a defect is logged by its traceback and reported by number)
