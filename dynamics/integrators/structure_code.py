@@ -5,6 +5,7 @@ The code does what the ordinary loops do, to the last bit.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
@@ -28,8 +29,8 @@ SECONDS_PER_EXPRESSION = 5e-5
 """Measured: 3e-5 to 11e-5, of 15 000 to 130 000 expressions."""
 
 _spent: dict[str, float] = {}
-_written: dict[str, Module | None] = {}
-"""Modules to be compiled; None: what cannot be written out."""
+_expressions: dict[str, float] = {}
+"""Of the modules of structures; infinite: it cannot be written out."""
 
 
 @cache
@@ -65,13 +66,15 @@ class StructureCode:
             _store().note(key)  # the next run makes it sooner
         if _spent[key] < share * LEAST:
             return None
-        if key not in _written:
-            _written[key] = _module(self._tuples)
-        module = _written[key]
-        if module is None or _spent[key] < share * SECONDS_PER_EXPRESSION * module.expressions:
+        module = None
+        if key not in _expressions:
+            module = _module(self._tuples)
+            _expressions[key] = math.inf if module is None else module.expressions
+        size = _expressions[key]
+        if math.isinf(size) or _spent[key] < share * SECONDS_PER_EXPRESSION * size:
             return None
-        del _written[key]
-        return _store().add(key, module)
+        module = module or _module(self._tuples)  # not kept in the meantime: it takes some 10 MB
+        return None if module is None else _store().add(key, module)
 
 
 def _module(tuples: Mapping[Any, Known]) -> Module | None:

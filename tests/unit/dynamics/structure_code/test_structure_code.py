@@ -57,7 +57,7 @@ def store(tmp_path, monkeypatch):
     found = CodeStore(tmp_path)
     monkeypatch.setattr(structure_code, "_store", lambda: found)
     monkeypatch.setattr(structure_code, "_spent", {})
-    monkeypatch.setattr(structure_code, "_written", {})
+    monkeypatch.setattr(structure_code, "_expressions", {})
     return found
 
 
@@ -129,7 +129,7 @@ def test_a_law_that_is_not_written_out_leaves_ordinary_loops(store, monkeypatch)
     ordinary = run(system, monkeypatch, math.inf)
     monkeypatch.delitem(CALLS, math.floor)
     refused = run(system, monkeypatch, 0.0)
-    assert structure_code._written == {key_of(system): None}
+    assert structure_code._expressions == {key_of(system): math.inf}
     np.testing.assert_array_equal(refused.states.filtered, ordinary.states.filtered)
 
 
