@@ -79,5 +79,5 @@ def _measured(
     json: AsJson = False,
 ) -> None:
     """Take pitches, traces and topographies of an inspected gear into a case, every line accounted for."""
-    of = measured.Inspected(gear.value, loaded.value, cutoff_mm)
+    of = measured.Inspected(gear.value, loaded.value, cutoff_mm)  # type: ignore[attr-defined]
     measured.run_measured(case, sheet, of, output, as_json=json)
