@@ -12,6 +12,7 @@ from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.assemble import System
 from dynamics.forces.elements import FLANK, SPATIAL_FLANK, Elements, potential
 from dynamics.integrators.advance import Control, prepare_samples, prepare_steps
+from dynamics.integrators.code_choice import StructureCode
 from dynamics.integrators.method_choice import choose_method
 from dynamics.integrators.sampler import (
     Sampler,
@@ -22,7 +23,6 @@ from dynamics.integrators.sampler import (
 )
 from dynamics.integrators.state_sink import BLOCK, StateSink
 from dynamics.integrators.static import StaticSolution
-from dynamics.integrators.structure_code import StructureCode
 from dynamics.integrators.tableaus import EXPLICIT_EMBEDDED_ORDER, IMPLICIT_EMBEDDED_ORDER
 from dynamics.integrators.workspace import Count, Power, Workspace, geometric_steps
 from dynamics.kernels.by_address import by_address

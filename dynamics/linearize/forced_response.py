@@ -354,7 +354,7 @@ def forced_response(
         raise InputError("orders", orders, NOTHING_EXCITES, "Give a mesh a table, or let a load vary.")
     response, power = response_of(at, speeds, steady), _power_balance(at, speeds, steady)
     response = replace(response, floor=floor_of(at, speeds, lines))
-    floor = _bearing_floor(response.floor)
+    floor, floor_error = _bearing_floor(response.floor)
     seconds["response"] = cpu_seconds() - began
     return ForcedResponse(
         **vars(response),
@@ -365,8 +365,8 @@ def forced_response(
         power_sink=power.sink,
         power_sink_kind=power.kind,
         power_loss=power.loss,
-        bearing_floor=floor[0],
-        bearing_floor_error=floor[1],
+        bearing_floor=floor,
+        bearing_floor_error=floor_error,
         facts=_facts(at, time, seconds)
         | lines.facts(response.floor is not None)
         | {"effect_ledger": ledger}
@@ -376,13 +376,10 @@ def forced_response(
 
 def _bearing_floor(floor: LineFloor | None) -> tuple[FloatArray, FloatArray]:
     """Return mean squares of bearing forces in orders left out, (b, S), N^2, and their errors."""
-    if floor is None:
-        return np.empty((0, 0)), np.empty((0, 0))
-    square, shape = [floor.of_bearing(index) for index in range(len(floor.bearing))], (-1, floor.pace.size)
-    return (
-        np.reshape([np.sum(each.power, axis=1) for each in square], shape),
-        np.reshape([np.sum(each.missed, axis=1) for each in square], shape),
-    )
+    square = [] if floor is None else [floor.of_bearing(index) for index in range(len(floor.bearing))]
+    shape = (len(square), 0 if floor is None else floor.pace.size)
+    power = np.reshape([np.sum(each.power, axis=1) for each in square], shape)
+    return power, np.reshape([np.sum(each.missed, axis=1) for each in square], shape)
 
 
 def _require_memory(at: Excited, speeds: int, harmonics: int) -> None:

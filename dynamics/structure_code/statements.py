@@ -25,10 +25,14 @@ from dynamics.kernels.by_address import WORD
 from dynamics.kernels.routine import Routine
 from dynamics.structure_code.arithmetic import CALLS, FLAG, FLOAT, TYPES, Scalar, Unsupported, Value
 from dynamics.structure_code.arrays import ITEMS, Array, ArrayAccess, Group
-from dynamics.structure_code.frame import Frame, Slot, Variable, alike, is_number
-from dynamics.structure_code.source import (
+from dynamics.structure_code.function import (
+    Frame,
+    Slot,
+    Variable,
+    alike,
     assigned_in,
     has_in,
+    is_number,
     is_plain,
     python_of,
     reading,

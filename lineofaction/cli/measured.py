@@ -13,7 +13,7 @@ from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.inspection.as_made import Inspected, measured_case
 from lineofaction.gearbox.inspection.evaluation import Split
 from lineofaction.gearbox.inspection.measured_gear import MeasuredGear, inspected
-from lineofaction.gearbox.inspection.sheet import FIELD, sheet_text
+from lineofaction.gearbox.inspection.sheet import FIELD, Flank, sheet_text
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.gearbox.schemas.files import read_text
@@ -23,10 +23,18 @@ from lineofaction.gearbox.units import MM, UM
 
 
 def run_measured(
-    file: InputFile, sheet: Path | None, of: Inspected, output: Path | None, *, as_json: bool
+    file: InputFile,
+    sheet: Path | None,
+    mounted: tuple[str, Flank, float | None],
+    output: Path | None,
+    *,
+    as_json: bool,
 ) -> None:
-    """Write the case with what was measured, or without a sheet the sheet of the case."""
-    case = read_model(Case, file)
+    """Write the case with what was measured, or without a sheet the sheet of the case.
+
+    `mounted` are the fields of `Inspected`.
+    """
+    case, of = read_model(Case, file), Inspected(*mounted)
     if output is not None:
         check_writable(output)
     if sheet is None:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -43,20 +42,6 @@ def _open_unit(
     new.run_open(file, out, assume or (), as_json=json)
 
 
-class _Gear(StrEnum):
-    """The gears of a pair."""
-
-    PINION = "pinion"
-    WHEEL = "wheel"
-
-
-class _Flank(StrEnum):
-    """The flanks of a gear."""
-
-    LEFT = "left"
-    RIGHT = "right"
-
-
 @verbs.command(
     "measured",
     rich_help_panel="pair",
@@ -69,8 +54,11 @@ def _measured(
         Path | None, typer.Argument(help="Traces of the gear (CSV); left out: write those of the case.")
     ] = None,
     *,
-    gear: Annotated[_Gear, typer.Option(help="The gear that was inspected.")],
-    loaded: Annotated[_Flank, typer.Option(help="Flanks that carry the load, seen from the datum face.")],
+    gear: Annotated[Literal["pinion", "wheel"], typer.Option(help="The gear that was inspected.")],
+    loaded: Annotated[
+        Literal["left", "right"],
+        typer.Option(help="Flanks that carry the load, seen from the datum face."),
+    ],
     cutoff_mm: Annotated[
         float | None,
         typer.Option(min=1e-3, max=1e3, help="Cut-off of the filter in mm; default: 1/30 of each trace."),
@@ -79,5 +67,4 @@ def _measured(
     json: AsJson = False,
 ) -> None:
     """Take pitches, traces and topographies of an inspected gear into a case, every line accounted for."""
-    of = measured.Inspected(gear.value, loaded.value, cutoff_mm)  # type: ignore[attr-defined]
-    measured.run_measured(case, sheet, of, output, as_json=json)
+    measured.run_measured(case, sheet, (gear, loaded, cutoff_mm), output, as_json=json)

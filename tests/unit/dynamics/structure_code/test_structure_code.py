@@ -14,7 +14,7 @@ from planetary_scenes import driven_scene, planetary_scene, published_set
 from rotors_on_bearings import KINDS, rotor
 
 from dynamics.assembly.assemble import assemble
-from dynamics.integrators import integrate, static_equilibrium, structure_code
+from dynamics.integrators import code_choice, integrate, static_equilibrium
 from dynamics.integrators.march import start_march
 from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled
@@ -55,9 +55,9 @@ SCENES = {
 @pytest.fixture
 def store(tmp_path, monkeypatch):
     found = CodeStore(tmp_path)
-    monkeypatch.setattr(structure_code, "_store", lambda: found)
-    monkeypatch.setattr(structure_code, "_spent", {})
-    monkeypatch.setattr(structure_code, "_expressions", {})
+    monkeypatch.setattr(code_choice, "_store", lambda: found)
+    monkeypatch.setattr(code_choice, "_spent", {})
+    monkeypatch.setattr(code_choice, "_expressions", {})
     return found
 
 
@@ -67,8 +67,8 @@ def system_of(scene):
 
 
 def run(system, monkeypatch, worthwhile):
-    monkeypatch.setattr(structure_code, "WORTHWHILE", worthwhile)
-    monkeypatch.setattr(structure_code, "SEEN", min(worthwhile, structure_code.SEEN))
+    monkeypatch.setattr(code_choice, "WORTHWHILE", worthwhile)
+    monkeypatch.setattr(code_choice, "SEEN", min(worthwhile, code_choice.SEEN))
     return integrate(system, static_equilibrium(system), system.scene.integration)
 
 
@@ -129,7 +129,7 @@ def test_a_law_that_is_not_written_out_leaves_ordinary_loops(store, monkeypatch)
     ordinary = run(system, monkeypatch, math.inf)
     monkeypatch.delitem(CALLS, math.floor)
     refused = run(system, monkeypatch, 0.0)
-    assert structure_code._expressions == {key_of(system): math.inf}
+    assert code_choice._expressions == {key_of(system): math.inf}
     np.testing.assert_array_equal(refused.states.filtered, ordinary.states.filtered)
 
 
@@ -138,11 +138,11 @@ def test_code_is_made_after_as_long_as_it_takes_and_sooner_when_seen_before(stor
     key = key_of(system)
     run(system, monkeypatch, math.inf)
     assert not store.seen(key)  # too short to be noted
-    monkeypatch.setattr(structure_code, "LEAST", 0.0)
+    monkeypatch.setattr(code_choice, "LEAST", 0.0)
     run(system, monkeypatch, math.inf)
     assert store.seen(key)
     assert store.get(key) is None
-    monkeypatch.setattr(structure_code, "SECONDS_PER_EXPRESSION", 0.0)
+    monkeypatch.setattr(code_choice, "SECONDS_PER_EXPRESSION", 0.0)
     run(system, monkeypatch, math.inf)
     assert store.get(key) is not None
 

@@ -15,6 +15,7 @@ from dynamics.structure_code.arrays import Known
 from dynamics.structure_code.machine_code import MachineCode
 from dynamics.structure_code.machine_code import compiled as machine_code
 from dynamics.structure_code.module import Module
+from dynamics.structure_code.structure import structure_key
 
 
 class Plan(NamedTuple):
@@ -180,3 +181,22 @@ def test_what_only_other_structures_need_is_left_out():
     of_kinds(by_address(plan), by_address(theirs), 0.3)
     own_code(of_kinds, plan, shown).call("of_kinds", by_address(plan), by_address(ours), 0.3)
     np.testing.assert_array_equal(ours.y, theirs.y)
+
+
+def test_the_key_is_that_of_what_is_known():
+    plan, _ = sample(3)
+
+    def key(changed: Plan, known: Known = Known.ALL) -> str | None:
+        return structure_key({by_address(changed): known})
+
+    own = key(plan)
+    assert key(plan._replace(weight=plan.weight + 1.0, rate=0.7)) == own
+    others = [
+        plan._replace(column=plan.column[::-1].copy()),
+        plan._replace(count=8),
+        plan._replace(on=False),
+        plan._replace(weight=np.ones(5)),
+    ]
+    assert len({own, *map(key, others)}) == 5
+    assert len({key(each, Known.DIMENSIONS) for each in (plan, *others[:3])}) == 1
+    assert key(plan._replace(weight=np.ones(5)), Known.WIDTHS) == key(plan, Known.WIDTHS)
