@@ -18,7 +18,7 @@ from service.management.figures import Metrics, process_registry
 from service.queue.scheduler import job_machinery
 from service.queue.watcher import Watcher
 from service.reading.pool import ReadingPool
-from service.routes import cases, documents, events, health, jobs, processes, queries, results
+from service.routes import cases, documents, drafts, events, health, jobs, processes, queries, results
 from service.routes.access import Access, Admission
 from service.routes.context import Context
 from service.routes.middleware import API_PREFIX, Guard, install_error_handlers
@@ -79,8 +79,8 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
 
 def _route(app: FastAPI, offered: Registry) -> None:
     shown = (documents.router, processes.processes_router(offered), jobs.router)
-    stored = (jobs.job_results_router(offered), results.router, queries.router, queries.live_router)
-    grouped = (processes.router, events.router)
+    stored = (jobs.job_results_router(offered), results.router, queries.router)
+    grouped = (queries.live_router, drafts.router, processes.router, events.router)
     converted = (cases.router, cases.scenes_router, cases.units_router, documents.effects_router)
     for router in (*shown, *stored, *grouped, *converted):
         app.include_router(router, prefix=API_PREFIX)

@@ -71,14 +71,18 @@ def _raised_on_purpose(request: Request, error: Exception) -> Response:
 
 def _invalid_request(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
+    return _raised_on_purpose(request, refusal_of(request, error))
+
+
+def refusal_of(request: Request, error: RequestValidationError) -> ServiceError:
+    """Return the refusal of a request that the framework could not read: its faults, or its media type."""
     sent = media_type(request.headers.get("content-type", ""))
     unread = any(item["loc"][0] == "body" and item["type"] != "missing" for item in error.errors())
     as_json = sent == JSON or (sent.startswith("application/") and sent.endswith("+json"))
     if unread and not as_json:
-        return _raised_on_purpose(request, UnsupportedMediaType.of(sent, JSON))
+        return UnsupportedMediaType.of(sent, JSON)
     model = getattr(request.scope.get("endpoint"), "body_model", None)
-    faults = (_request_fault(item, model) for item in innermost(error.errors()))
-    return _raised_on_purpose(request, BadInput(faults))
+    return BadInput(_request_fault(item, model) for item in innermost(error.errors()))
 
 
 def _request_fault(item: Mapping[str, Any], model: type[BaseModel] | None) -> Fault:

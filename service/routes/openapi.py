@@ -143,6 +143,7 @@ TAGS = {
     "jobs": "State, progress, results and dismissal of computations.",
     "results": "Stored results under the hash of their input: figures, files, plots, mesh forces.",
     "live": "Answers while the caller waits: other flanks on a stored compliance, plans of runs.",
+    "drafts": "Questions about what is being typed: faults are an answer (200), not a refusal (422).",
     "cases": "Gear pairs with their loads: examples, drawing, conversion from and to TOML.",
     "scenes": "Geared systems: conversion from and to TOML.",
     "units": "Gear units of other tools (REXS).",

@@ -151,6 +151,15 @@ BODIES: dict[str, Json] = {
 """Other bodies, by path."""
 
 
+_DRAFTS = {
+    "/v1/drafts/outline": "/v1/cases/outline",
+    "/v1/drafts/plan": "/v1/plans",
+    "/v1/drafts/{key}/ste": "/v1/databases/{key}/ste",
+}
+"""Questions about drafts, and whose bodies and answers they have."""
+BODIES |= {draft: BODIES[path] for draft, path in _DRAFTS.items()}
+
+
 def request_example(path: str) -> Json | None:
     """Return the body of a path, None if there is none."""
     parts = path.split("/")
@@ -443,6 +452,7 @@ ANSWERS: dict[str, Any] = {
     },
 }
 """Answers that succeeded, by path."""
+ANSWERS |= {draft: ANSWERS[path] for draft, path in _DRAFTS.items()}
 
 
 def answer_example(path: str) -> Any:

@@ -27,7 +27,9 @@ from service.schemas.examples import BODIES, HASH, INPUTS, QUERY
 from service.settings import Settings
 
 QUERIES, RENAMED = "/v1/databases/{key}/query", "/v1/jobs/{job_id}"
-LIVE = {"/v1/plans": {}, "/v1/databases/{key}/ste": {"torque_n_m": [0.5], "pinion": {"tip_relief_um": 3.0}}}
+MOVED = {"torque_n_m": [0.5], "pinion": {"tip_relief_um": 3.0}}
+LIVE: dict[str, Any] = {"/v1/plans": {}, "/v1/databases/{key}/ste": MOVED}
+LIVE |= {"/v1/drafts/plan": {}, "/v1/drafts/{key}/ste": MOVED}
 TARGETS: dict[str, Any] = {
     f"/v1/processes/{name}/execution": {"inputs": given} for name, given in INPUTS.items()
 }

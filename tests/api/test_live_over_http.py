@@ -295,5 +295,8 @@ def test_a_plan_of_no_pair_names_the_field_as_an_execution_does(client: TestClie
     )
     assert refused.status_code == as_job.status_code == 422
     assert refused.json() == as_job.json()
+    draft = client.post("/v1/drafts/plan", json=asked)
+    assert draft.status_code == 200, "what is being typed is no error"
+    assert draft.json() == {"detail": as_job.json()["detail"], "faults": as_job.json()["errors"]}
     typo = client.post("/v1/plans", json={"inputs": {"case": case(teth=3)}}).json()
     assert [fault["field"] for fault in typo["errors"]] == ["pair.pinion.teth"]

@@ -118,7 +118,8 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     yield TestClient(_app)
 
 
-LIVE = ("/v1/plans", "/v1/databases/{key}/ste")  # answered by a worker of their own: test_live_over_http
+LIVE = ("/v1/plans", "/v1/drafts/plan", "/v1/drafts/{key}/ste", "/v1/databases/{key}/ste")
+"""Answered by a worker of their own: test_live_over_http."""
 OF_A_JOB = "/v1/jobs/{job_id}"
 
 

@@ -37,6 +37,8 @@ WRONG_BODIES: dict[str, tuple[bytes, dict[str, str]]] = {
     "other type": (b"a=1", {"Content-Type": "application/x-www-form-urlencoded"}),
     "too long": (b" " * 3000, {"Content-Type": "application/json"}),
 }
+DRAFTS, OF_FIELDS = "/v1/drafts/", ("unknown field", "deep")
+"""Where what is wrong with fields is an answer, and the bodies that are wrong so."""
 
 
 @pytest.fixture(scope="module")
@@ -77,6 +79,9 @@ def test_a_body_of_another_type_is_told_the_header_to_send(client: TestClient, p
 def test_a_wrong_body_is_a_problem_that_is_documented(client: TestClient, path: str, wrong: str) -> None:
     content, headers = WRONG_BODIES[wrong]
     answer = client.post(named(path), content=content, headers=headers)
+    if path.startswith(DRAFTS) and wrong in OF_FIELDS:
+        assert answer.status_code == 200 and answer.json()["faults"]
+        return
     is_problem(answer, *((413,) if wrong == "too long" else (400, 404, 415, 422)))
     assert str(answer.status_code) in DOCUMENT["paths"][path]["post"]["responses"]
 

@@ -41,10 +41,10 @@ Operation = schemathesis.schemas.APIOperation
 
 BODIES = int(os.environ.get("LOA_GENERATED_BODIES", "0"))
 FEW = 20
-LIVE = ("/v1/plans", "/v1/databases/{key}/ste")
-EXAMPLES: dict[str, Any] = {
-    LIVE[1]: {"torque_n_m": [0.5], "pinion": {"tip_relief_um": 3.0, "tip_relief_length_mm": 0.4}}
-}
+DRAFTS = "/v1/drafts/"
+LIVE = ("/v1/plans", f"{DRAFTS}plan", "/v1/databases/{key}/ste", f"{DRAFTS}{{key}}/ste")
+MOVED = {"torque_n_m": [0.5], "pinion": {"tip_relief_um": 3.0, "tip_relief_length_mm": 0.4}}
+EXAMPLES: dict[str, Any] = dict.fromkeys(LIVE[2:], MOVED)
 
 
 @schemathesis.serializer("application/cbor")
@@ -172,7 +172,7 @@ def test_a_request_is_answered_as_documented(operation: Operation) -> None:
 
 
 @pytest.mark.drawn
-@parametrized(with_body)
+@parametrized([one for one in with_body if not one.path.startswith(DRAFTS)])  # there faults are an answer
 def test_a_body_that_breaks_its_schema_is_answered_as_documented(operation: Operation) -> None:
     @as_long_as(max(-(-EACH // 5), FEW // 5))
     @given(operation.as_strategy(generation_mode=GenerationMode.NEGATIVE))

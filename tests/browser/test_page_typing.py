@@ -33,7 +33,7 @@ GIVEN_UP = """async () => {
   const own = window.fetch;
   const cut = { start: (body) => body.error(new DOMException("", "AbortError")) };
   window.fetch = async () => new Response(new ReadableStream(cut));
-  const said = await post("/v1/plans", {}).catch((fault) => [fault.constructor.name, fault.status]);
+  const said = await post("/v1/drafts/plan", {}).catch((fault) => [fault.constructor.name, fault.status]);
   window.fetch = own;
   return said;
 }"""
@@ -52,7 +52,7 @@ def typed(page: Page, key: str, text: str) -> None:
     field = control(page, f"#f-{key}")
     field.focus()
     page.keyboard.press("ControlOrMeta+a")
-    with page.expect_response("**/v1/cases/outline"):
+    with page.expect_response("**/v1/drafts/outline"):
         page.keyboard.type(text, delay=TYPED_SLOWLY)
     assert page.evaluate("document.activeElement.id") == f"f-{key}"
     expect(field).to_have_value(text)
@@ -146,11 +146,11 @@ def test_an_edit_gives_up_the_plan_that_the_edit_before_asked_for(visit: Visit) 
         route.continue_()
 
     expect(page.locator("#plan dl")).to_be_visible()
-    page.route("**/v1/plans", as_a_busy_service)
+    page.route("**/v1/drafts/plan", as_a_busy_service)
     for width in ("21", "22"):
-        with page.expect_request("**/v1/plans"):
+        with page.expect_request("**/v1/drafts/plan"):
             control(page, "#f-pair-pinion-face_width_mm").fill(width)
-    with page.expect_response("**/v1/plans"):
+    with page.expect_response("**/v1/drafts/plan"):
         control(page, "#f-pair-pinion-face_width_mm").fill("23")
     expect(page.locator("#plan dl")).to_be_visible()
     assert [line for line in visit.console if line.startswith("error")] == []

@@ -68,6 +68,16 @@ export async function post(path, body, signal) {
   return read(await answer(await asked(path, { method: "POST", headers, body: JSON.stringify(body), signal })));
 }
 
+/**
+ * Ask about what is being typed: `outline`, `plan`, `HASH/ste`. What is wrong with it is an answer of the service, no refusal that
+ * the browser logs; here it is thrown as a Problem like all others.
+ */
+export async function ask(question, body, signal) {
+  const found = await post(`/v1/drafts/${question}`, body, signal);
+  if (found.faults) throw new Problem({ detail: found.detail, errors: found.faults });
+  return found;
+}
+
 export async function patch(path, body) {
   const headers = { "Content-Type": "application/json" };
   return read(await answer(await asked(path, { method: "PATCH", headers, body: JSON.stringify(body) })));

@@ -1,7 +1,7 @@
 // @ts-check
 /** The design: the case as typed, where it came from, its drawing and its plan, and how it differs from another. */
 
-import { guarded, post } from "./api.js";
+import { ask, guarded } from "./api.js";
 import { differences } from "./comparison.js";
 import { retype } from "./controls.js";
 import { Drawing } from "./drawing.js";
@@ -165,13 +165,13 @@ export class Design {
     const body = { inputs: { case: this.form.case } };
     let drawn = false;
     await guarded(async () => {
-      const outline = await post("/v1/cases/outline", body, signal);
+      const outline = await ask("outline", body, signal);
       if (signal.aborted) return;
       this.form.clear();
       this.drawing.show(outline);
       this.view.show(outline);
       drawn = true;
-      const plan = await post("/v1/plans", { ...body, caller: this.caller }, signal);
+      const plan = await ask("plan", { ...body, caller: this.caller }, signal);
       if (!signal.aborted) this.expected = showPlan(plan);
     }, (problem) => {
       if (signal.aborted || problem.status === 0) return; // asked again when the service is back

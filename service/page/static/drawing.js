@@ -65,7 +65,7 @@ export class Drawing {
     byId("roll").addEventListener("input", () => this.roll());
   }
 
-  /** @param {object} found answer of /v1/cases/outline */
+  /** @param {object} found answer of /v1/drafts/outline */
   show(found) {
     this.mark("");
     this.gears = [found.pinion, found.wheel];

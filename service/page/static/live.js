@@ -1,6 +1,6 @@
 /** Live flanks: sliders redraw the transmission error from the compliance the service keeps. */
 
-import { Problem, pause, post } from "./api.js";
+import { Problem, ask, pause, post } from "./api.js";
 import { button, byId, dataTable, figures, folded, make, number } from "./elements.js";
 import { SHOWN_HARMONICS, harmonicsFigure, sharingFigure, steFigure, strongestOrders } from "./live_figures.js";
 import { faultsOf } from "./job.js";
@@ -117,7 +117,7 @@ export class Live {
         const curve = await other.at(waiting.torque_n_m[0], this.caller);
         if (curve) others.push({ ...STYLES[other.name], curve, known: other.known });
       }
-      const found = await post(`/v1/databases/${key}/ste`, { ...waiting, flanks: true, passage: true, caller: this.caller });
+      const found = await ask(`${key}/ste`, { ...waiting, flanks: true, passage: true, caller: this.caller });
       const round = performance.now() - begin;
       if (key !== this.known?.key) return;
       const now = { ...found.curves[0], preview: waiting.preview };
@@ -140,7 +140,7 @@ export class Live {
   /** The curve as analyzed at this torque, to compare with. */
   async baseline({ torque_n_m: torque, preview }, key) {
     if (this.before?.asked === torque[0] && this.before.key === key && (preview || !this.before.preview)) return;
-    const found = await post(`/v1/databases/${key}/ste`, { torque_n_m: torque, preview, flanks: true, caller: `${this.caller}-before` });
+    const found = await ask(`${key}/ste`, { torque_n_m: torque, preview, flanks: true, caller: `${this.caller}-before` });
     this.before = { ...found.curves[0], key, asked: torque[0], preview };
   }
 

@@ -4,7 +4,7 @@ import { byId, dataTable, duration, figures, folded, make, number } from "./elem
 
 const percent = (share) => number(100 * share, 2);
 
-/** @param {object} found answer of /v1/plans */
+/** @param {object} found answer of /v1/drafts/plan */
 export function showPlan(found) {
   const head = make("dl", { class: "headline" });
   const { choice, prediction, error } = found;

@@ -2,7 +2,7 @@
 /** Variants of a design, A to C: each a copy of the fields or a result, all in the address; their curves stand side by side. */
 
 import { HASH, JOB } from "./address.js";
-import { Problem, post } from "./api.js";
+import { Problem, ask } from "./api.js";
 import { button, byId } from "./elements.js";
 import { caseOf } from "./orders.js";
 import { pack, unpack } from "./packed.js";
@@ -28,7 +28,7 @@ export class Other {
     if (this.torque === torque) return this.curve;
     try {
       const body = { ...this.flanks, torque_n_m: [torque], flanks: true, caller: `${caller}-${this.name}` };
-      [this.curve] = (await post(`/v1/databases/${this.known.key}/ste`, body)).curves;
+      [this.curve] = (await ask(`${this.known.key}/ste`, body)).curves;
       this.torque = torque;
     } catch (problem) {
       if (!(problem instanceof Problem) || problem.status === 0 || problem.retryAfter) throw problem;
