@@ -27,6 +27,8 @@ class Kind(StrEnum):
     """A small depth with a sign."""
     LENGTH = auto()
     """An extent; ``x_length`` is that over which the amount ``x`` acts, which does not act without it."""
+    START = auto()
+    """Where something begins."""
     EDGE = auto()
     """The size of an edge, that ends a flank."""
     ANGLE = auto()

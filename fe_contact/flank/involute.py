@@ -41,6 +41,11 @@ def roll_length_at_radius(base_radius: float, radius: float) -> float:
     return math.sqrt((radius - base_radius) * (radius + base_radius))
 
 
+def radius_at_roll_length(base_radius: float, roll_length: float) -> float:
+    """Radius in m of the point at a roll length in m."""
+    return math.hypot(base_radius, roll_length)
+
+
 def involute_point(base_radius: float, half_angle: float, roll_length: FloatArray) -> FloatArray:
     """Points of a right flank in the tooth frame.
 

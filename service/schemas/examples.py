@@ -340,7 +340,14 @@ def _outline(height_mm: float, turn: float) -> Json:
     return {
         "teeth": 20,
         "tooth_mm": [[-6.2, 34.5], [-2.0, 44.0], [2.0, 44.0], [6.2, 34.5]],
-        "radius_mm": {"tip": 44.0, "root": 35.0, "base": 37.588, "reference": 40.0, "held": 20.0},
+        "radius_mm": {
+            "tip": 44.0,
+            "root": 35.0,
+            "base": 37.588,
+            "reference": 40.0,
+            "held": 20.0,
+            "form": 37.64,
+        },
         "angle_deg": 0.0,
         "centre_mm": [0.0, height_mm],
         "turn": turn,

@@ -11,18 +11,18 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (43_364, 805),
+    ("fe_contact",): (43_524, 808),
     ("dynamics",): (44_800, 880),
-    ("lineofaction.gearbox",): (27_103, 553),
+    ("lineofaction.gearbox",): (27_150, 555),
     ("lineofaction.report",): (12_387, 231),
-    ("service",): (15_015, 356),
+    ("service",): (15_022, 356),
     ("lineofaction.client",): (2_717, 53),
     ("lineofaction.cli",): (5_442, 79),
     ("lineofaction.hardcases",): (3_841, 35),
-    ("bounds", "host", "model_studies"): (4_521, 156),
+    ("bounds", "host", "model_studies"): (4_523, 156),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 854
+MOST_FILES = 855
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""

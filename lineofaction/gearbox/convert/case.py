@@ -14,6 +14,7 @@ from bounds import inside, warn_of
 from bounds.types import Json
 from fe_contact.allowed_error import AllowedError
 from fe_contact.errors import FeContactError
+from fe_contact.flank.stated_start import StatedStarts
 from fe_contact.geometry import (
     FlankModification,
     Gear,
@@ -78,13 +79,18 @@ def _gear(kind: type[Toothed], name: str, case: Case) -> Toothed:
     hand = -kind.sign if name == "wheel" else 1
     with inside(name):
         facts = in_si(kind, gear, case.pair)
-        own = {
+        facts |= {
             "helix_angle": hand * facts["helix_angle"] + 0.0,  # -0.0 becomes 0.0
-            "modification": FlankModification(**in_si(FlankModification, gear)),
             "material": Material(**in_si(Material, gear.material or case.material)),
             "pitch_deviation": _pitch_deviation(gear),
         }
-        return kind(**facts | own)
+        return kind(**facts, modification=_modification(gear, lambda: kind(**facts)))
+
+
+def _modification(gear: ToothingInput, plain: Callable[[], Toothing]) -> FlankModification:
+    """Return the modification of a gear; `plain` makes the gear without it."""
+    facts, starts = in_si(FlankModification, gear), StatedStarts(**in_si(StatedStarts, gear))
+    return FlankModification(**facts | starts.lengths(facts, plain))
 
 
 def _pitch_deviation(gear: ToothingInput) -> PitchDeviation:

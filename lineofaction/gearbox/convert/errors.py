@@ -32,6 +32,7 @@ from fe_contact.body import Shaft
 from fe_contact.errors import FeContactError, InfeasibleGeometry
 from fe_contact.errors import InputError as ContactInputError
 from fe_contact.flank.modification import FlankModification
+from fe_contact.flank.stated_start import StatedStarts
 from fe_contact.geometry import Gear, GearPair, RingGear
 from fe_contact.geometry.toothing import MATING
 from fe_contact.material import Material
@@ -71,7 +72,7 @@ def _with_parts(parts: Mapping[str, Declared]) -> Iterator[type]:
 
 
 _ANYWHERE = (
-    *(FlankModification, Material, Shaft, *(Gear, RingGear, *_with_parts(parts_of(Gear)))),
+    *(FlankModification, StatedStarts, Material, Shaft, *(Gear, RingGear, *_with_parts(parts_of(Gear)))),
     *(GearBody, DiscBody, Inertia, TurningShaft, BeamSection),
     Outputs,
     *(Bushing, Housing, PlanetBearing, Coupling, FreeRotation, AppliedForce, Unbalance),

@@ -27,6 +27,7 @@ from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, gear
 from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.problems import BadInput, Fault, NotAnalyzed, NotFound
 from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.gear import with_figures
 from lineofaction.gearbox.schemas.live import LiveInput
 from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.units import DEGREE, MM, MPA, UM, factor, in_um
@@ -176,7 +177,8 @@ def live_curves(case: Case, bodies: CondensedPair, change: LiveInput) -> Json:
     try:
         facts = case.model_dump(mode="json")
         for name in ("pinion", "wheel"):
-            facts["pair"][name] |= getattr(change, name).model_dump(mode="json", exclude_none=True)
+            own = getattr(change, name).model_dump(mode="json", exclude_none=True)
+            facts["pair"][name] = with_figures(facts["pair"][name], own)
         pair = gear_pair(validated(Case, facts))
         with boundary_errors():
             return _answer(bodies, pair, change)
@@ -304,12 +306,12 @@ def _gear(gear: Toothing) -> Json:
     tip = profile.tip_land(np.linspace(0.0, 1.0, _TIP_POINTS)[1:-1])
     tooth = np.concatenate((right, tip, right[::-1] * (-1.0, 1.0)))
     circles = {"tip": gear.tip_radius, "root": gear.root_radius, "base": gear.base_radius}
-    circles |= {"reference": gear.reference_radius, "held": gear.held_radius}
+    circles |= {"reference": gear.reference_radius, "held": gear.held_radius, "form": gear.form_radius}
     return {
         "teeth": gear.teeth,
         # from left to right, seen from the mesh's side
         "tooth_mm": _points(tooth[::-1] if gear.sign > 0 else tooth * (-1.0, 1.0)),
-        "radius_mm": {name: round(radius / MM, 6) for name, radius in circles.items()},
+        "radius_mm": {name: round(radius / MM, 9) for name, radius in circles.items()},
     }
 
 

@@ -9,6 +9,7 @@ from pydantic import ConfigDict, Field, model_validator
 
 from fe_contact.body import Shaft
 from fe_contact.flank.modification import FlankModification
+from fe_contact.flank.stated_start import RELIEFS, StatedStarts, starts_of
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.tooth_flank import MOST_NODES
 from fe_contact.geometry.toothing import MATING, Toothing
@@ -23,7 +24,15 @@ from lineofaction.gearbox.schemas.declared import (
     with_fields,
 )
 from lineofaction.gearbox.schemas.flank_grid import Deviation
-from lineofaction.gearbox.schemas.model import BoundaryModel, Listed, Spelling, at_most_one_of, refuse, stated
+from lineofaction.gearbox.schemas.model import (
+    BoundaryModel,
+    Json,
+    Listed,
+    Spelling,
+    at_most_one_of,
+    refuse,
+    stated,
+)
 
 
 @with_fields(declared_in(Material))
@@ -56,9 +65,23 @@ class _ToothingFigures(BoundaryModel):
     face_width_mm: float
 
 
-@with_fields({**declared_in(FlankModification), **parts_in(parts_of(Gear))})
+_STARTS = {f"{relief}_length_mm": relief for relief in RELIEFS}
+
+
+def _start_fields(relief: str) -> tuple[str, ...]:
+    """Return the fields of a gear that state where a relief starts."""
+    return tuple(figure.field for figure in figures(StatedStarts) if figure.name in starts_of(relief))
+
+
+STARTED_ONCE = tuple(at_most_one_of(*_start_fields(relief)) for relief in RELIEFS)
+"""The rules that the start of a relief is stated in one way."""
+
+
+@with_fields({**declared_in(FlankModification), **declared_in(StatedStarts), **parts_in(parts_of(Gear))})
 class ToothingInput(_ToothingFigures):
     """Fields of all gears. Modifications: > 0 is material removed, normal to the involute, transverse."""
+
+    model_config = ConfigDict(json_schema_extra=stated(*STARTED_ONCE))
 
     pitch_deviation_um: PitchDeviations = Field(
         default=(),
@@ -109,6 +132,17 @@ class ToothingInput(_ToothingFigures):
 @with_fields(as_fields(of_gear(Gear)))
 class GearInput(ToothingInput):
     """One external gear."""
+
+
+def with_figures(gear: Json, own: Json) -> Json:
+    """Return the table of a gear with figures of its flanks; a length replaces where the relief starts."""
+    replaced = {field for name in own if name in _STARTS for field in _start_fields(_STARTS[name])}
+    return {name: value for name, value in gear.items() if name not in replaced} | own
+
+
+def has_extent(gear: ToothingInput, relief: str) -> bool:
+    """Whether a gear states where a relief starts, or how long it is."""
+    return any(getattr(gear, field) for field in (f"{relief}_length_mm", *_start_fields(relief)))
 
 
 # The load and the alignment at which the flanks of a case are looked at.

@@ -26,6 +26,7 @@ from dynamics.types import FloatArray
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.schemas.gear import has_extent
 from lineofaction.gearbox.schemas.housings import HousingInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.studied import RANGES, NoiseRanges
@@ -135,7 +136,7 @@ def _flank_figures(scene: SceneInput) -> Iterator[DesignFigure]:
             assert mesh.case is not None
             flank = getattr(mesh.case.pair, gear)
             for amount in AMOUNTS:
-                if amount != "tip_relief_um" or flank.tip_relief_length_mm > 0.0:
+                if amount != "tip_relief_um" or has_extent(flank, "tip_relief"):
                     path = f"meshes.{mesh.name}.case.pair.{gear}.{amount}"
                     yield DesignFigure(path, "um", float(getattr(flank, amount)), STEP)
 

@@ -32,6 +32,7 @@ from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.gear import with_figures
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_text
@@ -65,7 +66,8 @@ def _write_case(
         else copy.deepcopy(getattr(result, "case", {}))
     )
     for gear, fields in _at_boundary(result.optimum.values).items():
-        content["pair"][gear] |= {name: float(f"{value:.6g}") for name, value in fields.items()}
+        best = {name: float(f"{value:.6g}") for name, value in fields.items()}
+        content["pair"][gear] = with_figures(content["pair"][gear], best)
     target.write_text(f"# {result.reason}\n\n{toml_text(content)}", encoding="utf-8")
 
 

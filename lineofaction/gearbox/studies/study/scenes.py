@@ -20,6 +20,7 @@ from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.condensed_request import condensed_pair
 from fe_contact.errors import FeContactError
 from fe_contact.flank.modification import FlankModification
+from fe_contact.flank.stated_start import StatedStarts
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.housings import reduced_in
@@ -36,7 +37,7 @@ Place = tuple[str | int, ...]
 
 _EVERY = "*"
 _ENTRY = re.compile(r"^(\w+)(?:\[(\d+)\])?$")
-FLANKS = tuple(figure.field for figure in figures(FlankModification))
+FLANKS = tuple(figure.field for kind in (FlankModification, StatedStarts) for figure in figures(kind))
 """Fields of a case that leave the bodies of its gears as they are."""
 
 
