@@ -4,7 +4,7 @@ The only package of dynamics that uses scikit-fem, meshlane and, in a child proc
 """
 
 import host.analysis  # noqa: F401 (says what to install)
-from dynamics.housings.mesh_files import mesh_step, read_mesh, write_surface
+from dynamics.housings.mesh_files import read_mesh, write_surface
 from dynamics.housings.reduced_housing import ReducedHousing, receptance, scene_housing
 from dynamics.housings.reduced_matrices import (
     MaterialDamping,
@@ -16,6 +16,7 @@ from dynamics.housings.reduced_matrices import (
     read_reduced_matrices,
 )
 from dynamics.housings.reduction import CostLimit, meshed_step, reduced_housing, reduction_cost
+from dynamics.housings.step_files import FlatFace, StepSolid, mesh_step, step_solid
 from dynamics.housings.supports import Foot, Mount, SeatBore, SeatFrame
 from dynamics.housings.tetrahedral_mesh import Bore, BoundedPlane, Box, Group, Plane, TetrahedralMesh
 from dynamics.solid_housing import GRAY_CAST_IRON, SPHEROIDAL_CAST_IRON, Material, Ring
@@ -27,6 +28,7 @@ __all__ = [
     "BoundedPlane",
     "Box",
     "CostLimit",
+    "FlatFace",
     "Foot",
     "Group",
     "Material",
@@ -40,6 +42,7 @@ __all__ = [
     "Ring",
     "SeatBore",
     "SeatFrame",
+    "StepSolid",
     "TetrahedralMesh",
     "housing_of_matrices",
     "mesh_step",
@@ -51,5 +54,6 @@ __all__ = [
     "reduced_housing",
     "reduction_cost",
     "scene_housing",
+    "step_solid",
     "write_surface",
 ]

@@ -1,12 +1,10 @@
-"""Volume meshes from files by meshlane and from STEP files by gmsh, in child processes; files of surfaces."""
+"""Volume meshes from files, by meshlane in a child process; files of surfaces."""
 
 from __future__ import annotations
 
 import os
-import shutil
 import sys
-import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
@@ -16,13 +14,13 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
 from bounds import from_to
-from dynamics.checks import one_of, positive
-from dynamics.errors import InputError, SolveError
+from dynamics.checks import one_of
+from dynamics.errors import InputError
 from dynamics.housings.quadrature import determinants
 from dynamics.housings.tetrahedral_mesh import EDGES, TetrahedralMesh, raised
-from dynamics.solid_housing import MESH_FORMATS, MESH_SUFFIXES, STEP_SUFFIXES, check_mesh_content, mesh_text
+from dynamics.solid_housing import MESH_FORMATS, MESH_SUFFIXES, check_mesh_content, mesh_text
 from dynamics.types import FloatArray, IntArray
-from host import READING, ChildFailed, ChildOutOfMemory, ask_child
+from host import READING, ChildFailed, ask_child
 
 # Checks of a tetrahedral mesh: shape of its elements, its size, whether it hangs together.
 
@@ -160,64 +158,7 @@ def _quadratic(content: _Content) -> tuple[FloatArray, IntArray]:
     return raised(np.where(turned[:, None], cells[:, [0, 2, 1, 3]], cells), points)
 
 
-# Meshes of a STEP file, by gmsh in a child process.
-
-
-STEP_WORKER = Path(__file__).with_name("step_worker.py")
-STEP_SECONDS = 600.0
-WALL_ELEMENTS = 0.7
-"""Elements over the mean wall thickness, 2 V/S of the body, unless a size is given: quadratic ones bend."""
-
-
-def mesh_step(
-    path: str | Path,
-    element_size: float | None = None,
-    seconds: float = STEP_SECONDS,
-    command: Sequence[str] | None = None,
-) -> TetrahedralMesh:
-    """Mesh a STEP file with one solid by quadratic tetrahedra, whose nodes are on its curved surface.
-
-    Raises `InputError`: no such file, no solid or several, or a mesh that is bad at this size; `SolveError`:
-    the mesher failed, ran out of time or memory.
-
-    Parameters
-    ----------
-    path : str or Path
-        ``.step`` or ``.stp``; its unit is read from it.
-    element_size : float, optional
-        Edge in m. Default: the mean wall thickness 2 V/S over 0.7. Curved faces get 12 elements a turn.
-    seconds : float
-        Time limit of the mesher.
-    command : sequence of str, optional
-        Program to run in place of the mesher.
-    """
-    file = Path(path)
-    one_of("step_file.suffix", file.suffix.lower(), STEP_SUFFIXES)
-    if not file.is_file():
-        raise InputError("step_file", file.name, "a file that exists")
-    if element_size is not None:
-        positive("element_size", element_size)
-    with tempfile.TemporaryDirectory() as folder:
-        copy = shutil.copyfile(file, Path(folder) / f"housing{file.suffix.lower()}")
-        mesh = copy.with_suffix(".msh")
-        request = {"step": copy.name, "mesh": mesh.name, "size": element_size}
-        try:
-            answer = ask_child(
-                request | {"wall_elements": WALL_ELEMENTS},
-                seconds,
-                command or (sys.executable, "-P", str(STEP_WORKER)),
-                copy.parent,
-            )
-        except ChildOutOfMemory as error:
-            raise SolveError(f"mesher: {error}. Use a larger element_size.") from error
-        except ChildFailed as error:
-            raise SolveError(
-                f"mesher: {error.cause}. Heal the geometry, or try another element_size."
-            ) from error
-        if answer.get("solids") != 1:
-            advice = "Unite the solids in the CAD program."
-            raise InputError("step_file.solids", answer.get("solids"), "one solid", advice)
-        return read_mesh(mesh, "mm")
+# Surfaces with fields, as VTU.
 
 
 CORNERS = 3

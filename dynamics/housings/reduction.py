@@ -23,7 +23,6 @@ from dynamics.housings.assembled_housing import (
     basis_vectors,
     free_modes,
 )
-from dynamics.housings.mesh_files import WALL_ELEMENTS, mesh_step
 from dynamics.housings.quadrature import over_surface
 from dynamics.housings.reduced_housing import (
     PointMotion,
@@ -33,6 +32,7 @@ from dynamics.housings.reduced_housing import (
     rigid_motions,
 )
 from dynamics.housings.reduced_matrices import MaterialDamping, MeshedHousing
+from dynamics.housings.step_files import WALL_ELEMENTS, mesh_step
 from dynamics.housings.supports import in_axes
 from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.types import FloatArray, IntArray

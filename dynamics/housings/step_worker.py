@@ -1,4 +1,4 @@
-"""Child process that meshes a STEP file with gmsh, and does nothing else.
+"""Child process that meshes a STEP file with gmsh or measures its faces, and does nothing else.
 
 Run as a script by `dynamics.housings.mesh_files`, never imported by it: gmsh changes signal handlers, may
 crash on hard input and keeps global state, so it lives and dies here, in a folder of its own, which is all
@@ -7,6 +7,10 @@ output::
 
     {"step": "housing.step", "mesh": "housing.msh", "size": m or null, "wall_elements": 0.7, "seconds": 600}
     {"solids": 1, "size": 0.014}   or   {"error": "..."}
+
+With no mesh to write the answer has the volume and the surface of the solid, its flat faces as ``planes``
+(point, outward normal, area) and its hollow faces of cylinders as ``walls`` (a point on the axis, the axis,
+radius, area, both ends along the axis from the point); m.
 """
 
 from __future__ import annotations
@@ -16,6 +20,8 @@ import os
 import sys
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from host import Limits, confine, end_after, handlers_kept
 
@@ -51,8 +57,8 @@ def _start_gmsh() -> Any:
     return gmsh
 
 
-def _mesh(gmsh: Any, request: dict[str, Any]) -> dict[str, Any]:
-    """Mesh the one solid of a file, in mm."""
+def _answer(gmsh: Any, request: dict[str, Any]) -> dict[str, Any]:
+    """Mesh the one solid of a file, or measure it."""
     try:
         gmsh.model.occ.importShapes(request["step"])
         gmsh.model.occ.synchronize()
@@ -61,9 +67,14 @@ def _mesh(gmsh: Any, request: dict[str, Any]) -> dict[str, Any]:
     solids = gmsh.model.getEntities(3)
     if len(solids) != 1:
         return {"solids": len(solids)}
-    size = request["size"] or MILLIMETER * _wall_thickness(gmsh, solids[0][1]) / request["wall_elements"]
+    return (_meshed if request["mesh"] else _measured)(gmsh, solids[0][1], request)
+
+
+def _meshed(gmsh: Any, solid: int, request: dict[str, Any]) -> dict[str, Any]:
+    """Write the mesh of a solid, in mm."""
+    size = request["size"] or MILLIMETER * _wall_thickness(gmsh, solid) / request["wall_elements"]
     gmsh.option.setNumber("Mesh.MeshSizeMax", size / MILLIMETER)
-    gmsh.model.addPhysicalGroup(3, [solids[0][1]])  # only its elements are written
+    gmsh.model.addPhysicalGroup(3, [solid])  # only its elements are written
     try:
         gmsh.model.mesh.generate(3)
         _, tags, _ = gmsh.model.mesh.getElements(3)
@@ -80,9 +91,68 @@ def _mesh(gmsh: Any, request: dict[str, Any]) -> dict[str, Any]:
 
 def _wall_thickness(gmsh: Any, solid: int) -> float:
     """Return 2 V/S of a solid, the mean thickness of a thin-walled one, mm."""
-    volume = gmsh.model.occ.getMass(3, solid)
+    return 2.0 * float(gmsh.model.occ.getMass(3, solid)) / sum(_areas(gmsh, solid).values())
+
+
+def _areas(gmsh: Any, solid: int) -> dict[int, float]:
+    """Return the areas of the faces of a solid, mm^2."""
     faces = gmsh.model.getBoundary([(3, solid)], oriented=False)
-    return float(2.0 * volume / sum(gmsh.model.occ.getMass(2, face) for _, face in faces))
+    return {face: float(gmsh.model.occ.getMass(2, face)) for _, face in faces}
+
+
+def _measured(gmsh: Any, solid: int, _: dict[str, Any]) -> dict[str, Any]:
+    """Return volume, surface, flat faces and hollow faces of cylinders of a solid, m."""
+    areas = _areas(gmsh, solid)
+    planes, walls = [], []
+    for face, area in areas.items():
+        kind = gmsh.model.getType(2, face)
+        if kind == "Plane":
+            _, normals = _samples(gmsh, face)
+            point = MILLIMETER * np.array(gmsh.model.occ.getCenterOfMass(2, face))
+            planes.append((point.tolist(), normals[0].tolist(), area * MILLIMETER**2))
+        elif kind == "Cylinder" and (wall := _wall(gmsh, face)) is not None:
+            point, axis, radius, low, high = wall
+            walls.append((point.tolist(), axis.tolist(), radius, area * MILLIMETER**2, low, high))
+    volume = gmsh.model.occ.getMass(3, solid) * MILLIMETER**3
+    surface = sum(areas.values()) * MILLIMETER**2
+    return {"solids": 1, "volume": volume, "surface": surface, "planes": planes, "walls": walls}
+
+
+def _samples(gmsh: Any, face: int) -> tuple[Any, Any]:
+    """Return points (m) of the surface of a face and its outward normals, at a third and half of its turn."""
+    (u, v), (u_end, v_end) = gmsh.model.getParametrizationBounds(2, face)
+    middle = 0.5 * (v + v_end)
+    at = [u + (u_end - u) / 3.0, middle, 0.5 * (u + u_end), middle]
+    return (
+        MILLIMETER * np.reshape(gmsh.model.getValue(2, face, at), (2, 3)),
+        np.reshape(gmsh.model.getNormal(face, at), (2, 3)),
+    )
+
+
+def _wall(gmsh: Any, face: int) -> tuple[Any, Any, float, float, float] | None:
+    """Return a point on the axis of a cylinder, its axis, its radius and the ends of the face; None: a boss.
+
+    Normals n at points p of a cylinder of radius r about c are (p - c)/r, into a bore -(p - c)/r.
+    """
+    (first, second), (n, m) = _samples(gmsh, face)
+    radius = float((first - second) @ (n - m) / ((n - m) @ (n - m)))
+    if radius >= 0.0:
+        return None
+    axis = np.cross(n, m) / np.linalg.norm(np.cross(n, m))
+    point = first - radius * n
+    edge = MILLIMETER * np.vstack([_edge(gmsh, curve) for curve in _curves(gmsh, face)])
+    along = (edge - point) @ axis
+    return point, axis, -radius, float(along.min()), float(along.max())
+
+
+def _curves(gmsh: Any, face: int) -> list[int]:
+    return [curve for _, curve in gmsh.model.getBoundary([(2, face)], combined=False, oriented=False)]
+
+
+def _edge(gmsh: Any, curve: int) -> Any:
+    """Return points along a curve, mm."""
+    (low,), (high,) = gmsh.model.getParametrizationBounds(1, curve)
+    return np.reshape(gmsh.model.getValue(1, curve, np.linspace(low, high, 17).tolist()), (-1, 3))
 
 
 def _main() -> None:
@@ -93,7 +163,7 @@ def _main() -> None:
     end_after(int(request["seconds"]) + 1)  # ends this process even when its parent is gone
     confine(Path.cwd(), Limits(memory_mb=None, cpu_seconds=int(request["seconds"]) + 1))
     try:
-        answer = _mesh(_start_gmsh(), request)
+        answer = _answer(_start_gmsh(), request)
     except MemoryError:
         answer = {"error": "MemoryError"}
     except Exception:  # noqa: BLE001 - bare Exception is what gmsh raises; its text may hold what is in the file

@@ -100,24 +100,15 @@ def bottom() -> float:
     return min(y - radius for _, y, radius in OUTLINE) - WALL - RAIL - PAD_HEIGHT
 
 
-def housing_of(seats: tuple[Seat, ...], step: str, **settings: Any) -> dict[str, Any]:
-    """Return the case as a housing of the scene, by its STEP file; settings are those of its reduction."""
-    size = {seat.name: {"bore_diameter_mm": seat.diameter, "bore_length_mm": seat.width} for seat in seats}
+def points() -> list[dict[str, Any]]:
+    """Return the points of the case whose motion is of interest, as a housing of the scene has them."""
     top = max(y + radius for _, y, radius in OUTLINE) + WALL
-    points = {
+    at = {
         "top": (95.5, top, 60.0),
         "motor side": (95.5, 75.0, INSIDE[0] - END_WALL - RIB_HEIGHT),
         "far side": (95.5, 75.0, INSIDE[1] + END_WALL + RIB_HEIGHT),
     }
-    return {
-        "name": "housing",
-        "step_file": step,
-        "material": "spheroidal_cast_iron",
-        "seats": [{"bearing": name, **bore} for name, bore in size.items()],
-        "feet": [{"name": "pads", "point_mm": [0.0, bottom(), 0.0], "normal": [0.0, -1.0, 0.0]}],
-        "points": [{"name": name, "position_mm": list(position)} for name, position in points.items()],
-        **settings,
-    }
+    return [{"name": name, "position_mm": list(position)} for name, position in at.items()]
 
 
 def tangent(first: Circle, second: Circle) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 from effort import QUICK, THOROUGH, Effort
-from gear_case import housing_of, seats_of
+from gear_case import points
 from sound import deciding, levels, verdict, write_sounds
 
 from dynamics.noise import RadiatedSound, loudest
@@ -75,9 +75,10 @@ def housed(scene: Path, effort: Effort) -> None:
     subprocess.run(
         [sys.executable, UNIT / "gear_case.py", scene, step], stdout=subprocess.DEVNULL, check=True
     )
-    seats = seats_of(tomllib.loads(scene.read_text("utf-8")))
-    settings = {"modes": effort.modes, "element_size_mm": effort.element_size_mm}
-    amend(scene, housings=[housing_of(seats, step.name, **settings)])
+    loa("housing", scene, step, "--material", "spheroidal_cast_iron", "-o", scene)
+    (case,) = tomllib.loads(scene.read_text("utf-8"))["housings"]
+    settings = {"modes": effort.modes, "element_size_mm": effort.element_size_mm, "points": points()}
+    amend(scene, housings=[case | settings])
 
 
 def deflected(scene: Path, output: Path) -> dict[str, Any]:

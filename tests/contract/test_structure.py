@@ -12,17 +12,17 @@ ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
     ("fe_contact",): (43_524, 808),
-    ("dynamics",): (44_800, 880),
-    ("lineofaction.gearbox",): (27_150, 555),
+    ("dynamics",): (45_010, 883),
+    ("lineofaction.gearbox",): (27_527, 563),
     ("lineofaction.report",): (12_387, 231),
     ("service",): (15_022, 356),
     ("lineofaction.client",): (2_717, 53),
-    ("lineofaction.cli",): (5_442, 79),
+    ("lineofaction.cli",): (5_644, 80),
     ("lineofaction.hardcases",): (3_841, 35),
     ("bounds", "host", "model_studies"): (4_523, 156),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 855
+MOST_FILES = 860
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""

@@ -117,16 +117,18 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 WRITE_CASE = """
 import json, pathlib, subprocess, sys
 sys.path.insert(0, {example!r})
-from gear_case import housing_of, seats_of
+from gear_case import points
 import lineofaction as loa
+from dynamics.housings import step_solid
+from lineofaction.gearbox.from_step.housing import step_housing
 import warnings
 warnings.simplefilter("ignore")
-import tomllib
-scene = loa.open_unit("unit.rexs").files()["scene.toml"]
-pathlib.Path("scene.toml").write_text(scene)
+unit = loa.open_unit("unit.rexs")
+pathlib.Path("scene.toml").write_text(unit.files()["scene.toml"])
 subprocess.run([sys.executable, {example!r} + "/gear_case.py", "scene.toml", "gear_case.step"], check=True)
-case = housing_of(seats_of(tomllib.loads(scene)), "gear_case.step", modes=10, element_size_mm=40.0)
-pathlib.Path("housings.json").write_text(json.dumps([case]))
+found = step_housing(unit.scene, step_solid("gear_case.step"), "spheroidal_cast_iron", "-y").fields
+settings = dict(name="housing", step_file="gear_case.step", modes=10, element_size_mm=40.0, points=points())
+pathlib.Path("housings.json").write_text(json.dumps([found | settings]))
 """
 
 

@@ -159,6 +159,8 @@ VERBS = {
     "geometry": ("pages.run_geometry", ["first.toml", "second.toml"]),
     "analyze": ("analyze.run_analyze", ["first.toml", "second.toml"]),
     "simulate": ("simulate.run_simulate", ["jeffcott.toml"]),
+    "measured --gear pinion --loaded left": ("measured.run_measured", ["first.toml", "second.toml"]),
+    "housing case.step --material cast_aluminum": ("housing.run_housing", ["jeffcott.toml"]),
 }
 STUDIED = {"flank": "case", "sweep --over torque": "case", "sensitivity": "both"} | dict.fromkeys(
     (
@@ -173,14 +175,14 @@ STUDIED = {"flank": "case", "sweep --over torque": "case", "sensitivity": "both"
 )
 
 
-@pytest.mark.parametrize("verb", VERBS)
+@pytest.mark.parametrize("words", VERBS)
 def test_a_verb_takes_a_folder_and_does_each_of_its_cases(
-    verb: str, unit: Path, monkeypatch: pytest.MonkeyPatch
+    words: str, unit: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    function, expected = VERBS[verb]
+    (function, expected), (verb, *options) = VERBS[words], words.split()
     done: list[str] = []
     monkeypatch.setattr(f"lineofaction.cli.{function}", lambda file, *_, **__: done.append(file.path.name))
-    assert loa(verb, unit).exit_code == 0
+    assert loa(verb, unit, *options).exit_code == 0
     assert done == expected
 
 

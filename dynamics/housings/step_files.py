@@ -1,0 +1,195 @@
+"""STEP files of housings by gmsh in a child process: their mesh, and the bores and planes of their solid."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, TypeVar
+
+import numpy as np
+
+from dynamics.checks import one_of, positive
+from dynamics.errors import InputError, SolveError
+from dynamics.housings.mesh_files import read_mesh
+from dynamics.housings.tetrahedral_mesh import COVERED, Bore, Plane, TetrahedralMesh
+from dynamics.solid_housing import STEP_SUFFIXES
+from dynamics.types import FloatArray
+from host import ChildFailed, ChildOutOfMemory, ask_child
+
+STEP_WORKER = Path(__file__).with_name("step_worker.py")
+STEP_SECONDS = 600.0
+WALL_ELEMENTS = 0.7
+"""Elements over the mean wall thickness, 2 V/S of the body, unless a size is given: quadratic ones bend."""
+Made = TypeVar("Made")
+
+
+def mesh_step(
+    path: str | Path,
+    element_size: float | None = None,
+    seconds: float = STEP_SECONDS,
+    command: Sequence[str] | None = None,
+) -> TetrahedralMesh:
+    """Mesh a STEP file with one solid by quadratic tetrahedra, whose nodes are on its curved surface.
+
+    Raises `InputError`: no such file, no solid or several, or a mesh that is bad at this size; `SolveError`:
+    the mesher failed, ran out of time or memory.
+
+    Parameters
+    ----------
+    path : str or Path
+        ``.step`` or ``.stp``; its unit is read from it.
+    element_size : float, optional
+        Edge in m. Default: the mean wall thickness 2 V/S over 0.7. Curved faces get 12 elements a turn.
+    seconds : float
+        Time limit of the mesher.
+    command : sequence of str, optional
+        Program to run in place of the mesher.
+    """
+    if element_size is not None:
+        positive("element_size", element_size)
+    request = {"mesh": "housing.msh", "size": element_size, "wall_elements": WALL_ELEMENTS}
+
+    def mesh(_: dict[str, Any], folder: Path) -> TetrahedralMesh:
+        return read_mesh(folder / "housing.msh", "mm")
+
+    return _by_gmsh(Path(path), request, mesh, seconds, command)
+
+
+@dataclass(frozen=True)
+class FlatFace:
+    """A flat part of the surface of a solid; its area in m^2."""
+
+    plane: Plane
+    area: float
+
+
+@dataclass(frozen=True)
+class StepSolid:
+    """What the one solid of a STEP file is, in the frame of the file.
+
+    Attributes
+    ----------
+    volume, surface : float
+        m^3, m^2.
+    bores : tuple of Bore
+        Round holes of which at least half is there; halves of a split one are one.
+    planes : tuple of FlatFace
+        The largest first.
+    """
+
+    volume: float
+    surface: float
+    bores: tuple[Bore, ...]
+    planes: tuple[FlatFace, ...]
+
+
+def step_solid(path: str | Path, seconds: float = STEP_SECONDS) -> StepSolid:
+    """Return the bores and planes of the one solid in a STEP file, which is not meshed.
+
+    Raises `InputError`: no such file, no solid or several; `SolveError`: the reader failed, ran out of time
+    or memory.
+    """
+
+    def solid(answer: dict[str, Any], _: Path) -> StepSolid:
+        planes = [
+            FlatFace(Plane(tuple(point), tuple(normal)), area) for point, normal, area in answer["planes"]
+        ]
+        planes.sort(key=lambda face: -face.area)
+        walls = [_Wall(np.array(point), np.array(axis), *rest) for point, axis, *rest in answer["walls"]]
+        return StepSolid(answer["volume"], answer["surface"], tuple(_bores(walls)), tuple(planes))
+
+    return _by_gmsh(Path(path), {"mesh": None}, solid, seconds)
+
+
+def _by_gmsh(
+    file: Path,
+    request: dict[str, Any],
+    made: Callable[[dict[str, Any], Path], Made],
+    seconds: float,
+    command: Sequence[str] | None = None,
+) -> Made:
+    """Return what is made of the answer of the child, who works on a copy of the file, and of its folder."""
+    one_of("step_file.suffix", file.suffix.lower(), STEP_SUFFIXES)
+    if not file.is_file():
+        raise InputError("step_file", file.name, "a file that exists")
+    with TemporaryDirectory() as folder:
+        copy = shutil.copyfile(file, Path(folder) / f"housing{file.suffix.lower()}")
+        run = command or (sys.executable, "-P", str(STEP_WORKER))
+        try:
+            answer = ask_child(request | {"step": copy.name}, seconds, run, copy.parent)
+        except ChildOutOfMemory as error:
+            raise SolveError(f"mesher: {error}. Use a larger element_size.") from error
+        except ChildFailed as error:
+            raise SolveError(
+                f"mesher: {error.cause}. Heal the geometry, or try another element_size."
+            ) from error
+        if answer.get("solids") != 1:
+            advice = "Unite the solids in the CAD program."
+            raise InputError("step_file.solids", answer.get("solids"), "one solid", advice)
+        return made(answer, copy.parent)
+
+
+# Bores: faces of cylinders about one axis that lie at the same height are one.
+
+
+_SAME = 1e-6
+"""Directions; lengths in m at which axes, radii and heights are the same."""
+
+
+@dataclass(frozen=True)
+class _Wall:
+    """A hollow face of a cylinder: a point on its axis and the axis, its radius, area, and ends along it."""
+
+    point: FloatArray
+    axis: FloatArray
+    radius: float
+    area: float
+    low: float
+    high: float
+
+
+def _bores(walls: Sequence[_Wall]) -> Iterator[Bore]:
+    for group in _coaxial(walls):
+        first, parts = group[0], sorted(map(_ends, group, [group[0]] * len(group)))
+        while parts:
+            low, high, area = parts.pop(0)
+            while parts and parts[0][0] < high - _SAME:
+                _, end, more = parts.pop(0)
+                high, area = max(high, end), area + more
+            if area >= 2.0 * np.pi * first.radius * (high - low) * COVERED:
+                middle = first.point + 0.5 * (low + high) * first.axis
+                yield Bore(_vector(middle), _vector(first.axis), 2.0 * first.radius, high - low)
+
+
+def _coaxial(walls: Sequence[_Wall]) -> Iterator[list[_Wall]]:
+    """Yield the walls that have axis and radius in common."""
+    groups: list[list[_Wall]] = []
+    for wall in walls:
+        own = next((group for group in groups if _same_cylinder(group[0], wall)), None)
+        if own is None:
+            groups.append([wall])
+        else:
+            own.append(wall)
+    yield from groups
+
+
+def _same_cylinder(one: _Wall, other: _Wall) -> bool:
+    arm = other.point - one.point
+    off = np.linalg.norm(arm - (arm @ one.axis) * one.axis)
+    parallel = np.linalg.norm(np.cross(one.axis, other.axis)) < _SAME
+    return bool(parallel and off < _SAME and abs(one.radius - other.radius) < _SAME)
+
+
+def _ends(wall: _Wall, first: _Wall) -> tuple[float, float, float]:
+    """Return the ends of a wall along the axis of the first from its point, and its area."""
+    ends = [float((wall.point + end * wall.axis - first.point) @ first.axis) for end in (wall.low, wall.high)]
+    return min(ends), max(ends), wall.area
+
+
+def _vector(values: FloatArray) -> tuple[float, float, float]:
+    x, y, z = map(float, values)
+    return x, y, z

@@ -1,0 +1,170 @@
+"""``loa housing``: a STEP file as the housing of a scene."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Collection
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bounds import engineering
+from dynamics.errors import InputError, SolveError
+from dynamics.housings import step_solid
+from dynamics.solid_housing import MATERIALS
+from host.directories import whole_file
+from lineofaction.cli.guard import warn
+from lineofaction.cli.output import check_writable, console, print_json, print_written, table
+from lineofaction.gearbox.from_step.housing import DIRECTIONS, StepHousing, even_length, step_housing
+from lineofaction.gearbox.from_step.placement import Placement
+from lineofaction.gearbox.input_file import InputFile, number_list
+from lineofaction.gearbox.problems import BadInput, JobFailed
+from lineofaction.gearbox.schemas.files import READERS, beside, read_text, written_out
+from lineofaction.gearbox.schemas.plan import left_out_warnings
+from lineofaction.gearbox.schemas.reading import read_model, read_table, validated
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.schemas.toml import toml_table, toml_text
+from lineofaction.gearbox.units import MM
+
+NAMES = {"origin_mm": "--origin-mm", "x_axis": "--x-axis", "z_axis": "--z-axis"}
+
+
+def run_housing(
+    file: InputFile,
+    step: Path,
+    stands: tuple[str, str],
+    placed: dict[str, str | None],
+    output: Path | None,
+    *,
+    as_json: bool,
+) -> None:
+    """Show what a STEP file is as the housing of a scene, and write the scene with it.
+
+    Parameters
+    ----------
+    stands : tuple of str
+        Material, and the direction that the housing stands on.
+    placed : dict
+        What is typed of `NAMES`, by field.
+    """
+    material, stands_on = stands
+    _check_known("--material", material, MATERIALS)
+    _check_known("--stands-on", stands_on, DIRECTIONS)
+    if output is not None:
+        check_writable(output)
+    scene = read_model(SceneInput, file)
+    try:
+        solid = step_solid(step)
+    except InputError as error:
+        raise BadInput.of(error.field, error.value, str(error.bound), str(error.suggestion)) from None
+    except SolveError as error:
+        raise JobFailed(f'"{step.name}": {error}') from error
+    made = step_housing(scene, solid, material, stands_on, _placement(placed))
+    left = [f"{name}: in no bore, it stays on the ground" for name in made.left_out]
+    warn(left_out_warnings(left, "scene"))
+    written = [] if output is None else _write(file, step, output, made)
+    if as_json:
+        print_json(_as_json(made) | {"written": [str(path) for path in written]})
+        return
+    _show(made)
+    print_written(written)
+
+
+def _check_known(name: str, value: str, known: Collection[str]) -> None:
+    if value not in known:
+        raise BadInput.of(name, value, f"one of {', '.join(known)}")
+
+
+def _placement(placed: dict[str, str | None]) -> Placement | None:
+    """Return where the file is said to stand; None: nothing is said."""
+    given = {field: _vector(NAMES[field], text) for field, text in placed.items() if text is not None}
+    if not given:
+        return None
+    x, z = (given.get(f"{name}_axis", axis) for name, axis in (("x", np.eye(3)[0]), ("z", np.eye(3)[2])))
+    for name, axis in (("x", x), ("z", z)):
+        if not axis.any():
+            raise BadInput.of(NAMES[f"{name}_axis"], axis.tolist(), "a direction: not all zero")
+    x, z = x / np.linalg.norm(x), z / np.linalg.norm(z)
+    if abs(x @ z) > 1e-6:
+        raise BadInput.of(NAMES["x_axis"], x.tolist(), f"perpendicular to the z axis, {z.tolist()}")
+    origin = MM * given.get("origin_mm", np.zeros(3))
+    return Placement(np.stack([x, np.cross(z, x), z], axis=1), origin)
+
+
+def _vector(option: str, text: str) -> Any:
+    values = np.array(number_list(option, text))
+    if values.shape != (3,) or not np.all(np.isfinite(values)):
+        raise BadInput.of(option, text, "three numbers x,y,z", "For example 0,0,60.")
+    return values
+
+
+def _write(file: InputFile, step: Path, output: Path, made: StepHousing) -> list[Path]:
+    """Write the scene with its housing, and the STEP file beside it."""
+    target = output.parent / step.name
+    beside_it = target.exists() and target.samefile(step)
+    if target.exists() and not beside_it and target.read_bytes() != step.read_bytes():
+        raise BadInput.of("output", str(target), "free for the STEP file", "Choose another folder or name.")
+    base = read_table(file)
+    others = [part for part in base.get("housings", []) if part.get("name") not in made.replaced]
+    taken = {part.get("name") for part in others}
+    free = (own for own in ("housing", *(f"housing {k}" for k in range(2, 102))) if own not in taken)
+    housing = {"name": [*made.replaced, *free][0], "step_file": step.name, **made.fields}
+    table = base | {"housings": [*others, housing]}
+    find = beside(output.parent)
+    content = written_out(table, lambda own, field: step if own == step.name else find(own, field), READERS)
+    validated(SceneInput, content)
+    text = _text(file, output, table, housing)
+    if not beside_it:  # first: a scene names no file that is missing
+        with whole_file(target) as draft:
+            shutil.copyfile(step, draft)
+    with whole_file(output) as draft:
+        draft.write_text(text, encoding="utf-8")
+    return [output] if beside_it else [output, target]
+
+
+def _text(file: InputFile, output: Path, table: dict[str, Any], housing: dict[str, Any]) -> str:
+    """Return the scene as a file: TOML with its comments and the housing at the end, where that says it."""
+    if output.suffix == ".json":
+        return json.dumps(table, indent=1) + "\n"
+    text = f"{read_text(file.path, str(file.path)).rstrip()}\n\n{toml_text({'housings': [housing]})}"
+    with suppress(BadInput):
+        if toml_table(text, str(file.path)) == table:
+            return text
+    return toml_text(table)
+
+
+def _show(made: StepHousing) -> None:
+    out = console()
+    rows = [_row(name, made) for name in made.seated.bores]
+    head = ("bearing", "bore, mm", "length, mm", "bearing off its middle, mm")
+    stand = made.stand
+    normal = next(name for name, axis in DIRECTIONS.items() if np.array_equal(axis, stand.normal))
+    faces = "face" if stand.faces == 1 else "faces"
+    level = engineering(float(abs(stand.normal) @ stand.point) / MM, 6)
+    out.print(
+        f"{engineering(made.mass)} kg, walls of {engineering(made.wall / MM)} mm in the mean (2 V/S)\n"
+        f"stands on {stand.faces} {faces} of {engineering(1e4 * stand.area)} cm² that look to {normal}, "
+        f"at {normal[1]} = {level} mm"
+    )
+    if made.replaced:
+        out.print(f"in place of the housing {', '.join(made.replaced)}", soft_wrap=True)
+    if made.fields.keys() & NAMES.keys():
+        placed = ", ".join(f"{name} = {made.fields[name]}" for name in NAMES if name in made.fields)
+        out.print(f"where the file stands, by its bores or as typed: {placed}", soft_wrap=True)
+    out.print(table(head, rows, "", ("bearing",)))
+
+
+def _row(name: str, made: StepHousing) -> tuple[str, ...]:
+    bore = made.seated.bores[name]
+    off = abs(bore.position[2] - made.seated.bearings[name][2])
+    figures = bore.diameter, even_length(made.seated, name), round(off, 9)
+    return name, *(engineering(value / MM, 5) for value in figures)
+
+
+def _as_json(made: StepHousing) -> dict[str, Any]:
+    stand = made.stand
+    found = {"mass_kg": made.mass, "mean_wall_mm": made.wall / MM, "left_out": list(made.left_out)}
+    return {"housing": made.fields} | found | {"foot_faces": stand.faces, "foot_area_mm2": stand.area / MM**2}

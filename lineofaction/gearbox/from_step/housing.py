@@ -1,0 +1,152 @@
+"""The fields of a housing of a scene from the STEP file of its solid, and what was found in it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from dynamics.housings import FlatFace, StepSolid
+from dynamics.solid_housing import MATERIALS
+from dynamics.types import FloatArray
+from lineofaction.gearbox.from_step.placement import Bearings, Placement, Seated, found, seated
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.bearings import BushingInput, RollingBearingInput
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.units import MM, as_typed
+
+DIRECTIONS = {
+    f"{sign}{name}": (1.0 if sign == "+" else -1.0) * axis
+    for name, axis in zip("xyz", np.eye(3), strict=True)
+    for sign in "+-"
+}
+"""Outward normals of a foot, as they are typed."""
+_FACING = 5e-3
+"""Sine of the angle between normals that are the same."""
+_LEVEL = 1e-5
+"""Height within which faces are in one plane, m."""
+
+
+@dataclass(frozen=True)
+class Stand:
+    """The faces that a housing stands on: all in the outermost plane of a direction; m, m^2."""
+
+    point: FloatArray
+    normal: FloatArray
+    faces: int
+    area: float
+
+
+@dataclass(frozen=True)
+class StepHousing:
+    """A housing as a scene has it, and what it was found by.
+
+    Attributes
+    ----------
+    fields : mapping
+        Of `[[housings]]`, but for its name and its file.
+    seated : Seated
+        Bores by bearing.
+    left_out, replaced : tuple of str
+        Bearings in no bore; housings of the scene whose bearings are in this one, which it replaces.
+    stand : Stand
+    mass, wall : float
+        kg; mean thickness of the walls 2 V/S, m.
+    """
+
+    fields: Mapping[str, Any]
+    seated: Seated
+    left_out: tuple[str, ...]
+    replaced: tuple[str, ...]
+    stand: Stand
+    mass: float
+    wall: float
+
+
+def step_housing(
+    scene: SceneInput, solid: StepSolid, material: str, stands_on: str, placement: Placement | None = None
+) -> StepHousing:
+    """Return the housing of a scene that a solid is, its bearings seated in bores, on its outermost faces.
+
+    Raises `BadInput`: the scene has no bearings, no placement fits, no bearing is in a bore, or no face looks
+    where it should stand.
+
+    Parameters
+    ----------
+    material : str
+        One of `MATERIALS`.
+    stands_on : str
+        One of `DIRECTIONS`: outward normal of the foot in the scene.
+    placement : Placement, optional
+        Default: `found` by the bores.
+    """
+    bearings = _bearings(scene)
+    held = found(solid.bores, bearings) if placement is None else seated(solid.bores, bearings, placement)
+    if not held.bores:
+        advice = "Leave --origin-mm, --x-axis and --z-axis out: the bores say where it stands."
+        raise BadInput.of("--origin-mm", held.placement.fields, "such that a bearing is in a bore", advice)
+    stand = _stand(solid, held.placement, stands_on)
+    fields = {
+        "material": material,
+        **held.placement.fields,
+        "feet": [{"name": "base", "point_mm": _typed(stand.point), "normal": stand.normal.tolist()}],
+        "seats": [_seat(name, held) for name in held.bores],
+    }
+    left_out = tuple(name for name in bearings if name not in held.bores)
+    replaced = tuple(part.name for part in scene.housings if held.bores.keys() & {*part.bushings})
+    mass = MATERIALS[material].density * solid.volume
+    return StepHousing(fields, held, left_out, replaced, stand, mass, 2.0 * solid.volume / solid.surface)
+
+
+def _bearings(scene: SceneInput) -> Bearings:
+    origin = {shaft.name: np.array(shaft.origin_mm) for shaft in scene.shafts}
+    parts: tuple[BushingInput | RollingBearingInput, ...] = (*scene.bushings, *scene.rolling_bearings)
+    if not parts:
+        raise BadInput.of(
+            "bushings", [], "given, or rolling_bearings: bores are known by the bearings in them"
+        )
+    return {part.name: MM * (origin[part.shaft] + np.array([0.0, 0.0, part.position_mm])) for part in parts}
+
+
+def _seat(name: str, held: Seated) -> dict[str, Any]:
+    """Return the seat of a bearing: as much of its bore as lies evenly about it."""
+    return {
+        "bearing": name,
+        "bore_diameter_mm": as_typed(round(held.bores[name].diameter, 9), MM),
+        "bore_length_mm": as_typed(round(even_length(held, name), 9), MM),
+    }
+
+
+def even_length(held: Seated, name: str) -> float:
+    """Return the length of a bore that lies evenly about its bearing, m."""
+    bore = held.bores[name]
+    return float(bore.length - 2.0 * abs(bore.position[2] - held.bearings[name][2]))
+
+
+def _stand(solid: StepSolid, placement: Placement, stands_on: str) -> Stand:
+    """Return the outermost flat faces of a direction."""
+    normal = DIRECTIONS[stands_on]
+    facing = [face for face in solid.planes if _faces(face, placement, normal)]
+    if not facing:
+        sides = [
+            name
+            for name, axis in DIRECTIONS.items()
+            if any(_faces(face, placement, axis) for face in solid.planes)
+        ]
+        bound = f"a side of the solid with a flat face: {', '.join(sides) or 'it has none'}"
+        raise BadInput.of("--stands-on", stands_on, bound, "Or write its feet into the scene yourself.")
+    heights = [float(placement.point(face.plane.point) @ normal) for face in facing]
+    outermost = [face for face, height in zip(facing, heights, strict=True) if height > max(heights) - _LEVEL]
+    point = placement.point(outermost[0].plane.point)
+    return Stand(point, normal, len(outermost), sum(face.area for face in outermost))
+
+
+def _faces(face: FlatFace, placement: Placement, normal: FloatArray) -> bool:
+    own = placement.axes @ np.array(face.plane.normal)
+    return bool(own @ normal > 0.0 and np.linalg.norm(np.cross(own, normal)) < _FACING)
+
+
+def _typed(point: FloatArray) -> list[float]:
+    return [as_typed(float(np.round(value, 8)) + 0.0, MM) for value in point]

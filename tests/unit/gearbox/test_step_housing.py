@@ -1,0 +1,229 @@
+"""A housing from a STEP file: where it stands is found by its bores; seats, foot, and what is refused."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from command_line import loa
+from housing_solid import housed_scene, housing, write_block
+
+from dynamics.housings import Bore
+from lineofaction.gearbox.from_step.placement import Placement, found, seated
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import read_model
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.schemas.toml import toml_text
+
+BEARINGS = {
+    "input left": (0.0, 0.0, 0.015),
+    "input right": (0.0, 0.0, 0.155),
+    "middle left": (0.0955, 0.0, 0.012),
+    "middle right": (0.0955, 0.0, 0.158),
+    "output left": (0.0955, 0.149, 0.015),
+    "output right": (0.0955, 0.149, 0.165),
+}
+AT = {name: np.array(at) for name, at in BEARINGS.items()}
+
+
+def rotation(vector: Sequence[float]) -> np.ndarray:
+    """Return the rotation about a vector by its length (Rodrigues)."""
+    angle = float(np.linalg.norm(vector))
+    x, y, z = np.array(vector) / angle
+    skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + np.sin(angle) * skew + (1.0 - np.cos(angle)) * skew @ skew
+
+
+def bores_of(places: Sequence[np.ndarray], length: float = 0.016) -> list[Bore]:
+    return [Bore(tuple(map(float, at)), (0.0, 0.0, 1.0), 0.062, length) for at in places]
+
+
+def moved(bores: Sequence[Bore], placement: Placement) -> list[Bore]:
+    """Return bores in the frame of a file that stands so: the way back."""
+    back = Placement(placement.axes.T, -placement.axes.T @ placement.origin)
+    return [back.placed(bore) for bore in bores]
+
+
+def bolts() -> list[Bore]:
+    """Return holes of bolts along a flange: many, and many of them as far apart as shafts."""
+    angles = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
+    ring = [0.13 * np.array([np.cos(a), np.sin(a), 0.0]) + [0.05, 0.07, 0.08] for a in angles]
+    return bores_of(ring, 0.01)
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("seed", range(5))
+def test_a_file_that_is_turned_and_moved_is_put_back(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    stands = Placement(rotation(rng.uniform(-2.0, 2.0, 3)), rng.uniform(-1.0, 1.0, 3))
+    held = found(moved([*bores_of(list(AT.values())), *bolts()], stands), AT)
+    assert held.placement.axes == pytest.approx(stands.axes, abs=1e-9)
+    assert held.placement.origin == pytest.approx(stands.origin, abs=1e-9)
+    assert held.bores.keys() == AT.keys()
+    for name, bore in held.bores.items():
+        assert bore.position == pytest.approx(BEARINGS[name], abs=1e-9)
+
+
+def test_a_file_in_the_frame_of_the_scene_stays_there() -> None:
+    held = found(bores_of(list(AT.values())), AT)
+    assert held.placement.fields == {}
+
+
+def test_the_bore_is_the_one_that_the_bearing_is_in() -> None:
+    """Of a stepped one the step about the bearing; a wider one behind it is none of its business."""
+    step, behind = (
+        Bore((0.0, 0.0, 0.02), (0.0, 0.0, -1.0), 0.062, 0.02),
+        bores_of([np.array([0, 0, 0.05])], 0.04),
+    )
+    held = seated([*behind, step], {"own": np.array([0.0, 0.0, 0.018]), "far": np.zeros(3)}, Placement())
+    assert dict(held.bores) == {"own": step}
+
+
+@pytest.mark.law
+def test_a_unit_that_fits_in_several_ways_is_refused_with_each_of_them() -> None:
+    """Two shafts with their bearings in two planes: each way that is offered seats all bearings."""
+    two = {name: at for name, at in AT.items() if not name.startswith("output")}
+    even = {name: np.array([at[0], 0.0, 0.0 if "left" in name else 0.2]) for name, at in two.items()}
+    bores = moved(bores_of(list(even.values())), Placement(np.eye(3), np.array([0.1, 0.2, 0.3])))
+    with pytest.raises(BadInput) as caught:
+        found(bores, even)
+    fault = caught.value.faults[0]
+    assert fault.field == "step_file"
+    assert "4 are equally good" in fault.bound
+    ways = fault.suggestion.removeprefix("Choose: ").removesuffix(".").split("; or ")
+    assert len(ways) == 4
+    for way in ways:
+        assert seated(bores, even, typed(way)).bores.keys() == even.keys()
+
+
+def typed(way: str) -> Placement:
+    """Return the placement that options say."""
+    words = way.split()
+    said = {
+        name: np.array(json.loads(f"[{value}]")) for name, value in zip(words[::2], words[1::2], strict=True)
+    }
+    x, z = said.get("--x-axis", np.eye(3)[0]), said.get("--z-axis", np.eye(3)[2])
+    return Placement(np.stack([x, np.cross(z, x), z], axis=1), 1e-3 * said.get("--origin-mm", np.zeros(3)))
+
+
+@pytest.mark.parametrize("names", [(), ("input left", "input right"), ("input left", "output left")])
+def test_too_few_bores_place_nothing(names: tuple[str, ...]) -> None:
+    bores = moved(bores_of([AT[name] for name in names]), Placement(np.eye(3), np.array([0.1, 0.0, 0.0])))
+    with pytest.raises(BadInput, match="step_file") as caught:
+        found(bores, AT)
+    assert "--origin-mm" in caught.value.faults[0].suggestion
+
+
+# The verb, on a block with two bores of one bearing each.
+
+
+@pytest.fixture(scope="module")
+def block(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_block(tmp_path_factory.mktemp("block") / "block.step")
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Path:
+    """A scene file with a comment and without a housing."""
+    table: dict[str, Any] = {k: v for k, v in housed_scene(tmp_path).items() if k != "housings"}
+    file = tmp_path / "scene.toml"
+    file.write_text(f"# of the test bench\n{toml_text(table)}")
+    return file
+
+
+def test_the_scene_has_the_housing_that_one_would_write(block: Path, scene: Path, tmp_path: Path) -> None:
+    """Seats, foot and material as by hand; the file keeps its comment, and the STEP file goes along."""
+    output = tmp_path / "housed.toml"
+    ended = loa("housing", scene, block, "--material", "gray_cast_iron", "-o", output)
+    assert ended.exit_code == 0, ended.output
+    assert "stands on 1 face of" in ended.output
+    text = output.read_text()
+    assert text.startswith("# of the test bench\n")
+    (part,) = tomllib.loads(text)["housings"]
+    by_hand = housing()
+    assert part["seats"] == by_hand["seats"]
+    assert part["material"] == by_hand["material"]
+    assert part["feet"][0]["normal"] == by_hand["feet"][0]["normal"]
+    assert part["feet"][0]["point_mm"][1] == by_hand["feet"][0]["point_mm"][1]
+    assert "origin_mm" not in part
+    assert (tmp_path / "block.step").read_bytes() == block.read_bytes()
+    again = loa("housing", output, block, "--material", "cast_aluminum", "--stands-on", "+y", "-o", output)
+    assert "in place of the housing housing" in again.output
+    (other,) = read_model(SceneInput, output).housings
+    assert (other.name, other.feet[0].normal) == ("housing", (0.0, 1.0, 0.0))
+
+
+def test_without_an_output_it_shows_and_writes_nothing(block: Path, scene: Path, tmp_path: Path) -> None:
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    ended = loa("housing", scene, block, "--material", "gray_cast_iron", "--json")
+    facts = json.loads(ended.stdout)
+    exact = 160.0 * 80.0 * 30.0 - 2.0 * np.pi * 20.0**2 * 30.0
+    assert facts["mass_kg"] == pytest.approx(7200.0 * 1e-9 * exact, rel=1e-9)
+    assert facts["foot_area_mm2"] == pytest.approx(160.0 * 30.0, rel=1e-9)
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_a_bearing_in_no_bore_is_the_first_line(block: Path, scene: Path, tmp_path: Path) -> None:
+    table = tomllib.loads(scene.read_text())
+    table["bushings"].append(table["bushings"][0] | {"name": "outboard", "position_mm": 150.0})
+    scene.write_text(toml_text(table))
+    ended = loa("housing", scene, block, "--material", "gray_cast_iron", "--origin-mm", "0,0,0")
+    assert ended.output.splitlines()[0].startswith("warning (left_out): left out of the scene: outboard")
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        (("--material", "iron"), "--material"),
+        (("--material", "gray_cast_iron", "--stands-on", "down"), "--stands-on"),
+        (("--material", "gray_cast_iron", "--origin-mm", "0,0"), "--origin-mm"),
+        (("--material", "gray_cast_iron", "--origin-mm", "nan,0,0"), "--origin-mm"),
+        (("--material", "gray_cast_iron", "--origin-mm", "0,0,500"), "--origin-mm"),
+        (("--material", "gray_cast_iron", "--x-axis", "0,0,0"), "--x-axis"),
+        (("--material", "gray_cast_iron", "--x-axis", "1,0,1"), "--x-axis"),
+        (("--material", "gray_cast_iron", "-o", "absent/scene.toml"), "output"),
+    ],
+)
+def test_what_is_typed_wrong_is_named(
+    block: Path, scene: Path, options: tuple[str, ...], complaint: str
+) -> None:
+    ended = loa("housing", scene, block, *options)
+    assert ended.exit_code == 2
+    assert f"error: {complaint}" in ended.output
+
+
+HOSTILE = {
+    "empty": b"",
+    "no STEP": b"#!/bin/sh\nexit 0\n",
+    "cut off": b"ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('",
+    "no solid": b"ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n",
+    "itself": b"ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n#1=MANIFOLD_SOLID_BREP('',#1);\nENDSEC;\n",
+    "zeros": bytes(100_000),
+}
+
+
+@pytest.mark.parametrize("attack", HOSTILE)
+def test_a_hostile_file_is_one_error_and_writes_nothing(scene: Path, tmp_path: Path, attack: str) -> None:
+    file, output = tmp_path / "in" / "case.step", tmp_path / "out.toml"
+    file.parent.mkdir()
+    file.write_bytes(HOSTILE[attack])
+    ended = loa("housing", scene, file, "--material", "gray_cast_iron", "-o", output)
+    assert ended.exit_code in (1, 2), ended.output
+    assert ended.output.startswith("error: ")
+    assert "Traceback" not in ended.output
+    assert not output.exists()
+
+
+def test_another_step_file_of_the_name_is_not_overwritten(block: Path, scene: Path, tmp_path: Path) -> None:
+    (tmp_path / "block.step").write_text("of somebody else")
+    output = tmp_path / "housed.toml"
+    ended = loa("housing", scene, block, "--material", "gray_cast_iron", "-o", output)
+    assert ended.exit_code == 2
+    assert "free for the STEP file" in ended.output
+    assert (tmp_path / "block.step").read_text() == "of somebody else"
+    assert not output.exists()
