@@ -54,6 +54,11 @@ export class Design {
     return this.form.fields.values();
   }
 
+  /** @param {string} key */
+  field(key) {
+    return this.form.fields.get(key);
+  }
+
   /** What was edited since a case. @param {object} content */
   differences(content) {
     return differences(this.fields, content, this.case);
@@ -195,7 +200,7 @@ export class Design {
 
   /** What a helical pair with a model of the plane is told. */
   threeDimensions() {
-    const model = this.form.fields.get("accuracy.model").input.selectedOptions[0].text;
+    const model = this.field("accuracy.model").input.selectedOptions[0].text;
     return make(
       "div", {}, make("p", {}, `The pair is helical, and the model “${model}” computes one transverse section: a spur pair. `
         + "Its contact lines run across the face, which takes three dimensions."),

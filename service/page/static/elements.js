@@ -85,6 +85,8 @@ export function number(value, digits = 4) {
   return value.toFixed(Math.max(digits - 1 - size, 0));
 }
 
+export const signed = (value, digits) => `${value < 0 ? "−" : "+"}${number(Math.abs(value), digits)}`;
+
 export function duration(seconds) {
   if (seconds < 1) return "under a second";
   if (seconds < 90) return `${Math.round(seconds)} s`;

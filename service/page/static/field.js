@@ -5,7 +5,7 @@ import { kindOf, same } from "./schema.js";
 
 const UNITS = [
   ["_n_per_um", "N/µm"], ["_n_per_mm3", "N/mm³"], ["_n_m", "N m"], ["_gpa", "GPa"], ["_deg", "°"], ["_mm", "mm"],
-  ["_um", "µm"], ["_rpm", "rpm"], ["_hz", "Hz"], ["_percent", "%"], ["_n", "N"], ["_s", "s"],
+  ["_um", "µm"], ["_rpm", "rpm"], ["_km_h", "km/h"], ["_hz", "Hz"], ["_percent", "%"], ["_n", "N"], ["_s", "s"],
 ];
 const NONE = "not set";
 const READ = 40; // characters of a list in a sentence
@@ -57,6 +57,7 @@ export class Field {
     this.kind = kindOf(leaf.schema);
     this.label = label;
     this.input = this.control();
+    this.views = [this.input]; // controls that show it
     this.message = make("p", { class: "fault", id: `${this.id}-fault`, hidden: true });
     const unit = unitOf(this.name);
     this.wide = ["list", "sentences", "rows", "json"].includes(this.kind);
@@ -154,7 +155,7 @@ export class Field {
   }
 
   mark(text) {
-    this.input.setAttribute("aria-invalid", text ? "true" : "false");
+    for (const view of this.views) view.setAttribute("aria-invalid", text ? "true" : "false");
     this.message.textContent = text || "";
     this.message.hidden = !text;
   }

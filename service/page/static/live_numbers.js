@@ -1,11 +1,10 @@
 /** The numbers of the live curves: main figures with error and change, and all of them as a table. */
 
-import { number } from "./elements.js";
+import { number, signed } from "./elements.js";
 import { SHOWN_HARMONICS, strongestOrders } from "./live_figures.js";
 
 const plusMinus = (error, coming) => (Number.isFinite(error) ? `± ${number(error, 2)}` : coming ? "± …" : "");
 
-const signed = (value, digits) => `${value < 0 ? "−" : "+"}${number(Math.abs(value), digits)}`;
 const change = (value, from) => (from ? `${signed(100 * (value / from - 1), 3)} %` : "");
 const decibels = (value, from) => (from && value ? `${signed(20 * Math.log10(value / from), 2)} dB` : "");
 

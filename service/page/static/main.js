@@ -7,6 +7,7 @@ import { watchService } from "./away.js";
 import { layOut } from "./bench.js";
 import { CaseFiles } from "./case_files.js";
 import { typedIn } from "./controls.js";
+import { Complaint } from "./complaint.js";
 import { Design } from "./design.js";
 import { byId } from "./elements.js";
 import { referenceOf } from "./job.js";
@@ -44,6 +45,7 @@ class Page {
     this.address = new Address([...PLACES, ...ofCases.map(({ process }) => process)], () => this.typed);
     this.caller = `page-${Math.random().toString(36).slice(2, 12)}`;
     this.design = new Design(analyze.inputs.case.schema, effects, examples, this);
+    new Complaint(this.design);
     this.files = new CaseFiles(this.design, { scene: (name, unit) => this.scenes.take(name, unit), go: (views) => this.go(views) });
     /** @type {Map<string, Slot>} */
     this.slots = new Map();

@@ -1,0 +1,115 @@
+// @ts-check
+/** The complaint: its frequency, speed and torque in the bar, which are fields of the design, and the order that it is. */
+
+import { button, byId, make, number, signed } from "./elements.js";
+import { numberIn } from "./field.js";
+import { reveal } from "./tabs.js";
+
+const WITHIN = 2; // per cent, where the complaint states no tolerance
+const AT = ["tire_radius_mm", "road_speed_km_h"]; // either: the speed is that of the road
+const INSTEAD = { frequency_hz: "order", speed_rpm: "road_speed_km_h", road_speed_km_h: "speed_rpm" };
+
+/** @typedef {{order: number, harmonic: number | null, within: number, rpm: number, road: number, torque: number}} Heard */
+
+/**
+ * What a case complains of: its order of the mesh and the nearest harmonic, null where none is within so many per cent; the
+ * speed of its shaft and what 1 km/h is of it, rpm; the torque, N m. What is not stated is NaN.
+ * @param {any} content @returns {Heard}
+ */
+export function heardIn({ complaint = {}, pair = {}, load = {} }) {
+  const { shaft = "pinion", final_shaft: final = "wheel", final_ratio: ratio = 1, tolerance_percent: within = WITHIN } = complaint;
+  const teeth = (gear) => Number(pair[gear]?.teeth);
+  const road = (1000 * ratio * teeth(final)) / (120 * Math.PI * (complaint.tire_radius_mm / 1000) * teeth(shaft));
+  const rpm = Number(complaint.speed_rpm ?? road * complaint.road_speed_km_h);
+  const order = Number(complaint.order ?? (60 * complaint.frequency_hz) / rpm) / teeth(shaft);
+  const near = Math.max(Math.round(order), 1);
+  const harmonic = 100 * Math.abs(near / order - 1) <= within ? near : null;
+  return { order, harmonic, within, rpm, road, torque: Number(complaint.torque_n_m ?? load.torque_n_m?.at?.(-1)) };
+}
+
+/** @param {Heard} heard */
+function wordsOf({ order, harmonic, within }) {
+  if (!Number.isFinite(order)) return "";
+  const near = harmonic ? `harmonic ${harmonic}, off by ${signed(100 * (harmonic / order - 1), 2)} %` : `none within ${within} %`;
+  return `order ${number(order, 3)} of the mesh: ${near}`;
+}
+
+/** A field of the design in the bar: its number in one of the units, by their sizes in that of the field. */
+class View {
+  /** @param {any} field @param {string} label @param {(heard: Heard) => Record<string, number>} units @param {(view: View) => void} typed */
+  constructor(field, label, units, typed) {
+    Object.assign(this, { field, units });
+    this.sizes = { "": 1 };
+    const facts = { id: `bar-${field.name}`, type: "text", inputmode: "decimal", autocomplete: "off", placeholder: label };
+    this.input = make("input", { ...facts, "aria-label": `Complaint, ${label}`, "aria-describedby": field.message.id });
+    this.input.addEventListener("input", () => typed(this));
+    this.unit = make("select", { "aria-label": `Unit of the complaint's ${label}`, onchange: () => this.put() });
+    this.block = make("span", { class: "quantity" }, this.input, this.unit);
+    field.views.push(this.input);
+  }
+
+  get size() {
+    return this.sizes[this.unit.value] ?? 1;
+  }
+
+  /** What is typed, in the unit of the field. */
+  get value() {
+    const text = this.input.value.trim();
+    const typed = numberIn(text);
+    return text === "" ? undefined : typeof typed === "number" ? Number((typed * this.size).toPrecision(12)) : typed;
+  }
+
+  put() {
+    const { value } = this.field;
+    this.input.value = typeof value === "number" ? String(Number((value / this.size).toPrecision(6))) : value ?? "";
+  }
+
+  /** Show what the field has, unless that is what is typed. @param {Heard} heard */
+  follow(heard) {
+    this.sizes = this.units(heard);
+    const names = Object.keys(this.sizes);
+    this.unit.disabled = names.length < 2;
+    if (names.join() !== [...this.unit.options].map(({ value }) => value).join()) {
+      this.unit.replaceChildren(...names.map((name) => make("option", {}, name)));
+    }
+    if (this.value !== this.field.value) this.put();
+  }
+}
+
+export class Complaint {
+  /** @param {import("./design.js").Design} design */
+  constructor(design) {
+    this.design = design;
+    const view = (name, label, units) => new View(design.field(`complaint.${name}`), label, units, (typed) => this.take(typed));
+    this.views = [
+      view("frequency_hz", "frequency", () => ({ Hz: 1, kHz: 1000 })),
+      view("speed_rpm", "speed", () => ({ rpm: 1 })),
+      view("road_speed_km_h", "road speed", ({ road }) => (road ? { "km/h": 1, rpm: 1 / road } : { "km/h": 1 })),
+      view("torque_n_m", "torque", () => ({ "N m": 1 })),
+    ];
+    this.words = make("output", { for: this.views.map(({ input }) => input.id).join(" ") });
+    const all = button("Complaint", () => {
+      reveal(byId("f-complaint-frequency_hz"));
+      byId("f-complaint-frequency_hz").focus();
+    }, { title: "All fields of the complaint" });
+    byId("complaint").replaceChildren(all, ...this.views.map(({ block }) => block), this.words);
+    design.watch(() => this.follow());
+  }
+
+  follow() {
+    const { case: content } = this.design;
+    const heard = heardIn(content);
+    const road = AT.some((name) => content.complaint?.[name] !== undefined);
+    for (const view of this.views) {
+      view.block.hidden = view.field.name === (road ? "speed_rpm" : "road_speed_km_h");
+      view.follow(heard);
+    }
+    this.words.textContent = wordsOf(heard);
+  }
+
+  /** Edit the field of a view; what it is an alternative to is left out. @param {View} view */
+  take({ field: { name }, value }) {
+    const other = INSTEAD[name];
+    this.design.take({ [`complaint.${name}`]: value, ...(other && value !== undefined ? { [`complaint.${other}`]: undefined } : {}) });
+  }
+}

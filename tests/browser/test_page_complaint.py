@@ -1,0 +1,152 @@
+"""The complaint in the bar: fields of the design in the units of who hears it, and the order that it is."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from page_visit import CASE, GEAR, Visit, control, found_inaccessible, opened, other_browser
+from playwright.sync_api import Browser, Page, expect
+from running_service import until
+
+from lineofaction.gearbox.convert.complaint import complaint_of_case
+from lineofaction.gearbox.schemas.case import Case
+from lineofaction.gearbox.schemas.reading import validated
+
+PAIR = CASE["pair"] | {"center_distance_mm": 22.0, "wheel": GEAR | {"teeth": 24}}
+FIELDS = ("frequency_hz", "speed_rpm", "torque_n_m")
+RESTED = 600  # milliseconds after which an edit is a step to undo, and in the address
+HEARD = """async (content) => (await import("/page/complaint.js")).heardIn(content)"""
+AT_40 = {"road_speed_km_h": 40.0, "tire_radius_mm": 310.0, "final_ratio": 3.2}
+
+
+@pytest.fixture
+def visit(browser: Browser, address: str) -> Iterator[Visit]:
+    seen = opened(browser, address)
+    yield seen
+    seen.page.close()
+
+
+def bar(page: Page) -> dict[str, str]:
+    return {name: page.locator(f"#bar-{name}").input_value() for name in FIELDS}
+
+
+def fields(page: Page) -> dict[str, str]:
+    return {name: page.locator(f"#f-complaint-{name}").input_value() for name in FIELDS}
+
+
+def typed(page: Page, **texts: str) -> None:
+    for name, text in texts.items():
+        page.locator(f"#bar-{name}").fill(text)
+
+
+def said(page: Page, text: str) -> None:
+    expect(page.locator("#complaint output")).to_have_text(text)
+
+
+@pytest.mark.law
+@pytest.mark.parametrize(
+    "complaint",
+    [
+        {"frequency_hz": 1412.0, "speed_rpm": 2100.0},
+        {"frequency_hz": 1412.0, "speed_rpm": 1765.0, "shaft": "wheel"},
+        {"frequency_hz": 880.0, "torque_n_m": 0.7, **AT_40},
+        {"frequency_hz": 735.0, "final_shaft": "pinion", "torque_n_m": 0.7, **AT_40},
+        {"order": 72.0, "shaft": "wheel"},
+        {"order": 40.0, **AT_40},
+    ],
+)
+def test_the_order_is_that_of_the_service(visit: Visit, complaint: dict[str, Any]) -> None:
+    case = CASE | {"pair": PAIR, "complaint": complaint}
+    known = complaint_of_case(validated(Case, case))
+    heard = visit.page.evaluate(HEARD, case)
+    assert heard["order"] == pytest.approx(known.order * known.per_pitch)
+    assert heard["harmonic"] == known.within[0].harmonic
+    assert heard["torque"] == known.torques["pair"]
+
+
+@pytest.mark.law
+def test_bar_form_undo_address_and_file_have_one_complaint(visit: Visit, browser: Browser) -> None:
+    page = visit.page
+    page.get_by_label("Unit of the complaint's frequency").select_option("kHz")
+    typed(page, frequency_hz="1,4", speed_rpm="1812", torque_n_m="80")
+    assert fields(page) == {"frequency_hz": "1400", "speed_rpm": "1812", "torque_n_m": "80"}
+    said(page, "order 2.02 of the mesh: harmonic 2, off by −0.77 %")
+    page.wait_for_timeout(RESTED)
+    control(page, "#f-complaint-frequency_hz").fill("1500")
+    assert bar(page) == {"frequency_hz": "1.5", "speed_rpm": "1812", "torque_n_m": "80"}
+    said(page, "order 2.16 of the mesh: none within 2 %")
+    page.wait_for_timeout(RESTED)
+    page.locator("#undo").press("Enter")
+    expect(page.locator("#bar-frequency_hz")).to_have_value("1.4")
+    page.get_by_label("Unit of the complaint's frequency").select_option("Hz")
+    assert bar(page)["frequency_hz"] == fields(page)["frequency_hz"] == "1400"
+    with page.expect_download() as saved:
+        page.locator("#export-toml").press("Enter")
+    kept = tomllib.loads(saved.value.path().read_text("utf-8"))["complaint"]
+    assert kept == {"frequency_hz": 1400, "speed_rpm": 1812, "torque_n_m": 80}
+    until(lambda: "case=" in page.url)
+    page.wait_for_timeout(RESTED)
+    with other_browser(browser, page.url) as sent:
+        assert bar(sent) == bar(page)
+    page.get_by_role("button", name="Another variant").press("Enter")
+    expect(page.get_by_role("button", name="Variant B")).to_have_attribute("aria-pressed", "true")
+    typed(page, torque_n_m="120")
+    page.wait_for_timeout(RESTED)
+    page.get_by_role("button", name="Variant A").press("Enter")
+    expect(page.locator("#bar-torque_n_m")).to_have_value("80")
+    assert visit.complaints == []
+
+
+@pytest.mark.law
+def test_a_road_speed_is_in_the_bar_once_the_tire_is_known_and_reads_as_rpm(visit: Visit) -> None:
+    page = visit.page
+    typed(page, frequency_hz="1400", speed_rpm="1812")
+    expect(page.locator("#bar-road_speed_km_h")).to_be_hidden()
+    for name, text in {"tire_radius_mm": "310", "final_ratio": "4"}.items():
+        control(page, f"#f-complaint-{name}").fill(text)
+    expect(page.locator("#bar-speed_rpm")).to_be_hidden()
+    typed(page, road_speed_km_h="40")
+    assert fields(page)["speed_rpm"] == "", "either of them"
+    rpm = 40 / 3.6 / (2 * 3.141592653589793 * 0.31) * 60 * 4 * 67 / 23
+    page.get_by_label("Unit of the complaint's road speed").select_option("rpm")
+    assert float(page.locator("#bar-road_speed_km_h").input_value()) == pytest.approx(rpm, rel=1e-5)
+    typed(page, road_speed_km_h=str(2 * rpm))
+    assert float(page.locator("#f-complaint-road_speed_km_h").input_value()) == pytest.approx(80.0)
+
+
+def test_what_is_refused_is_marked_in_the_bar(visit: Visit) -> None:
+    page = visit.page
+    typed(page, frequency_hz="1.4", speed_rpm="1812")
+    field = page.locator("#bar-frequency_hz")
+    expect(field).to_have_attribute("aria-invalid", "true")
+    told = page.locator(f"#{field.get_attribute('aria-describedby')}")
+    expect(told).to_contain_text("In kHz? Then write 1400")
+    typed(page, frequency_hz="1400")
+    expect(field).to_have_attribute("aria-invalid", "false")
+
+
+@pytest.mark.parametrize("width", [1400, 400])
+def test_the_complaint_is_typed_by_keyboard_at_any_width(browser: Browser, address: str, width: int) -> None:
+    visit = opened(browser, address, width=width)
+    page = visit.page
+    page.locator("#dock-fold").focus()
+    stops = []
+    for text in ("", "1400", "", "1812", "80"):  # the button, the frequency and its unit, speed, torque
+        page.keyboard.press("Tab")
+        stops.append(page.evaluate("document.activeElement.id"))
+        page.keyboard.type(text)
+    assert [stop for stop in stops if stop] == [f"bar-{name}" for name in FIELDS]
+    said(page, "order 2.02 of the mesh: harmonic 2, off by −0.77 %")
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    edges = page.locator("#complaint > :not([hidden])").evaluate_all(
+        "all => all.map((node) => node.getBoundingClientRect().right)"
+    )
+    assert max(edges) <= width
+    assert found_inaccessible(page, ".bar") == {}
+    page.get_by_role("button", name="Complaint", exact=True).press("Enter")
+    assert page.evaluate("document.activeElement.id") == "f-complaint-frequency_hz"
+    assert visit.complaints == []
+    page.close()
