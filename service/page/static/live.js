@@ -9,6 +9,8 @@ import { mainFigures, numbersOf, ordersOf, sourcesOf } from "./live_numbers.js";
 import { LiveSound } from "./live_sound.js";
 import { plot } from "./plots.js";
 import { Sliders } from "./sliders.js";
+import { TorqueCurve } from "./torque_curve.js";
+import { UNMOVED } from "./variants.js";
 
 const STYLES = {
   before: { name: "as analyzed", color: "#767676", width: 1.8, dash: "dash" },
@@ -43,8 +45,7 @@ export class Live {
    */
   show(known) {
     clearTimeout(this.resting);
-    this.before = null;
-    this.waiting = null;
+    Object.assign(this, { before: null, waiting: null, shown: null, rested: null });
     byId("live-none").hidden = known !== null;
     byId("live-body").hidden = byId("quick").hidden = !known || known.long;
     this.known = known && { ...known, highest: known.torques.at(-1) };
@@ -74,6 +75,11 @@ export class Live {
 
   controls() {
     this.sliders = new Sliders(this.known, [...this.design.fields], () => this.ask());
+    this.torques = new TorqueCurve(2 * this.known.highest, this.caller, () => {
+      this.rested = this.shown;
+      this.work();
+    });
+    this.sliders.block("torque_n_m").append(this.torques.node);
     const note = this.known.plane ? make(
       "div", {},
       make("p", { class: "hint" }, "Computed in the plane: misalignment, crowning and all else that acts across the face need three dimensions."),
@@ -96,36 +102,54 @@ export class Live {
     clearTimeout(this.resting);
     if (!this.known || this.known.long) return;
     this.waiting = { ...this.sliders.moved, torque_n_m: [this.sliders.value("torque_n_m")], preview };
+    await this.work();
+  }
+
+  /** Answer what is waited for, then what a hand at rest leaves time for. */
+  async work() {
     if (this.busy) return;
     this.busy = true;
     try {
-      while (this.waiting && this.known) await this.next();
+      while ((this.waiting || this.rested) && this.known) await this.next();
     } finally {
       this.busy = false;
     }
   }
 
+  /** What takes longer than a slider may wait, of curves at rest. @param {any[]} shown @param {string} key */
+  rest(shown, key) {
+    return this.torques.follow(shown, () => Boolean(this.waiting) || key !== this.known?.key);
+  }
+
   async next() {
-    const { waiting } = this;
+    const { waiting, rested } = this;
     this.waiting = null;
+    this.rested = null;
     const key = this.known.key;
     try {
+      if (!waiting) {
+        await this.rest(rested, key);
+        return;
+      }
       const begin = performance.now();
       await this.baseline(waiting, key);
       const others = [];
       for (const other of this.others) {
         const curve = await other.at(waiting.torque_n_m[0], this.caller);
-        if (curve) others.push({ ...STYLES[other.name], curve, known: other.known });
+        if (curve) others.push({ ...STYLES[other.name], curve, known: other.known, asked: { key: other.known.key, flanks: other.flanks } });
       }
       const found = await ask(`${key}/ste`, { ...waiting, flanks: true, passage: true, caller: this.caller });
       const round = performance.now() - begin;
       if (key !== this.known?.key) return;
       const now = { ...found.curves[0], preview: waiting.preview };
+      const shown = this.beside(now, others, { key, flanks: { ...waiting, torque_n_m: undefined, preview: undefined } });
       this.roll(now);
-      await this.draw(now, others);
+      await this.draw(shown);
       this.timed(round, performance.now() - begin, found, waiting.preview ? "previews" : "answers");
       if (waiting.preview && !this.waiting) this.resting = setTimeout(() => this.ask(false), REST);
       byId("live-errors").hidden = true;
+      this.shown = waiting.preview ? null : shown;
+      this.rested = this.shown;
     } catch (problem) {
       if (!(problem instanceof Problem)) throw problem;
       if (problem.type.endsWith("superseded") || key !== this.known?.key) return;
@@ -134,6 +158,7 @@ export class Live {
       if (!wait) return;
       await pause(1000 * wait); // busy or away: ask again, for what is wanted by then
       this.waiting ??= waiting;
+      this.rested ??= rested;
     }
   }
 
@@ -185,13 +210,17 @@ export class Live {
     byId(PLACES.flanks).replaceChildren(...this.flanks.blocks);
   }
 
-  async draw(now, others) {
-    const { before } = this;
-    const own = { ...STYLES[others.length ? this.variants.on : "now"], curve: now };
-    const shown = [{ ...STYLES.before, curve: before }, ...others, own];
+  /** Curves as they are drawn: as analyzed, those of other variants, in front that of the sliders. */
+  beside(now, others, asked) {
+    const own = { ...STYLES[others.length ? this.variants.on : "now"], curve: now, asked };
+    return [{ ...STYLES.before, curve: this.before, asked: { ...asked, flanks: UNMOVED } }, ...others, own];
+  }
+
+  async draw(shown) {
     this.sound.show(shown.map(({ name, curve, known = this.known }) => (
       { name, teeth: known.case.pair.pinion.teeth, harmonics: curve.harmonics_um.filter(Number.isFinite) })));
-    await this.plot(shown, others[0]?.curve ?? before);
+    this.torques.draw(shown);
+    await this.plot(shown, shown.at(shown.length > 2 ? 1 : 0).curve);
   }
 
   /** Plot curves, the last with its figures and their change. @param {object[]} shown @param {object} from @param {object} [facts] of the first plot */

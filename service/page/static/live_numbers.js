@@ -14,7 +14,7 @@ export function edgeWords({ edge_pressure_mpa: edge }) {
 }
 
 /** The error without the bias of a plane model, which has its own statement. */
-function ownError({ bias, error_by_source_um: errors }, total, source) {
+export function ownError({ bias, error_by_source_um: errors }, total, source) {
   return bias && total ? Math.sqrt(Math.max(0, total ** 2 - errors.finite_width[source] ** 2)) : total;
 }
 

@@ -70,8 +70,8 @@ function wrapped(text) {
 /** Let the legend, the titles and the labels fit a narrow screen: a label at a line keeps its name alone. */
 function fitted({ data, layout }, width) {
   if (width > 560) return { data, layout };
-  const r = layout.annotations?.some((one) => one.showarrow) ? Math.min(layout.margin.r, NARROW_LABEL) : 8;
-  const narrow = { ...layout, font: { ...layout.font, size: 11 }, margin: { ...layout.margin, l: 52, r } };
+  const r = layout.annotations?.some((one) => one.showarrow) ? Math.min(layout.margin.r, NARROW_LABEL) : Math.min(layout.margin.r, 8);
+  const narrow = { ...layout, font: { ...layout.font, size: 11 }, margin: { ...layout.margin, l: Math.min(layout.margin.l, 52), r } };
   for (const [name, axis] of Object.entries(narrow)) {
     if (/^[xy]axis/.test(name) && axis.title) {
       const text = name.startsWith("x") ? axis.title.text.replace(/ \(.*/, "") : axis.title.text;

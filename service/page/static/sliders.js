@@ -58,11 +58,14 @@ export class Sliders {
     this.controls = knobs(known, fields).map((knob) => this.control(knob));
   }
 
+  block(key) {
+    return this.controls.find(({ knob }) => knob.key === key).block;
+  }
+
   get blocks() {
-    const block = (key) => this.controls.find(({ knob }) => knob.key === key).block;
     const rest = (gear) => this.controls.filter(({ knob: { key } }) => key.startsWith(`${gear}.`) && !MAIN.includes(key));
     const more = ["pinion", "wheel"].map((gear) => folded(`More of the ${gear}'s flanks`, ...rest(gear).map((control) => control.block)));
-    return [...MAIN.map(block), ...more];
+    return [...MAIN.map((key) => this.block(key)), ...more];
   }
 
   control(knob) {
@@ -97,7 +100,7 @@ export class Sliders {
 
   /** Show the slider that is looked at in a place of a narrow screen. @param {HTMLElement} place */
   follow(place) {
-    const { block } = this.controls.find(({ knob }) => knob.key === QUICK);
+    const block = this.block(QUICK);
     const home = document.createComment(QUICK);
     block.replaceWith(home);
     const put = () => (NARROW.matches ? place.append(block) : home.after(block));

@@ -9,7 +9,7 @@ import { pack, unpack } from "./packed.js";
 
 const LETTERS = ["a", "b", "c"];
 const FIRST = "first"; // the first example with the result that came with the program
-const UNMOVED = { misalignment_um: 0, pinion: {}, wheel: {} };
+export const UNMOVED = { misalignment_um: 0, pinion: {}, wheel: {} };
 
 /** @typedef {{key: string, case: any}} Known an analyzed pair */
 /** @typedef {{torque_n_m?: number, misalignment_um: number, pinion: object, wheel: object}} Moved where sliders stand */
