@@ -1,7 +1,9 @@
 /** The case as a form, made from the schema that the service checks cases with. */
 
+import { ask, guarded } from "./api.js";
 import { byId, folded, make } from "./elements.js";
 import { Field, unitOf, wordsOf } from "./field.js";
+import { StartSwitch, isStart } from "./relief_start.js";
 import { at, leaves, ofFlank, put, resolved } from "./schema.js";
 import { reveal } from "./tabs.js";
 
@@ -10,6 +12,7 @@ const MAIN = new Set([
   "teeth", "face_width_mm", "bore_diameter_mm", "rim_diameter_mm", "profile_shift_coefficient", "tip_relief_um",
   "tip_relief_length_mm", "helix_crowning_um", "internal",
 ]);
+const GEARS = ["pinion", "wheel"];
 const TEETH = /^(addendum|dedendum|root_radius|tip_diameter|thickness|cutter)/;
 const AS_MADE = /^(single_pitch|pitch_deviation|run_out|waves|tooth_flanks)/;
 const GROUPS = {
@@ -29,6 +32,7 @@ export class CaseForm {
    */
   constructor(root, effects, changed) {
     this.fields = new Map();
+    this.switches = [];
     this.changed = changed;
     const { schema } = resolved(root, root);
     const part = (name) => resolved(schema.properties[name], root).schema;
@@ -48,6 +52,7 @@ export class CaseForm {
       if (this.fields.has(event.target.name)) changed();
     });
     byId("case-form").addEventListener("submit", (event) => event.preventDefault());
+    document.addEventListener("typed", () => this.switches.forEach((one) => one.sync()));
   }
 
   add(leaf, label) {
@@ -84,11 +89,11 @@ export class CaseForm {
     const gears = ["pinion", "wheel"].map((gear) => new Map(
       leaves(schema.properties[gear], root, ["pair", gear]).map((leaf) => [leaf.path.slice(2).join("."), leaf]),
     ));
-    const names = [...new Set([...gears[0].keys(), ...gears[1].keys()])];
+    const leaf = (name) => gears[0].get(name) ?? gears[1].get(name);
+    const names = [...new Set([...gears[0].keys(), ...gears[1].keys()])].filter((name) => !isStart(leaf(name).schema));
     const order = [...MAIN].filter((name) => names.includes(name));
     const left = new Set(names.filter((name) => !MAIN.has(name)));
     const main = this.gearTable("Main data of both gears", order, gears);
-    const leaf = (name) => gears[0].get(name) ?? gears[1].get(name);
     const groups = Object.entries(GROUPS).map(([title, belongs]) => {
       const mine = [...left].filter((name) => belongs(name, leaf(name).schema));
       mine.forEach((name) => left.delete(name));
@@ -101,10 +106,15 @@ export class CaseForm {
     const heads = ["", "Pinion", "Wheel"].map((text, k) => (
       k === 0 ? make("td") : make("th", { scope: "col" }, text)));
     const rows = names.flatMap((name) => {
-      const fields = gears.map((gear, k) => gear.has(name) && this.ofGear(gear.get(name), ["pinion", "wheel"][k]));
+      const fields = gears.map((gear, k) => gear.has(name) && this.ofGear(gear.get(name), GEARS[k]));
       const [field] = fields.filter(Boolean);
       const label = (text) => make("th", { scope: "row" }, text, make("span", { class: "hint" }, field.hint));
+      const starts = gears.map((gear, k) => this.starts(name, gear, GEARS[k]));
       const cell = (one, facts = {}) => (one ? make("td", facts, one.entry, one.message) : make("td"));
+      if (starts[0].length) {
+        const cells = starts.map((own, k) => this.switched([fields[k], ...own], GEARS[k]));
+        return make("tr", {}, label(`${field.label} or start`), ...cells);
+      }
       if (!field.wide) return make("tr", {}, label(field.spoken), ...fields.map((one) => cell(one)));
       return fields.filter(Boolean).map((one) => make("tr", {}, label(one.input.ariaLabel), cell(one, { colspan: 2 })));
     });
@@ -112,6 +122,20 @@ export class CaseForm {
       "table", { class: "gears", "aria-label": caption },
       make("thead", {}, make("tr", {}, ...heads)), make("tbody", {}, ...rows),
     );
+  }
+
+  /** The fields that state where a relief starts, in place of its length. */
+  starts(name, gear, of) {
+    const relief = name.replace(/length_mm$/, "start_");
+    return [...gear].filter(([own, leaf]) => isStart(leaf.schema) && own.startsWith(relief)).map(([, leaf]) => this.ofGear(leaf, of));
+  }
+
+  /** The cell of a relief, of whose ways one is shown. */
+  switched(fields, gear) {
+    const outline = () => guarded(() => ask("outline", { inputs: { case: this.case } }), (problem) => this.refuse(problem));
+    const own = new StartSwitch(fields, gear, outline);
+    this.switches.push(own);
+    return make("td", {}, own.parts, ...fields.map((field) => field.message));
   }
 
   ofGear(leaf, gear) {
@@ -139,6 +163,7 @@ export class CaseForm {
       field.value = at(content, field.path);
       field.fault("");
     }
+    for (const own of this.switches) own.sync();
     this.clear();
   }
 
@@ -154,7 +179,13 @@ export class CaseForm {
 
   set(key, value) {
     const field = this.fields.get(key);
-    if (field) field.value = value;
+    if (!field) return;
+    field.value = value;
+    this.switchOf(field)?.only(field);
+  }
+
+  switchOf(field) {
+    return this.switches.find(({ fields }) => fields.includes(field));
   }
 
   /** Fields without which there is no case, and which are empty. */
@@ -214,6 +245,7 @@ export class CaseForm {
   }
 
   reveal(field) {
+    this.switchOf(field)?.show(field);
     reveal(field.input);
     field.input.focus();
   }

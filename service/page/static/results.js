@@ -8,6 +8,7 @@ import { byId, figures, folded, make } from "./elements.js";
 import { sayMissing } from "./notice.js";
 import { pack, unpack } from "./packed.js";
 import { fetchPlotly } from "./plotly.js";
+import { circlesOf } from "./relief_start.js";
 import { showReport } from "./report.js";
 
 const PLANE = /plane/;
@@ -93,7 +94,9 @@ export class Results {
     const plane = PLANE.test(facts.receipt?.plan?.model ?? "");
     const torques = facts.torque_n_m;
     const long = facts.period > LONGEST;
-    const known = { key, case: facts.case, torques, torque: torques[Math.floor(torques.length / 2)], plane, long };
+    const circles = await circlesOf(facts.case);
+    if (signal.aborted) return;
+    const known = { key, case: facts.case, circles, torques, torque: torques[Math.floor(torques.length / 2)], plane, long };
     byId("results-none").hidden = true;
     const report = await reported;
     if (signal.aborted) return;

@@ -2,6 +2,7 @@
 
 import { folded, make } from "./elements.js";
 import { unitOf } from "./field.js";
+import { lengthOf } from "./relief_start.js";
 import { at, ofFlank } from "./schema.js";
 
 const MAIN = [ // the others are folded away
@@ -19,9 +20,9 @@ const rounded = (value, step) => Number((Math.round(value / step) * step).toPrec
 const depthOf = (name) => name.replace("_length_mm", "_um");
 
 /** The slider of a figure of one flank, as its field declares it. */
-function figure(field, content) {
+function figure(field, { case: content, circles }) {
   const { schema, path: [, gear, name] } = field;
-  const own = content.pair[gear][name] ?? schema.default; // a case is written without later figures it does not use
+  const own = lengthOf(content.pair[gear], name, circles?.[gear]) ?? schema.default; // a case is written without later figures it does not use
   const along = schema["x-along"].includes("face") ? "face" : "profile";
   const knob = { key: `${gear}.${name}`, label: `${field.label}, ${gear}`, unit: unitOf(name), own, across: along === "face" };
   if (schema["x-kind"] !== "length") return { ...knob, value: own, ...depthRange(knob, schema, content) };
@@ -42,7 +43,7 @@ function knobs(known, fields) {
   return [
     { key: "torque_n_m", label: "Torque on the pinion", unit: "N m", low: 0, high: 2 * known.highest, value: known.torque },
     { key: "misalignment_um", label: "Misalignment", unit: "µm", low: -50, high: 50, value: 0, across: true },
-    ...flanks.map((field) => figure(field, known.case)),
+    ...flanks.map((field) => figure(field, known)),
   ];
 }
 
