@@ -43,13 +43,17 @@ def run_out_tolerance(gear: Toothing, tolerance_class: int) -> float:
 
 def profile_slope_tolerance(gear: Toothing, tolerance_class: int) -> float:
     """f_HalphaT in m: formula (7) of 5.3.3.1, 0.4 m_n + 0.001 d + 4 um of class 5, m_n and d in mm."""
-    module, diameter, _ = _sizes(gear)
-    return _of_class(0.4 * module + 0.001 * diameter + 4.0, tolerance_class)
+    return _of_class(_profile_slope(gear), tolerance_class)
 
 
 def profile_form_tolerance(gear: Toothing, tolerance_class: int) -> float:
     """f_falphaT in m: formula (8) of 5.3.3.2, 0.55 m_n + 5 um of class 5."""
-    return _of_class(0.55 * _sizes(gear)[0] + 5.0, tolerance_class)
+    return _of_class(_profile_form(gear), tolerance_class)
+
+
+def profile_tolerance(gear: Toothing, tolerance_class: int) -> float:
+    """F_alphaT in m: the root of the sum of squares of slope and form, neither of them rounded before."""
+    return _of_class(math.hypot(_profile_slope(gear), _profile_form(gear)), tolerance_class)
 
 
 def helix_slope_tolerance(gear: Toothing, tolerance_class: int) -> float:
@@ -76,6 +80,17 @@ def _cumulative_pitch(gear: Toothing) -> float:
     """Of class 5, um."""
     module, diameter, _ = _sizes(gear)
     return 0.002 * diameter + 0.55 * math.sqrt(diameter) + 0.7 * module + 12.0
+
+
+def _profile_slope(gear: Toothing) -> float:
+    """Of class 5, um."""
+    module, diameter, _ = _sizes(gear)
+    return 0.4 * module + 0.001 * diameter + 4.0
+
+
+def _profile_form(gear: Toothing) -> float:
+    """Of class 5, um."""
+    return 0.55 * _sizes(gear)[0] + 5.0
 
 
 def _helix_slope(gear: Toothing) -> float:

@@ -62,11 +62,12 @@ _WORDS = ("quantity", "symbol", "unit", "point")
 
 def run_geometry(file: InputFile, output: Path | None, *, as_json: bool) -> None:
     """Print the data sheet of a case; draw it if requested."""
-    pair = assessed_case(file).pair
+    checked = assessed_case(file)
+    pair = checked.pair
     implausible = messages()
     warn(pair_remarks(pair))
     if output is not None:
-        _write_sheet(pair, output, implausible)
+        _write_sheet(pair, checked.case.errors.misalignment_class, output, implausible)
     if as_json:
         written = {} if output is None else {"written": str(output)}
         print_json(written | data_sheet_json(pair))
@@ -74,16 +75,18 @@ def run_geometry(file: InputFile, output: Path | None, *, as_json: bool) -> None
         _show_sheet(pair, output)
 
 
-def _write_sheet(pair: ParallelAxes, output: Path, implausible: list[str]) -> None:
+def _write_sheet(
+    pair: ParallelAxes, tolerance_class: int | None, output: Path, implausible: list[str]
+) -> None:
     if output.suffix not in _ENDINGS:
         raise BadInput.of("output", str(output), f"a file ending in one of {', '.join(_ENDINGS)}")
     check_writable(output)
     if output.suffix == ".html":
         facts = PairFacts.of(pair)
-        page = Page(pair_title(facts), pair_lead(facts), (), (data_sheet_section(pair),))
+        page = Page(pair_title(facts), pair_lead(facts), (), (data_sheet_section(pair, tolerance_class),))
         write_whole(page, output, warnings=implausible)
     else:
-        output.write_bytes({".png": png, ".svg": svg}[output.suffix](pair_drawing(pair)))
+        output.write_bytes({".png": png, ".svg": svg}[output.suffix](pair_drawing(pair, tolerance_class)))
 
 
 def _show_sheet(pair: ParallelAxes, output: Path | None) -> None:

@@ -29,6 +29,7 @@ from fe_contact.geometry import (
     sliding_factor,
     specific_sliding,
 )
+from fe_contact.geometry.flank_tolerances import helix_tolerance, profile_tolerance
 from fe_contact.geometry.iso6336_stiffness import iso6336_stiffness
 from fe_contact.material import Material
 from fe_contact.plausibility import mesh_findings
@@ -74,6 +75,13 @@ def pair_of(database: SteDatabase) -> ParallelAxes | None:
         return gear_pair(Case.model_validate_json(json.dumps(case)))
     except ValidationError:
         return _from_si(case)
+
+
+def tolerance_class_of(database: SteDatabase) -> int | None:
+    """Return the class of gears and axes that the case of a database states."""
+    errors = database.metadata.case.get("errors") or {}
+    stated: int | None = errors.get("misalignment_class")
+    return stated
 
 
 def iso_mesh_stiffness(database: SteDatabase) -> float | None:
@@ -148,12 +156,15 @@ _WIDTH = 3.4
 """Width of the drawing over its height, nearly that of a panel."""
 
 
-def pair_drawing(pair: ParallelAxes) -> Figure:
-    """Return the section of the mesh; where flanks are modified or as made, also profiles and leads."""
+def pair_drawing(pair: ParallelAxes, tolerance_class: int | None = None) -> Figure:
+    """Return the section of the mesh; where flanks are modified or as made, also profiles and leads.
+
+    About these the tolerances of a class are shaded, if there is one: F_alpha and F_beta of ISO 1328-1.
+    """
     gears = {"pinion": pair.pinion, "wheel": pair.wheel}
     made = {name: _made(gear) for name, gear in gears.items()}
     profiles = [
-        _profile(name, pair)
+        _profile(name, pair, tolerance_class)
         for name, gear in gears.items()
         if gear.modification.varies_along_profile or made[name]
     ]
@@ -162,13 +173,17 @@ def pair_drawing(pair: ParallelAxes) -> Figure:
         for name, gear in gears.items()
         if gear.modification.varies_along_face or any(flank.varies_along_face for flank in made[name])
     }
-    panels = (_section(pair), *profiles, *([_lead(leads)] if leads else ()))
+    panels = (_section(pair), *profiles, *([_lead(leads, tolerance_class)] if leads else ()))
     caption = (
         f"Section at the pinion's mid-face; the pinion drives clockwise. The wheel's center is "
         f"{'below' if pair.internal else 'above'}. A to E: the path of contact of the usable flanks."
     )
     if len(panels) > 1:
         caption += " Material removed along the line of action; 0 is the involute."
+    if len(panels) > 1 and tolerance_class is not None:
+        caption += (
+            f" Shaded: F_alpha and F_beta of class {tolerance_class} of ISO 1328-1:2013, half to each side."
+        )
     if any(made.values()):
         caption += " Thin: the teeth as made, without their pitch deviations."
     return Figure(
@@ -215,7 +230,12 @@ def _gear_line(name: str, gear: Json) -> Line:
     return Line(name, closed[0] + center[0], closed[1] + center[1], _SIDES[name], width=1.4)
 
 
-def _profile(name: str, pair: ParallelAxes) -> Panel:
+def _half(of_class: Callable[[Toothing, int], float], gear: Toothing, tolerance_class: int | None) -> float:
+    """Return half a tolerance in um, 0 without a class."""
+    return 0.0 if tolerance_class is None else 0.5 * of_class(gear, tolerance_class) / UM
+
+
+def _profile(name: str, pair: ParallelAxes, tolerance_class: int | None) -> Panel:
     """Draw the K-chart of a gear: what is removed over its roll angle; at three places of a twisted flank."""
     gear: Toothing = getattr(pair, name)
     roll, half = _usable(gear), 0.5 * gear.face_width
@@ -226,10 +246,19 @@ def _profile(name: str, pair: ParallelAxes) -> Panel:
     )
     twisted = any(part.varies and part.along not in _AXES for part in gear.modification.parts)
     angle = roll / gear.base_radius / DEGREE
-    lines = tuple(
-        Line(f"{name}, {place}" if twisted else name, angle, _removed(gear, roll, face), _SIDES[name], dash)
-        for place, face, dash in faces[: 3 if twisted else 1]
-    ) + _teeth_as_made(name, gear, angle, roll, np.zeros(_POINTS))
+    bands = (_half(profile_tolerance, gear, tolerance_class), 0.0, 0.0)
+    designed = (
+        Line(
+            f"{name}, {place}" if twisted else name,
+            angle,
+            _removed(gear, roll, face),
+            _SIDES[name],
+            dash,
+            band=band,
+        )
+        for (place, face, dash), band in zip(faces[: 3 if twisted else 1], bands, strict=False)
+    )
+    lines = (*designed, *_teeth_as_made(name, gear, angle, roll, np.zeros(_POINTS)))
     pitch_point = pair.path_of_contact.pitch_point
     at_pitch = pitch_point if name == "pinion" else float(pair.mating_roll_length(pitch_point))
     mark = Reference("C", at_pitch / gear.base_radius / DEGREE)
@@ -243,12 +272,13 @@ def _usable(gear: Toothing) -> FloatArray:
     return np.linspace(ends[0], ends[1], _POINTS)
 
 
-def _lead(gears: dict[str, Toothing]) -> Panel:
+def _lead(gears: dict[str, Toothing], tolerance_class: int | None) -> Panel:
     lines = []
     for name, gear in gears.items():
         face = np.linspace(-0.5, 0.5, _POINTS) * gear.face_width
         roll = np.full(_POINTS, _usable(gear).mean())
-        lines.append(Line(name, face / MM, _removed(gear, roll, face), _SIDES[name]))
+        band = _half(helix_tolerance, gear, tolerance_class)
+        lines.append(Line(name, face / MM, _removed(gear, roll, face), _SIDES[name], band=band))
         lines += _teeth_as_made(name, gear, face / MM, roll, face)
     x = Axis("face position, mm (0 = mid-face; left: datum face)")
     return Panel(x, Axis("removed, µm"), tuple(lines), title="Lead at the middle of the profile")
@@ -419,11 +449,13 @@ def _point_row(name: str, point: Json) -> tuple[str, ...]:
     return (name, *numbers, *map(_ratio, (point["sliding_factor"], *point["specific_sliding"])))
 
 
-def data_sheet_section(pair: ParallelAxes) -> Section:
+def data_sheet_section(pair: ParallelAxes, tolerance_class: int | None = None) -> Section:
     """Return the sheet as a section: what speaks against it, the drawing, then the tables."""
     remarks = " ".join(f"Warning: {remark['message']}" for remark in pair_remarks(pair))
     text = remarks or "No warnings: undercut, backlash, tip clearance, tip thickness, contact ratio."
-    return Section("Data sheet", text, figures=(pair_drawing(pair),), tables=data_sheet(pair))
+    return Section(
+        "Data sheet", text, figures=(pair_drawing(pair, tolerance_class),), tables=data_sheet(pair)
+    )
 
 
 def data_sheet_json(pair: ParallelAxes) -> Json:

@@ -24,7 +24,7 @@ from lineofaction.report.drawing.tables import (
     records,
     side_by_side,
 )
-from lineofaction.report.pair import data_sheet_section, pair_of
+from lineofaction.report.pair import data_sheet_section, pair_of, tolerance_class_of
 from lineofaction.report.ste.curves import (
     aligned_index,
     headline_load,
@@ -101,7 +101,7 @@ def static_alarms(database: SteDatabase) -> tuple[str, ...]:
 def static_results(database: SteDatabase, force: float | None = None) -> tuple[Section, ...]:
     """Show what one database says of its pair; the deflection is split at the load nearest to `force` (N)."""
     pair = pair_of(database)
-    sheet = () if pair is None else (data_sheet_section(pair),)
+    sheet = () if pair is None else (data_sheet_section(pair, tolerance_class_of(database)),)
     sharing = Section("Load sharing", figures=(load_sharing(database),))
     teeth = tooth_sections(database, headline_load(database, force))
     rest = *_stiffness(database, force), *_flanks(database)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,9 +13,11 @@ from command_line import loa
 from matplotlib.path import Path as Polygon
 from typer.testing import Result
 
+from fe_contact.geometry.flank_tolerances import helix_tolerance, profile_tolerance
 from fe_contact.plausibility import CHECKS
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.schemas import Case, read_model
+from lineofaction.gearbox.schemas.toml import toml_text
 from lineofaction.report.drawing.figure import Figure, Panel
 from lineofaction.report.pair import pair_drawing
 
@@ -206,6 +209,45 @@ def test_charts_show_teeth_as_made_beside_the_design() -> None:
     assert made.y[[0, 100, 200]] == pytest.approx((3.0, 0.0, -3.0), abs=1e-6)
     assert np.isnan(made.y[[201, 403]]).all() and set(made.y[202:403]) == {0.0}
     assert lead.lines[1].y[[202, 302, 402]] == pytest.approx((-2.0, 0.0, 2.0), abs=1e-6)
+
+
+def modified(file: Path, **errors: Any) -> dict[str, Any]:
+    case = read_model(Case, file).model_dump(exclude_unset=True)
+    made = [{"tooth": 3, "profile_slope_um": 6.0, "helix_slope_um": -4.0}]
+    for gear in ("pinion", "wheel"):
+        case["pair"][gear] |= {"tip_relief_um": 12.0, "tip_relief_length_mm": 0.8, "helix_crowning_um": 5.0}
+        case["pair"][gear] |= {"tooth_flanks": made}
+    return case | {"errors": errors}
+
+
+@pytest.mark.parametrize("file", [SPUR, HELICAL])
+def test_the_band_about_profile_and_lead_is_the_tolerance_of_the_class(file: Path) -> None:
+    """Half to each side of the design; the teeth as made are drawn over it without one."""
+    pair = gear_pair(Case.model_validate(modified(file)))
+    figure = pair_drawing(pair, 7)
+    _, *profiles, lead = figure.content
+    for panel, gear in zip(profiles, (pair.pinion, pair.wheel), strict=True):
+        design, made = panel.lines
+        assert 2e-6 * design.band == pytest.approx(profile_tolerance(gear, 7), rel=1e-12)
+        assert made.name.endswith("as made") and not made.has_band
+    for line, gear in zip(lead.lines[::2], (pair.pinion, pair.wheel), strict=True):
+        assert 2e-6 * line.band == pytest.approx(helix_tolerance(gear, 7), rel=1e-12)
+    assert "F_alpha and F_beta of class 7 of ISO 1328-1:2013" in figure.caption
+
+
+def test_without_a_class_nothing_is_shaded() -> None:
+    figure = pair_drawing(gear_pair(Case.model_validate(modified(HELICAL))))
+    assert not any(line.has_band for panel in figure.content for line in panel.lines)
+    assert "Shaded" not in figure.caption
+
+
+def test_the_page_of_a_case_with_a_class_says_it(tmp_path: Path) -> None:
+    for errors in ({"misalignment_class": 7}, {}):
+        file = tmp_path / "case.toml"
+        file.write_text(toml_text(modified(HELICAL, **errors)), encoding="utf-8")
+        assert geometry(file, "-o", tmp_path / "pair.html").exit_code == 0
+        page = (tmp_path / "pair.html").read_text(encoding="utf-8")
+        assert ("F_beta of class 7" in page) == bool(errors)
 
 
 @pytest.mark.parametrize(("hand", "corner"), [(1.0, "non-datum face"), (-1.0, "datum face")])

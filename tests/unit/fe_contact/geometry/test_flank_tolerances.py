@@ -16,6 +16,7 @@ from fe_contact.geometry.flank_tolerances import (
     helix_tolerance,
     profile_form_tolerance,
     profile_slope_tolerance,
+    profile_tolerance,
     run_out_tolerance,
     single_pitch_tolerance,
 )
@@ -50,6 +51,13 @@ def test_pitch_run_out_and_form_are_those_of_the_formulas(
 ) -> None:
     found = [1e6 * tolerance(gear, tolerance_class) for tolerance in FORMED]
     assert found == pytest.approx(micrometers, rel=1e-12)
+
+
+def test_the_whole_profile_has_the_root_of_both_squares() -> None:
+    """m_n 4, d 80, class 5: slope 1.6 + 0.08 + 4 = 5.68, form 2.2 + 5 = 7.2, in all 9.171: to halves 9.0."""
+    assert profile_tolerance(gear_of(4, 20, 25), 5) == pytest.approx(9.0e-6, rel=1e-12)
+    # of class 7 twice as much, 18.342: to whole ones
+    assert profile_tolerance(gear_of(4, 20, 25), 7) == pytest.approx(18.0e-6, rel=1e-12)
 
 
 @pytest.mark.parametrize("tolerance", [*OF_TEETH, *OF_FLANKS])
