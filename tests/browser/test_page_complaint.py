@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from page_visit import CASE, GEAR, Visit, control, found_inaccessible, opened, other_browser
+from page_visit import CASE, GEAR, Visit, control, found_inaccessible, opened, other_browser, shown, tab
 from playwright.sync_api import Browser, Page, expect
 from running_service import until
 
@@ -20,6 +20,16 @@ FIELDS = ("frequency_hz", "speed_rpm", "torque_n_m")
 RESTED = 600  # milliseconds after which an edit is a step to undo, and in the address
 HEARD = """async (content) => (await import("/page/complaint.js")).heardIn(content)"""
 AT_40 = {"road_speed_km_h": 40.0, "tire_radius_mm": 310.0, "final_ratio": 3.2}
+
+
+LINES = """node => (node.layout?.shapes ?? []).map(({ xref, x0, x1, y0, y1, label }) => (
+  [label.text, xref, x0, x1, y0, y1]))"""
+OF_A_RUN = """async ([mark, figure]) => {
+  const { mark: put, marked } = await import("/page/plots.js");
+  put(mark);
+  const { shapes } = marked(figure).layout;
+  return (shapes ?? []).map(({ xref, yref, x0, y0 }) => [xref, yref, xref === "x" ? x0 : y0]);
+}"""
 
 
 @pytest.fixture
@@ -150,3 +160,47 @@ def test_the_complaint_is_typed_by_keyboard_at_any_width(browser: Browser, addre
     assert page.evaluate("document.activeElement.id") == "f-complaint-frequency_hz"
     assert visit.complaints == []
     page.close()
+
+
+@pytest.mark.law
+def test_the_order_is_marked_in_the_plots_of_the_pair_as_it_is_typed(
+    browser: Browser, address: str, analyzed: str
+) -> None:
+    visit = shown(browser, address, analyzed)
+    page = visit.page
+    live, spectrum = (
+        control(page, f"[data-figure={key}] .plot") for key in ("live_harmonics", "ste_spectrum")
+    )
+    typed(page, frequency_hz="990", speed_rpm="1500")  # 20 teeth: 500 Hz of the mesh
+    for plot in (live, spectrum):
+        until(lambda plot=plot: plot.evaluate(LINES) == [["complaint", "x", 1.98, 1.98, 0, 1]])
+    typed(page, frequency_hz="1500")
+    for plot in (live, spectrum):
+        until(lambda plot=plot: plot.evaluate(LINES) == [["complaint", "x", 3, 3, 0, 1]])
+    said_of_sound = page.locator("#live-sound output")
+    expect(said_of_sound).to_have_text("The complaint, at 1500 rpm, passes after 0.60 s.")
+    control(page, "#sound-from").fill("1600")
+    expect(said_of_sound).to_be_empty()
+    tab(page, "Ripple")
+    assert page.locator("[data-figure=live_ste] .plot").evaluate(LINES) == [], "positions have no order"
+    typed(page, speed_rpm="")
+    control(page, "[data-figure=live_harmonics] .plot")
+    until(lambda: live.evaluate(LINES) == [])
+    assert visit.complaints == []
+    page.close()
+
+
+@pytest.mark.law
+def test_an_order_map_is_marked_on_both_axes_and_what_came_with_marks_keeps_them(visit: Visit) -> None:
+    axes = {"mesh order": 2.0, "speed of the driving gear, rpm": 1500.0}
+    speed, order = ({"title": {"text": text}} for text in reversed(axes))
+    run = {
+        "data": [{"x": [0, 3000], "y": [0, 8], "z": [[0, 1], [1, 0]]}],
+        "layout": {"xaxis": speed, "yaxis": order},
+    }
+    marked = visit.page.evaluate(OF_A_RUN, [axes, run])
+    assert sorted(marked) == [["x", "y domain", 1500], ["x domain", "y", 2]]
+    beyond = run | {"layout": {"xaxis": speed | {"range": [0, 1000]}, "yaxis": order | {"range": [0, 8]}}}
+    assert visit.page.evaluate(OF_A_RUN, [axes, beyond]) == [["x domain", "y", 2]]
+    own = run | {"layout": run["layout"] | {"annotations": [{"text": "complaint, 1400 Hz"}]}}
+    assert visit.page.evaluate(OF_A_RUN, [axes, own]) == []

@@ -3,17 +3,19 @@
 
 import { button, byId, make, number, signed } from "./elements.js";
 import { numberIn } from "./field.js";
+import { mark } from "./plots.js";
 import { reveal } from "./tabs.js";
 
 const WITHIN = 2; // per cent, where the complaint states no tolerance
 const AT = ["tire_radius_mm", "road_speed_km_h"]; // either: the speed is that of the road
 const INSTEAD = { frequency_hz: "order", speed_rpm: "road_speed_km_h", road_speed_km_h: "speed_rpm" };
 
-/** @typedef {{order: number, harmonic: number | null, within: number, rpm: number, road: number, torque: number}} Heard */
+/** @typedef {{order: number, harmonic: number | null, within: number, mesh: number, driver: number, road: number, torque: number}} Heard */
 
 /**
  * What a case complains of: its order of the mesh and the nearest harmonic, null where none is within so many per cent; the
- * speed of its shaft and what 1 km/h is of it, rpm; the torque, N m. What is not stated is NaN.
+ * frequency of the mesh, Hz, the speed of the driving gear and what 1 km/h is of the complaint's shaft, rpm; the torque, N m.
+ * What is not stated is NaN.
  * @param {any} content @returns {Heard}
  */
 export function heardIn({ complaint = {}, pair = {}, load = {} }) {
@@ -24,7 +26,8 @@ export function heardIn({ complaint = {}, pair = {}, load = {} }) {
   const order = Number(complaint.order ?? (60 * complaint.frequency_hz) / rpm) / teeth(shaft);
   const near = Math.max(Math.round(order), 1);
   const harmonic = 100 * Math.abs(near / order - 1) <= within ? near : null;
-  return { order, harmonic, within, rpm, road, torque: Number(complaint.torque_n_m ?? load.torque_n_m?.at?.(-1)) };
+  const mesh = (teeth(shaft) * rpm) / 60;
+  return { order, harmonic, within, mesh, driver: (60 * mesh) / teeth("pinion"), road, torque: Number(complaint.torque_n_m ?? load.torque_n_m?.at?.(-1)) };
 }
 
 /** @param {Heard} heard */
@@ -32,6 +35,14 @@ function wordsOf({ order, harmonic, within }) {
   if (!Number.isFinite(order)) return "";
   const near = harmonic ? `harmonic ${harmonic}, off by ${signed(100 * (harmonic / order - 1), 2)} %` : `none within ${within} %`;
   return `order ${number(order, 3)} of the mesh: ${near}`;
+}
+
+/** What it is on the axes of plots, by their labels. @param {Heard} heard @returns {Record<string, number>} */
+export function axesOf({ order, mesh, driver, torque }) {
+  if (!Number.isFinite(order)) return {};
+  const orders = ["harmonic of the mesh", "order of the mesh", "mesh order"].map((label) => [label, order]);
+  const loads = { "frequency, Hz": order * mesh, "speed of the driving gear, rpm": driver, "torque on the driving gear, N m": torque };
+  return { ...Object.fromEntries(orders), ...loads };
 }
 
 /** A field of the design in the bar: its number in one of the units, by their sizes in that of the field. */
@@ -105,6 +116,7 @@ export class Complaint {
       view.follow(heard);
     }
     this.words.textContent = wordsOf(heard);
+    mark(axesOf(heard));
   }
 
   /** Edit the field of a view; what it is an alternative to is left out. @param {View} view */

@@ -15,7 +15,7 @@ export function ticks(low, high) {
 }
 
 /** @param {number[][]} rows */
-function rangeOf(rows) {
+export function rangeOf(rows) {
   const all = rows.flat();
   return [Math.min(...all), Math.max(...all)];
 }

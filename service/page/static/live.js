@@ -37,6 +37,7 @@ export class Live {
     this.others = [];
     this.waiting = null;
     this.busy = false;
+    document.addEventListener("marked", () => this.sound?.mark());
   }
 
   /**

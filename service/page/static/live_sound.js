@@ -1,7 +1,8 @@
 // @ts-check
 /** The live curves as sounds: what the meshes excite over a run-up, all at one scale, so that louder is louder. */
 
-import { button, byId, make } from "./elements.js";
+import { button, byId, make, number } from "./elements.js";
+import { markOn } from "./plots.js";
 
 /** @typedef {{name: string, teeth: number, harmonics: number[]}} Voice teeth of the driving gear, amplitudes in um */
 /** @typedef {{from: number, to: number, seconds: number}} Sweep speeds of the driving gear in rpm */
@@ -75,10 +76,27 @@ export class LiveSound {
     this.voices = [];
     const speed = (id, label, value) => [make("label", { for: id }, label), make("input", { id, type: "number", min: 1, max: 100000, step: "any", value, "data-unkept": true })];
     this.buttons = make("span", { class: "buttons" });
+    this.words = make("output", { class: "hint", for: "sound-from sound-to" });
     byId("live-sound").replaceChildren(
-      make("div", { class: "row" }, ...speed("sound-from", "Run-up from, rpm", 1000), ...speed("sound-to", "Run-up to, rpm", 6000), this.buttons),
+      make("div", { class: "row" }, ...speed("sound-from", "Run-up from, rpm", 1000), ...speed("sound-to", "Run-up to, rpm", 6000), this.buttons, this.words),
       make("p", { class: "hint" }, "Harmonics of the transmission error as velocities at the mesh frequency, all curves at one scale: what the mesh excites, before shafts and housing change it. While one plays it follows the sliders."),
     );
+    for (const input of byId("live-sound").querySelectorAll("input")) input.addEventListener("input", () => this.mark());
+    this.mark();
+  }
+
+  /** @returns {Sweep} as typed */
+  get sweep() {
+    const [from, to] = ["sound-from", "sound-to"].map((id) => Math.max(Number(/** @type {HTMLInputElement} */ (byId(id)).value) || 1, 1));
+    return { from, to, seconds: SECONDS };
+  }
+
+  /** Say when the complaint passes. */
+  mark() {
+    const { from, to, seconds } = this.sweep;
+    const rpm = markOn("speed of the driving gear, rpm", Math.min(from, to), Math.max(from, to));
+    const passes = rpm !== null && from !== to;
+    this.words.textContent = passes ? `The complaint, at ${number(rpm)} rpm, passes after ${number((seconds * (rpm - from)) / (to - from), 2)} s.` : "";
   }
 
   /** @param {Voice[]} voices the last is the one now */
@@ -95,8 +113,7 @@ export class LiveSound {
   play(name) {
     this.context ??= new AudioContext();
     this.source?.stop();
-    const [from, to] = ["sound-from", "sound-to"].map((id) => Math.max(Number(/** @type {HTMLInputElement} */ (byId(id)).value) || 1, 1));
-    const sweep = { from, to, seconds: SECONDS };
+    const { sweep } = this;
     const full = Math.max(...this.voices.map((voice) => strength(voice, sweep)), 1e-9);
     this.playing = name;
     const source = (this.source = sounded(this.context, this.voices.find((voice) => voice.name === name), sweep, full));

@@ -2,16 +2,21 @@
 
 import { patiently } from "./api.js";
 import { button, csv, dataTable, folded, make, save } from "./elements.js";
-import { lines } from "./lines.js";
+import { lines, rangeOf } from "./lines.js";
 import { plotly } from "./plotly.js";
+import { same } from "./schema.js";
 
 const DARK = window.matchMedia("(prefers-color-scheme: dark)");
 const NARROW = window.matchMedia("(max-width: 40rem)"); // also a wide screen that is zoomed
 const NARROW_LINE = 36; // characters
 const NARROW_LABEL = 72; // pixels beside a plot
+const EDGE = 0.02; // of an axis beyond its ends
 // without the bar of buttons: a plot is an image to a screen reader, and an image holds no controls
 const CONFIG = { displaylogo: false, displayModeBar: false };
+const OF_PAIR = "#ripple, #flank, #load, #orders, #sound > .live"; // plots of the pair that is designed
 const shown = new Map();
+/** @type {Record<string, number>} */
+let marks = {}; // the complaint, by the labels of axes
 
 function channels(color) {
   return [1, 3, 5].map((at) => parseInt(color.slice(at, at + 2), 16) / 255);
@@ -48,6 +53,46 @@ function darkened(content) {
     return [key, value && typeof value === "object" && !["x", "y", "z"].includes(key) ? darkened(value) : value];
   }));
 }
+
+/** Mark values on all axes with such labels, in every plot of the pair. @param {Record<string, number>} values */
+export function mark(values) {
+  if (same(values, marks)) return;
+  marks = values;
+  redraw(OF_PAIR);
+  document.dispatchEvent(new Event("marked"));
+}
+
+/** The value of the complaint on an axis; none where its plot does not reach it. */
+export const markOn = (label, low, high) => (marks[label] >= low && marks[label] <= high ? marks[label] : null);
+
+const ACROSS = { x: { x0: 0, x1: 1 }, y: { y0: 0, y1: 1 } };
+
+/** A figure with a line where an axis has the complaint; one that came with marks of its own keeps those. */
+export function marked(figure) {
+  const { data, layout } = figure;
+  if (layout.annotations?.some(({ text }) => text?.startsWith("complaint"))) return figure;
+  let label = ""; // of the panel below, where an axis repeats it
+  const line = ([key, axis]) => {
+    const [, letter, number] = key.match(/^([xy])axis(\d*)$/) ?? [];
+    if (!letter) return [];
+    const own = axis.title?.text || (letter === "x" ? label : "");
+    if (letter === "x") label = own;
+    if (!(own in marks)) return [];
+    const other = letter === "x" ? "y" : "x";
+    const traces = data.filter((trace) => (trace[`${letter}axis`] ?? letter) === letter + number);
+    const [low, high] = axis.range?.map((end) => (axis.type === "log" ? 10 ** end : end)) ?? rangeOf(traces.map((trace) => trace[letter] ?? []));
+    const value = markOn(own, low - EDGE * (high - low), high + EDGE * (high - low));
+    if (value === null) return [];
+    return [{
+      type: "line", [`${letter}ref`]: letter + number, [`${letter}0`]: value, [`${letter}1`]: value, [`${other}ref`]: `${axis.anchor ?? other} domain`,
+      ...ACROSS[other], line: { color: "#59636E", dash: "dash", width: 1.5 }, label: { text: "complaint", textposition: "end", textangle: 0, font: { size: 12 } },
+    }];
+  };
+  return { ...figure, layout: { ...layout, shapes: [...(layout.shapes ?? []), ...Object.entries(layout).reverse().flatMap(line)] } };
+}
+
+/** A figure as a plot shows it. */
+const seen = (node) => themed(node.closest(OF_PAIR) ? marked(shown.get(node)) : shown.get(node));
 
 function themed({ data, layout }) {
   const paper = { paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)" };
@@ -119,7 +164,7 @@ async function draw(node, figure) {
   const size = `${node.clientWidth} ${node.clientHeight}`;
   const resized = node.dataset.drawn && node.dataset.size !== size;
   node.dataset.size = size;
-  const { data, layout } = fitted(themed(figure), node.clientWidth || 800);
+  const { data, layout } = fitted(seen(node), node.clientWidth || 800);
   if (figure.still) lines(node, { data, layout });
   else {
     node.querySelector(":scope > .lines")?.remove();
@@ -130,14 +175,15 @@ async function draw(node, figure) {
   node.dataset.drawn = "yes";
 }
 
-for (const query of [DARK, NARROW]) {
-  query.addEventListener("change", () => {
-    for (const [node, figure] of [...shown]) if (node.isConnected && node.clientWidth) draw(node, figure);
-  });
+/** Draw again what is in sight. @param {string} [part] of the page */
+function redraw(part = "*") {
+  for (const [node, figure] of [...shown]) if (node.clientWidth && node.closest(part)) draw(node, figure);
 }
 
+for (const query of [DARK, NARROW]) query.addEventListener("change", () => redraw());
+
 async function savePng(node, name) {
-  const { data, layout } = themed(shown.get(node));
+  const { data, layout } = seen(node);
   const paper = DARK.matches ? "#14181d" : "#ffffff";
   const size = { width: Math.max(node.clientWidth, 900), height: layout.height || node.clientHeight };
   const url = await (await plotly()).toImage({ data, layout: { ...layout, paper_bgcolor: paper } }, { format: "png", scale: 2, ...size });
