@@ -12,7 +12,7 @@ from starlette.responses import JSONResponse, Response
 from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import LiveUnavailable, QueueFull, TooLarge, TooManyHeld
 from lineofaction.gearbox.schemas import Case
-from lineofaction.gearbox.schemas.files import FileContentInput
+from lineofaction.gearbox.schemas.files import FileContentInput, side_files
 from lineofaction.gearbox.schemas.model import BoundaryModel, Named
 from lineofaction.gearbox.schemas.plan import OutlineBody
 from lineofaction.gearbox.schemas.reading import validated
@@ -219,6 +219,14 @@ async def scene_from_toml(body: SceneText, context: Ctx, request: Request) -> Re
 def scene_to_toml(body: SceneRequest) -> SceneToml:
     """Write the scene as a file's text, without defaults."""
     return SceneToml(toml=toml_text(body.inputs.scene.model_dump(mode="json", exclude_unset=True)))
+
+
+@scenes_router.post("/scenes/to-files", summary="Write a scene file and files beside it")
+@needs(Scope.READ, body=SceneRequest)
+def scene_to_files(body: SceneRequest) -> SceneText:
+    """Write the scene as a file's text, without defaults; solids and matrices are files beside it."""
+    table, files = side_files(body.inputs.scene.model_dump(mode="json", exclude_unset=True))
+    return SceneText(toml=toml_text(table), files=tuple(files))
 
 
 units_router = APIRouter(tags=["units"], route_class=ScopedRoute)

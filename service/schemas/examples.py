@@ -146,6 +146,7 @@ BODIES: dict[str, Json] = {
     "/v1/cases/as-made": {"inputs": {"case": CASE}, "tolerance_class": 6, "seed": 1},
     "/v1/scenes/to-toml": {"inputs": {"scene": SCENE}},
     "/v1/scenes/from-toml": {"toml": _SCENE_FILE},
+    "/v1/scenes/to-files": {"inputs": {"scene": SCENE}},
     "/v1/units/open": {"rexs_base64": b64encode(_REXS_FILE).decode()},
 }
 """Other bodies, by path."""
@@ -420,6 +421,7 @@ ANSWERS: dict[str, Any] = {
     "/v1/cases/as-made": {"case": CASE, "left_out": []},
     "/v1/scenes/from-toml": BODIES["/v1/scenes/to-toml"]["inputs"],
     "/v1/scenes/to-toml": BODIES["/v1/scenes/from-toml"],
+    "/v1/scenes/to-files": BODIES["/v1/scenes/from-toml"],
     "/v1/units/open": {
         "left_out": ["gear_unit 1, scene: no load case fits the train"],
         "cases": [],

@@ -170,6 +170,24 @@ def test_the_card_of_a_gear_unit_begins_with_what_is_left_out(visit: Visit) -> N
     assert visit.complaints == []
 
 
+def test_the_matrix_of_a_unit_is_a_file_beside_its_scene(visit: Visit) -> None:
+    """The text has no line that nobody reads, and the scene that is computed has the matrix."""
+    page = visit.page
+    file: Any = {"name": "two_stage.rexs", "mimeType": "text/xml", "buffer": TWO_STAGE.encode()}
+    page.locator("#import-file").set_input_files(file)
+    page.get_by_role("button", name="Open scene", exact=True).press("Enter")
+    expect(page.get_by_text("With housing_stiffness.csv.")).to_be_visible()
+    text = page.get_by_label("Scene, TOML").input_value()
+    assert 'stiffness_file = "housing_stiffness.csv"' in text
+    assert max(map(len, text.splitlines())) < 300
+    with page.expect_request("**/v1/scenes/from-toml") as sent:
+        page.get_by_role("button", name="Compute the scene").press("Enter")
+    assert [part["name"] for part in sent.value.post_data_json["files"]] == ["housing_stiffness.csv"]
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="Save scene").last.press("Enter")
+    assert saved.value.suggested_filename == "scene.toml"
+
+
 def test_a_gear_unit_is_deflected_under_the_load_cases_of_its_file(visit: Visit) -> None:
     page = visit.page
     sent: list[Any] = []

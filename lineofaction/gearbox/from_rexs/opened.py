@@ -25,6 +25,7 @@ from lineofaction.gearbox.rexs.model import Document
 from lineofaction.gearbox.rexs.upgrade import Change, upgrade
 from lineofaction.gearbox.rexs.vocabulary import words
 from lineofaction.gearbox.schemas import validated
+from lineofaction.gearbox.schemas.files import side_files
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_text
 
@@ -130,7 +131,9 @@ class OpenedUnit:
         """Return the texts of the files by their names."""
         files = {f"{case.name}.toml": toml_text(_plain(case.case)) for case in self.cases}
         if self.scene is not None:
-            files[SCENE_FILE] = toml_text(_plain(self.scene))
+            table, beside = side_files(_plain(self.scene))
+            files[SCENE_FILE] = toml_text(table)
+            files |= {file.name: file.unpacked().decode() for file in beside}
         if self.load_cases:
             files[LOAD_CASES_FILE] = toml_text({"load_cases": [case.table() for case in self.load_cases]})
         files[ACCOUNT_FILE] = _account_csv(self.lines)

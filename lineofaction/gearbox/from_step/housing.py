@@ -91,7 +91,7 @@ def step_housing(
     fields = {
         "material": material,
         **held.placement.fields,
-        "feet": [{"name": "base", "point_mm": _typed(stand.point), "normal": stand.normal.tolist()}],
+        "feet": [{"name": "base", "point_mm": _typed(stand.point), "normal": (stand.normal + 0.0).tolist()}],
         "seats": [_seat(name, held) for name in held.bores],
     }
     left_out = tuple(name for name in bearings if name not in held.bores)

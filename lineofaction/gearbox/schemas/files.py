@@ -6,7 +6,7 @@ import base64
 import binascii
 import re
 import zlib
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Self, TypeAlias
@@ -60,8 +60,12 @@ class FileContentInput(BoundaryModel):
         """Return the content of a file; raises OSError, and ValueError if it is too large."""
         if file.stat().st_size > LARGEST:
             raise ValueError(f"at most {LARGEST} bytes")
-        packed = zlib.compress(file.read_bytes(), 9)
-        return cls(name=file.name, content=base64.b64encode(packed).decode("ascii"))
+        return cls.packed(file.name, file.read_bytes())
+
+    @classmethod
+    def packed(cls, name: str, content: bytes) -> Self:
+        """Return a file of a name that holds these bytes."""
+        return cls(name=name, content=base64.b64encode(zlib.compress(content, 9)).decode("ascii"))
 
     def unpacked(self, most: int = LARGEST) -> bytes:
         """Return what the file holds; raises ValueError if it is damaged or has more than so many bytes."""
@@ -173,6 +177,42 @@ def _solid(file: Path, field: str) -> Content:
         raise BadInput.of(field, file.name, "a readable file", "Check its permissions.") from None
     except ValueError as error:
         raise BadInput.of(field, file.name, str(error)) from None
+
+
+def side_files(scene: Table) -> tuple[Table, list[FileContentInput]]:
+    """Return the table of a scene that names files, and these: `written_out` the other way round.
+
+    Solids of housings and their stiffness matrices become files; a housing with other matrices keeps them.
+    """
+    files: dict[str, FileContentInput] = {}
+
+    def named(housing: Table) -> Table:
+        names = {}
+        for field, stem, ending, content in _contents(housing):
+            number, name = 1, f"{stem}{ending}"
+            while files.get(name, content).unpacked() != content.unpacked():
+                number += 1
+                name = f"{stem}_{number}{ending}"
+            files[name] = content.model_copy(update={"name": name})
+            names[field] = name
+        inside = [field for field in (STEP_FILE, MESH_FILE, ROWS) if names and field in housing]
+        return {key: value for key, value in housing.items() if key not in inside} | names
+
+    housings = [named(housing) for housing in scene.get("housings", ())]
+    return scene | ({"housings": housings} if housings else {}), list(files.values())
+
+
+def _contents(housing: Table) -> Iterator[tuple[str, str, str, FileContentInput]]:
+    """Yield the fields that name the files of a housing, how the names begin and end, and their content."""
+    for field in (STEP_FILE, MESH_FILE):
+        if isinstance(content := housing.get(field), dict):
+            path = Path(own_name(content["name"]))
+            yield field, path.stem, path.suffix, FileContentInput(**content)
+    rows = housing.get(ROWS)
+    if rows is not None and not any(f"{part}_matrix" in housing for part in ("damping", "mass")):
+        text = "".join(f"{','.join(map(repr, row))}\n" for row in rows)
+        stem = re.sub(r"\W+", "_", str(housing.get("name", ""))).strip("_").lower() or "housing"
+        yield MATRIX_FILE, stem[:100], "_stiffness.csv", FileContentInput.packed("matrix.csv", text.encode())
 
 
 READERS: dict[str, Callable[[Path, str], Content]] = {

@@ -32,11 +32,14 @@ const through = async (bytes, transform) => new Uint8Array(await new Response(ne
 /** Bytes compressed by zlib. @param {Uint8Array} bytes */
 export const deflated = (bytes) => through(bytes, new CompressionStream("deflate"));
 
+/** Bytes that were compressed so. @param {Uint8Array} bytes */
+export const inflated = (bytes) => through(bytes, new DecompressionStream("deflate"));
+
 /** @param {string} name @param {Uint8Array} bytes */
 export const packedFile = async (name, bytes) => `${pack(name)}.${wordOf(await deflated(bytes))}`;
 
 /** @param {string} word @returns {Promise<{name: string, bytes: Uint8Array}>} @throws {TypeError} it holds no file */
 export async function unpackedFile(word) {
   const [name, content = ""] = word.split(".");
-  return { name: unpack(name) ?? "unit", bytes: await through(bytesOf(content), new DecompressionStream("deflate")) };
+  return { name: unpack(name) ?? "unit", bytes: await inflated(bytesOf(content)) };
 }

@@ -1,7 +1,8 @@
 /** A scene of dynamics around an analyzed pair: two shafts, four elastic bearings, motor and brake; its run-up and modes. */
 
 import { card } from "./card.js";
-import { byId } from "./elements.js";
+import { byId, save } from "./elements.js";
+import { bytesOf, inflated } from "./packed.js";
 
 const SPAN = 200;
 const SPEEDS = 11;
@@ -10,6 +11,12 @@ const SPEEDS = 11;
 export const evenly = (low, high, count) => Array.from(
   { length: count }, (_, k) => low + (k * (high - low)) / Math.max(count - 1, 1),
 );
+
+/** Save a scene file and the files that it names. @param {{toml: string, files: {name: string, content: string}[]}} scene */
+export async function saveScene({ toml, files }) {
+  save(toml, "scene.toml", "application/toml");
+  for (const { name, content } of files) save(new Blob([await inflated(bytesOf(content))]), name);
+}
 
 /**
  * @param {object} known the analyzed pair: its case and the hash of its table

@@ -2,10 +2,10 @@
 
 import { guarded, post } from "./api.js";
 import { card } from "./card.js";
-import { button, byId, make, save } from "./elements.js";
+import { button, byId, make } from "./elements.js";
 import { showFailure } from "./job.js";
 import { base64, deflated } from "./packed.js";
-import { evenly, sceneOf } from "./scene.js";
+import { evenly, saveScene, sceneOf } from "./scene.js";
 import { reveal } from "./tabs.js";
 
 const RUN = { process: "simulate", title: "Run over time", subjects: ["case", "scene"] };
@@ -66,7 +66,7 @@ export class SceneEditor {
     const row = make(
       "div", { class: "buttons" },
       chosen, make("label", { class: "button", for: "scene-file" }, "Open scene file…"), this.fromPair,
-      button("Save scene", () => save(this.text.value, "scene.toml", "application/toml")),
+      button("Save scene", () => saveScene({ toml: this.text.value, files: this.files })),
     );
     const label = make("label", { for: "scene-text", class: "above" }, "Scene, TOML");
     const compute = make("div", { class: "row" }, make("label", { for: "scene-process" }, "Compute"), this.process);
@@ -87,8 +87,9 @@ export class SceneEditor {
   /** Put a scene into the text. */
   async put(scene, name = "", cases = []) {
     await this.careful(async () => {
-      this.text.value = (await post("/v1/scenes/to-toml", { inputs: { scene } })).toml;
-      this.with([]);
+      const { toml, files } = await post("/v1/scenes/to-files", { inputs: { scene } });
+      this.text.value = toml;
+      this.with(files);
       this.under(name, cases);
       document.dispatchEvent(new Event("typed"));
     });

@@ -5,6 +5,7 @@ import { Problem, patiently, post } from "./api.js";
 import { button, byId, folded, make, number, save } from "./elements.js";
 import { sayMissing } from "./notice.js";
 import { base64, packedFile, unpackedFile } from "./packed.js";
+import { saveScene } from "./scene.js";
 
 const FATES = ["taken", "assumed", "derived", "defaulted", "ignored", "refused"];
 const ENDINGS = /\.(rexs|rexsj|rexsz|zip)$/i;
@@ -106,8 +107,7 @@ export class OpenedUnit {
   }
 
   async saveScene() {
-    const { toml } = await post("/v1/scenes/to-toml", { inputs: { scene: this.unit.scene } });
-    save(toml, "scene.toml", "application/toml");
+    await saveScene(await post("/v1/scenes/to-files", { inputs: { scene: this.unit.scene } }));
   }
 }
 

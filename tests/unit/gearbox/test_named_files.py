@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import tomllib
 import zlib
 from pathlib import Path
 
@@ -12,7 +13,8 @@ from reduced_housings import random_housing
 
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, SceneInput, read_model
-from lineofaction.gearbox.schemas.files import LARGEST, FileContentInput
+from lineofaction.gearbox.schemas.files import LARGEST, FileContentInput, side_files
+from lineofaction.gearbox.schemas.toml import toml_text
 from service.reading.texts import case_of_toml, scene_of_toml
 
 ROOT = Path(__file__).parents[3]
@@ -51,6 +53,50 @@ def test_the_solid_of_a_housing_is_written_out_by_its_own_name(tmp_path):
     (housing,) = scene_of_toml(given, tmp_path)["scene"]["housings"]
     assert housing["step_file"]["name"] == "box.step"
     assert FileContentInput.model_validate(housing["step_file"]).unpacked() == content
+
+
+HOUSED = """
+[[housings]]
+name = "../../of {0}"
+bushings = ["{0} left", "{0} right"]
+stiffness_matrix = [{1}]
+"""
+
+
+def housed(scale: float, *names: str) -> str:
+    """Return housings with stiffness matrices whose numbers have all their digits."""
+    rows = ", ".join(str([scale * (i == k) / 3.0 for k in range(6)]) for i in range(6))
+    return "".join(HOUSED.format(name, rows) for name in names)
+
+
+@pytest.mark.law
+def test_a_scene_with_files_beside_it_is_the_same_scene(tmp_path):
+    """To the last bit, by names without folders; equal names of other content are told apart by a number."""
+    step = FileContentInput.packed("case.step", b"ISO-10303-21;").model_dump(mode="json")
+    scene = tomllib.loads(SCENE.read_text("utf-8") + housed(1e8, "input") + housed(3e8, "output"))
+    scene["housings"] += [
+        {"name": "a", "step_file": step},
+        {"name": "b", "step_file": step | {"name": "x/case.step"}},
+    ]
+    scene["housings"] += [
+        {"name": "c", "mesh_file": FileContentInput.packed("case.step", b"other").model_dump()}
+    ]
+    scene["housings"][1]["name"] = "of/input"
+    table, files = side_files(scene)
+    assert [file.name for file in files] == [
+        *("of_input_stiffness.csv", "of_input_2_stiffness.csv", "case.step", "case_2.step"),
+    ]
+    assert max(map(len, toml_text(table).splitlines())) < 200
+    given = {"toml": toml_text(table | {"housings": table["housings"][:2]})}
+    back = scene_of_toml(given | {"files": [file.model_dump() for file in files]}, tmp_path)["scene"]
+    for one, other in zip(back["housings"], scene["housings"], strict=False):
+        assert one["stiffness_matrix"] == other["stiffness_matrix"]
+
+
+def test_a_housing_with_mass_keeps_its_matrices(tmp_path):
+    own = {"name": "h", "stiffness_matrix": [[1.0]], "mass_matrix": [[1.0]]}
+    assert side_files({"housings": [own]}) == ({"housings": [own]}, [])
+    assert side_files({"shafts": []}) == ({"shafts": []}, [])
 
 
 def test_a_flank_of_a_case_is_read_from_its_file(tmp_path):
