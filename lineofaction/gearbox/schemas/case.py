@@ -13,7 +13,7 @@ from fe_contact.geometry.gear_pair import GearPair
 from fe_contact.geometry.ring_gear import RingGear
 from lineofaction.gearbox.schemas.complaint import ComplaintInput
 from lineofaction.gearbox.schemas.declared import as_fields, figures, with_fields
-from lineofaction.gearbox.schemas.gear import SHARED, STARTED_ONCE, GearInput, MaterialInput, ToothingInput
+from lineofaction.gearbox.schemas.gear import SHARED, GearInput, MaterialInput, ToothingInput
 from lineofaction.gearbox.schemas.model import (
     BoundaryModel,
     Listed,
@@ -45,7 +45,7 @@ _GEAR_HAS = both(given("bore_diameter_mm"), left_out(*(figure.field for figure i
 
 def _of_either_kind(schema: dict[str, Any]) -> None:
     """Say in a schema what belongs to which kind, and what a ring gear has where nothing is stated."""
-    schema |= stated(*STARTED_ONCE, {"if": _IS_RING, "then": _RING_HAS, "else": _GEAR_HAS})
+    schema |= stated({"if": _IS_RING, "then": _RING_HAS, "else": _GEAR_HAS})
     for name, value in _DEFAULTS.items():
         schema["properties"][name]["x-usual"] = {"value": value, "with": ["internal"]}
 

@@ -73,15 +73,9 @@ def _start_fields(relief: str) -> tuple[str, ...]:
     return tuple(figure.field for figure in figures(StatedStarts) if figure.name in starts_of(relief))
 
 
-STARTED_ONCE = tuple(at_most_one_of(*_start_fields(relief)) for relief in RELIEFS)
-"""The rules that the start of a relief is stated in one way."""
-
-
 @with_fields({**declared_in(FlankModification), **declared_in(StatedStarts), **parts_in(parts_of(Gear))})
 class ToothingInput(_ToothingFigures):
     """Fields of all gears. Modifications: > 0 is material removed, normal to the involute, transverse."""
-
-    model_config = ConfigDict(json_schema_extra=stated(*STARTED_ONCE))
 
     pitch_deviation_um: PitchDeviations = Field(
         default=(),
