@@ -209,10 +209,11 @@ def _all_names(pair: ParallelAxes, checked: Checked) -> tuple[str, ...]:
         MISALIGNMENT,
         TORQUE,
     )
-    return tuple(name for name in named if _acts(name, checked))
+    return tuple(name for name in named if acts(name, checked))
 
 
-def _acts(name: str, checked: Checked) -> bool:
+def acts(name: str, checked: Checked) -> bool:
+    """Return whether a figure of the flanks or the alignment changes the curves of a model."""
     if name in (TORQUE, CENTER_DISTANCE):
         return True
     request = checked.request
@@ -226,7 +227,7 @@ def _check_name(name: str, pair: ParallelAxes, checked: Checked) -> None:
         gear_and_quantity("by", name)
         if lacks_length(pair, name.removesuffix("_length")):
             raise InputError("by", name, "a relief that has a length", "Give the flank its length.")
-    if not _acts(name, checked):
+    if not acts(name, checked):
         advice = "Analyze the pair over the face width, and leave the effect at auto."
         raise InputError("by", name, "a figure whose effect the table has", advice)
 

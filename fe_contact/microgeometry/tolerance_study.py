@@ -263,7 +263,7 @@ def sampled(request: ToleranceRequest, run: Run) -> ToleranceStudy:
     names, nominal = tuple(tolerances.widths), replace(study.evaluator, nodes=ONE_NODE)
     with clock.stage("first order"):
         design = linearized(nominal, {}, names, NO_LIMITS)
-        about_design = _tangents(
+        about_design = tangents_about(
             nominal, names, np.zeros((1, len(names))), design.evaluation.ste, design.curves
         )
         at_once = about_design.peak_to_peak(deviation)
@@ -314,7 +314,7 @@ def _asked(request: ToleranceRequest) -> Json:
     }
 
 
-def _tangents(
+def tangents_about(
     evaluator: Evaluator, names: tuple[str, ...], deviation: FloatArray, ste: FloatArray, by: FloatArray
 ) -> TangentModel:
     """Return the tangents about pairs that deviate by (n, d); nothing is removed below zero."""
@@ -342,7 +342,7 @@ def _solved(
     parts = ((True, deviation[: ends[0]]), (False, deviation[ends[0] :]))
     tasks = [(by, own[k : k + IN_A_TASK]) for by, own in parts for k in range(0, len(own), IN_A_TASK)]
     ste, slopes = [], []
-    for count, (values, by) in enumerate(run.workers.run(_curves_of_samples, (evaluator, names), tasks)):
+    for count, (values, by) in enumerate(run.workers.run(curves_of_samples, (evaluator, names), tasks)):
         ste.append(values)
         slopes += [] if by is None else [by]
         run.progress("samples", (count + 1) / len(tasks))
@@ -351,10 +351,10 @@ def _solved(
         bad = int((~np.isfinite(curves)).any(axis=(1, 2)).sum())
         raise SolveError(f"the contact of {bad} of {len(curves)} pairs cannot be solved", curves)
     first = slice(0, ends[0])
-    return curves, _tangents(evaluator, names, deviation[first], curves[first], np.concatenate(slopes))
+    return curves, tangents_about(evaluator, names, deviation[first], curves[first], np.concatenate(slopes))
 
 
-def _curves_of_samples(
+def curves_of_samples(
     shared: tuple[Evaluator, tuple[str, ...]], task: tuple[bool, FloatArray]
 ) -> tuple[FloatArray, FloatArray | None]:
     """Return transmission error (n, P, L) in m of some samples (n, d), perhaps its derivatives: one task."""

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from fe_contact.analysis.live.condensed_pair import CondensedPair
+from fe_contact.microgeometry.drawn_ripple import DrawnRipple
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.convert.live import condensed_of, live_curves, plan_json, plan_of
@@ -19,7 +20,8 @@ Json = dict[str, Any]
 
 KEPT_PAIRS = 4
 
-_pairs: OrderedDict[str, tuple[Case, CondensedPair]] = OrderedDict()
+_Kept = tuple[Case, CondensedPair, OrderedDict[str, DrawnRipple]]
+_pairs: OrderedDict[str, _Kept] = OrderedDict()
 
 
 def live_ste(inputs: Json) -> Json:
@@ -27,9 +29,9 @@ def live_ste(inputs: Json) -> Json:
     begin = cpu_seconds()
     question = LiveInput.model_validate_json(json.dumps(inputs["question"]))
     paths = Path(inputs["file"]), Path(inputs["cache"])
-    case, bodies = _bodies(inputs["key"], *paths, compute=question.condense)
+    case, bodies, drawn = _bodies(inputs["key"], *paths, compute=question.condense)
     read = cpu_seconds() - begin
-    answer = live_curves(case, bodies, question)
+    answer = live_curves(case, bodies, question, drawn)
     answer["cost"]["compliance_cpu_seconds"] += read
     return answer | {"cpu_seconds": cpu_seconds() - begin}
 
@@ -41,9 +43,9 @@ def live_plan(inputs: Json) -> Json:
     return plan_json(plan) | {"warnings": case_warnings(case)}
 
 
-def _bodies(key: str, file: Path, cache: Path, *, compute: bool) -> tuple[Case, CondensedPair]:
+def _bodies(key: str, file: Path, cache: Path, *, compute: bool) -> _Kept:
     if key not in _pairs:
-        _pairs[key] = condensed_of(file, cache, compute=compute)
+        _pairs[key] = *condensed_of(file, cache, compute=compute), OrderedDict()
     _pairs.move_to_end(key)
     while len(_pairs) > KEPT_PAIRS:
         _pairs.popitem(last=False)

@@ -113,6 +113,39 @@ def test_a_preview_states_no_errors_and_has_every_other_position(client: TestCli
     assert set(quick["flanks"]) == set(whole["flanks"])
 
 
+@pytest.mark.law
+def test_pairs_within_a_class_are_solved_in_parts_and_spread_more_in_a_coarser_class(
+    client: TestClient, key: str
+) -> None:
+    width = {}
+    for chosen in (4, 8):
+        question = {"torque_n_m": [1.0], "preview": True, "tolerance_class": chosen}
+        answers = [client.post(f"/v1/databases/{key}/ste", json=question).json() for _ in range(5)]
+        LiveOutput.model_validate_json(json.dumps(answers[-1]))
+        bands = [answer["curves"][0]["band"] for answer in answers]
+        assert [band["solved"] for band in bands] == [4, 8, 12, 16, 16]
+        assert bands[3] == bands[4] and "peak_to_peak" not in bands[2]
+        assert answers[4]["cost"]["band_cpu_seconds"] < 0.5 * answers[1]["cost"]["band_cpu_seconds"]
+        assert bands[4]["position"] == answers[4]["curves"][0]["position"]
+        spread = bands[4]["peak_to_peak"]
+        width[chosen] = spread["high_um"] - spread["low_um"]
+    assert width[8] > 2.0 * width[4]
+
+
+@pytest.mark.parametrize("chosen", [0, 12, 6.5, "six", True, [6], {"tolerance_class": 6}, 1e9, -1])
+def test_a_class_that_is_none_is_refused(client: TestClient, key: str, chosen: object) -> None:
+    refused = client.post(f"/v1/databases/{key}/ste", json={"torque_n_m": [1.0], "tolerance_class": chosen})
+    assert refused.status_code == 422
+    assert refused.json()["errors"][0]["field"].startswith("tolerance_class")
+
+
+def test_pairs_are_drawn_at_one_torque(client: TestClient, key: str) -> None:
+    question = {"torque_n_m": [0.5, 1.0], "tolerance_class": 6}
+    refused = client.post(f"/v1/databases/{key}/ste", json=question)
+    assert refused.status_code == 422
+    assert refused.json()["errors"][0]["field"] == "tolerance_class"
+
+
 def test_an_answer_knows_how_wrong_it_is_and_what_it_cost(client: TestClient, key: str) -> None:
     questions = [{"torque_n_m": [0.5, 1.0], "pinion": RELIEF | {"tip_relief_um": x}} for x in (4.0, 5.0)]
     first, again = (client.post(f"/v1/databases/{key}/ste", json=question).json() for question in questions)

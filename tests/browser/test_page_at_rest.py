@@ -1,4 +1,4 @@
-"""What the page computes while no slider moves: peak-to-peak over torque."""
+"""What the page computes while no slider moves: peak-to-peak over torque, the band of pairs as made."""
 
 from __future__ import annotations
 
@@ -104,3 +104,40 @@ def test_what_nobody_sees_is_not_computed(visit: Visit, asked: list[dict[str, An
     assert all(len(question["torque_n_m"]) == 1 for question in asked)
     tab(page, "Flanks, live")
     page.wait_for_selector(".torque-curve[data-drawn]")
+
+
+BANDS = """node => (node.data ?? []).filter((trace) => trace.fill).map(({ fillcolor, x, y }) => {
+  const half = x.length / 2;
+  const low = y.slice(half).reverse();
+  return { fillcolor, width: Math.max(...low.map((value, k) => y[k] - value)), x: x.slice(0, half) };
+})"""
+
+
+@pytest.mark.law
+def test_the_band_of_a_class_is_drawn_and_goes_away_with_its_switch(
+    visit: Visit, asked: list[dict[str, Any]]
+) -> None:
+    page = visit.page
+    page.wait_for_selector("[data-figure=live_ste] .plot[data-drawn]")
+    curve, words = page.locator("[data-figure=live_ste] .plot"), page.locator(".made-band output")
+    assert curve.evaluate(BANDS) == [] and not any("tolerance_class" in question for question in asked)
+    page.locator("#band-on").check()
+    expect(words).to_contain_text("nine of ten pairs within class 6, as the case states none")
+    expect(words).to_contain_text(re.compile(r"µm \(± .*1000 drawn, 16 of them solved"))
+    until(lambda: len(curve.evaluate(BANDS)) == 1)
+    (band,) = curve.evaluate(BANDS)
+    assert band["fillcolor"] == "#0072B233" and band["width"] > 0.0  # 20 % of the color of the line
+    assert (band["x"][0], band["x"][-1]) == (0.0, 2.0)
+    page.locator("#band-class").fill("4")
+    page.locator("#band-class").press("Tab")
+    expect(words).to_contain_text("within class 4 have")
+    until(lambda: curve.evaluate(BANDS)[0]["width"] < band["width"])
+    asked.clear()
+    moved(page, "#live-torque_n_m", "End")
+    until(lambda: len(curve.evaluate(BANDS)) == 1)
+    quick = [question for question in asked if question.get("passage") and question["preview"]]
+    assert quick and not any("tolerance_class" in question for question in quick)
+    page.locator("#band-on").uncheck()
+    until(lambda: curve.evaluate(BANDS) == [])
+    expect(words).to_be_empty()
+    assert visit.complaints == []

@@ -11,18 +11,18 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (43_539, 809),
+    ("fe_contact",): (43_697, 815),
     ("dynamics",): (45_010, 883),
-    ("lineofaction.gearbox",): (27_564, 564),
+    ("lineofaction.gearbox",): (27_669, 564),
     ("lineofaction.report",): (12_419, 232),
-    ("service",): (15_032, 357),
+    ("service",): (15_034, 357),
     ("lineofaction.client",): (2_717, 53),
     ("lineofaction.cli",): (5_647, 80),
     ("lineofaction.hardcases",): (3_841, 35),
     ("bounds", "host", "model_studies"): (4_523, 156),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 860
+MOST_FILES = 861
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""

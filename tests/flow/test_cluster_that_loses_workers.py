@@ -180,7 +180,7 @@ def test_a_sensitivity_sweep_of_three_workers_one_of_which_is_killed(cluster: Cl
 def test_a_monte_carlo_of_two_workers_one_of_which_is_killed(cluster: Cluster, cache: Path) -> None:
     cluster.at_least(2)
     slopes = Tolerances(0.0, {"pinion.profile_slope": 10e-6, "wheel.profile_slope": 5e-6})
-    workers = Losing(ByDask(cluster.client), lambda: cluster.kill_busy(1), "_curves_of_samples")
+    workers = Losing(ByDask(cluster.client), lambda: cluster.kill_busy(1), "curves_of_samples")
     here, there = (
         scatter(
             SPUR,

@@ -277,7 +277,7 @@ class CondensedPair:
 
         Parameters and errors are those of `table`.
         """
-        checked, _, points, nodes, plan = self._posed(pair, torques, misalignment, center_distance_change)
+        checked, _, points, nodes, plan = self.posed(pair, torques, misalignment, center_distance_change)
         return _solved(checked, plan, points, nodes)
 
     def solve_rougher(
@@ -293,16 +293,20 @@ class CondensedPair:
         of `table`.
         """
         question = pair, torques, misalignment, center_distance_change
-        checked, contacts, points, nodes, plan = self._posed(*question)
+        checked, contacts, points, nodes, plan = self.posed(*question)
         return tuple(
             _solved(checked, plan, points.on(rougher), nodes)
             for rougher in (contacts.sliced, contacts.coarse)
             if rougher is not None
         )
 
-    def _posed(
+    def posed(
         self, pair: ParallelAxes, torques: FloatArray, misalignment: float, change: float
     ) -> tuple[Checked, CondensedContacts, OperatingPoints, PositionNodes, Plan]:
+        """Return what the contact is solved with: request, bodies with the flanks, positions and plan.
+
+        Parameters and errors are those of `table`.
+        """
         checked = self._asked(pair, torques, misalignment, change)
         nodes, plan = self._laid_out(checked)
         return checked, *self._placed(checked), nodes, plan

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections import OrderedDict
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -18,7 +19,9 @@ from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.condensed_request import condensed_pair
 from fe_contact.analysis.run_plan import RunPlan, plan_run
 from fe_contact.geometry import ParallelAxes, Toothing, tooth_profile
+from fe_contact.microgeometry.drawn_ripple import SOLVED, DrawnRipple
 from fe_contact.microgeometry.linearized_design import CurveDerivatives, FlankDerivatives, curve_derivatives
+from fe_contact.microgeometry.tolerances import iso1328_tolerances
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 from host import cpu_seconds
@@ -172,8 +175,13 @@ def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> tuple[Cas
     return case, bodies
 
 
-def live_curves(case: Case, bodies: CondensedPair, change: LiveInput) -> Json:
-    """Return the curves of the changed flanks; raises `BadInput` by the fields of the question."""
+def live_curves(
+    case: Case, bodies: CondensedPair, change: LiveInput, drawn: OrderedDict[str, DrawnRipple]
+) -> Json:
+    """Return the curves of the changed flanks; raises `BadInput` by the fields of the question.
+
+    `drawn` keeps the pairs solved within tolerances, by question: every answer adds some.
+    """
     try:
         facts = case.model_dump(mode="json")
         for name in ("pinion", "wheel"):
@@ -181,9 +189,62 @@ def live_curves(case: Case, bodies: CondensedPair, change: LiveInput) -> Json:
             facts["pair"][name] = with_figures(facts["pair"][name], own)
         pair = gear_pair(validated(Case, facts))
         with boundary_errors():
-            return _answer(bodies, pair, change)
+            answer = _answer(bodies, pair, change)
+            if change.tolerance_class is not None:
+                _add_band(answer, bodies, pair, change, drawn)
+        return answer
     except BadInput as error:
         raise BadInput(_by_question(fault) for fault in error.faults) from None
+
+
+def _add_band(
+    answer: Json,
+    bodies: CondensedPair,
+    pair: ParallelAxes,
+    change: LiveInput,
+    drawn: OrderedDict[str, DrawnRipple],
+) -> None:
+    """Solve further pairs within the class, and add the band once there are enough; the last few are kept."""
+    begin, chosen = cpu_seconds(), change.tolerance_class
+    if len(change.torque_n_m) > 1 or chosen is None:
+        raise BadInput.of("tolerance_class", chosen, "left out, or with one torque", "Request them in turn.")
+    name = change.model_dump_json(include=_OF_BAND)
+    ripple = drawn.pop(name, None)
+    if ripple is None:
+        across = bodies.checked.model.across_face
+        tolerances = iso1328_tolerances(pair, chosen, across_face=across)
+        alignment = change.misalignment_um * UM, change.center_distance_change_mm * MM
+        ripple = DrawnRipple.of(bodies, pair, change.torque_n_m[0], tolerances, *alignment)
+    drawn[name] = ripple if ripple.solved == SOLVED else ripple.further()
+    while len(drawn) > _KEPT_DRAWN:
+        drawn.popitem(last=False)
+    answer["curves"][0]["band"] = _band(drawn[name], chosen)
+    answer["cost"]["band_cpu_seconds"] = cpu_seconds() - begin
+
+
+_OF_BAND = {
+    *("torque_n_m", "misalignment_um", "center_distance_change_mm", "pinion", "wheel", "tolerance_class")
+}
+_KEPT_DRAWN = 4
+
+
+def _band(ripple: DrawnRipple, tolerance_class: int) -> Json:
+    """Return the band of pairs, in um; only how many are solved before all are."""
+    pairs = len(ripple.deviation)
+    known = {"tolerance_class": tolerance_class, "pairs": pairs, "solved": ripple.solved, "of": SOLVED}
+    if ripple.solved < SOLVED:
+        return known
+    band = ripple.band()
+    figures = {"peak_to_peak": band.peak_to_peak, "first_harmonic": band.first_harmonic}
+    return known | {
+        "position": band.position.tolist(),
+        "low_um": _short(band.low / UM),
+        "high_um": _short(band.high / UM),
+        **{
+            name: {f"{end}_um": value / UM for end, value in vars(spread).items()}
+            for name, spread in figures.items()
+        },
+    }
 
 
 def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput) -> Json:

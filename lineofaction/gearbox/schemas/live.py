@@ -81,6 +81,14 @@ class LiveInput(BoundaryModel):
         "deflection along its contact line",
         examples=[True],
     )
+    tolerance_class: int | None = Field(
+        default=None,
+        ge=1,
+        le=11,
+        description="Also draw pairs within this class of ISO 1328-1:2013 (`band`), at one torque and where "
+        "teeth are alike. Every answer solves some; repeat the request until `solved` is `of`",
+        examples=[6],
+    )
     preview: bool = Field(
         default=False,
         description="Answer at every other position and without errors, at a half to a third of the cost: "
@@ -246,6 +254,38 @@ class LiveCurve(BoundaryModel):
             description="How far the load moves the flanks of the pair apart, in µm", examples=[[[8.1, 9.2]]]
         )
 
+    class LiveBand(BoundaryModel):
+        """What nine of ten pairs have whose flanks deviate within a class, 5 % below and 5 % above."""
+
+        class Spread(BoundaryModel):
+            """The ends of a figure, and what they may be wrong by."""
+
+            low_um: float = Field(description="A twentieth of the pairs has less, in µm", examples=[0.26])
+            high_um: float = Field(description="A twentieth of the pairs has more, in µm", examples=[1.31])
+            error_um: float = Field(
+                description="Error of the ends in µm: bounds of quantiles of so many pairs at 95 % "
+                "confidence, and what tangents miss of the pairs that are held against them",
+                examples=[0.13],
+            )
+
+        tolerance_class: int = Field(description="The class", examples=[6])
+        pairs: int = Field(description="Pairs drawn, by a fixed seed", examples=[1000])
+        solved: int = Field(description="Pairs solved by now; tangents stand for the others", examples=[16])
+        of: int = Field(description="Pairs to be solved; before, there is no band", examples=[16])
+        position: list[float] = Field(
+            default=[], description="Positions of the band in base pitches", examples=[[0.0, 0.5]]
+        )
+        low_um: list[float] = Field(
+            default=[],
+            description="Transmission error less its mean: a twentieth has less, in µm",
+            examples=[[-0.4, -0.2]],
+        )
+        high_um: list[float] = Field(
+            default=[], description="A twentieth has more, in µm", examples=[[0.3, 0.5]]
+        )
+        peak_to_peak: Spread | None = Field(default=None, description="Peak to peak")
+        first_harmonic: Spread | None = Field(default=None, description="First mesh harmonic")
+
     class LiveToothLoads(BoundaryModel):
         """Largest force and pressure on each tooth of a gear, in the order of meshing from tooth 1."""
 
@@ -319,6 +359,7 @@ class LiveCurve(BoundaryModel):
     passage: LivePassage | None = Field(
         default=None, description="A pair of teeth on its way through the mesh, if requested"
     )
+    band: LiveBand | None = Field(default=None, description="Pairs within a tolerance class, if requested")
 
 
 class LiveOutput(BoundaryModel):
@@ -352,6 +393,9 @@ class LiveOutput(BoundaryModel):
         )
         derivatives_cpu_seconds: float = Field(
             default=0.0, description="Computing their derivatives, if requested", examples=[0.03]
+        )
+        band_cpu_seconds: float = Field(
+            default=0.0, description="Pairs within a class, if requested", examples=[0.13]
         )
 
     curves: list[LiveCurve] = Field(description="One curve for each torque")

@@ -7,6 +7,7 @@ import { faultsOf } from "./job.js";
 import { LiveFlanks, liveBlock } from "./live_flanks.js";
 import { mainFigures, numbersOf, ordersOf, sourcesOf } from "./live_numbers.js";
 import { LiveSound } from "./live_sound.js";
+import { MadeBand } from "./made_band.js";
 import { plot } from "./plots.js";
 import { Sliders } from "./sliders.js";
 import { TorqueCurve } from "./torque_curve.js";
@@ -76,10 +77,7 @@ export class Live {
 
   controls() {
     this.sliders = new Sliders(this.known, [...this.design.fields], () => this.ask());
-    this.torques = new TorqueCurve(2 * this.known.highest, this.caller, () => {
-      this.rested = this.shown;
-      this.work();
-    });
+    this.torques = new TorqueCurve(2 * this.known.highest, this.caller, () => this.again());
     this.sliders.block("torque_n_m").append(this.torques.node);
     const note = this.known.plane ? make(
       "div", {},
@@ -118,8 +116,17 @@ export class Live {
   }
 
   /** What takes longer than a slider may wait, of curves at rest. @param {any[]} shown @param {string} key */
-  rest(shown, key) {
-    return this.torques.follow(shown, () => Boolean(this.waiting) || key !== this.known?.key);
+  async rest(shown, key) {
+    const moved = () => Boolean(this.waiting) || key !== this.known?.key;
+    await this.torques.follow(shown, moved);
+    await this.made.follow(shown, moved);
+    if (!moved()) await plot(this.blocks.ste.node, this.ripple(shown));
+  }
+
+  /** Begin again with what a hand at rest leaves time for, as something of it is switched on or seen. */
+  again() {
+    this.rested = this.shown;
+    this.work();
   }
 
   async next() {
@@ -204,7 +211,9 @@ export class Live {
       sharing: liveBlock("live_load_share", "Load sharing", "Part of the load on each pair of teeth."),
     };
     this.numbers = folded("Numbers");
-    this.blocks.ste.block.append(this.numbers);
+    this.made = new MadeBand(this.caller, () => this.again());
+    this.made.node.hidden = this.known === null;
+    this.blocks.ste.block.append(this.made.node, this.numbers);
     this.flanks = new LiveFlanks();
     this.sound = new LiveSound();
     for (const [name, { block: shown }] of Object.entries(this.blocks)) byId(PLACES[name]).replaceChildren(shown);
@@ -230,11 +239,17 @@ export class Live {
     figures(byId("live-figures"), mainFigures(curve, from));
     this.describe(shown);
     return Promise.all([
-      plot(this.blocks.ste.node, { ...steFigure(shown), ...facts }),
+      plot(this.blocks.ste.node, { ...this.ripple(shown), ...facts }),
       plot(this.blocks.harmonics.node, harmonicsFigure(shown)),
       plot(this.blocks.sharing.node, sharingFigure(curve)),
       this.flanks.draw(shown),
     ]);
+  }
+
+  /** The curves, in front of the bands of pairs as made. */
+  ripple(shown) {
+    const { data, layout } = steFigure(shown);
+    return { data: [...this.made.traces(shown), ...data], layout };
   }
 
   /** Say over how many pitches a curve goes, and which orders it has. */

@@ -13,7 +13,7 @@ const APART = 0.09; // mesh orders between names
  */
 
 /** Positions and values over two pitches (or the whole longer period), closed. */
-function over(curve, values) {
+export function over(curve, values) {
   const turns = curve.period === 1 ? [0, 1] : [0];
   const x = turns.flatMap((turn) => curve.position.map((place) => place + turn * curve.period));
   const y = turns.flatMap(() => values);

@@ -92,7 +92,7 @@ class Recording:
         (ANALYZE, {}, "_solve_block"),
         (default_registry()["sensitivity"], DEVIATIONS, "_solve_block"),
         (default_registry()["optimize"], SEARCH, "_search_one"),
-        (default_registry()["scatter"], {"samples": 30}, "_curves_of_samples"),
+        (default_registry()["scatter"], {"samples": 30}, "curves_of_samples"),
         (default_registry()["ablate"], {"only": ["profile_modification"]}, "_solve_block"),
         (default_registry()["flank"], OVER_FACE, "condense"),
         (default_registry()["root-stress"], OVER_FACE, "condense"),
