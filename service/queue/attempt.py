@@ -269,27 +269,30 @@ class Settlement:
         claim = ended.attempt.claim
         span = tracer().begin("settle", claim.traceparent, time.time(), {})
         try:
-            self._note(claim, ended.outcome, ended.attempt.log)
+            self._note(claim, ended.outcome, ended.attempt)
         finally:
             span.end(time.time(), {"loa.computation": claim.id})
         if not ended.outcome.died or claim.attempts >= self.most_attempts:
             shutil.rmtree(ended.attempt.workspace, ignore_errors=True)
 
-    def _note(self, claim: Claim, outcome: Outcome, log: Path) -> None:
+    def _note(self, claim: Claim, outcome: Outcome, attempt: Attempt) -> None:
         if outcome.died:
             self.again_or_fail(claim, outcome.failure)
         elif outcome.unexpected:
-            self.fail_by_log(claim, "An unexpected failure occurred.", log=str(log))
+            self.fail_by_log(claim, "An unexpected failure occurred.", log=str(attempt.log))
         elif outcome.failure:
             self.claims.fail(claim, outcome.failure, outcome.faults)
         else:
-            self._keep(claim, outcome)
+            self._keep(claim, outcome, attempt.worker.usage)
 
-    def _keep(self, claim: Claim, outcome: Outcome) -> None:
+    def _keep(self, claim: Claim, outcome: Outcome, usage: Usage | None) -> None:
         """Store what was made; a file system that does not take it will not do so at a repetition either."""
+        store = self.store.within(claim.project)
         try:
             for product in outcome.products:
-                self.store.within(claim.project).put(product.key, product.kind, product.file)
+                known = product.key == claim.key and usage is not None
+                headline = product.headline | ({"cpu_seconds": round(usage.cpu_s, 3)} if known else {})
+                store.put(product.key, product.kind, product.file, headline)
         except OSError as error:
             self.fail_by_log(claim, no_space(error) or "The result could not be stored.", exc_info=True)
         else:

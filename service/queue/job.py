@@ -8,13 +8,14 @@ from datetime import UTC, datetime
 from functools import lru_cache
 from typing import Any
 
-from sqlalchemy import ColumnElement, case, select
+from sqlalchemy import ColumnElement, Select, case, func, select
 
 from bounds import engineering
 from service.project import at_address
 from service.queue.tables import computations, jobs
 from service.queue.terms import Delivery, Label, differences_of
 from service.schemas.answers import Differences
+from service.store.results import results
 
 Json = dict[str, Any]
 
@@ -47,7 +48,8 @@ class Job:
     """A job with the state of its computation; times are RFC 3339 in UTC, inputs JSON.
 
     `inputs` are normalized, as they are computed, `stated` are the caller's, where they were kept. A batch
-    has so many `children`; each of these has it as `parent` and a `place` in it, from 0.
+    has so many `children`; each of these has it as `parent` and a `place` in it, from 0. `headline` is what a
+    list shows of the result, None if there is none or it is older.
     """
 
     id: str
@@ -77,6 +79,7 @@ class Job:
     parent: str | None = None
     place: int = 0
     children: int = 0
+    headline: Json | None = None
 
     @property
     def ended(self) -> bool:
@@ -116,12 +119,14 @@ def job_state() -> ColumnElement[Any]:
 
 def jobs_of_all_projects() -> Any:
     """Select jobs with their computations; callers find those of their project alone."""
+    own = (results.c.key == computations.c.key) & (results.c.headline != "")
     return select(
         jobs.c.id.label("job_id"),
         jobs.c.created.label("job_created"),
         *(jobs.c[name] for name in _OF_JOB),
         computations,
-    ).join(computations, jobs.c.computation_id == computations.c.id)
+        results.c.headline,
+    ).select_from(jobs.join(computations).outerjoin(results, own))
 
 
 def job_of(row: Any) -> Job:
@@ -142,6 +147,7 @@ def job_of(row: Any) -> Job:
         stated=row.stated or row.inputs,
         label=Label.from_row(row),
         differences=differences_of(row.differences),
+        headline=None if row.headline is None else json.loads(row.headline),
     )
 
 
@@ -151,7 +157,8 @@ class JobFilter:
 
     One of the processes and statuses (none: any), all tags, all words in its title in any case; created from
     earliest to latest (RFC 3339 in UTC with microseconds), run for a time within bounds, which a job that has
-    not begun has not; of the batch `parent`, or None: batches, and jobs of none.
+    not begun has not; of the batch `parent`, or None: batches, and jobs of none; with `once` the
+    newest of those of one result, which is none that failed or was dismissed unless all did.
     """
 
     processes: tuple[str, ...] = ()
@@ -163,6 +170,7 @@ class JobFilter:
     tags: tuple[str, ...] = ()
     words: tuple[str, ...] = ()
     parent: str | None = None
+    once: bool = False
 
     def conditions(self) -> list[ColumnElement[bool]]:
         """Return what the database decides: all but the time run."""
@@ -178,6 +186,14 @@ class JobFilter:
         if self.latest is not None:
             conditions.append(jobs.c.created <= self.latest)
         return conditions
+
+    def once_of(self, *conditions: ColumnElement[bool]) -> Select[tuple[str]]:
+        """Select of the jobs that are wanted, and meet further conditions, the newest of each result."""
+        in_vain = case((job_state().in_(("failed", "dismissed")), 1), else_=0)
+        order = (in_vain, jobs.c.created.desc(), jobs.c.id.desc())
+        turn = func.row_number().over(partition_by=computations.c.key, order_by=order).label("turn")
+        wanted = select(jobs.c.id, turn).join(computations).where(*self.conditions(), *conditions).subquery()
+        return select(wanted.c.id).where(wanted.c.turn == 1)
 
     @property
     def asks_duration(self) -> bool:

@@ -127,6 +127,8 @@ class Submissions:
     @retried
     def _newest(self, limit: int, job_filter: JobFilter, after: Mark | None) -> list[Job]:
         statement = self._jobs().where(*job_filter.conditions())
+        if job_filter.once:
+            statement = statement.where(jobs.c.id.in_(job_filter.once_of(jobs.c.project == self._project)))
         if after is not None:
             statement = statement.where(behind(after, jobs.c.created, jobs.c.id))
         with reading(self._engine) as connection:

@@ -94,6 +94,10 @@ Parent = Annotated[
     Query(pattern="^[0-9a-f-]{36}$", description="Jobs of this batch; without it, batches and jobs of none"),
 ]
 
+Once = Annotated[
+    bool, Query(description="Of jobs with one result the newest alone; one in vain where all are")
+]
+
 
 def job_filter(
     process_id: Processes = [],  # noqa: B006 (the framework copies it)
@@ -105,6 +109,7 @@ def job_filter(
     tag: Tags = [],  # noqa: B006
     title: Words = "",
     parent: Parent = None,
+    once: Once = False,
 ) -> JobFilter:
     """Return what the parameters ask for."""
     earliest, latest = _interval(instant)
@@ -118,6 +123,7 @@ def job_filter(
         tuple(tag),
         tuple(title.split()),
         parent=parent,
+        once=once,
     )
 
 

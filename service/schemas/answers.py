@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, create_model
 
+from lineofaction.gearbox.schemas.figures import Headline
 from lineofaction.gearbox.schemas.model import BoundaryModel, Named
 
 Uri = Annotated[str, Field(max_length=2000, examples=["https://hooks.example.com/loa?case=12"])]
@@ -178,6 +179,9 @@ class StatusInfo(BaseModel):
     warnings: list[Annotated[dict[str, Any], Named("InputWarning")]] | None = Field(
         default=None,
         description="Implausible inputs: check, field, value, unit, message; null in lists",
+    )
+    headline: Headline | None = Field(
+        default=None, description="Of the result; null: there is none, or an older version made it"
     )
     webhooks: list[WebhookState] | None = Field(
         default=None, description="Calls about the job; null in lists and events"

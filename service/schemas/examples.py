@@ -202,6 +202,7 @@ STATUS: Json = {
     "stage": "compliance",
     "stage_progress": 40,
     "attempts": 1,
+    "headline": None,
     "links": [_LINK | {"href": f"/v1/jobs/{JOB}", "title": "Status"}],
 }
 _SUMMARY: Json = {

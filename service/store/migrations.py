@@ -226,6 +226,8 @@ STEPS: Mapping[str, Callable[[Operations], None]] = {
     # jobs of before, or of a former program, have the inputs of their computation alone
     "0014": _added("job", ("stated", "", sa.Text)),
     "0015": _one_owner,
+    # what a list of jobs shows of a result; those of before have nothing
+    "0016": _added("result", ("headline", "", sa.Text)),
 }
 REVISIONS = tuple(STEPS)
 """All schemas there have been, the newest last."""

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -19,6 +21,7 @@ from sqlalchemy import (
     Row,
     String,
     Table,
+    Text,
     delete,
     select,
     tuple_,
@@ -70,6 +73,7 @@ results = Table(
     Column("used", String, nullable=False, default=""),
     Column("reindexed", String),
     Column("project", String, nullable=False, default=""),
+    Column("headline", Text, nullable=False, default=""),
 )
 Index("result_by_use", results.c.used)
 Index("result_by_project", results.c.project, results.c.kind, results.c.created)
@@ -97,6 +101,8 @@ class IndexLine:
         When the line was rebuilt from its file: the result is as old as that, or older.
     project : str
         Whose result it is.
+    headline : str
+        What a list of jobs shows of it, JSON; empty: nothing.
     """
 
     key: str
@@ -107,6 +113,7 @@ class IndexLine:
     used: str
     reindexed: str | None = None
     project: str = COMMON
+    headline: str = ""
 
     @property
     def address(self) -> str:
@@ -165,21 +172,22 @@ class ResultStore:
         other.lookups = self.lookups
         return other
 
-    def put(self, key: str, kind: str, file: Path) -> IndexLine:
+    def put(self, key: str, kind: str, file: Path, headline: Mapping[str, Any] | None = None) -> IndexLine:
         """Take `file` into the store: first the bytes, then the index; may be repeated if it failed."""
         known = self._whole(key, kind)
         if known is None:
-            known = self._put(key, kind, file)
+            known = self._put(key, kind, file, json.dumps(headline) if headline else "")
         else:
             self._note_use(key, kind)
         file.unlink(missing_ok=True)
         return known
 
-    def _put(self, key: str, kind: str, file: Path) -> IndexLine:
+    def _put(self, key: str, kind: str, file: Path, headline: str = "") -> IndexLine:
         """Place the file under a name of its own, and enter it if nobody was quicker."""
         sha256 = digest_of(file)
         name = new_name(self.project, key, kind, sha256)
-        line = IndexLine(key, kind, sha256, file.stat().st_size, name, now(), project=self.project)
+        size, named = file.stat().st_size, {"project": self.project, "headline": headline}
+        line = IndexLine(key, kind, sha256, size, name, now(), **named)
         self.files.put(name, file, sha256)
         entered = self.enter(line)
         if entered.file != name:
@@ -197,6 +205,7 @@ class ResultStore:
             if before is not None and (before.file == line.file or self.files.has(before.file)):
                 return before
             facts = {"sha256": line.sha256, "size": line.size, "file": line.file, "used": line.used}
+            facts["headline"] = line.headline
             facts["reindexed"] = None if made is None else line.used
             insert = dialect_of(connection).insert(results)
             named = {"key": line.address, "kind": line.kind, "project": line.project}
@@ -319,4 +328,5 @@ def _line(connection: Connection, address: str, kind: str | None) -> IndexLine |
 
 def _read(row: Row[Any]) -> IndexLine:
     project, key = at_address(row.key)
-    return IndexLine(key, row.kind, row.sha256, row.size, row.file, row.used, row.reindexed, project)
+    facts = (row.kind, row.sha256, row.size, row.file, row.used, row.reindexed)
+    return IndexLine(key, *facts, project=project, headline=row.headline)

@@ -19,7 +19,7 @@ import threading
 import time
 import traceback
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -140,7 +140,7 @@ def _outcome(order: WorkOrder, progress: _Reporter) -> dict[str, Any]:
             traceback.print_exc(file=sys.stderr)
             return {"failure": "unexpected", "unexpected": True}
         return {"failure": str(known), "faults": [fault.as_json() for fault in known.faults]}
-    return {"products": [{"key": p.key, "kind": p.kind, "file": str(p.file)} for p in products]}
+    return {"products": [asdict(product) | {"file": str(product.file)} for product in products]}
 
 
 def stamp_products(order: WorkOrder, products: Sequence[Product]) -> None:

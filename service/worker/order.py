@@ -55,12 +55,14 @@ class Product:
     """A file the work made, to be moved into the store under `key`.
 
     `warnings` are those of what it was made from; None: those of the order's case, or in the file already.
+    `headline` is what a list of jobs shows of it.
     """
 
     key: str
     kind: str
     file: Path
     warnings: list[dict[str, Any]] | None = None
+    headline: dict[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from dynamics.simulation import simulate_to_file
 from fe_contact.options import Run
 from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.ste import SteDatabase
-from lineofaction.gearbox.convert.answers import draft_line
+from lineofaction.gearbox.convert.answers import draft_line, headline_json
 from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
 from lineofaction.gearbox.convert.housings import HousedScene, reduced_in
 from lineofaction.gearbox.convert.plausibility import scene_warnings
@@ -139,8 +139,14 @@ def analyze_case(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     """Compute the STE database of a case."""
     case = CASES.of_json(order.inputs["case"])
     file = order.workspace / "database.nc"
-    database_of(case, order, progress).to_netcdf(file)
-    return (Product(order.key, "database", file),)
+    database = database_of(case, order, progress)
+    database.to_netcdf(file)
+    return (_product(order.key, database, file),)
+
+
+def _product(key: str, database: SteDatabase, file: Path) -> Product:
+    """Return a database in its file as what was made."""
+    return Product(key, "database", file, headline=headline_json(database))
 
 
 def database_of(case: CheckedCase, order: WorkOrder, progress: Progress) -> SteDatabase:
@@ -218,8 +224,9 @@ def _table(
     key = name_of_table(mesh)
     file = order.workspace / f"database_{index}.nc"
     if file.is_file():  # of a worker that died after it
-        products.append(Product(key, "database", file))
-        return SteDatabase.from_netcdf(file)
+        database = SteDatabase.from_netcdf(file)
+        products.append(_product(key, database, file))
+        return database
 
     def part(_stage: str, _fraction: float, whole: float | None = None, /) -> None:
         report(whole or 0.0)
@@ -229,5 +236,5 @@ def _table(
     except BadInput as error:
         raise error.within(f"meshes[{index}].case") from None
     database.to_netcdf(file)
-    products.append(Product(key, "database", file))
+    products.append(_product(key, database, file))
     return database

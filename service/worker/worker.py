@@ -104,7 +104,7 @@ class Worker:
             return None
         self._peak_mb = message.get("peak_mb")
         self.compliance_reads = CacheReads(**message.get("compliance_reads", {}))
-        products = tuple(Product(p["key"], p["kind"], Path(p["file"])) for p in message.get("products", ()))
+        products = tuple(Product(**p | {"file": Path(p["file"])}) for p in message.get("products", ()))
         facts = {name: message[name] for name in ("failure", "unexpected") if name in message}
         self._outcome = Outcome(products=products, faults=tuple(message.get("faults", ())), **facts)
         return None

@@ -24,12 +24,12 @@ def test_a_job_is_cancelled_from_the_list(visit: Visit, address: str) -> None:
         job = client.submit("frontier", {"case": LONG})
         page.reload()
         tab(page, "Jobs")
-        row = page.get_by_role("row").filter(
+        row = page.get_by_role("listitem").filter(
             has=page.get_by_role("button", name=re.compile("Cancel frontier"))
         )
         row.get_by_role("button", name=re.compile("^Cancel")).press("Enter")
         until(lambda: client.status(job.id).status == "dismissed")
-    first = page.locator("#jobs-rows tr").first
+    first = page.locator("#jobs-rows li").first
     expect(first).to_contain_text("cancelled")
     assert first.get_by_role("button", name=re.compile("^(Cancel|Open|Compare)")).count() == 0
 
@@ -43,11 +43,11 @@ def test_the_jobs_of_a_batch_are_shown_beneath_it(visit: Visit, address: str) ->
         batch.wait()
     page.reload()
     tab(page, "Jobs")
-    row = page.get_by_role("row").filter(has_text="Two loads")
+    row = page.get_by_role("listitem").filter(has_text="Two loads")
     expect(row).to_contain_text("analyze, 2 jobs")
     assert row.get_by_role("button", name=re.compile("^(Open|Compare)")).count() == 0
     row.get_by_role("button", name=re.compile("^Show jobs")).press("Enter")
-    inner = page.locator("#jobs-rows tr.inner")
+    inner = page.locator("#jobs-rows .inner")
     expect(inner).to_have_count(2)
     expect(inner.nth(1)).to_contain_text("load.torque_n_m 0.5 → 0.75")
     assert not (told := found_inaccessible(page, "#jobs")), json.dumps(told, indent=1)
@@ -65,7 +65,7 @@ def test_a_result_opens_again_in_another_window(visit: Visit, browser: Browser, 
     tab(page, "Orders")
     page.get_by_role("button", name="Find the modes").press("Enter")
     expect(page.locator("[data-figure=modal_campbell] .plot")).to_have_attribute("data-drawn", "yes")
-    expect(page.locator("#jobs-rows tr").first).to_contain_text("scene of 1 mesh")
+    expect(page.locator("#jobs-rows li").first).to_contain_text("scene of 1 mesh")
     later = opened(browser, address).page
     tab(later, "Jobs")
     later.get_by_role("button", name=re.compile("^Open modes")).first.press("Enter")
@@ -81,10 +81,10 @@ def test_a_job_is_renamed_and_found_by_title_and_tag(visit: Visit, address: str)
     tab(page, "Jobs")
     with LineOfActionClient(address) as client:
         job = client.with_terms(tags=["EV-3"]).submit("analyze", {"case": CASE})
-        client.submit("analyze", {"case": CASE})
+        client.submit("analyze", {"case": CASE | {"load": {"torque_n_m": [0.6]}}})
         page.reload()
         tab(page, "Jobs")
-        rows = page.locator("#jobs-rows tr")
+        rows = page.locator("#jobs-rows li")
         row = rows.filter(has_text="#ev-3")
         page.once("dialog", lambda dialog: dialog.accept("Tip relief"))
         row.get_by_role("button", name=re.compile("^Rename analyze")).press("Enter")
@@ -109,7 +109,7 @@ def test_a_job_tells_what_sets_it_apart(visit: Visit, address: str) -> None:
         for torques in ([0.5, 1.0], [0.5]):
             client.submit("analyze", {"case": CASE | {"load": {"torque_n_m": torques}}})
     page.reload()
-    expect(page.locator("#jobs-rows tr").first).to_contain_text("load.torque_n_m 0.5, 1 → 0.5")
+    expect(page.locator("#jobs-rows li").first).to_contain_text("load.torque_n_m 0.5, 1 → 0.5")
 
 
 def test_a_job_under_way_outlasts_a_service_that_is_away(visit: Visit, address: str, tmp_path: Path) -> None:

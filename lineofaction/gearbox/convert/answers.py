@@ -114,6 +114,27 @@ def _figures(curve: Curve) -> Json:
     return {name: value for name, value in figures.items() if known or "error" not in name}
 
 
+_RIPPLE = np.linspace(0.0, 2.0, 49)
+"""Positions of a ripple that is drawn small, base pitches: six for a period of the fourth harmonic."""
+
+
+def headline_json(table: SteDatabase) -> Json:
+    """Return what a list shows of a table at its middle load: ripple over two pitches, its main figures.
+
+    The ripple is in um less its mean; an error that was not estimated is None.
+    """
+    force = float(table.force[table.force.size // 2])
+    curve = in_own_model(table).curve(force=force, at=_RIPPLE, allow_failed=True)
+    error, ripple = curve.peak_to_peak.error, (curve.ste - curve.mean.value) / UM
+    return {
+        "torque_n_m": as_typed(curve.torque),
+        "peak_to_peak_um": curve.peak_to_peak.value / UM,
+        "peak_to_peak_error_um": error / UM if np.isfinite(error) else None,
+        "first_harmonic_um": curve.harmonics[0].value / UM,
+        "ripple_um": [float(f"{value:.4g}") for value in ripple],
+    }
+
+
 def summary_json(database: SteDatabase) -> Json:
     """Return what `loa analyze` prints: figures for every load, effect ledger, receipt, failed points."""
     with boundary_errors():

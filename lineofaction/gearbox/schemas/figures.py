@@ -93,6 +93,21 @@ class TableFigures(Figures):
     tooth_loads: list[dict[str, ToothLoads]] | None = None
 
 
+class Headline(BaseModel):
+    """What a list shows of a result: its cost, and of a table the transmission error at its middle load."""
+
+    cpu_seconds: float | None = Field(
+        default=None, description="CPU time of the job that made it; null: it came along with another result"
+    )
+    torque_n_m: float | None = Field(default=None, description="The middle load of the table")
+    peak_to_peak_um: float | None = None
+    peak_to_peak_error_um: float | None = Field(default=None, description="null: not estimated")
+    first_harmonic_um: float | None = Field(default=None, description="Amplitude of mesh harmonic 1")
+    ripple_um: list[float] = Field(
+        default=[], description="Over two base pitches, both ends in it, less the mean"
+    )
+
+
 class RunFigures(Figures):
     """What the file of a run holds, without its data."""
 

@@ -1,22 +1,22 @@
 // @ts-check
-/** What a job is called in the list: its title, or what it is about; what sets it apart, its tags; and the search. */
+/** What a job is called in the gallery: its title, or what it is about; what sets it apart, its tags; and the search. */
 
 import { patch, saidIn } from "./api.js";
 import { make } from "./elements.js";
 
 /** @typedef {{field: string, before: unknown, value: unknown}} Difference */
 /** @typedef {{since: string | null, first: Difference[], number: number}} Differences */
-/** @typedef {{jobID: string, title: string, subject: string, tags: string[], differences: Differences | null}} Named */
+/** @typedef {{jobID: string, title: string, subject: string, processID: string, tags: string[], differences: Differences | null}} Named */
 
 const MOST = 3; // differences in a row
 
 /** @param {Named} job @returns {string} */
 export const called = (job) => job.title || job.subject;
 
-/** The words for a job; below them what it is about, what sets it apart, and its tags. @param {Named} job */
+/** The words for a job; below them what it is about, what sets it apart, and its tags. @param {Named} job @returns {HTMLElement[]} */
 export function label(job) {
   const lines = [job.title && job.subject, apart(job.differences), job.tags.map((tag) => `#${tag}`).join(" ")];
-  return make("td", { class: "called" }, called(job), ...lines.filter(Boolean).map((text) => make("span", { class: "hint" }, text)));
+  return [make("h3", {}, called(job) || job.processID), ...lines.filter(Boolean).map((text) => make("p", { class: "hint" }, text))];
 }
 
 /** The differences from the job before in a line; those from the defaults are what the job is about. @param {Differences | null} differences */

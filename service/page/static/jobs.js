@@ -1,8 +1,9 @@
-/** The jobs of the service, newest first: how far they are, reopened or cancelled. */
+/** The jobs of the service as a gallery, newest first: their ripple, how far they are, reopened or cancelled. */
 
 import { Problem, get, pause, saidIn } from "./api.js";
 import { button, byId, duration, make } from "./elements.js";
 import { ENDED, WORDS, cancelled } from "./job.js";
+import { headline } from "./job_headline.js";
 import { called, label, renamed, search } from "./job_label.js";
 
 const AT_ONCE = 10;
@@ -36,10 +37,10 @@ export class Jobs {
     const turn = (this.turn = (this.turn ?? 0) + 1);
     for (;;) {
       try {
-        const { jobs } = await get(`/v1/jobs?limit=${this.shown + 1}&${search(this.search.value)}`);
-        const rows = await Promise.all(jobs.slice(0, this.shown).map((job) => this.withThoseIn(job)));
+        const { jobs } = await get(`/v1/jobs?once=true&limit=${this.shown + 1}&${search(this.search.value)}`);
+        const cards = await Promise.all(jobs.slice(0, this.shown).map((job) => this.withThoseIn(job)));
         if (turn !== this.turn) return;
-        this.show(rows.flat(), jobs.length > this.shown);
+        this.show(cards.flat(), jobs.length > this.shown);
         if (jobs.every(({ status }) => ENDED.has(status))) return;
       } catch (problem) {
         if (!(problem instanceof Problem)) throw problem;
@@ -67,21 +68,22 @@ export class Jobs {
   show(jobs, more) {
     byId("jobs-none").hidden = jobs.length > 0;
     byId("jobs-none").textContent = this.search.value ? "No such jobs." : "No jobs yet.";
-    byId("jobs-table").hidden = !jobs.length;
+    byId("jobs-rows").hidden = !jobs.length;
     byId("jobs-more").hidden = !more;
     const known = JSON.stringify(jobs);
     if (known === this.known) return;
     this.known = known;
-    const focus = document.activeElement?.dataset?.job;
-    byId("jobs-rows").replaceChildren(...jobs.map((job) => this.row(job)));
-    if (focus) document.querySelector(`[data-job="${focus}"]`)?.focus();
+    const { job: focus, action } = document.activeElement?.dataset ?? {};
+    byId("jobs-rows").replaceChildren(...jobs.map((job) => this.card(job)));
+    const left = focus ? [...document.querySelectorAll(`[data-job="${focus}"]`)] : [];
+    (left.find((each) => each.dataset.action === action) ?? left[0])?.focus();
   }
 
-  row(job) {
+  card(job) {
     const when = new Date(job.created).toLocaleString([], { dateStyle: "medium", timeStyle: "short" });
     const name = called(job);
     const about = `${job.processID}${name ? ` of ${name}` : ""}, ${when}`;
-    const offered = (text, action) => button(text, action, { class: "small", "data-job": job.jobID, "aria-label": `${text} ${about}` });
+    const offered = (text, action) => button(text, action, { class: "small", "data-job": job.jobID, "data-action": text, "aria-label": `${text} ${about}` });
     const { status } = job;
     const alone = !job.children;
     const buttons = [
@@ -92,10 +94,10 @@ export class Jobs {
       offered("Rename", () => this.rename(job)),
     ].filter(Boolean);
     const what = job.children ? `${job.processID}, ${job.children} jobs` : job.processID;
-    const cells = [state(job), when, spent(job)].map((text) => make("td", {}, text));
+    const facts = [what, state(job), when].join(", ");
     return make(
-      "tr", { class: job.parentID ? "inner" : "" },
-      make("th", { scope: "row" }, what), make("td", {}, ...buttons.flatMap((each) => [each, " "])), label(job), ...cells,
+      "li", { class: job.parentID ? "inner" : "" },
+      ...label(job), ...headline(job.headline), make("p", { class: "hint" }, facts), make("div", { class: "buttons" }, ...buttons),
     );
   }
 
@@ -120,10 +122,8 @@ export class Jobs {
 }
 
 function state(job) {
-  return job.status === "running" ? `runs, ${Math.round(job.progress ?? 0)} %` : WORDS[job.status];
-}
-
-function spent(job) {
-  if (!job.started || !job.finished) return "";
-  return duration((new Date(job.finished) - new Date(job.started)) / 1000);
+  if (job.status === "running") return `runs, ${Math.round(job.progress ?? 0)} %`;
+  if (!job.started || !job.finished) return WORDS[job.status];
+  const seconds = (new Date(job.finished) - new Date(job.started)) / 1000;
+  return seconds < 0.5 ? WORDS[job.status] : `${WORDS[job.status]} after ${duration(seconds)}`;
 }
