@@ -141,3 +141,17 @@ def test_the_band_of_a_class_is_drawn_and_goes_away_with_its_switch(
     until(lambda: curve.evaluate(BANDS) == [])
     expect(words).to_be_empty()
     assert visit.complaints == []
+
+
+STATED = """async (stated) => {
+  const { MadeBand } = await import("/page/made_band.js");
+  const made = new MadeBand({ errors: { misalignment_class: stated } }, "test", () => {});
+  const ends = { low_um: 1, high_um: 2, error_um: 0.1 };
+  const of = { tolerance_class: Number(made.class.value), pairs: 1000, of: 16 };
+  return made.said("now", { ...of, peak_to_peak: ends, first_harmonic: ends });
+}"""
+
+
+def test_the_class_is_that_of_the_case_where_it_states_one(visit: Visit) -> None:
+    assert "within class 8, that of the case, have" in visit.page.evaluate(STATED, 8)
+    assert "within class 6, as the case states none, have" in visit.page.evaluate(STATED, None)

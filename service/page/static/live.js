@@ -211,7 +211,7 @@ export class Live {
       sharing: liveBlock("live_load_share", "Load sharing", "Part of the load on each pair of teeth."),
     };
     this.numbers = folded("Numbers");
-    this.made = new MadeBand(this.caller, () => this.again());
+    this.made = new MadeBand(this.known?.case, this.caller, () => this.again());
     this.made.node.hidden = this.known === null;
     this.blocks.ste.block.append(this.made.node, this.numbers);
     this.flanks = new LiveFlanks();

@@ -5,19 +5,20 @@ import { make, number } from "./elements.js";
 import { band } from "./lines.js";
 import { over } from "./live_figures.js";
 
-const USUAL = 6; // a case states no class
+const USUAL = 6; // where a case states no class
 const KEPT = 8; // bands
 
 /** A switch, a class, and the figures in words. */
 export class MadeBand {
-  /** @param {string} caller @param {() => void} changed */
-  constructor(caller, changed) {
+  /** @param {any} content the case, which may state a class @param {string} caller @param {() => void} changed */
+  constructor(content, caller, changed) {
+    this.stated = content?.errors?.misalignment_class;
     this.caller = caller;
     /** @type {Map<string, any>} */
     this.known = new Map();
     this.on = make("input", { type: "checkbox", id: "band-on", onchange: changed });
     this.class = make("input", {
-      type: "number", id: "band-class", min: 1, max: 11, step: 1, value: USUAL, "aria-label": "Tolerance class of ISO 1328-1:2013", onchange: changed,
+      type: "number", id: "band-class", min: 1, max: 11, step: 1, value: this.stated ?? USUAL, "aria-label": "Tolerance class of ISO 1328-1:2013", onchange: changed,
     });
     this.words = make("output", { for: "band-on band-class" });
     this.node = make("div", { class: "made-band" }, make("label", {}, this.on, " as made, class"), this.class, this.words);
@@ -68,8 +69,8 @@ export class MadeBand {
 
   said(name, { tolerance_class: chosen, pairs, of, peak_to_peak: ripple, first_harmonic: tone }) {
     const ends = ({ low_um: low, high_um: high, error_um: error }) => `${number(low, 2)} to ${number(high, 3)} µm (± ${number(error, 2)})`;
-    const stated = chosen === USUAL ? ", as the case states none," : "";
-    return `${name}: nine of ten pairs within class ${chosen}${stated} have ${ends(ripple)} peak to peak, ${ends(tone)} in the first `
+    const why = chosen === this.stated ? ", that of the case," : !this.stated && chosen === USUAL ? ", as the case states none," : "";
+    return `${name}: nine of ten pairs within class ${chosen}${why} have ${ends(ripple)} peak to peak, ${ends(tone)} in the first `
       + `harmonic; ${pairs} drawn, ${of} of them solved.`;
   }
 }
