@@ -16,6 +16,7 @@ from fe_contact.ste import SteDatabase, in_own_model
 from host.directories import cache_home
 from lineofaction.cli.guard import warn
 from lineofaction.cli.output import (
+    FOUND,
     Report,
     check_netcdf_output,
     console,
@@ -267,7 +268,7 @@ def _show_plan(plan: RunPlan) -> None:
     model = plan.plan.discretization.to_json()["model"].replace("_", " ")
     positions = plan.plan.positions or f"about {cost.positions}, placed where the curve bends"
     size = f"{engineering(cost.cpu_seconds, 2)} CPU s, {engineering(cost.memory_bytes / 2**30, 2)} GiB"
-    out.print(f"{_mesh(plan.chosen, plan.chosen)}: {size}; nothing is computed yet")
+    out.print(f"{_mesh(plan.chosen, plan.chosen)}: {size}; nothing is computed yet", style=FOUND)
     out.print(f"model {model}; positions {positions}; mesh {plan.choice.option.name}: {plan.choice.reason}")
     if plan.conflict or not plan.choice.met:
         out.print(plan.conflict or f"cannot be had: {plan.choice.reason}")

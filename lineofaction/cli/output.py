@@ -10,9 +10,10 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from rich.console import Console, Group
+from rich.highlighter import RegexHighlighter
 from rich.progress import (
     BarColumn,
     Progress,
@@ -22,6 +23,7 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 from rich.table import Table
+from rich.theme import Theme
 
 from lineofaction.cli.guard import warnings_so_far
 from lineofaction.gearbox.problems import BadInput
@@ -42,11 +44,30 @@ def print_json(facts: dict[str, Any]) -> None:
     sys.stdout.flush()
 
 
+class _Marks(RegexHighlighter):
+    """What is found in bold, errors in color, what is below its error or said beside the answer in grey."""
+
+    base_style = "loa."
+    highlights: ClassVar[list[str]] = [
+        r"(?P<error>± ?[\d.]+(e-?\d+)?)",
+        r"(?P<beside>^ .*: below .*, their error$|^next: .*|^written to .*)",
+    ]
+
+
+FOUND = "bold"
+"""Style of the line that says what was found."""
+_THEME = Theme({"loa.error": "cyan", "loa.beside": "bright_black"})
+
+
 def console() -> Console:
-    """Return the console of standard output: text stays as it is; piped, it is as wide as its tables need."""
-    plain: Any = {"markup": False, "emoji": False, "highlight": False}
+    """Return the console of standard output: styles on a terminal alone, where NO_COLOR is not set.
+
+    Text stays as it is; piped, it is as wide as its tables need.
+    """
+    plain: Any = {"markup": False, "emoji": False}
     if sys.stdout.isatty():
-        return Console(**plain)
+        return Console(highlighter=_Marks(), theme=_THEME, **plain)
+    plain["highlight"] = False
     columns = os.environ.get("COLUMNS", "")
     return Console(
         width=int(columns) if columns.isdecimal() and int(columns) else 200, no_color=True, **plain
@@ -71,7 +92,8 @@ def table(
     keys = max(1, next((k for k, name in enumerate(columns) if name not in words), 1))
     grids: list[Table | str] = []
     for block in _blocks(least, keys, width):
-        grid = Table(box=None, pad_edge=False, title_justify="left", title=None if grids else title or None)
+        head = None if grids else title or None
+        grid = Table(box=None, pad_edge=False, title_justify="left", title=head, highlight=True)
         room = width - sum(least[k] + _GAP for k in block) + _GAP
         for k in block:
             grown = min(max(map(len, (columns[k], *cells[k]))), least[k] + max(room, 0))
@@ -109,7 +131,7 @@ def print_headlines(headlines: Sequence[Headline]) -> None:
     for headline in headlines[:_MOST_HEADLINES]:
         band = headline.remark if headline.remark.startswith("±") else f"({headline.remark})"
         line = f"{headline.name}: {headline.value} {band}".removesuffix(" ()")
-        out.print(line, soft_wrap=True)
+        out.print(line, soft_wrap=True, style=FOUND)
 
 
 def print_parts(parts: Iterable[Shown | str]) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 from bounds import engineering
 from fe_contact.ste import SteDatabase
 from lineofaction.cli.guard import warn
-from lineofaction.cli.output import console, csv_text, print_json, table
+from lineofaction.cli.output import FOUND, console, csv_text, print_json, table
 from lineofaction.gearbox.convert.answers import curve_json, teeth_words
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import only, tables_in
@@ -54,8 +54,8 @@ def _show(
     elif as_table or at is not None:
         console().print(table(_columns(curve), [_typed(row) for row in _rows(curve)]))
     else:
-        for line in _answer(database, file, curve):
-            console().print(line, soft_wrap=True)
+        for number, line in enumerate(_answer(database, file, curve)):
+            console().print(line, soft_wrap=True, style=None if number else FOUND)
 
 
 def open_ste(file: Path) -> SteDatabase:

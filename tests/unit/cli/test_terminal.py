@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -81,3 +85,42 @@ def test_a_wide_table_stands_in_blocks_and_no_word_is_broken(
     assert len(blocks) > 1 and all("second stage" in block and "load case 1" in block for block in blocks)
     assert [cell for cell in rows[0][2:] if cell not in printed] == []
     assert [k for k in range(12) if f"quantity-{k}," not in printed] == []
+
+
+# Styles: on a terminal, and there alone.
+
+
+def seen_on_a_terminal(arguments: list[str], **environment: str) -> str:
+    """Return what a program writes to a terminal of 100 columns."""
+    reader, writer = os.openpty()
+    own = {name: value for name, value in os.environ.items() if name not in ("NO_COLOR", "FORCE_COLOR")}
+    own |= {"TERM": "xterm-256color", "COLUMNS": "100"} | environment
+    command = [sys.executable, "-m", "lineofaction.cli", *arguments]
+    done = subprocess.run(
+        command, stdout=writer, stderr=writer, stdin=subprocess.DEVNULL, env=own, check=False
+    )
+    os.close(writer)
+    text = b""
+    with contextlib.suppress(OSError):  # the end of a terminal that nobody writes to
+        while part := os.read(reader, 65536):
+            text += part
+    os.close(reader)
+    assert done.returncode == 0, text.decode()
+    return text.decode().replace("\r\n", "\n")
+
+
+BOLD, CYAN, GREY = "\x1b[1m", "\x1b[36m", "\x1b[90m"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="terminals of POSIX")
+def test_the_finding_is_bold_errors_are_colored_and_what_is_beside_is_grey(files: dict[str, Path]) -> None:
+    arguments = ["ste", str(files["TABLE"]), "--torque", "1"]
+    shown = seen_on_a_terminal(arguments)
+    first = next(line for line in shown.splitlines() if "gear pair" in line)
+    assert first.startswith(BOLD)
+    assert re.search(re.escape(CYAN) + r"± [\d.]+\x1b", shown)
+    assert re.search(re.escape(GREY) + "next: loa report", shown)
+    plain = loa(*arguments).output
+    assert "\x1b" not in plain
+    assert re.sub(r"\x1b\[[\d;]*m", "", shown) == plain
+    assert "\x1b[3" not in seen_on_a_terminal(arguments, NO_COLOR="1")
