@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
+import math
+import re
 import tomllib
 from collections.abc import Iterator
 from typing import Any
 
+import httpx2
 import pytest
-from page_visit import CASE, GEAR, Visit, control, found_inaccessible, opened, other_browser, shown, tab
+from page_visit import (
+    CASE,
+    GEAR,
+    Visit,
+    control,
+    found_inaccessible,
+    moved,
+    opened,
+    other_browser,
+    shown,
+    tab,
+)
 from playwright.sync_api import Browser, Page, expect
 from running_service import until
 
@@ -204,3 +218,84 @@ def test_an_order_map_is_marked_on_both_axes_and_what_came_with_marks_keeps_them
     assert visit.page.evaluate(OF_A_RUN, [axes, beyond]) == [["x domain", "y", 2]]
     own = run | {"layout": run["layout"] | {"annotations": [{"text": "complaint, 1400 Hz"}]}}
     assert visit.page.evaluate(OF_A_RUN, [axes, own]) == []
+
+
+ROWS = """() => [...document.querySelectorAll("#live-figures > div")].map((row) => [...row.children]
+  .map((part) => part.textContent).join(": ")).filter((text) => text.startsWith("complaint"))"""
+LEVEL = re.compile(r"complaint, harmonic 2 at 0\.7 N m(?:, ([AB]))?: (−?[\d.]+) dB ± ([\d.]+) re 1 µm")
+CHANGE = re.compile(r"([+−][\d.]+) ± ([\d.]+) dB from (.*)$")
+STATED = """async (heard) => (await import("/page/live_numbers.js")).heardFigures(heard)"""
+
+
+def in_rest(page: Page, count: int) -> list[str]:
+    """Return the levels of the complaint once they have their bands."""
+    rows: list[str] = []
+
+    def stated() -> bool:
+        rows[:] = page.evaluate(ROWS)
+        return len(rows) == count and not any("…" in row for row in rows)
+
+    until(stated)
+    return rows
+
+
+@pytest.mark.law
+def test_levels_have_the_band_of_their_error_and_changes_that_of_both(visit: Visit) -> None:
+    def curve(amplitude: float, error: float) -> dict[str, Any]:
+        return {"harmonics_um": [9.0, amplitude], "harmonics_error_um": [9.0, error]}
+
+    def stated(*curves: dict[str, Any]) -> list[list[str]]:
+        named = [{"name": name, "curve": each} for name, each in zip("AB", curves, strict=True)]
+        heard = {"harmonic": 2, "torque": 80.0, "curves": named}
+        rows: list[list[str]] = visit.page.evaluate(STATED, heard)
+        return [row[1:] for row in rows]
+
+    # 20 lg 0.2 = -13.98, -20 lg 0.9 = 0.915, 20 lg 0.1 = -20
+    assert stated(curve(0.2, 0.02), curve(0.1, 0.01)) == [
+        ["−14.0 dB", "± 0.92 re 1 µm"],
+        ["−20.0 dB", "± 0.92 re 1 µm; −6.0 ± 1.8 dB from A"],
+    ]
+    below = ["below −20.0 dB", "its error; change within the errors from A"]
+    assert stated(curve(0.2, 0.02), curve(0.05, 0.1))[1] == below
+
+
+@pytest.mark.law
+def test_the_dock_has_the_level_of_the_complaint_of_both_variants_at_its_torque(
+    browser: Browser, address: str, analyzed: str
+) -> None:
+    visit = shown(browser, address, analyzed)
+    page = visit.page
+    typed(page, frequency_hz="1000", speed_rpm="1500", torque_n_m="0.7")  # 20 teeth: harmonic 2
+    (row,) = in_rest(page, 1)
+    answer = httpx2.post(f"{address}/v1/databases/{analyzed}/ste", json={"torque_n_m": [0.7]}, timeout=60.0)
+    (curve,) = answer.json()["curves"]
+    amplitude, error = (curve[name][1] for name in ("harmonics_um", "harmonics_error_um"))
+    level = number(LEVEL, row, 2)
+    assert level == pytest.approx(20.0 * math.log10(amplitude), abs=0.06)
+    assert number(LEVEL, row, 3) == pytest.approx(-20.0 * math.log10(1.0 - error / amplitude), rel=0.06)
+    assert "from as analyzed" in row
+    page.get_by_role("button", name="Another variant").press("Enter")
+    expect(page.get_by_role("button", name="Variant B")).to_have_attribute("aria-pressed", "true")
+    moved(page, "#live-pinion-tip_relief_um", "End")
+    first, second = in_rest(page, 2)
+    assert (number(LEVEL, first, 2), first[-1]) == (level, "m"), "A stands, without a change"
+    change = CHANGE.search(second)
+    assert change is not None and change[3] == "A"
+    assert number(CHANGE, second, 1) == pytest.approx(number(LEVEL, second, 2) - level, abs=0.16)
+    moved(page, "#live-torque_n_m", "Home")
+    assert in_rest(page, 2) == [first, second], "the torque is the complaint's"
+    typed(page, torque_n_m="500")
+    until(lambda: page.evaluate(ROWS) != [first, second])
+    (beyond,) = page.evaluate(ROWS)
+    assert beyond.startswith("complaint, harmonic 2 at 500 N m: none no curve")
+    typed(page, frequency_hz="1100")
+    until(lambda: page.evaluate(ROWS) == [])
+    assert found_inaccessible(page, "#dock") == {}
+    assert visit.complaints == []
+    page.close()
+
+
+def number(pattern: re.Pattern[str], text: str, group: int) -> float:
+    found = pattern.search(text)
+    assert found is not None, text
+    return float(found[group].replace("−", "-"))

@@ -1,17 +1,18 @@
 /** Live flanks: sliders redraw the transmission error from the compliance the service keeps. */
 
 import { Problem, ask, pause, post } from "./api.js";
+import { heardIn } from "./complaint.js";
 import { button, byId, dataTable, figures, folded, make, number } from "./elements.js";
 import { SHOWN_HARMONICS, harmonicsFigure, sharingFigure, steFigure, strongestOrders } from "./live_figures.js";
 import { faultsOf } from "./job.js";
 import { LiveFlanks, liveBlock } from "./live_flanks.js";
-import { mainFigures, numbersOf, ordersOf, sourcesOf } from "./live_numbers.js";
+import { heardFigures, mainFigures, numbersOf, ordersOf, sourcesOf } from "./live_numbers.js";
 import { LiveSound } from "./live_sound.js";
 import { MadeBand } from "./made_band.js";
 import { plot } from "./plots.js";
 import { Sliders } from "./sliders.js";
 import { TorqueCurve } from "./torque_curve.js";
-import { UNMOVED } from "./variants.js";
+import { Other, UNMOVED } from "./variants.js";
 
 const STYLES = {
   before: { name: "as analyzed", color: "#767676", width: 1.8, dash: "dash" },
@@ -38,7 +39,10 @@ export class Live {
     this.others = [];
     this.waiting = null;
     this.busy = false;
-    document.addEventListener("marked", () => this.sound?.mark());
+    document.addEventListener("marked", () => {
+      this.sound?.mark();
+      this.ask();
+    });
   }
 
   /**
@@ -51,6 +55,8 @@ export class Live {
     byId("live-none").hidden = known !== null;
     byId("live-body").hidden = byId("quick").hidden = !known || known.long;
     this.known = known && { ...known, highest: known.torques.at(-1) };
+    this.analyzed = known && new Other("before", known, UNMOVED);
+    this.heard = null;
     if (known) this.controls();
     if (known && !known.long) this.plots();
     else {
@@ -151,6 +157,8 @@ export class Live {
       if (key !== this.known?.key) return;
       const now = { ...found.curves[0], preview: waiting.preview };
       const shown = this.beside(now, others, { key, flanks: { ...waiting, torque_n_m: undefined, preview: undefined } });
+      this.heard = await this.complained(now, waiting);
+      if (key !== this.known?.key) return;
       this.roll(now);
       await this.draw(shown);
       this.timed(round, performance.now() - begin, found, waiting.preview ? "previews" : "answers");
@@ -168,6 +176,18 @@ export class Live {
       this.waiting ??= waiting;
       this.rested ??= rested;
     }
+  }
+
+  /** The curves at the torque of the complaint, the last as the flanks are now; null: it is no harmonic. @param {any} now @param {any} waiting */
+  async complained(now, waiting) {
+    const { harmonic, torque } = heardIn(this.design.case);
+    if (!harmonic || harmonic > now.harmonics_um.length || !(torque > 0)) return null;
+    const caller = `${this.caller}-complaint`;
+    const own = torque === waiting.torque_n_m[0] ? now : await new Other("now", this.known, waiting).at(torque, caller);
+    const compared = this.others.length ? this.others : [this.analyzed];
+    const curves = await Promise.all(compared.map(async (other) => ({ ...STYLES[other.name], curve: await other.at(torque, caller) })));
+    const last = { ...STYLES[this.others.length ? this.variants.on : "now"], curve: own && { ...own, preview: waiting.preview } };
+    return { harmonic, torque, curves: [...curves, last].filter(({ curve }) => curve) };
   }
 
   /** The curve as analyzed at this torque, to compare with. */
@@ -236,7 +256,7 @@ export class Live {
   /** Plot curves, the last with its figures and their change. @param {object[]} shown @param {object} from @param {object} [facts] of the first plot */
   plot(shown, from, facts = {}) {
     const { curve } = shown.at(-1);
-    figures(byId("live-figures"), mainFigures(curve, from));
+    figures(byId("live-figures"), [...heardFigures(this.heard), ...mainFigures(curve, from)]);
     this.describe(shown);
     return Promise.all([
       plot(this.blocks.ste.node, { ...this.ripple(shown), ...facts }),

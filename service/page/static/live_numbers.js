@@ -27,6 +27,33 @@ export function sourcesOf({ bias, error_by_source_um: errors }) {
   return { caption: "Errors by source, µm", head: ["source", "peak to peak", "mean", "harmonic 1"], rows: shown.map(row) };
 }
 
+/** Level of an amplitude, dB re 1 µm, and what its error makes of it: without end where that is as large. */
+function levelOf({ harmonics_um: amplitudes, harmonics_error_um: errors, preview }, harmonic) {
+  const [amplitude, error] = [amplitudes[harmonic - 1], errors?.[harmonic - 1]];
+  const level = (size) => 20 * Math.log10(size);
+  if (error >= amplitude) return { level: level(amplitude), band: Infinity, words: `below ${minus(level(error))} dB`, remark: "its error" };
+  const band = error === undefined ? NaN : -level(1 - error / amplitude);
+  return { level: level(amplitude), band, words: `${minus(level(amplitude))} dB`, remark: [plusMinus(band, preview), "re 1 µm"].filter(Boolean).join(" ") };
+}
+
+const minus = (value) => value.toFixed(1).replace("-", "−");
+
+/**
+ * Level of the complaint's harmonic of each variant, with its band, and the change from the first, whose band is that of both.
+ * @param {{harmonic: number, torque: number, curves: import("./live_figures.js").Shown[]} | null} heard the last is the one now
+ */
+export function heardFigures(heard) {
+  if (!heard) return [];
+  const { harmonic, torque, curves } = heard;
+  const name = (own) => `complaint, harmonic ${harmonic} at ${Number(torque.toPrecision(4))} N m${own === "now" ? "" : `, ${own}`}`;
+  if (!curves.length) return [[name("now"), "none", "no curve at this torque: at most twice the highest of the result"]];
+  const [first, ...levels] = curves.map(({ name, curve }) => ({ name, coming: curve.preview, ...levelOf(curve, harmonic) }));
+  const changed = ({ level, band, coming }) => (
+    band + first.band === Infinity ? "change within the errors" : [signed(level - first.level, 2), plusMinus(band + first.band, coming), "dB"].filter(Boolean).join(" "));
+  const rows = levels.map((own) => [name(own.name), own.words, `${own.remark}; ${changed(own)} from ${first.name}`]);
+  return first.name === "as analyzed" && rows.length ? rows : [[name(first.name), first.words, first.remark], ...rows];
+}
+
 /** Main figures of a curve, each with its error and its change from another. */
 export function mainFigures(now, from) {
   const remarks = (...words) => words.filter(Boolean).join("; ");

@@ -9,42 +9,47 @@ import { pack, unpack } from "./packed.js";
 
 const LETTERS = ["a", "b", "c"];
 const FIRST = "first"; // the first example with the result that came with the program
+const BESIDE = ["complaint", "report"]; // no curve depends on them
+const KEPT = 8; // curves of another result
 export const UNMOVED = { misalignment_um: 0, pinion: {}, wheel: {} };
 
 /** @typedef {{key: string, case: any}} Known an analyzed pair */
 /** @typedef {{torque_n_m?: number, misalignment_um: number, pinion: object, wheel: object}} Moved where sliders stand */
 
-/** A result that is not on the sliders, with flanks of its own: its curve at the torque that is looked at. */
+/** A result that is not on the sliders, with flanks of its own: its curves at torques that are looked at. */
 export class Other {
   /** @param {string} name @param {Known} known @param {Moved} moved */
   constructor(name, known, moved) {
     Object.assign(this, { name, known });
     this.flanks = { ...moved, torque_n_m: undefined };
-    this.curve = null;
+    /** @type {Map<number, any>} */
+    this.curves = new Map();
   }
 
   /** Its curve; null if it has none at that torque. @param {number} torque @param {string} caller */
   async at(torque, caller) {
-    if (this.torque === torque) return this.curve;
+    if (this.curves.has(torque)) return this.curves.get(torque);
     try {
       const body = { ...this.flanks, torque_n_m: [torque], flanks: true, caller: `${caller}-${this.name}` };
-      [this.curve] = (await ask(`${this.known.key}/ste`, body)).curves;
-      this.torque = torque;
+      const [curve] = (await ask(`${this.known.key}/ste`, body)).curves;
+      if (this.curves.size >= KEPT) this.curves.clear();
+      this.curves.set(torque, curve);
+      return curve;
     } catch (problem) {
       if (!(problem instanceof Problem) || problem.status === 0 || problem.retryAfter) throw problem;
-      this.curve = null;
+      return null;
     }
-    return this.curve;
   }
 }
 
 export class Variants {
   /**
-   * @param {{address: import("./address.js").Address, design: import("./design.js").Design}} page
+   * @param {{address: import("./address.js").Address, design: import("./design.js").Design, results: import("./results.js").Results}} page
    * @param {() => Promise<void>} render shows what the address says
    */
-  constructor({ address, design }, render) {
-    Object.assign(this, { address, design, render });
+  constructor(page, render) {
+    const { address, design } = page;
+    Object.assign(this, { page, address, design, render });
   }
 
   get on() {
@@ -55,8 +60,16 @@ export class Variants {
   get word() {
     const { names, views, empty } = this.address;
     if (empty) return FIRST;
-    const result = ["database", "live"].map((name) => names.get(name) ?? views.get(name)).filter(Boolean).join(".");
+    const parts = ["database", "live", "case"].map((name) => names.get(name) ?? views.get(name));
+    if (parts[0] && parts[2] && this.stands) return parts.map((part) => part ?? "").join(".");
+    const result = parts.slice(0, 2).filter(Boolean).join(".");
     return names.get("analyze") ?? views.get("case") ?? (names.has("database") ? result : pack(this.design.case));
+  }
+
+  /** Whether what was typed since the result was computed changes nothing of it. */
+  get stands() {
+    const { content } = this.page.results.note;
+    return Boolean(content) && this.design.differences(content).every(({ field }) => BESIDE.includes(field.path[0]));
   }
 
   /** Offer the variants of this address. */
@@ -80,9 +93,9 @@ export class Variants {
   /** Show another variant. @param {string} letter */
   async choose(letter) {
     if (letter === this.on) return;
-    const [word, live = null] = this.address.views.get(letter).split(".");
+    const [word, live, typed] = this.address.views.get(letter).split(".");
     const of = HASH.test(word) ? { database: word } : JOB.test(word) ? { analyze: word } : {};
-    const views = { [this.on]: this.word, [letter]: null, on: letter, live, case: Object.keys(of).length || word === FIRST ? null : word };
+    const views = { [this.on]: this.word, [letter]: null, on: letter, live: live || null, case: typed ?? (Object.keys(of).length || word === FIRST ? null : word) };
     this.address.turn(of, views, {});
     await this.render();
     byId("variants").querySelector("[aria-pressed=true]").focus();
