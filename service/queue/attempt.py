@@ -288,11 +288,11 @@ class Settlement:
     def _keep(self, claim: Claim, outcome: Outcome, usage: Usage | None) -> None:
         """Store what was made; a file system that does not take it will not do so at a repetition either."""
         store = self.store.within(claim.project)
+        spent = {} if usage is None else {"cpu_seconds": round(usage.cpu_s, 3)}
         try:
             for product in outcome.products:
-                known = product.key == claim.key and usage is not None
-                headline = product.headline | ({"cpu_seconds": round(usage.cpu_s, 3)} if known else {})
-                store.put(product.key, product.kind, product.file, headline)
+                cost = {} if product.key != claim.key else spent
+                store.put(product.key, product.kind, product.file, product.headline | cost)
         except OSError as error:
             self.fail_by_log(claim, no_space(error) or "The result could not be stored.", exc_info=True)
         else:
