@@ -7,6 +7,8 @@ forces. What is left of d after gaps, teeth, bodies and shafts is the contact's 
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -29,14 +31,14 @@ from fe_contact.effects.effect import ContactScene
 from fe_contact.effects.influence.slice_compliance import half_plane, slice_compliance, slice_compliances
 from fe_contact.geometry import ParallelAxes
 from fe_contact.hertz import contact_modulus
-from fe_contact.types import FloatArray
+from fe_contact.types import FloatArray, IntArray
 
 # The transmission error of a contact model without finite elements, in milliseconds.
 
 PLANE_POSITIONS, FACE_POSITIONS = 64, 32
 FACE_SLICES = 11
-MOST_PITCHES = 96
-"""Base pitches looked at where teeth differ: several turns of usual gears."""
+MOST_PITCHES = 32
+"""Base pitches looked at where teeth differ."""
 _PATCH, _EDGE = 0.15, 0.0125
 """Half-width of the load patches and their length at an edge, modules."""
 
@@ -66,7 +68,7 @@ class Springs:
         """
         problem, count = self.problem(model), _positions(model)
         if model.tooth_gaps:
-            pitches = np.arange(min(model.period, MOST_PITCHES))
+            pitches = spread_pitches([term.period for term in model.tooth_gaps])
             problem = in_pitches(self.pair, problem, model, np.repeat(pitches, count))
         key = repr(model.gaps), problem.candidates.position.size, load.size
         solution = solve_contact(problem, load, self._last.get(key))
@@ -99,6 +101,28 @@ class Springs:
             slices = Slices.of_pair(self.pair, FACE_SLICES if model.across_face else 1)
             self._plain[key] = contact_candidates(self.pair, model, np.arange(count) / count, rule, slices)
         return self._plain[key]
+
+
+_MOST_STEPS, _EVEN = 512, 3
+
+
+def spread_pitches(periods: Sequence[int]) -> IntArray:
+    """Return at most `MOST_PITCHES` base pitches of gears that repeat after so many, by equal steps.
+
+    Of all steps the one by which both gears stand most evenly at all their angles, and against each other:
+    the orders up to `_EVEN` of both, their sums and differences have the least mean.
+    """
+    whole = math.lcm(*periods)
+    if whole <= MOST_PITCHES:
+        return np.arange(whole)
+    rates = np.zeros(1)
+    for period in {*periods} - {1}:
+        rates = np.add.outer(rates, np.arange(-_EVEN, _EVEN + 1) / period).ravel()
+    rates = rates[np.abs(rates) > 1e-12]
+    step, index = np.arange(1, min(whole, _MOST_STEPS)), np.arange(MOST_PITCHES)
+    angle = 2.0 * np.pi * step[:, None, None] * rates[:, None] * index
+    steadiness = np.abs(np.exp(1j * angle).mean(axis=-1)).max(axis=1)
+    return np.sort(index * step[int(steadiness.argmin())] % whole)
 
 
 def _positions(model: ContactModel) -> int:
