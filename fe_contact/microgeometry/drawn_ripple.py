@@ -115,6 +115,11 @@ class DrawnRipple:
         """Pairs that are solved."""
         return len(self.ste)
 
+    @property
+    def missing(self) -> int:
+        """Pairs that are still to be solved for a band."""
+        return SOLVED - self.solved
+
     def further(self) -> DrawnRipple:
         """Solve further pairs; raises `SolveError`: the contact of one cannot be solved."""
         part = self.deviation[self.solved : self.solved + IN_A_PART]

@@ -8,7 +8,7 @@ from collections import OrderedDict
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -19,7 +19,6 @@ from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.condensed_request import condensed_pair
 from fe_contact.analysis.run_plan import RunPlan, plan_run
 from fe_contact.geometry import ParallelAxes, Toothing, tooth_profile
-from fe_contact.microgeometry.drawn_ripple import SOLVED, DrawnRipple
 from fe_contact.microgeometry.linearized_design import CurveDerivatives, FlankDerivatives, curve_derivatives
 from fe_contact.microgeometry.tolerances import iso1328_tolerances
 from fe_contact.ste import SteDatabase
@@ -34,6 +33,9 @@ from lineofaction.gearbox.schemas.gear import with_figures
 from lineofaction.gearbox.schemas.live import LiveInput
 from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.units import DEGREE, MM, MPA, UM, factor, in_um
+
+if TYPE_CHECKING:
+    from fe_contact.microgeometry.drawn_ripple import DrawnRipple
 
 
 def plan_of(case: CheckedCase, time_budget_s: float | None, cache: Path | None) -> RunPlan:
@@ -205,6 +207,8 @@ def _add_band(
     drawn: OrderedDict[str, DrawnRipple],
 ) -> None:
     """Solve further pairs within the class, and add the band once there are enough; the last few are kept."""
+    from fe_contact.microgeometry.drawn_ripple import DrawnRipple  # noqa: PLC0415 (start-up time)
+
     begin, chosen = cpu_seconds(), change.tolerance_class
     if len(change.torque_n_m) > 1 or chosen is None:
         raise BadInput.of("tolerance_class", chosen, "left out, or with one torque", "Request them in turn.")
@@ -215,7 +219,7 @@ def _add_band(
         tolerances = iso1328_tolerances(pair, chosen, across_face=across)
         alignment = change.misalignment_um * UM, change.center_distance_change_mm * MM
         ripple = DrawnRipple.of(bodies, pair, change.torque_n_m[0], tolerances, *alignment)
-    drawn[name] = ripple if ripple.solved == SOLVED else ripple.further()
+    drawn[name] = ripple.further() if ripple.missing else ripple
     while len(drawn) > _KEPT_DRAWN:
         drawn.popitem(last=False)
     answer["curves"][0]["band"] = _band(drawn[name], chosen)
@@ -231,8 +235,9 @@ _KEPT_DRAWN = 4
 def _band(ripple: DrawnRipple, tolerance_class: int) -> Json:
     """Return the band of pairs, in um; only how many are solved before all are."""
     pairs = len(ripple.deviation)
-    known = {"tolerance_class": tolerance_class, "pairs": pairs, "solved": ripple.solved, "of": SOLVED}
-    if ripple.solved < SOLVED:
+    known = {"tolerance_class": tolerance_class, "pairs": pairs, "solved": ripple.solved}
+    known["of"] = ripple.solved + ripple.missing
+    if ripple.missing:
         return known
     band = ripple.band()
     figures = {"peak_to_peak": band.peak_to_peak, "first_harmonic": band.first_harmonic}

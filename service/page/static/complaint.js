@@ -6,7 +6,7 @@ import { numberIn } from "./field.js";
 import { mark } from "./plots.js";
 import { reveal } from "./tabs.js";
 
-const WITHIN = 2; // per cent, where the complaint states no tolerance
+const WITHIN = 5; // per cent, as the service, where the complaint states no tolerance
 const AT = ["tire_radius_mm", "road_speed_km_h"]; // either: the speed is that of the road
 const INSTEAD = { frequency_hz: "order", speed_rpm: "road_speed_km_h", road_speed_km_h: "speed_rpm" };
 
