@@ -46,6 +46,9 @@ class LiveOptions(TypedDict, total=False):
         Also return pressure over the driving gear's flank, load over the face, K_Hbeta.
     passage : bool
         Also return what a pair of teeth meets on its way through the mesh.
+    tolerance_class : int
+        Also draw pairs within this class of ISO 1328-1:2013, at one torque: `band`. Every answer solves some;
+        repeat the request until `solved` is `of`.
     preview : bool
         Answer at every other position and without errors, at a half to a third of the cost.
     condense : bool
@@ -61,6 +64,7 @@ class LiveOptions(TypedDict, total=False):
     derivatives: bool
     flanks: bool
     passage: bool
+    tolerance_class: int
     preview: bool
     condense: bool
     caller: str | None

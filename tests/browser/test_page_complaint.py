@@ -276,8 +276,11 @@ def test_the_dock_has_the_level_of_the_complaint_of_both_variants_at_its_torque(
     assert "from as analyzed" in row
     page.get_by_role("button", name="Another variant").press("Enter")
     expect(page.get_by_role("button", name="Variant B")).to_have_attribute("aria-pressed", "true")
+    sent: list[dict[str, Any]] = []
+    page.on("request", lambda request: sent.append(request.post_data_json) if "/ste" in request.url else None)
     moved(page, "#live-pinion-tip_relief_um", "End")
     first, second = in_rest(page, 2)
+    assert_at_rest(sent)
     assert (number(LEVEL, first, 2), first[-1]) == (level, "m"), "A stands, without a change"
     change = CHANGE.search(second)
     assert change is not None and change[3] == "A"
@@ -293,6 +296,14 @@ def test_the_dock_has_the_level_of_the_complaint_of_both_variants_at_its_torque(
     assert found_inaccessible(page, "#dock") == {}
     assert visit.complaints == []
     page.close()
+
+
+def assert_at_rest(sent: list[dict[str, Any]]) -> None:
+    """The level of the complaint is requested after the answer at rest: no slider waits for it."""
+    own = ["-complaint" in body["caller"] for body in sent]
+    assert any(own)
+    *moving, rested = [bool(body.get("preview")) for body in sent[: own.index(True)] if body.get("passage")]
+    assert moving and all(moving) and not rested
 
 
 def number(pattern: re.Pattern[str], text: str, group: int) -> float:

@@ -26,6 +26,9 @@ const NOTHING = { harmonics_um: [], flanks: {} }; // to compare with
 const REST = 150; // milliseconds without a move after which sliders are taken to rest
 const AWAY = 2; // seconds after which a service that does not answer is asked again
 
+/** Curves of the complaint whose last is under way. @param {any} heard */
+const coming = ({ curves, ...heard }) => ({ ...heard, curves: curves.map((own, k) => (k < curves.length - 1 ? own : { ...own, curve: { ...own.curve, preview: true } })) });
+
 export class Live {
   /**
    * @param {object} page
@@ -182,8 +185,10 @@ export class Live {
   async complained(now, waiting) {
     const { harmonic, torque } = heardIn(this.design.case);
     if (!harmonic || harmonic > now.harmonics_um.length || !(torque > 0)) return null;
-    const caller = `${this.caller}-complaint`;
-    const own = torque === waiting.torque_n_m[0] ? now : await new Other("now", this.known, waiting).at(torque, caller);
+    const [caller, slider] = [`${this.caller}-complaint`, torque === waiting.torque_n_m[0]];
+    const same = this.heard?.harmonic === harmonic && this.heard.torque === torque;
+    if (waiting.preview && !slider && same) return coming(this.heard); // it is a request of its own: at rest
+    const own = slider ? now : await new Other("now", this.known, waiting).at(torque, caller);
     const compared = this.others.length ? this.others : [this.analyzed];
     const curves = await Promise.all(compared.map(async (other) => ({ ...STYLES[other.name], curve: await other.at(torque, caller) })));
     const last = { ...STYLES[this.others.length ? this.variants.on : "now"], curve: own && { ...own, preview: waiting.preview } };
