@@ -13,6 +13,7 @@ import { View } from "./view.js";
 const SETTLED = 350; // milliseconds without an edit after which the case is planned and drawn
 const EMPTY = { name: "empty", title: "Empty fields, to type a pair", note: "", case: {} };
 const PLANE = /^plane/;
+const BESIDE = ["complaint", "report"]; // no curve depends on them
 
 export class Design {
   /**
@@ -62,6 +63,11 @@ export class Design {
   /** What was edited since a case. @param {object} content */
   differences(content) {
     return differences(this.fields, content, this.case);
+  }
+
+  /** Those of them that a result depends on. @param {object} content */
+  edits(content) {
+    return this.differences(content).filter(({ field }) => !BESIDE.includes(field.path[0]));
   }
 
   offer() {

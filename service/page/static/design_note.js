@@ -21,7 +21,7 @@ export class DesignNote {
   }
 
   refresh() {
-    const changes = this.content ? this.design.differences(this.content) : [];
+    const changes = this.content ? this.design.edits(this.content) : [];
     const text = changes.length ? sentence(this.content, changes) : "";
     if (text === this.said) return;
     this.said = text;

@@ -9,7 +9,6 @@ import { pack, unpack } from "./packed.js";
 
 const LETTERS = ["a", "b", "c"];
 const FIRST = "first"; // the first example with the result that came with the program
-const BESIDE = ["complaint", "report"]; // no curve depends on them
 const KEPT = 8; // curves of another result
 export const UNMOVED = { misalignment_um: 0, pinion: {}, wheel: {} };
 
@@ -69,7 +68,7 @@ export class Variants {
   /** Whether what was typed since the result was computed changes nothing of it. */
   get stands() {
     const { content } = this.page.results.note;
-    return Boolean(content) && this.design.differences(content).every(({ field }) => BESIDE.includes(field.path[0]));
+    return Boolean(content) && !this.design.edits(content).length;
   }
 
   /** Offer the variants of this address. */
