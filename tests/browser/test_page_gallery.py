@@ -50,7 +50,8 @@ def test_a_card_has_the_ripple_and_the_figures_of_its_table(
     ripple, tone = curve.peak_to_peak, curve.harmonics[0].value
     expect(card).to_contain_text(f"{1e6 * ripple.value:.3g} µm")
     expect(card).to_contain_text(f"± {1e6 * ripple.error:.2g}")
-    expect(card).to_contain_text(f"{20.0 * math.log10(1e6 * tone):.3g} dB re 1 µm")
+    level = f"{20.0 * math.log10(1e6 * tone):.1f}".replace("-", "−")
+    expect(card).to_contain_text(f"{level} dB re 1 µm")
     expect(card).to_contain_text(re.compile(r"CPU time[\d.]+ s"))
     drawn = card.locator("polyline").get_attribute("points")
     assert drawn is not None

@@ -2,6 +2,7 @@
 /** What came of a job, small: the ripple of its transmission error with its figures, and what it took. */
 
 import { draw, duration, figures, make, number } from "./elements.js";
+import { minus } from "./live_numbers.js";
 
 /**
  * @typedef {object} Headline as the service keeps it with a result
@@ -26,7 +27,7 @@ export function headline(found) {
 
 /** @param {Headline} found */
 function entries({ cpu_seconds: cpu, torque_n_m: torque, peak_to_peak_um: ripple, peak_to_peak_error_um: error, first_harmonic_um: tone }) {
-  const level = tone ? number(20 * Math.log10(tone), 3) : null;
+  const level = tone ? minus(20 * Math.log10(tone)) : null;
   return [
     ripple !== null && [`p-p at ${Number(number(torque, 4))} N m`, `${number(ripple, 3)} µm`, error === null ? "" : `± ${number(error, 2)}`],
     level !== null && ["harmonic 1", `${level} dB`, "re 1 µm"],

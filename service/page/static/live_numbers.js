@@ -36,7 +36,7 @@ function levelOf({ harmonics_um: amplitudes, harmonics_error_um: errors, preview
   return { level: level(amplitude), band, words: `${minus(level(amplitude))} dB`, remark: [plusMinus(band, preview), "re 1 µm"].filter(Boolean).join(" ") };
 }
 
-const minus = (value) => value.toFixed(1).replace("-", "−");
+export const minus = (value) => value.toFixed(1).replace("-", "−");
 
 /**
  * Level of the complaint's harmonic of each variant, with its band, and the change from the first, whose band is that of both.
