@@ -26,6 +26,7 @@ from playwright.sync_api import Browser, Page, expect
 from running_service import until
 
 from lineofaction.gearbox.convert.complaint import complaint_of_case
+from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.reading import validated
 
@@ -75,6 +76,7 @@ def said(page: Page, text: str) -> None:
     "complaint",
     [
         {"frequency_hz": 1412.0, "speed_rpm": 2100.0},
+        {"frequency_hz": 1453.0, "speed_rpm": 2100.0},
         {"frequency_hz": 1412.0, "speed_rpm": 1765.0, "shaft": "wheel"},
         {"frequency_hz": 880.0, "torque_n_m": 0.7, **AT_40},
         {"frequency_hz": 735.0, "final_shaft": "pinion", "torque_n_m": 0.7, **AT_40},
@@ -89,6 +91,16 @@ def test_the_order_is_that_of_the_service(visit: Visit, complaint: dict[str, Any
     assert heard["order"] == pytest.approx(known.order * known.per_pitch)
     assert heard["harmonic"] == known.within[0].harmonic
     assert heard["torque"] == known.torques["pair"]
+
+
+@pytest.mark.parametrize(
+    "stated", [{"frequency_hz": 1486.0}, {"frequency_hz": 1453.0, "tolerance_percent": 3.0}]
+)
+def test_what_is_no_harmonic_to_the_service_is_none_in_the_bar(visit: Visit, stated: dict[str, Any]) -> None:
+    case = CASE | {"pair": PAIR, "complaint": stated | {"speed_rpm": 2100.0}}
+    with pytest.raises(BadInput, match="of what passes"):
+        complaint_of_case(validated(Case, case))
+    assert visit.page.evaluate(HEARD, case)["harmonic"] is None
 
 
 @pytest.mark.law
