@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import shutil
 import sys
@@ -20,11 +21,14 @@ from host.extras import MissingExtra
 from lineofaction.cli.guard import warn
 from lineofaction.cli.output import check_writable, console, print_headlines, print_json, print_written, table
 from lineofaction.client import JobState, LineOfActionClient, Result, Watch
+from lineofaction.client.page_address import PageAddress
+from lineofaction.gearbox.convert.case import case_as_filed
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput, ResultNotReady
 from lineofaction.gearbox.registry import studies_of
 from lineofaction.gearbox.result_files import stamped
 from lineofaction.gearbox.schemas import Case, read_table, validated
+from lineofaction.gearbox.schemas.toml import toml_text
 from lineofaction.gearbox.subjects import scene_inputs
 
 if TYPE_CHECKING:
@@ -171,16 +175,27 @@ def _submitted(
     )
 
 
-def run_fetch(name: str, output: Path, service: str, *, wait: bool, as_json: bool) -> None:
-    """Fetch by hash or by job."""
+def run_fetch(name: str, output: Path, service: str | None, *, wait: bool, as_json: bool) -> None:
+    """Fetch by hash, by job, or what an address shows; None: the usual service, or that of the address."""
     check_writable(output)
+    page = PageAddress.of(name) if ":" in name else None
+    if page is not None and not os.environ.get("LOA_KEY"):  # a key is that of the usual service
+        service = service or str(page.origin)
     with LineOfActionClient(service) as client:
+        if page is not None and output.suffix == ".toml":
+            _write_case(client.case_at(name), output, as_json=as_json)
+            return
+        if page is not None:
+            name = client.result_at(name)
         if re.fullmatch("[0-9a-f]{64}", name):
             key, (file, kind) = name, client.fetch_result(name)
         else:
             result = _ended(client, name, wait=wait)
             file, key, kind = client.fetch_file(result.key, result.kind), result.key, result.kind
     shutil.copyfile(file, output)
+    if page is not None and page.differing:
+        words = f"At this address {page.differing} since the result; -o FILE.toml writes the design."
+        warn([{"check": "address", "message": words}])
     warn(stamped(output))
     if as_json:
         print_json({"hash": key, "kind": kind, "file": str(output)})
@@ -188,9 +203,18 @@ def run_fetch(name: str, output: Path, service: str, *, wait: bool, as_json: boo
         _show_result(key, kind, output)
 
 
+def _write_case(case: Case, output: Path, *, as_json: bool) -> None:
+    output.write_text(toml_text(case_as_filed(case)), encoding="utf-8")
+    if as_json:
+        print_json({"kind": "case", "file": str(output)})
+    else:
+        print_written([output])
+
+
 def _ended(client: LineOfActionClient, job: str, *, wait: bool) -> Result:
     if not re.fullmatch(r"[0-9a-fA-F-]{1,64}", job):
-        raise BadInput.of("name", job, "the identifier of a job or a content hash", "loa submit prints both.")
+        advice = "loa submit prints the first two."
+        raise BadInput.of("name", job, "the identifier of a job, a content hash or an address", advice)
     try:
         return _waited(client, job) if wait else client.result(job)
     except ResultNotReady as error:

@@ -22,6 +22,7 @@ from lineofaction.client.exchange import Exchange
 from lineofaction.client.job import AsyncJob, Job
 from lineofaction.client.job_calls import JobCalls
 from lineofaction.client.offers import ANALYZE, libraries, offers, reader_of, subject_inputs
+from lineofaction.client.page_address import PageCalls
 from lineofaction.client.process import AsyncProcess, Process, obtained
 from lineofaction.client.result_calls import ResultCalls
 from lineofaction.client.status import Watch
@@ -267,7 +268,7 @@ def _host(base_url: str) -> str:
     return url.host
 
 
-class Client(Studies, JobCalls, ResultCalls, _LookupCalls, _SceneCalls):
+class Client(Studies, JobCalls, ResultCalls, PageCalls, _LookupCalls, _SceneCalls):
     """All calls of a client.
 
     Raises `BadInput`: the address is none.

@@ -23,6 +23,7 @@ from playwright.sync_api import Browser, Page, Route, expect
 from running_service import until
 
 from lineofaction.client import LineOfActionClient
+from lineofaction.gearbox.schemas import Case, validated
 
 LONG = CASE | {"accuracy": {"level": "fine", "model": "3d", "positions": 512}}
 NOWHERE = "11111111-1111-4111-8111-111111111111"
@@ -46,6 +47,24 @@ def test_a_reload_shows_what_was_typed_and_moved(visit: Visit) -> None:
     expect(page.locator("#study-Tolerances-samples")).to_have_value("77")
     expect(page.locator("#results-design")).to_contain_text(EDITED)
     assert visit.complaints == []
+
+
+def test_the_client_has_the_case_and_the_result_that_an_address_shows(
+    visit: Visit, address: str, analyzed: str
+) -> None:
+    page = visit.page
+    with LineOfActionClient(address) as client:
+        assert client.case_at(page.url) == validated(Case, CASE)
+        type_relief(page)
+        page.wait_for_url(re.compile("case="))
+        relieved = CASE["pair"] | {"pinion": CASE["pair"]["pinion"] | {"tip_relief_um": 7}}
+        assert client.case_at(page.url) == validated(Case, CASE | {"pair": relieved})
+        page.locator("#variants").get_by_role("button", name="Another variant").press("Enter")
+        page.wait_for_url(re.compile("on=b"))
+        control(page, "#f-pair-pinion-tip_relief_um").fill("8")
+        expect(page.locator("#results-design")).to_contain_text("→ 8 µm")
+        page.wait_for_url(lambda url: client.case_at(url).pair.pinion.tip_relief_um == 8.0)
+        assert client.result_at(page.url) == analyzed
 
 
 def test_a_reload_shows_what_was_typed_if_the_browser_loses_its_entry(visit: Visit) -> None:

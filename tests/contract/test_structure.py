@@ -16,13 +16,13 @@ BUDGETS = {
     ("lineofaction.gearbox",): (27_710, 566),
     ("lineofaction.report",): (12_419, 232),
     ("service",): (15_087, 357),
-    ("lineofaction.client",): (2_721, 53),
-    ("lineofaction.cli",): (5_670, 80),
+    ("lineofaction.client",): (2_943, 55),
+    ("lineofaction.cli",): (5_709, 80),
     ("lineofaction.hardcases",): (3_841, 35),
     ("bounds", "host", "model_studies"): (4_523, 156),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 861
+MOST_FILES = 862
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""

@@ -104,13 +104,28 @@ def _submit(
 )
 @computing
 def _fetch(
-    name: Annotated[str, typer.Argument(help="Identifier of a job, or content hash of a result.")],
-    output: Annotated[Path, to_file("File to write: netCDF or JSON, by its kind.")],
-    service: Service = DEFAULT_SERVICE,
+    name: Annotated[
+        str,
+        typer.Argument(
+            help="Identifier of a job, content hash of a result, or address of the page in quotes."
+        ),
+    ],
+    output: Annotated[
+        Path, to_file("File to write: netCDF or JSON, by its kind; of an address as .toml its case.")
+    ],
+    service: Annotated[
+        str | None,
+        typer.Option(
+            "--service",
+            envvar="LOA_SERVICE",
+            help="Address of the service.",
+            show_default=f"{DEFAULT_SERVICE}, or that of the address",
+        ),
+    ] = None,
     wait: Annotated[bool, typer.Option("--wait", help="Wait for the job.")] = False,
     json: AsJson = False,
 ) -> None:
-    """Fetch the result of a job, or a result by its hash, from a service or the cache."""
+    """Fetch a result by its job or hash, or the case or result that an address of the page shows."""
     remote.run_fetch(name, output, service, wait=wait, as_json=json)
 
 

@@ -1,0 +1,221 @@
+"""The address of the service's page: the case and the result that it shows.
+
+The fragment is written and read by the page's `address.js`, a case in it by `packed.js`. An address comes
+from mails and chats: nothing in it is trusted, and requests go to the service of the client alone.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, NoReturn, Self
+from urllib.parse import unquote, urlsplit
+
+from lineofaction.client.steps import Steps
+from lineofaction.client.surface import Surface, operation
+from lineofaction.gearbox.problems import BadInput, NotFound
+from lineofaction.gearbox.registry import RESULTS, studies_of
+from lineofaction.gearbox.schemas import Case, validated
+from service.origin import Origin
+
+LONGEST_WORD = 1_500_000
+"""Characters of a design that the page writes into its address."""
+
+_FIELD = "address"
+_HASH = r"[0-9a-f]{64}"
+_JOB = r"[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}"
+_PACKED, _VARIANT, _ANY = r"[\w-]+", r"[\w.-]+", r"(?s).+"
+_VIEWS = {
+    **{"case": _PACKED, "live": _PACKED, "unit": _VARIANT, "a": _VARIANT, "b": _VARIANT, "c": _VARIANT},
+    **{"tab": "[a-z]+", "name": _ANY, "at": r"\d(\.\d+)?", "motion": r"\d+", "see": _ANY, "on": "[abc]"},
+}
+"""What a view may be; variants that are not shown are views of the one that is."""
+_JOBS = ("analyze", "simulate", "modes", "scene", "job", *studies_of("case"), *studies_of("case or scene"))
+_NAMES = {"database": _HASH} | dict.fromkeys(_JOBS, _JOB)
+_WORDS = _VIEWS | _NAMES
+_BOUNDS = {
+    _HASH: "a content hash: 64 digits 0-9a-f",
+    _JOB: "the identifier of a job",
+    _PACKED: "base64url: letters, digits, - and _",
+}
+_COPY = "Copy the whole address from the page's address bar."
+
+
+@dataclass(frozen=True)
+class PageAddress:
+    """What an address says.
+
+    Attributes
+    ----------
+    origin : Origin
+        Of its service.
+    names : mapping
+        The database by its hash and jobs by their identifiers, the newest last.
+    case : Case, optional
+        The design as typed, where it is not that of the result or of a job.
+    views : mapping
+        How they are looked at.
+    """
+
+    origin: Origin
+    names: Mapping[str, str]
+    case: Case | None
+    views: Mapping[str, str]
+
+    @classmethod
+    def of(cls, text: str) -> Self:
+        """Read an address; raises `BadInput`: it is none of the page, or a word of it is not."""
+        page, _, fragment = text.partition("#")
+        origin, names, views = _origin(page), dict[str, str](), dict[str, str]()
+        for part in filter(None, fragment.split("&")):
+            name, value = _word(part)
+            (names if name in _NAMES else views)[name] = value
+        if "unit" in views and not names and "case" not in views:
+            advice = "Save the file from the page and read it with: loa open FILE"
+            raise BadInput.of("unit", None, "beside a case, a database or a job", advice)
+        return cls(origin, names, _unpacked(views["case"]) if "case" in views else None, views)
+
+    @property
+    def result(self) -> str | None:
+        """What its result is known by: a content hash, or else the identifier of its newest job."""
+        return self.names.get("database") or next(reversed([*self.names.values()]), None)
+
+    @property
+    def differing(self) -> str:
+        """In words, what it has that its result has not; empty: nothing."""
+        parts = {"its design was edited": "case" in self.views, "its sliders moved": "live" in self.views}
+        return " and ".join(words for words, holds in parts.items() if holds) if self.names else ""
+
+
+def _origin(page: str) -> Origin:
+    base, _, _ = page.partition("?")
+    try:
+        origin = Origin.of(base)
+    except ValueError:
+        hidden = re.sub(r"//[^/]*@", "//...@", base)
+        bound = "http:// or https://, a host without user or password, and the page's fragment"
+        raise BadInput.of(_FIELD, hidden, bound, _COPY) from None
+    if urlsplit(base).path not in ("", "/"):
+        raise BadInput.of(_FIELD, base, f"that of the page: {origin}/#...", _COPY)
+    return origin
+
+
+def _word(part: str) -> tuple[str, str]:
+    """Return name and value of a part of the fragment."""
+    if len(part) > LONGEST_WORD:
+        advice = "Save the case from the page as a file."
+        raise BadInput.of(_FIELD, part, f"made of words of at most {LONGEST_WORD} characters", advice)
+    name, _, value = (unquote(piece) for piece in part.partition("="))
+    pattern = _WORDS.get(name)
+    if pattern is None:
+        advice = f"{_COPY} Was it made by another version of the page?"
+        raise BadInput.of(_FIELD, unquote(part), "made of words of the page, such as database=HASH", advice)
+    if not re.fullmatch(pattern, value, re.ASCII):
+        raise BadInput.of(name, value, _BOUNDS.get(pattern, "as the page writes it"), _COPY)
+    return name, value
+
+
+def _unpacked(word: str) -> Case:
+    """Return a packed case; raises `BadInput`: it is no base64url of JSON, or no case."""
+    try:
+        content = base64.b64decode(word + "=" * (-len(word) % 4), altchars=b"-_", validate=True)
+        table = json.loads(content.decode(), parse_constant=_no_number, object_pairs_hook=_table)
+    except (ValueError, RecursionError):  # of base64, UTF-8, JSON, or a number with too many digits
+        table = None
+    if not isinstance(table, dict):
+        raise BadInput.of("case", word, "a case as the page packs it: base64url of a JSON object", _COPY)
+    try:
+        return validated(Case, table)
+    except BadInput as error:
+        raise error.within("case") from None
+
+
+def _table(fields: list[tuple[str, Any]]) -> dict[str, Any]:
+    if not all(name.isprintable() for name, _ in fields):  # they are named in errors
+        raise ValueError("control characters in a name")
+    return dict(fields)
+
+
+def _no_number(name: str) -> NoReturn:
+    raise ValueError(name)
+
+
+class PageCalls(Surface):
+    """What the page of this service shows at an address of it."""
+
+    @operation
+    def case_at(self, address: str) -> Steps[Case]:
+        """Return the case that the page shows at an address; one as typed needs no service.
+
+        Raises `BadInput`: it is no address of this service's page, or it shows no case; `NotFound`: the
+        service has nothing of what it names; `Unreachable`, `ServiceError`.
+        """
+        page = self._at(address)
+        if page.case is not None:
+            return page.case
+        if not page.names:
+            return validated(Case, (yield from self._example())["case"])
+        missing = None
+        for name, value in reversed([*page.names.items()]):
+            try:
+                case = yield from self._case_of(name, value)
+            except NotFound as error:
+                missing = error
+            else:
+                if case is not None:
+                    return validated(Case, case)
+        if missing is not None:
+            raise missing
+        advice = "Open it in a browser, and save the case there."
+        raise BadInput.of(_FIELD, "&".join(page.names), "one that shows a case", advice)
+
+    @operation
+    def result_at(self, address: str) -> Steps[str]:
+        """Return what names the result of an address: a content hash, for `fetch`, or a job's identifier.
+
+        Raises `BadInput`: it is no address of this service's page, or names nothing computed; `Unreachable`,
+        `ServiceError`.
+        """
+        page = self._at(address)
+        if page.result is not None:
+            return page.result
+        example = None if page.case else (yield from self._example())
+        if example is None or not example["stored"]:
+            advice = "Fetch its case with -o case.toml, then: loa analyze case.toml -o ste.nc"
+            raise BadInput.of(_FIELD, None, "one with a result, database=HASH or a job", advice)
+        return str(example["hash"])
+
+    def _at(self, address: str) -> PageAddress:
+        page = PageAddress.of(address)
+        own = self.session.exchange.base_url
+        try:
+            same = Origin.of(own) == page.origin
+        except ValueError:
+            same = False
+        if not same:
+            advice = (
+                "No access key leaves its service: set the service to that of the address if it is meant."
+            )
+            raise BadInput.of("service", own, f"that of the address, {page.origin}", advice)
+        return page
+
+    def _example(self) -> Steps[dict[str, Any]]:
+        """Return the first example, which a page without an address begins with."""
+        return self.session.exchange.read(lambda examples: dict(examples[0]), "GET", "/v1/examples")
+
+    def _case_of(self, name: str, value: str) -> Steps[Any]:
+        """Return the case of a database or of a job, of a scene that of its first mesh; None: it has none."""
+        read = self.session.exchange.read
+        if name == "database":
+            return (yield from read(lambda figures: figures.get("case"), "GET", f"{RESULTS}/{value}"))
+        inputs = yield from read(lambda job: dict(job["inputs"]), "GET", f"/v1/jobs/{value}/inputs")
+        if "case" in inputs:
+            return inputs["case"]
+        mesh: dict[str, Any] = next(iter((inputs.get("scene") or {}).get("meshes") or ()), {})
+        key = mesh.get("database_hash")
+        if mesh.get("case") or not (isinstance(key, str) and re.fullmatch(_HASH, key)):
+            return mesh.get("case")
+        return (yield from self._case_of("database", key))
