@@ -185,7 +185,8 @@ class PageCalls(Surface):
         example = None if page.case else (yield from self._example())
         if example is None or not example["stored"]:
             advice = "Fetch its case with -o case.toml, then: loa analyze case.toml -o ste.nc"
-            raise BadInput.of(_FIELD, None, "one with a result, database=HASH or a job", advice)
+            words = "&".join(page.views) or str(page.origin)
+            raise BadInput.of(_FIELD, words, "one with a result, database=HASH or a job", advice)
         return str(example["hash"])
 
     def _at(self, address: str) -> PageAddress:
