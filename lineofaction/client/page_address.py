@@ -16,9 +16,9 @@ from urllib.parse import unquote, urlsplit
 
 from lineofaction.client.steps import Steps
 from lineofaction.client.surface import Surface, operation
+from lineofaction.gearbox import schemas
 from lineofaction.gearbox.problems import BadInput, NotFound
 from lineofaction.gearbox.registry import RESULTS, studies_of
-from lineofaction.gearbox.schemas import Case, validated
 from service.origin import Origin
 
 LONGEST_WORD = 1_500_000
@@ -62,7 +62,7 @@ class PageAddress:
 
     origin: Origin
     names: Mapping[str, str]
-    case: Case | None
+    case: schemas.Case | None
     views: Mapping[str, str]
 
     @classmethod
@@ -118,7 +118,7 @@ def _word(part: str) -> tuple[str, str]:
     return name, value
 
 
-def _unpacked(word: str) -> Case:
+def _unpacked(word: str) -> schemas.Case:
     """Return a packed case; raises `BadInput`: it is no base64url of JSON, or no case."""
     try:
         content = base64.b64decode(word + "=" * (-len(word) % 4), altchars=b"-_", validate=True)
@@ -128,7 +128,7 @@ def _unpacked(word: str) -> Case:
     if not isinstance(table, dict):
         raise BadInput.of("case", word, "a case as the page packs it: base64url of a JSON object", _COPY)
     try:
-        return validated(Case, table)
+        return schemas.validated(schemas.Case, table)
     except BadInput as error:
         raise error.within("case") from None
 
@@ -147,7 +147,7 @@ class PageCalls(Surface):
     """What the page of this service shows at an address of it."""
 
     @operation
-    def case_at(self, address: str) -> Steps[Case]:
+    def case_at(self, address: str) -> Steps[schemas.Case]:
         """Return the case that the page shows at an address; one as typed needs no service.
 
         Raises `BadInput`: it is no address of this service's page, or it shows no case; `NotFound`: the
@@ -157,7 +157,7 @@ class PageCalls(Surface):
         if page.case is not None:
             return page.case
         if not page.names:
-            return validated(Case, (yield from self._example())["case"])
+            return schemas.validated(schemas.Case, (yield from self._example())["case"])
         missing = None
         for name, value in reversed([*page.names.items()]):
             try:
@@ -166,7 +166,7 @@ class PageCalls(Surface):
                 missing = error
             else:
                 if case is not None:
-                    return validated(Case, case)
+                    return schemas.validated(schemas.Case, case)
         if missing is not None:
             raise missing
         advice = "Open it in a browser, and save the case there."
