@@ -61,14 +61,14 @@ def _as_a_user(
 @pytest.mark.chain
 def test_the_scripts_of_the_page_run_one_after_the_other(capsys: pytest.CaptureFixture[str]) -> None:
     scripts = re.findall(r"```python\n(.*?)```", RECIPES, re.DOTALL)
-    assert len(scripts) == 15  # the first one, and the recipes
+    assert len(scripts) == 16  # the first one, and the recipes
     names: dict[str, Any] = {}
     printed = []
     for script in scripts:
         exec(compile(script, "docs/how-to/call-a-service.md", "exec"), names)
         printed.append(capsys.readouterr().out)
     table, followed, waited, many, batched, awaited, study, arrays, live, before, made, lists = printed[:12]
-    labeled, shown, run_up = printed[12:]
+    labeled, _, shown, run_up = printed[12:]
     assert re.search(r"^(pinion|wheel) \d+ [\d.]+ µm$", made, re.MULTILINE) and "mesh 1 " in made
     assert re.search(r"Estimate\(value=2\.\d+e-06, error=.*unit='m'\)", table)
     assert followed.splitlines()[-1] == "analyze: done"
@@ -87,6 +87,8 @@ def test_the_scripts_of_the_page_run_one_after_the_other(capsys: pytest.CaptureF
     assert names["again"].model_dump(mode="json") == names["example"].case
     assert int(lists.split()[0]) >= 3 and {len(word) for word in lists.split()} & {64}
     assert labeled.splitlines()[0].startswith("Tip relief 20 µm, released ('ev-3',) 20/20")
+    case, fetched = names["table_of"](f"{os.environ['LOA_SERVICE']}/#database={names['key']}")
+    assert case.model_dump(mode="json") == names["ste"].metadata.case and fetched.identical(names["ste"])
     assert shown == "" and "<details>" in names["report"]._repr_html_()
     assert float(run_up) == pytest.approx(100.0 / (0.04 * np.cos(np.radians(20.0))), rel=2e-3)
 
