@@ -28,7 +28,7 @@ KEY, NO_KEY, RUN, MODES = "ab" * 32, "cd" * 32, "ef" * 32, "12" * 32
 NO_JOB = "00000000-0000-4000-8000-000000000000"
 BODIES: dict[str, Any] = {
     "query_forces": {"position": [0.5], "deflection_um": [5.0]},
-    "live_ste": {"torque_n_m": [10.0]},
+    **{route: {"torque_n_m": [10.0]} for route in ("live_ste", "draft_ste")},
     "fake": {"inputs": {"wish": {"text": "unseen"}}},
     "relabel_job": {"title": "shown"},
 }

@@ -111,7 +111,7 @@ def test_two_analyses_of_the_list_are_compared_with_their_errors(visit: Visit, o
     page.reload()
     tab(page, "Jobs")
     buttons = page.get_by_role("button", name=re.compile("^Compare analyze"))
-    rows = page.get_by_role("row").filter(has=buttons)
+    rows = page.get_by_role("listitem").filter(has=buttons)
     over_face, others = rows.filter(has_text="20/24"), rows.filter(has_text=IN_THE_PLANE)
     over_face.first.get_by_role("button", name=re.compile("^Compare")).press("Enter")
     expect(page.locator("#jobs-line")).to_contain_text("Choose another analyze job")
@@ -131,7 +131,7 @@ def test_results_without_a_load_in_common_are_not_compared_and_it_says_why(
     page = visit.page
     page.reload()
     tab(page, "Jobs")
-    rows = page.get_by_role("row")
+    rows = page.get_by_role("listitem")
     for text in ("up to 4 N m", IN_THE_PLANE):
         row = rows.filter(has=page.get_by_role("button", name=re.compile("^Compare analyze")), has_text=text)
         row.first.get_by_role("button", name=re.compile("^Compare")).press("Enter")

@@ -180,8 +180,12 @@ def test_the_matrix_of_a_unit_is_a_file_beside_its_scene(visit: Visit) -> None:
     text = page.get_by_label("Scene, TOML").input_value()
     assert 'stiffness_file = "housing_stiffness.csv"' in text
     assert max(map(len, text.splitlines())) < 300
+    refused = {"status": 422, "json": {"title": "Not now", "status": 422}}  # others wait for the worker
+    page.route("**/execution", lambda route: route.fulfill(**refused))
     with page.expect_request("**/v1/scenes/from-toml") as sent:
         page.get_by_role("button", name="Compute the scene").press("Enter")
+    expect(page.locator("#scene-body [role=alert]")).to_contain_text("Not now")
+    page.unroute("**/execution")
     assert [part["name"] for part in sent.value.post_data_json["files"]] == ["housing_stiffness.csv"]
     with page.expect_download() as saved:
         page.get_by_role("button", name="Save scene").last.press("Enter")
