@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -159,6 +160,13 @@ class _PowerBalance:
     sink: tuple[str, ...]
     kind: tuple[str, ...]
     loss: FloatArray
+
+    @property
+    def fields(self) -> dict[str, Any]:
+        """The fields of `ForcedResponse` that hold it."""
+        own = {"source": self.source, "input": self.input, "sink": self.sink}
+        own |= {"sink_kind": self.kind, "loss": self.loss}
+        return {f"power_{name}": value for name, value in own.items()}
 
     @property
     def residual(self) -> float:
@@ -360,11 +368,7 @@ def forced_response(
         **vars(response),
         excitation_difference=_difference(response, blocked),
         natural_frequency=frequency,
-        power_source=power.source,
-        power_input=power.input,
-        power_sink=power.sink,
-        power_sink_kind=power.kind,
-        power_loss=power.loss,
+        **power.fields,
         bearing_floor=floor,
         bearing_floor_error=floor_error,
         facts=_facts(at, time, seconds)

@@ -18,11 +18,12 @@ from dynamics.solid_housing import MATERIALS
 from host.directories import whole_file
 from lineofaction.cli.guard import warn
 from lineofaction.cli.output import check_writable, console, print_json, print_written, table
+from lineofaction.gearbox.convert.placement import Placement
 from lineofaction.gearbox.from_step.housing import DIRECTIONS, StepHousing, even_length, step_housing
-from lineofaction.gearbox.from_step.placement import Placement
 from lineofaction.gearbox.input_file import InputFile, number_list
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.schemas.files import READERS, beside, read_text, written_out
+from lineofaction.gearbox.schemas.housings import PERPENDICULAR
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.reading import read_model, read_table, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -87,11 +88,9 @@ def _placement(placed: dict[str, str | None]) -> Placement | None:
     for name, axis in (("x", x), ("z", z)):
         if not axis.any():
             raise BadInput.of(NAMES[f"{name}_axis"], axis.tolist(), "a direction: not all zero")
-    x, z = x / np.linalg.norm(x), z / np.linalg.norm(z)
-    if abs(x @ z) > 1e-6:
+    if abs(x @ z) > PERPENDICULAR * np.linalg.norm(x) * np.linalg.norm(z):
         raise BadInput.of(NAMES["x_axis"], x.tolist(), f"perpendicular to the z axis, {z.tolist()}")
-    origin = MM * given.get("origin_mm", np.zeros(3))
-    return Placement(np.stack([x, np.cross(z, x), z], axis=1), origin)
+    return Placement.of(x, z, given.get("origin_mm", np.zeros(3)))
 
 
 def _vector(option: str, text: str) -> Any:

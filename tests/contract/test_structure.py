@@ -12,17 +12,17 @@ ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
     ("fe_contact",): (43_726, 816),
-    ("dynamics",): (45_010, 883),
-    ("lineofaction.gearbox",): (27_710, 566),
+    ("dynamics",): (45_014, 883),
+    ("lineofaction.gearbox",): (27_728, 567),
     ("lineofaction.report",): (12_419, 232),
     ("service",): (15_087, 357),
     ("lineofaction.client",): (2_944, 55),
-    ("lineofaction.cli",): (5_709, 80),
+    ("lineofaction.cli",): (5_708, 80),
     ("lineofaction.hardcases",): (3_841, 35),
     ("bounds", "host", "model_studies"): (4_523, 156),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 862
+MOST_FILES = 863
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""

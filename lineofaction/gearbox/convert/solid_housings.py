@@ -38,6 +38,7 @@ from dynamics.work_cost import announce
 from lineofaction.gearbox.convert.declared import in_si
 from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.convert.housings import solid_file
+from lineofaction.gearbox.convert.placement import Placement
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.schemas.bearings import BushingInput, RollingBearingInput
 from lineofaction.gearbox.schemas.housings import HousingFootInput, HousingInput, HousingSeatInput
@@ -141,10 +142,8 @@ def _placed(housing: HousingInput, mesh: TetrahedralMesh) -> TetrahedralMesh:
     """Turn and move a mesh from the frame of its file into that of the scene."""
     if housing.origin_mm is None and housing.x_axis is None and housing.z_axis is None:
         return mesh
-    x, z = (np.array(axis) / np.linalg.norm(axis) for axis in (housing.own_x_axis, housing.own_z_axis))
-    axes = np.stack([x, np.cross(z, x), z], axis=1)
-    origin = MM * np.array(housing.origin_mm or (0.0, 0.0, 0.0))
-    return replace(mesh, points=mesh.points @ axes.T + origin)
+    placement = Placement.of(housing.own_x_axis, housing.own_z_axis, housing.origin_mm or (0.0, 0.0, 0.0))
+    return replace(mesh, points=placement.points(mesh.points))
 
 
 def _meshed(housing: HousingInput, scene: SceneInput, mesh: TetrahedralMesh) -> MeshedHousing:

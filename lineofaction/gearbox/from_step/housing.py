@@ -11,7 +11,8 @@ import numpy as np
 from dynamics.housings import FlatFace, StepSolid
 from dynamics.solid_housing import MATERIALS
 from dynamics.types import FloatArray
-from lineofaction.gearbox.from_step.placement import Bearings, Placement, Seated, found, seated
+from lineofaction.gearbox.convert.placement import Placement
+from lineofaction.gearbox.from_step.placement import Bearings, Seated, found, seated
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.bearings import BushingInput, RollingBearingInput
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -137,9 +138,9 @@ def _stand(solid: StepSolid, placement: Placement, stands_on: str) -> Stand:
         ]
         bound = f"a side of the solid with a flat face: {', '.join(sides) or 'it has none'}"
         raise BadInput.of("--stands-on", stands_on, bound, "Or write its feet into the scene yourself.")
-    heights = [float(placement.point(face.plane.point) @ normal) for face in facing]
+    heights = [float(placement.points(face.plane.point) @ normal) for face in facing]
     outermost = [face for face, height in zip(facing, heights, strict=True) if height > max(heights) - _LEVEL]
-    point = placement.point(outermost[0].plane.point)
+    point = placement.points(outermost[0].plane.point)
     return Stand(point, normal, len(outermost), sum(face.area for face in outermost))
 
 

@@ -7,13 +7,14 @@ about z and moved along it until as many bearings as possible are in a bore; len
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import permutations
 
 import numpy as np
 
 from dynamics.housings import Bore
 from dynamics.types import FloatArray
+from lineofaction.gearbox.convert.placement import Placement
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.units import MM, as_typed
 
@@ -27,34 +28,6 @@ _FEWEST = 3
 """Bearings in bores by which a placement is known; those of one shaft leave the angle about it open."""
 Bearings = Mapping[str, FloatArray]
 """By name where they are in the scene."""
-
-
-@dataclass(frozen=True)
-class Placement:
-    """The axes x, y, z of a file as columns, and where its origin is, in the scene."""
-
-    axes: FloatArray = field(default_factory=lambda: np.eye(3))
-    origin: FloatArray = field(default_factory=lambda: np.zeros(3))
-
-    def placed(self, bore: Bore) -> Bore:
-        """Return a bore where it is in the scene."""
-        position, axis = self.point(bore.position), self.axes @ np.array(bore.axis)
-        return Bore(_vector(position), _vector(axis), bore.diameter, bore.length)
-
-    def point(self, of_file: Sequence[float]) -> FloatArray:
-        """Return where a point of the file is in the scene."""
-        return np.asarray(self.axes @ np.array(of_file) + self.origin)
-
-    @property
-    def fields(self) -> dict[str, list[float]]:
-        """The fields of a housing that say it; none where the file stands as the scene does."""
-        moved = {"origin_mm": self.origin / MM, "x_axis": self.axes[:, 0], "z_axis": self.axes[:, 2]}
-        own = {"origin_mm": np.zeros(3), "x_axis": np.eye(3)[0], "z_axis": np.eye(3)[2]}
-        return {
-            name: [as_typed(float(np.round(value, 9)) + 0.0) for value in values]
-            for name, values in moved.items()
-            if not np.allclose(values, own[name], rtol=0.0, atol=1e-9)
-        }
 
 
 @dataclass(frozen=True)
@@ -72,9 +45,16 @@ class Seated:
         return -len(self.bores), max(off, default=0.0)
 
 
+def placed_bore(bore: Bore, placement: Placement) -> Bore:
+    """Return a bore where it is in the scene."""
+    x, y, z = map(float, placement.points(bore.position))
+    u, v, w = map(float, placement.axes @ np.array(bore.axis))
+    return Bore((x, y, z), (u, v, w), bore.diameter, bore.length)
+
+
 def seated(bores: Sequence[Bore], bearings: Bearings, placement: Placement) -> Seated:
     """Return the bores that bearings are in; of several the one whose middle is nearest."""
-    placed = [placement.placed(bore) for bore in bores]
+    placed = [placed_bore(bore, placement) for bore in bores]
     found = {}
     for name, (x, y, z) in bearings.items():
         about = [bore for bore in placed if _holds(bore, x, y, z)]
@@ -217,8 +197,3 @@ def _offsets(middles: FloatArray, across: FloatArray, bearings: Bearings) -> lis
     offsets = (at[:, None, 2] - middles[None, :, 2])[np.hypot(off[..., 0], off[..., 1]) < NEAR]
     _, first = np.unique(np.round(offsets, 6), return_index=True)
     return [float(offset) for offset in offsets[first]]
-
-
-def _vector(values: FloatArray) -> tuple[float, float, float]:
-    x, y, z = map(float, values)
-    return x, y, z

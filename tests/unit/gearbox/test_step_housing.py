@@ -14,7 +14,8 @@ from command_line import loa
 from housing_solid import housed_scene, housing, write_block
 
 from dynamics.housings import Bore
-from lineofaction.gearbox.from_step.placement import Placement, found, seated
+from lineofaction.gearbox.convert.placement import Placement
+from lineofaction.gearbox.from_step.placement import found, placed_bore, seated
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import read_model
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -46,7 +47,7 @@ def bores_of(places: Sequence[np.ndarray], length: float = 0.016) -> list[Bore]:
 def moved(bores: Sequence[Bore], placement: Placement) -> list[Bore]:
     """Return bores in the frame of a file that stands so: the way back."""
     back = Placement(placement.axes.T, -placement.axes.T @ placement.origin)
-    return [back.placed(bore) for bore in bores]
+    return [placed_bore(bore, back) for bore in bores]
 
 
 def bolts() -> list[Bore]:
@@ -108,7 +109,7 @@ def typed(way: str) -> Placement:
         name: np.array(json.loads(f"[{value}]")) for name, value in zip(words[::2], words[1::2], strict=True)
     }
     x, z = said.get("--x-axis", np.eye(3)[0]), said.get("--z-axis", np.eye(3)[2])
-    return Placement(np.stack([x, np.cross(z, x), z], axis=1), 1e-3 * said.get("--origin-mm", np.zeros(3)))
+    return Placement.of(x, z, said.get("--origin-mm", np.zeros(3)))
 
 
 @pytest.mark.parametrize("names", [(), ("input left", "input right"), ("input left", "output left")])
