@@ -337,7 +337,7 @@ class ContactProblem:
         """`half_plane_1` and `half_plane_2` at each candidate (Q, m), 1/Pa: more at the own tip edge."""
         return self.candidates.slices.half_planes(self.half_plane_1, self.half_plane_2)
 
-    @property
+    @cached_property
     def bodies(self) -> FloatArray:
         """The compliance (Q, n, n) without what load patches move within the reference length, m/N.
 

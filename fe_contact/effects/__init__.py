@@ -1,6 +1,6 @@
 """Optional physics of the contact analysis: only what the scene calls for."""
 
-from fe_contact.effects.composer import LedgerEntry, compose
+from fe_contact.effects.composer import LedgerEntry, acting, compose, contributed
 from fe_contact.effects.effect import ContactScene, Effect, Verdict, named
 from fe_contact.effects.registry import EFFECTS
 
@@ -10,6 +10,8 @@ __all__ = [
     "Effect",
     "LedgerEntry",
     "Verdict",
+    "acting",
     "compose",
+    "contributed",
     "named",
 ]

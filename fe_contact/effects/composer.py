@@ -98,21 +98,32 @@ def compose(scene: ContactScene, choices: Mapping[str, str]) -> tuple[ContactMod
         Unknown effect or choice.
     """
     _check_choices(choices, scene.registry)
-    model = ContactModel()
     ledger = []
     for effect in scene.registry:
         choice = choices.get(effect.name, "auto")
         verdict = effect.called_for(scene)
         on = verdict.on if choice == "auto" else choice == "on"
-        if on:
-            model = effect.contribute(scene, model)
         ledger.append(LedgerEntry(effect.name, on, choice, verdict, effect.cost))
+    return contributed(scene, acting(ledger)), tuple(ledger)
+
+
+def acting(ledger: Sequence[LedgerEntry]) -> tuple[str, ...]:
+    """Return the names of the effects that are on."""
+    return tuple(entry.name for entry in ledger if entry.on)
+
+
+def contributed(scene: ContactScene, names: Sequence[str]) -> ContactModel:
+    """Return what effects, by their names, contribute to the model of a scene."""
+    model = ContactModel()
+    for effect in scene.registry:
+        if effect.name in names:
+            model = effect.contribute(scene, model)
     # a fixed order of the sums, so that the order of the registry changes no bit
     gaps = tuple(sorted(model.gaps, key=repr))
     tooth_gaps = tuple(sorted(model.tooth_gaps, key=repr))
     compliances = tuple(sorted(model.compliances, key=repr))
     terms = replace(model, gaps=gaps, tooth_gaps=tooth_gaps, compliances=compliances)
-    return replace(terms, parts=tuple(sorted(model.parts))), tuple(ledger)
+    return replace(terms, parts=tuple(sorted(model.parts)))
 
 
 def _check_choices(choices: Mapping[str, str], registry: Sequence[Effect]) -> None:

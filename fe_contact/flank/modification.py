@@ -133,17 +133,16 @@ class FlankModification(_Figures):
         roll, face = np.broadcast_arrays(np.asarray(roll_length, float), np.asarray(face_position, float))
         if self.neutral:
             return np.zeros(roll.shape)
-        return self.removed(gear, np.clip(roll, *involute(gear)), face)
+        low, high = involute(gear)
+        return self.removed(gear, np.minimum(np.maximum(roll, low), high), face)
 
     def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
         """Sum over the parts in m: those of the profile, those of the face, and those of both."""
         removed = np.zeros(roll_length.shape)
-        acting = [part for part in self.parts if part.varies]
         for direction in (Direction.PROFILE, Direction.FACE):
-            removed += sum(
-                part.removed(gear, roll_length, face_position) for part in acting if part.along is direction
-            )
-        for part in acting:
+            along = (part for part in self._acting if part.along is direction)
+            removed += sum(part.removed(gear, roll_length, face_position) for part in along)
+        for part in self._acting:
             if part.along not in (Direction.PROFILE, Direction.FACE):
                 removed += part.removed(gear, roll_length, face_position)
         return removed
@@ -153,8 +152,12 @@ class FlankModification(_Figures):
 
         Where they run aslant over the flank, at face positions (n,) in m from mid-face.
         """
-        acting = (part for part in self.parts if part.varies)
-        return tuple(start for part in acting for start in part.relief_starts(gear, face_position))
+        return tuple(start for part in self._acting for start in part.relief_starts(gear, face_position))
+
+    @cached_property
+    def _acting(self) -> tuple[FlankPart, ...]:
+        """The parts that remove or add anything."""
+        return tuple(part for part in self.parts if part.varies)
 
 
 FLANK_FIELDS = declarations(FlankModification)

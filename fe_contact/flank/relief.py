@@ -43,7 +43,7 @@ class _ReliefShape:
 
     def __call__(self, fraction: FloatArray, ratio: float) -> FloatArray:
         """Relative depth at fractions of the length: 0 before it starts, 1 from its end on."""
-        return self.depth(np.clip(fraction, 0.0, 1.0), ratio)
+        return self.depth(np.minimum(np.maximum(fraction, 0.0), 1.0), ratio)
 
 
 def _arc(fraction: FloatArray, ratio: float) -> FloatArray:

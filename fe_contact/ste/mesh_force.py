@@ -157,7 +157,10 @@ class MeshForce:
     ) -> tuple[FloatArray, NDArray[np.int8]]:
         at = self._stencils(x, m, c)
         lower = np.searchsorted(self.table.level, f, side="right") - 1
-        deflection = self._cubic(at, lower).deflection(f, lower == len(self.table.level) - 1)
+        if np.array_equal(self.table.level[lower], f):  # at levels, as stored loads are: no stiffness counts
+            deflection = self.levels.value(at, lower[:, None])[:, 0]
+        else:
+            deflection = self._cubic(at, lower).deflection(f, lower == len(self.table.level) - 1)
         validity = _outside(at) + Validity.ABOVE_TABLE * (f > self.table.level[-1])
         return deflection, validity.astype(np.int8)
 

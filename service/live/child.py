@@ -18,10 +18,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeAlias
 
+from pydantic_core import to_json
+
 from host import kill_own_group, lower_priority
 from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import ServiceError
-from service.live.order import AnswerHead, LiveOrder, LiveWork
+from service.live.order import AnswerHead, Json, LiveOrder, LiveWork
 from service.worker.usage import begin_work, hold_to
 
 Note: TypeAlias = Callable[[], None]
@@ -67,7 +69,7 @@ def worked(order: LiveOrder, *further: Path, note: Note = traceback.print_exc) -
     try:
         module, _, name = order.entry.partition(":")
         work: LiveWork = getattr(importlib.import_module(module), name)
-        answer = json.dumps(work(order.inputs, *further), allow_nan=False, separators=(",", ":")).encode()
+        answer = _written(work(order.inputs, *further))
     except MemoryError:
         return AnswerHead("memory"), b""
     except Exception as error:  # noqa: BLE001 (a defect is logged by its traceback and reported by number)
@@ -77,6 +79,17 @@ def worked(order: LiveOrder, *further: Path, note: Note = traceback.print_exc) -
             return AnswerHead("defect"), b""
         return problem(known)
     return AnswerHead("answer", len(answer)), answer
+
+
+def _written(answer: Json) -> bytes:
+    """Return an answer as JSON, every number by the shortest decimals that give it.
+
+    Raises `ValueError`: a number is not finite.
+    """
+    body: bytes = to_json(answer, inf_nan_mode="constants")
+    if any(word in body for word in (b"NaN", b"Infinity")):
+        json.dumps(answer, allow_nan=False)  # a text may have the word
+    return body
 
 
 def problem(error: ServiceError) -> tuple[AnswerHead, bytes]:

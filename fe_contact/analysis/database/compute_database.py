@@ -213,7 +213,7 @@ def compute_pass(
     if remote.tasks or remote.lost:
         receipt["elsewhere"] = asdict(remote)
     metadata = _metadata(case, made, receipt, ledger)
-    table = assessed.stated(replace(made.table, metadata=metadata))
+    table = assessed.stated(made.table, metadata)
     tolerance = made.checked.request.options.tolerance
     if tolerance is not None:
         kept = _tolerance_receipt(table, tolerance, made.checked.request)

@@ -24,7 +24,7 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.model_error import model_errors, point_error
 from fe_contact.planning.plan import FaceDiscretization, Plan
 from fe_contact.planning.plane_bias import LEFT_OUT, PlaneBias
-from fe_contact.ste import SteDatabase
+from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.curve import (
     AT_NODES,
     BETWEEN_NODES,
@@ -390,10 +390,10 @@ class AssessedTable:
     held_out: Json
     bias: PlaneBias | None
 
-    def stated(self, table: SteDatabase) -> SteDatabase:
-        """Return the table with them."""
-        arms = self.load_arm_error
-        return replace(table, error_estimate=self.band, curve_error=self.curve_error, load_arm_error=arms)
+    def stated(self, table: SteDatabase, metadata: Metadata) -> SteDatabase:
+        """Return the table with them, and with the metadata that state them."""
+        errors = {"curve_error": self.curve_error, "load_arm_error": self.load_arm_error}
+        return replace(table, error_estimate=self.band, metadata=metadata, **errors)
 
     def with_derivatives(self, derived: DerivedCycle | None) -> AssessedTable:
         """Return them with what derivatives miss, if any base pitch of the table is by them."""

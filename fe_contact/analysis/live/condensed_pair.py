@@ -264,7 +264,7 @@ class CondensedPair:
         receipt["discretisation_error"] = None if preview else origin
         ledger = [{"name": entry.name, "on": entry.on} for entry in checked.ledger]
         metadata = Metadata(effect_ledger=ledger, receipt=receipt)
-        return assessed.stated(replace(table, metadata=metadata)), solved
+        return assessed.stated(table, metadata), solved
 
     def solve(
         self,

@@ -37,7 +37,7 @@ from fe_contact.contact import (
     with_flanks,
 )
 from fe_contact.contact.touch import Touch
-from fe_contact.effects import ContactScene, compose
+from fe_contact.effects import ContactScene, acting, compose, contributed
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.cost_model import condensed_teeth
 from fe_contact.planning.plan import FaceDiscretization, Plan
@@ -411,14 +411,14 @@ def operating_points(
         Who solves them.
     """
     _, ledger = compose(scene, choices)
-    decided = {entry.name: "on" if entry.on else "off" for entry in ledger}
+    on = acting(ledger)
     contacts = list(_contacts(nominal, scene.center_distance_change))
     points = []
     for misalignment in scene.misalignment:
         for contact in contacts:
             axes = np.array([misalignment]), np.zeros(1)
             here = replace(scene, pair=contact.pair, misalignment=axes[0], center_distance_change=axes[1])
-            points.append(OperatingPoint(contact, compose(here, decided)[0]))
+            points.append(OperatingPoint(contact, contributed(here, on)))
     return OperatingPoints((scene.misalignment.size, len(contacts)), tuple(points), nominal, workers)
 
 

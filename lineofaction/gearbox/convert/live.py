@@ -130,8 +130,7 @@ def _passage_json(flanks: LoadDistribution, apart: FloatArray) -> Json:
 
     def laid(values: FloatArray) -> FloatArray:
         table = values[first].reshape(place.size, -1)[order]
-        here = np.column_stack([np.interp(rows, place[order], column) for column in table.T])
-        return np.stack([np.interp(face, flanks.face_position, row) for row in here])
+        return _between(face, flanks.face_position, _between(rows, place[order], table).T).T
 
     return {
         "first_place": low / _STEPS,
@@ -140,6 +139,17 @@ def _passage_json(flanks: LoadDistribution, apart: FloatArray) -> Json:
         "pressure_mpa": np.rint(laid(flanks.pressure) / MPA).astype(int).tolist(),
         "apart_um": np.round(laid(apart) / UM, 2).tolist(),
     }
+
+
+def _between(x: FloatArray, knots: FloatArray, values: FloatArray) -> FloatArray:
+    """Return what `numpy.interp` does of every column of `values`, (knots, ...), at once: (x, ...)."""
+    if knots.size == 1:
+        return np.repeat(values, x.size, axis=0)
+    left = np.clip(np.searchsorted(knots, x, side="right") - 1, 0, knots.size - 2)
+    slope = (values[left + 1] - values[left]) / (knots[left + 1] - knots[left])[:, None]
+    inside = slope * (x - knots[left])[:, None] + values[left]
+    low, high = (x < knots[0])[:, None], (x >= knots[-1])[:, None]
+    return np.where(low, values[0], np.where(high, values[-1], inside))
 
 
 def _short(values: FloatArray) -> Any:

@@ -57,6 +57,13 @@ def displaced(problem: ContactProblem, bodies, ways: np.ndarray) -> np.ndarray:
     return contact_problem(moved, bodies).compliance
 
 
+def test_what_pressure_and_deflection_ask_of_the_bodies_is_computed_once(problem):
+    kept = problem.bodies.copy()
+    problem.moved(np.ones((POSITION.size, 1, problem.candidates.pair.size)))
+    assert problem.bodies is problem.bodies
+    assert np.array_equal(problem.bodies, kept)
+
+
 def test_compliance_changes_along_the_flank_as_its_tilt_says_to_second_order(problem, bodies):
     inside = (problem.candidates.slices.patch_1.edge_share == 0.0) & (
         problem.candidates.slices.patch_2.edge_share == 0.0

@@ -74,6 +74,15 @@ def test_stored_points_come_back_and_the_force_is_the_inverse(table):
     assert np.all(np.abs(rise / (2 * step) - sample.stiffness) <= 2e-3 * np.abs(sample.stiffness).max())
 
 
+def test_a_curve_at_a_stored_load_is_that_of_the_cubic_to_the_last_bit(table):
+    for load in table.force:
+        beside = table.ste(np.append(X, 0.5), np.append(np.full(X.size, load), 0.3 * load))
+        assert np.array_equal(table.ste(X, load), beside[:-1])
+    fresh = MeshForce(table.force_table())
+    fresh.deflection_at(X, fresh.table.level[-1], table.misalignment[0], table.center_distance_change[0])
+    assert "stiffnesses" not in vars(fresh)
+
+
 def test_force_rises_with_deflection(table):
     for x in (0.0, 0.1234, 0.22, 0.7501):
         top = float(table.ste(x, table.force[-1]))
