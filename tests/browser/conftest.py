@@ -20,6 +20,10 @@ FLAGS = (
     "--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking",
     "--disable-component-update", "--disable-sync", "--no-first-run", "--disable-3d-apis",
 )  # fmt: skip
+DRAWING = (
+    "--headless", "--no-sandbox", "--disable-background-networking", "--disable-sync", "--no-first-run",
+    "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+)  # fmt: skip
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 
 
@@ -46,6 +50,14 @@ def browser_path() -> str:
 @pytest.fixture(scope="session")
 def browser(playwright: Playwright, browser_path: str) -> Iterator[Browser]:
     started = playwright.chromium.launch(executable_path=browser_path, args=FLAGS)
+    yield started
+    started.close()
+
+
+@pytest.fixture(scope="module")
+def drawing_browser(playwright: Playwright, browser_path: str) -> Iterator[Browser]:
+    """The browser of the other tests, with WebGL by software."""
+    started = playwright.chromium.launch(executable_path=browser_path, args=DRAWING)
     yield started
     started.close()
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 import tomllib
 from collections.abc import Iterator
@@ -11,7 +10,7 @@ from typing import Any
 
 import pytest
 from faulty_units import LEFT_OUT, TWO_STAGE
-from housing_solid import housed_scene, write_block
+from housing_solid import STIFFNESS, housed_scene, write_block
 from page_visit import PATIENCE, Visit, shown, tab
 from playwright.sync_api import Browser, Route, expect
 from running_service import until
@@ -20,13 +19,6 @@ from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas.toml import toml_text
 
 UNIT = Path(__file__).parents[2] / "examples" / "two_stage_gearbox.rexs"
-STIFFNESS = {
-    "teeth": [20, 20],
-    "base_radius_mm": 40.0 * math.cos(math.radians(20.0)),
-    "working_pressure_angle_deg": 20.0,
-    "face_width_mm": 25.0,
-    "stiffness_n_per_m": {"value": [4e8], "amplitude": [5e7]},
-}
 EXAMPLE = Path(__file__).parents[2] / "examples" / "planetary_scene.toml"
 
 

@@ -2,42 +2,21 @@
 
 from __future__ import annotations
 
-import math
 import re
-from collections.abc import Iterator
-from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from housing_solid import housed_scene, write_block
+from housing_solid import STIFFNESS, housed_scene, write_block
+from page_picture import CANVAS, different, frames, picture, rest, stopped
 from page_visit import PATIENCE, Visit, control, found_inaccessible, moved, shown, tab
-from PIL import Image
-from playwright.sync_api import Browser, Page, Playwright, expect
+from playwright.sync_api import Browser, expect
 from running_service import until
 
 from lineofaction.gearbox.schemas.toml import toml_text
 
-FLAGS = ("--headless", "--no-sandbox", "--disable-background-networking", "--disable-sync", "--no-first-run")
-SOFTWARE = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
-CANVAS = "canvas.view"
-STIFFNESS = {
-    "teeth": [20, 20],
-    "base_radius_mm": 40.0 * math.cos(math.radians(20.0)),
-    "working_pressure_angle_deg": 20.0,
-    "face_width_mm": 25.0,
-    "stiffness_n_per_m": {"value": [4e8], "amplitude": [5e7]},
-}
 UNIT = Path(__file__).parents[2] / "examples" / "two_stage" / "two_stage.rexs"
-
-
-@pytest.fixture(scope="module")
-def drawing_browser(playwright: Playwright, browser_path: str) -> Iterator[Browser]:
-    """The browser of the other tests, with WebGL by software."""
-    started = playwright.chromium.launch(executable_path=browser_path, args=[*FLAGS, *SOFTWARE])
-    yield started
-    started.close()
 
 
 @pytest.fixture(scope="module")
@@ -45,39 +24,8 @@ def view(drawing_browser: Browser, address: str, analyzed: str) -> Visit:
     seen = shown(drawing_browser, address, analyzed)
     seen.page.locator(CANVAS).scroll_into_view_if_needed()
     expect(seen.page.locator(f"{CANVAS}[data-pressed]:not([data-pressed='0'])")).to_have_count(1)
-    if seen.page.get_by_role("button", name="Stop", exact=True).count():
-        seen.page.get_by_role("button", name="Stop", exact=True).click()
+    stopped(seen.page)
     return seen
-
-
-def picture(page: Page) -> np.ndarray:
-    """Return what the canvas shows when nothing moves (height, width, 3)."""
-    rest(page)
-    content = page.locator(CANVAS).screenshot()
-    return np.asarray(Image.open(BytesIO(content)).convert("RGB")).astype(int)
-
-
-def frames(page: Page) -> int:
-    return int(page.locator(CANVAS).get_attribute("data-frames") or 0)
-
-
-def rest(page: Page) -> None:
-    """Wait until a frame is drawn and no more follow."""
-    seen = [-1]
-
-    def still() -> bool:
-        seen.append(frames(page))
-        page.wait_for_timeout(300)
-        return frames(page) == seen[-1] > 0
-
-    until(still)
-
-
-def different(first: np.ndarray, second: np.ndarray) -> float:
-    """Return the part of the points that differ; of pictures of other sizes all."""
-    if first.shape != second.shape:
-        return 1.0
-    return float(np.mean(np.abs(first - second).max(axis=-1) > 12))
 
 
 @pytest.mark.parametrize("size", [(1000, 700), (1024, 768), (900, 700), (400, 660)])
@@ -170,8 +118,7 @@ def test_a_mode_moves_the_unit_and_the_way_back_shows_the_pair(
 ) -> None:
     seen = shown(drawing_browser, address, analyzed)
     page = seen.page
-    if page.get_by_role("button", name="Stop", exact=True).count():
-        page.get_by_role("button", name="Stop", exact=True).click()
+    stopped(page)
     motion, amplitude = page.get_by_label("Motion", exact=True), page.get_by_label("Amplitude", exact=True)
     expect(motion).to_be_hidden()
     control(page, "#study-Modes-top_rpm").fill("2000")
@@ -234,8 +181,7 @@ def test_the_surface_of_a_housing_moves_in_the_colors_of_its_velocity(
     motion, refused = page.get_by_label("Motion", exact=True), page.locator("#scene-body [role=alert]")
     page.locator("#view select:visible, #scene-body [role=alert]").first.wait_for(timeout=PATIENCE)
     assert refused.all_text_contents() == []
-    if page.get_by_role("button", name="Stop", exact=True).count():
-        page.get_by_role("button", name="Stop", exact=True).click()
+    stopped(page)
     motion.select_option("0")
     expect(page.get_by_text(re.compile(r"^-?\d+ to -?\d+ dB re 50 nm/s$"))).to_be_visible()
     expect(page.locator("#view [role=status]")).to_contain_text("rpm")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import math
 import subprocess
 import sys
 import tomllib
@@ -30,6 +31,14 @@ gmsh.write(sys.argv[1])
 gmsh.finalize()
 """
 TILT = [[1e6 if i == k > 2 else 0.0 for k in range(5)] for i in range(5)]
+STIFFNESS = {
+    "teeth": [20, 20],
+    "base_radius_mm": 40.0 * math.cos(math.radians(20.0)),
+    "working_pressure_angle_deg": 20.0,
+    "face_width_mm": 25.0,
+    "stiffness_n_per_m": {"value": [4e8], "amplitude": [5e7]},
+}
+"""Of the mesh, in place of a table."""
 SEAT = {"bore_diameter_mm": 40.0, "bore_length_mm": 30.0}
 
 

@@ -4,7 +4,7 @@
 import { post } from "./api.js";
 import { caseOf } from "./orders.js";
 import { freed, held, Meshing } from "./view_gl.js";
-import { Motion } from "./view_motion.js";
+import { Motion, STATIONS } from "./view_motion.js";
 import { COLORS as OF_PAIR, GEARS, put, RollingPair } from "./view_pair.js";
 
 const SIDES = 32; // of a body of revolution
@@ -17,14 +17,15 @@ const STILL = { values: new Float32Array(12), stations: [0, 1e9, 0] };
 
 /** @typedef {{name: string, origin_mm: number[], length_mm: number, diameter_mm?: number, sections?: {length_mm: number, outer_diameter_mm: number}[]}} Shaft */
 
-/** A ring about z. @param {Meshing} made @param {number} inner radius @param {number} outer */
-function ring(made, inner, outer, low, high) {
+/** A ring about z. @param {Meshing} made @param {number} inner radius @param {number} outer @param {number} [layers] of its wall, between which it bends */
+function ring(made, inner, outer, low, high, layers = 1) {
   const turn = (k) => [Math.cos((2 * Math.PI * k) / SIDES), Math.sin((2 * Math.PI * k) / SIDES)];
   const line = (radius, z, normal) => Array.from({ length: SIDES + 1 }, (_, k) => {
     const [x, y] = turn(k);
     return made.vertex([radius * x, radius * y, z], normal ?? [x, y, 0]);
   });
-  const strips = [[line(outer, low), line(outer, high)]];
+  const walls = Array.from({ length: layers + 1 }, (_, k) => line(outer, low + ((high - low) * k) / layers));
+  const strips = walls.slice(1).map((wall, k) => [walls[k], wall]);
   for (const [z, up] of [[low, -1], [high, 1]]) strips.push([line(inner, z, [0, 0, up]), line(outer, z, [0, 0, up])]);
   for (const [a, b] of strips) for (let k = 1; k <= SIDES; k += 1) made.quad(a[k - 1], b[k - 1], a[k], b[k]);
 }
@@ -44,7 +45,7 @@ function shaftMesh(shaft) {
   const made = new Meshing();
   let low = 0;
   for (const { length_mm: length, outer_diameter_mm: diameter } of sectionsOf(shaft)) {
-    ring(made, 0, diameter / 2, low, low + length);
+    ring(made, 0, diameter / 2, low, low + length, Math.ceil((length / shaft.length_mm) * (STATIONS - 1)));
     low += length;
   }
   return made.mesh;
