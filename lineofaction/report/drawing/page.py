@@ -206,7 +206,8 @@ def _header(page: Page) -> str:
 def _section(section: Section, index: int, images: dict[str, bytes], *, still: bool) -> str:
     text = f"<p>{escape(section.text)}</p>" if section.text else ""
     figures = "\n".join(_figure(figure, images[figure.key], still=still) for figure in section.figures)
-    tables = "\n".join([*map(_table, section.tables), *map(_folded, section.folded)])
+    shown = (_table(table, below=section.title) for table in section.tables)
+    tables = "\n".join([*shown, *map(_folded, section.folded)])
     title = escape(section.title)
     aside = section.part is Part.RECEIPT or not (section.figures or section.tables)
     kept = ' class="unprinted"' if aside else ""
@@ -239,8 +240,11 @@ def _folded(table: Table, name: str = "") -> str:
     return f"<details><summary>{escape(name or table.caption)}</summary>{_table(table)}</details>"
 
 
-def _table(table: Table) -> str:
-    """Write a table; its first column names the row, columns of numbers stand to the right."""
+def _table(table: Table, below: str = "") -> str:
+    """Write a table; its first column names the row, columns of numbers stand to the right.
+
+    `below`: the heading that it stands below; a caption with the same words is left out.
+    """
     marks = [' class="n"' if right else "" for right in numeric_columns(table)]
     head = "".join(
         f'<th scope="col"{m}>{escape(cell)}</th>' for m, cell in zip(marks, table.head, strict=True)
@@ -250,9 +254,10 @@ def _table(table: Table) -> str:
     short = " short" if len(table.rows) <= _ROWS_OF_A_PAGE else ""
     width = sum(max(map(len, column)) for column in zip(table.head, *table.rows, strict=True))
     short += " narrow" if short and width <= _HALF_OF_A_PAGE else ""
+    caption = "" if table.caption == below else f"<caption>{escape(table.caption)}</caption>"
     return (
         f'<div class="scroll{short}" tabindex="0" role="region" aria-label="{name}">'
-        f"<table>\n<caption>{escape(table.caption)}</caption>\n<thead><tr>{head}</tr></thead>\n"
+        f"<table>\n{caption}\n<thead><tr>{head}</tr></thead>\n"
         f"<tbody>{rows}</tbody></table></div>"
     )
 

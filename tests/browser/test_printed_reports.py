@@ -1,0 +1,149 @@
+"""Reports on paper, page by page: what a reader sees once, whole, and with its head."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser
+from printed_pages import Printed
+from small_inputs import small_inputs
+
+from lineofaction.gearbox.registry import STUDIES
+from lineofaction.gearbox.schemas.report import ReportInput
+from lineofaction.report.document import page_of, read_inputs, write_whole
+from lineofaction.report.drawing.figure import Table
+from lineofaction.report.drawing.image import panel_sheet
+from lineofaction.report.drawing.page import Page, Part, Section
+from lineofaction.report.presentation import presentation_of
+from lineofaction.report.title_block import titled
+
+BLOCK = ReportInput(
+    project="EV reducer",
+    author="A. Smith",
+    number="23-067",
+    revision="A",
+    requirements=["95 % of all pairs below at most 0.7 µm"],
+)
+
+
+def of_study(name: str) -> Page:
+    """Return the report of a study's small question."""
+    study, inputs = STUDIES[name], small_inputs(name)
+    subject = inputs.pop("scene" if "scene" in inputs else "case")
+    with warnings.catch_warnings(action="ignore"):
+        result: Any = study(subject, inputs)
+    return presentation_of(study).page(result)
+
+
+def of_pair(closed_forms: ModuleType, folder: Path) -> Page:
+    """Return the report of a table with the load on its flanks."""
+    closed_forms.closed_form().to_netcdf(folder / "ste.nc")
+    closed_forms.closed_form_flanks().to_netcdf(folder / "flanks.nc")
+    return page_of(read_inputs([folder / "ste.nc", folder / "flanks.nc"]))
+
+
+def of_long_table() -> Page:
+    """Return a report of a table over pages, whose rows have four lines."""
+    words = "a sentence that goes on in its cell, where a page may end; " * 5
+    rows = tuple((f"row {index}", words, f"{index}") for index in range(70))
+    table = Table("What each row says", ("row", "what it says", "number"), rows)
+    return Page("A long table", "Rows of four lines.", (), (Section("Rows", "All.", tables=(table,)),))
+
+
+@dataclass(frozen=True)
+class Report:
+    """A page and what was printed of it."""
+
+    page: Page
+    printed: Printed
+
+
+@pytest.fixture(
+    scope="module",
+    params=[
+        "pair",
+        "optimize",
+        "scatter",
+        "change",
+        pytest.param("noise", marks=pytest.mark.nightly),
+        "table",
+    ],
+)
+def report(
+    request: pytest.FixtureRequest,
+    browser: Browser,
+    closed_forms: ModuleType,
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Report:
+    del browser  # skips where there is none
+    folder, name = tmp_path_factory.mktemp("printed"), request.param
+    if name == "pair":
+        page = of_pair(closed_forms, folder)
+    else:
+        page = of_long_table() if name == "table" else of_study(name)
+    page = titled(page, BLOCK)
+    write_whole(page, folder / "report.pdf")
+    return Report(page, Printed((folder / "report.pdf").read_bytes()))
+
+
+def test_a_report_has_few_pages_and_is_small_enough_to_send(report: Report) -> None:
+    assert len(report.printed.pages) <= 12
+    assert report.printed.size < 3_000_000
+
+
+def test_each_page_has_its_number_the_title_and_the_drawing_and_none_is_empty(report: Report) -> None:
+    pages = report.printed.pages
+    for number, text in enumerate(pages, start=1):
+        margins = f"{report.page.title} 23-067 A page {number} of {len(pages)} lineofaction"
+        assert text.startswith(margins)
+        assert text != margins or report.printed.pictures[number - 1]
+
+
+def test_no_title_stands_twice(report: Report) -> None:
+    titles = report.printed.titles()
+    assert report.page.title in titles
+    assert [title for title, times in Counter(titles).items() if times > 1] == []
+
+
+def test_what_the_page_shows_is_printed(report: Report) -> None:
+    titles = set(report.printed.titles())
+    shown = [section for section in report.page.sections if section.part is not Part.RECEIPT]
+    figures = {figure.title for section in shown for figure in section.figures}
+    assert figures <= titles
+    assert {table.caption for section in shown for table in section.tables} <= titles
+
+
+def test_no_row_of_a_table_is_cut_by_the_end_of_a_page(report: Report) -> None:
+    tables = list(report.printed.document.all("Table"))
+    assert tables or not any(section.tables for section in report.page.sections)
+    rows = [row for table in tables for row in [*table.all("TR")][1:]]
+    assert [report.printed.words(row) for row in rows if len(row.pages) > 1] == []
+
+
+def test_the_head_of_a_table_stands_on_each_of_its_pages(report: Report) -> None:
+    for table in report.printed.document.all("Table"):
+        head, *rows = table.all("TR")
+        assert head.pages == {page for row in rows for page in row.pages} or not rows
+
+
+def test_orders_have_whole_ticks_in_every_picture(report: Report) -> None:
+    panels = [
+        panel
+        for section in report.page.sections
+        for figure in section.figures
+        for panel in figure.content
+        if re.fullmatch(r"(mesh )?order", panel.x.label)
+    ]
+    for panel in panels:
+        sheet = panel_sheet((panel,))
+        sheet.draw_without_rendering()
+        ticks = sheet.axes[0].get_xticks()
+        assert np.array_equal(ticks, np.round(ticks)), panel.x.label
