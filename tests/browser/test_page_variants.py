@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import base64
+import json
 import re
+from typing import Any
 
+import httpx2
 import pytest
-from page_visit import CASE, GEAR, Visit, computed, control, moved
+from page_visit import CASE, GEAR, Visit, computed, control, found_inaccessible, moved
 from playwright.sync_api import Browser, Page, expect
 from running_service import until
 
@@ -75,4 +79,104 @@ def test_two_results_and_an_edit_stand_side_by_side_in_another_browser(
     other.go_back()
     expect(other.locator("#f-pair-pinion-tip_relief_um")).to_have_value("8")
     context.close()
+    assert visit.complaints == []
+
+
+def packed(case: dict[str, Any]) -> str:
+    """Return the word of the address for a design as typed."""
+    return base64.urlsafe_b64encode(json.dumps(case).encode()).decode().rstrip("=")
+
+
+def with_pinion(**changes: Any) -> dict[str, Any]:
+    return CASE | {"pair": CASE["pair"] | {"pinion": GEAR | changes}}
+
+
+def at_rest(address: str, key: str) -> dict[str, Any]:
+    body = {"torque_n_m": [1.0], "flanks": True}
+    answer = httpx2.post(f"{address}/v1/databases/{key}/ste", json=body, timeout=60.0).json()
+    curve: dict[str, Any] = answer["curves"][0]
+    return curve
+
+
+def table(page: Page) -> dict[str, list[str]]:
+    """Return the rows of the dock's table of variants, by their names."""
+    rows = page.locator("#compared tr").evaluate_all(
+        "rows => rows.map((row) => [...row.children].map((cell) => cell.textContent))"
+    )
+    return {name: [text.replace("\xa0", " ") for text in cells] for name, *cells in rows}
+
+
+def go(page: Page, fragment: str) -> None:
+    page.goto(f"{page.url.partition('#')[0]}#{fragment}")
+
+
+@pytest.mark.law
+def test_a_typed_design_is_answered_on_the_gears_of_a_result(
+    visit: Visit, address: str, analyzed: str, relieved: str
+) -> None:
+    page = visit.page
+    go(page, f"database={analyzed}&a={packed(with_pinion(tip_relief_um=8.0, tip_relief_length_mm=0.4))}&on=b")
+    until(lambda: len(curves(page)) == 3)
+    typed, exact = at_rest(address, analyzed), at_rest(address, relieved)
+    assert typed["peak_to_peak_um"] != exact["peak_to_peak_um"], "the relief acts"
+    until(lambda: "±" in table(page).get("peak to peak, µm", [""])[0])
+    assert table(page)["figure"] == ["A", "B"]
+    ripples = [float(text.split()[0]) for text in table(page)["peak to peak, µm"]]
+    assert ripples == pytest.approx([exact["peak_to_peak_um"], typed["peak_to_peak_um"]], rel=3e-3)
+    expect(page.locator("#unanswered")).to_be_empty()
+    page.get_by_role("button", name="Variant A").press("Enter")
+    expect(control(page, "#live-pinion-tip_relief_um")).to_have_value("8")
+    expect(page).to_have_url(re.compile(f"database={analyzed}"))
+    until(lambda: table(page).get("peak to peak, µm", [""])[0].startswith(f"{ripples[0]:.3g}"))
+    assert visit.complaints == []
+
+
+@pytest.mark.law
+def test_a_typed_design_of_other_gears_says_what_it_needs_and_is_analyzed_beside(
+    visit: Visit, analyzed: str
+) -> None:
+    page = visit.page
+    other = packed(with_pinion(face_width_mm=3.5))
+    go(page, f"database={analyzed}&b={other}&c={packed(with_pinion(tip_relief_um=5.0))}&on=a")
+    line = page.get_by_role("group", name="Variant B")
+    expect(line).to_contain_text("B: not analyzed, and no result here has its gears.")
+    assert found_inaccessible(page, "#dock") == {}
+    line.get_by_role("button", name="Analyze B").press("Enter")
+    until(lambda: "B" in curves(page))
+    expect(line).to_have_count(0)
+    expect(page).to_have_url(re.compile(f"database={analyzed}.*&b=[0-9a-f-]{{36}}"))
+    expect(page.get_by_role("button", name="Variant A")).to_have_attribute("aria-pressed", "true")
+    until(lambda: table(page).get("figure") == ["A", "B"])
+    expect(page.locator("#compared p")).to_contain_text(re.compile("^C: .*relief"))
+    page.reload()
+    until(lambda: "B" in curves(page))
+    page.get_by_role("button", name="Variant B").press("Enter")
+    expect(page.locator("#f-pair-pinion-face_width_mm")).to_have_value("3.5")
+    assert visit.complaints == []
+
+
+def test_three_variants_stand_beside_each_other_with_the_complaint(
+    visit: Visit, address: str, analyzed: str, relieved: str
+) -> None:
+    page = visit.page
+    heard = with_pinion() | {"complaint": {"frequency_hz": 1000.0, "speed_rpm": 1500.0, "torque_n_m": 1.0}}
+    words = {"a": relieved, "b": packed(with_pinion(tip_relief_um=4.0, tip_relief_length_mm=0.4))}
+    others = "&".join(f"{name}={word}" for name, word in words.items())
+    go(page, f"database={analyzed}&case={packed(heard)}&{others}&on=c")
+    until(lambda: "…" not in str(table(page).get("peak to peak, µm", "…")) and "B" in curves(page))
+    rows = table(page)
+    assert rows["figure"] == ["A", "B", "C"]
+    level, first, change = (
+        rows[name]
+        for name in (
+            "complaint, harmonic 2 at 1 N m, dB re 1 µm",
+            "first harmonic, µm",
+            "first harmonic, dB from A",
+        )
+    )
+    assert all(re.fullmatch(r"−?[\d.]+ ± [\d.]+|below −?[\d.]+ \(its error\)", text) for text in level)
+    assert first[0].startswith(f"{at_rest(address, relieved)['harmonics_um'][0]:.3g}"[:4])
+    assert change[0] == "" and all(change[1:])
+    box = page.locator("#compared").bounding_box()
+    assert box is not None and box["width"] <= 320, "it fits the dock"
     assert visit.complaints == []

@@ -65,9 +65,9 @@ export class Design {
     return differences(this.fields, content, this.case);
   }
 
-  /** Those of them that a result depends on. @param {object} content */
-  edits(content) {
-    return this.differences(content).filter(({ field }) => !BESIDE.includes(field.path[0]));
+  /** Those of them that a result depends on. @param {object} content @param {object} [now] left out: as typed */
+  edits(content, now = this.case) {
+    return differences(this.fields, content, now).filter(({ field }) => !BESIDE.includes(field.path[0]));
   }
 
   offer() {

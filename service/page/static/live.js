@@ -6,7 +6,7 @@ import { button, byId, dataTable, figures, folded, make, number } from "./elemen
 import { SHOWN_HARMONICS, harmonicsFigure, sharingFigure, steFigure, strongestOrders } from "./live_figures.js";
 import { faultsOf } from "./job.js";
 import { LiveFlanks, liveBlock } from "./live_flanks.js";
-import { heardFigures, mainFigures, numbersOf, ordersOf, sourcesOf } from "./live_numbers.js";
+import { besideFigures, heardFigures, mainFigures, numbersOf, ordersOf, sourcesOf } from "./live_numbers.js";
 import { LiveSound } from "./live_sound.js";
 import { MadeBand } from "./made_band.js";
 import { plot } from "./plots.js";
@@ -64,7 +64,7 @@ export class Live {
     if (known && !known.long) this.plots();
     else {
       this.design.view.press(null);
-      for (const id of [...(known ? [] : ["live-figures", "sliders", "quick"]), ...Object.values(PLACES)]) byId(id).replaceChildren();
+      for (const id of [...(known ? [] : ["live-figures", "compared", "sliders", "quick"]), ...Object.values(PLACES)]) byId(id).replaceChildren();
     }
   }
 
@@ -255,13 +255,16 @@ export class Live {
     this.sound.show(shown.map(({ name, curve, known = this.known }) => (
       { name, teeth: known.case.pair.pinion.teeth, harmonics: curve.harmonics_um.filter(Number.isFinite) })));
     this.torques.draw(shown);
-    await this.plot(shown, shown.at(shown.length > 2 ? 1 : 0).curve);
+    await this.plot(shown, this.before);
   }
 
   /** Plot curves, the last with its figures and their change. @param {object[]} shown @param {object} from @param {object} [facts] of the first plot */
   plot(shown, from, facts = {}) {
     const { curve } = shown.at(-1);
-    figures(byId("live-figures"), [...heardFigures(this.heard), ...mainFigures(curve, from)]);
+    const alone = shown.length < 3;
+    figures(byId("live-figures"), alone ? [...heardFigures(this.heard), ...mainFigures(curve, from)] : []);
+    const refused = this.others.filter((other) => other.refused).map((other) => make("p", { class: "hint" }, other.refused));
+    byId("compared").replaceChildren(...(alone ? [] : [dataTable(besideFigures(shown.slice(1), this.heard)).firstChild]), ...refused);
     this.describe(shown);
     return Promise.all([
       plot(this.blocks.ste.node, { ...this.ripple(shown), ...facts }),

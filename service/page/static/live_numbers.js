@@ -38,20 +38,27 @@ function levelOf({ harmonics_um: amplitudes, harmonics_error_um: errors, preview
 
 export const minus = (value) => value.toFixed(1).replace("-", "−");
 
+/** Levels of the complaint's harmonic, each with its change from the first, whose band is that of both. @param {any} heard */
+function levelsOf({ harmonic, curves }) {
+  const [first, ...others] = curves.map(({ name, curve }) => ({ name, coming: curve.preview, ...levelOf(curve, harmonic) }));
+  const changed = ({ level, band, coming }) => (
+    band + first.band === Infinity ? "within the errors" : `${signed(level - first.level, 2)} ${plusMinus(band + first.band, coming)}`.trim());
+  return [{ ...first, change: "" }, ...others.map((own) => ({ ...own, change: changed(own) }))];
+}
+
+const heardWords = ({ harmonic, torque }) => `complaint, harmonic ${harmonic} at ${Number(torque.toPrecision(4))} N m`;
+
 /**
- * Level of the complaint's harmonic of each variant, with its band, and the change from the first, whose band is that of both.
+ * Level of the complaint's harmonic with its band, and its change from the curve that it is compared with.
  * @param {{harmonic: number, torque: number, curves: import("./live_figures.js").Shown[]} | null} heard the last is the one now
  */
 export function heardFigures(heard) {
   if (!heard) return [];
-  const { harmonic, torque, curves } = heard;
-  const name = (own) => `complaint, harmonic ${harmonic} at ${Number(torque.toPrecision(4))} N m${own === "now" ? "" : `, ${own}`}`;
-  if (!curves.length) return [[name("now"), "none", "no curve at this torque: at most twice the highest of the result"]];
-  const [first, ...levels] = curves.map(({ name, curve }) => ({ name, coming: curve.preview, ...levelOf(curve, harmonic) }));
-  const changed = ({ level, band, coming }) => (
-    band + first.band === Infinity ? "change within the errors" : [signed(level - first.level, 2), plusMinus(band + first.band, coming), "dB"].filter(Boolean).join(" "));
-  const rows = levels.map((own) => [name(own.name), own.words, `${own.remark}; ${changed(own)} from ${first.name}`]);
-  return first.name === "as analyzed" && rows.length ? rows : [[name(first.name), first.words, first.remark], ...rows];
+  if (!heard.curves.length) return [[heardWords(heard), "none", "no curve at this torque: at most twice the highest of the result"]];
+  const levels = levelsOf(heard);
+  const { words, remark, change } = levels.at(-1);
+  const from = change.startsWith("within") ? `change ${change}` : change && `${change} dB from ${levels[0].name}`;
+  return [[heardWords(heard), words, [remark, from].filter(Boolean).join("; ")]];
 }
 
 /** Main figures of a curve, each with its error and its change from another. */
@@ -69,6 +76,37 @@ export function mainFigures(now, from) {
   ];
   if (factor !== null) entries.push(["K_Hbeta", number(factor, 4), change(factor, from.flanks.k_h_beta)]);
   return now.bias ? [...entries, ["bias of the mean", `${signed(100 * now.bias.mean, 2)} %`, now.bias.words]] : entries;
+}
+
+/** Main figures of variants beside each other, with their errors; of tones the change from the first. @param {import("./live_figures.js").Shown[]} variants @param {any} heard */
+export function besideFigures(variants, heard) {
+  const named = (one, other) => one.name.localeCompare(other.name);
+  const shown = [...variants].sort(named);
+  const [{ name: first, curve: from }] = shown;
+  const row = (name, of) => [name, ...shown.map(({ curve }) => of(curve))];
+  const measured = (name, value, error, source) => row(name, (curve) => (
+    `${number(value(curve), 3)} ${plusMinus(ownError(curve, error(curve), source), curve.preview)}`.trim()));
+  const levels = heard?.curves.length ? levelsOf({ ...heard, curves: [...heard.curves].sort(named) }) : [];
+  const heardOf = (name, of) => [name, ...shown.map((own) => levels.filter((level) => level.name === own.name).map(of)[0] ?? "none")];
+  const complaint = heard ? [
+    heardOf(`${heardWords(heard)}${levels.length ? ", dB re 1 µm" : ""}`, ({ words, band, coming }) => (
+      band === Infinity ? `${words.replace(" dB", "")} (its error)` : `${words.replace(" dB", "")} ${plusMinus(band, coming)}`.trim())),
+    ...(levels.length ? [heardOf(`the same, dB from ${levels[0].name}`, ({ change }) => change)] : []),
+  ] : [];
+  return {
+    caption: "Variants",
+    head: ["figure", ...shown.map(({ name }) => name)],
+    rows: [
+      ...complaint,
+      measured("peak to peak, µm", (curve) => curve.peak_to_peak_um, (curve) => curve.peak_to_peak_error_um, "peak_to_peak"),
+      measured("first harmonic, µm", (curve) => curve.harmonics_um[0], (curve) => curve.harmonics_error_um?.[0], "first_harmonic"),
+      row(`first harmonic, dB from ${first}`, (curve) => (curve === from ? "" : decibels(curve.harmonics_um[0], from.harmonics_um[0]).replace(" dB", ""))),
+      measured("mean, µm", (curve) => curve.mean_um, (curve) => curve.mean_error_um, "mean"),
+      row("largest pressure, MPa", ({ flanks }) => number(flanks.largest_pressure_mpa, 4)),
+      ...(from.flanks.k_h_beta === null ? [] : [row("K_Hbeta", ({ flanks }) => (flanks.k_h_beta === null ? "none" : number(flanks.k_h_beta, 4)))]),
+      ...(from.bias ? [row("bias of the mean, %", ({ bias }) => (bias ? signed(100 * bias.mean, 2) : "none"))] : []),
+    ].map((cells) => cells.map((text) => text.replace("± ", "±\u00a0"))),
+  };
 }
 
 /** Figures of every curve beside each other. @param {import("./live_figures.js").Shown[]} shown */

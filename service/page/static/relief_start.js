@@ -62,6 +62,13 @@ export function lengthOf(gear, length, circles) {
   return stated ? converted(stated[1], stated[0], length, circles) : gear[length];
 }
 
+/** What a live request states of a flank, of a field of a case; nothing for a length that is not stated. @param {Field} field @param {any} content @param {any} circles */
+export function flankOf({ path: [, gear, name], schema }, content, circles) {
+  const figure = isStart(schema) ? name.replace(/start_.*/, "length_mm") : name;
+  const value = lengthOf(content.pair[gear], figure, circles?.[gear]) ?? (figure.endsWith("length_mm") ? undefined : schema.default);
+  return value === undefined ? {} : { [figure]: value };
+}
+
 /** The fields of one relief of a gear, of which one is shown. */
 export class StartSwitch {
   /**
