@@ -32,7 +32,7 @@ from host import cpu_seconds
 # To which frequency the shafts of a modal analysis are resolved.
 
 
-def _resolved_to(system: System, speed: FloatArray, orders: int, highest: float | None) -> float:
+def resolved_to(system: System, speed: FloatArray, orders: int, highest: float | None) -> float:
     """Return the frequency to resolve, Hz: `highest`, else the highest of the orders at the highest speed."""
     if highest is not None:
         return positive("highest_frequency", highest)
@@ -194,7 +194,7 @@ def modal_analysis(
     require_freedoms(system)
     speeds = checked_speeds(np.asarray(speed, dtype=float), above_zero=False)
     began = cpu_seconds()
-    highest = _resolved_to(system, speeds, orders, highest_frequency)
+    highest = resolved_to(system, speeds, orders, highest_frequency)
     elastic = [rotor.elastic.highest for rotor in system.rotors if rotor.elastic is not None]
     if highest != 0.0 and any(frequency != highest for frequency in elastic):
         system = assemble(replace(system.scene, highest_frequency=highest))

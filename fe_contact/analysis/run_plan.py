@@ -143,12 +143,15 @@ class PredictedDesigns(NamedTuple):
         The solutions that measure the errors of one.
     across_face : bool
         Whether the gears are those of three dimensions.
+    bytes : float
+        Largest resident memory of the process.
     """
 
     bodies: float
     design: float
     errors: float
     across_face: bool
+    bytes: float
 
 
 def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
@@ -163,10 +166,12 @@ def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
     """
     decided = decide(checked, cache, tried=True)
     pair, model = decided.checked.request.pair, decided.checked.model
-    parts = predict_run(pair, decided.plan, model, (1, 1), cache).parts
+    whole = predict_run(pair, decided.plan, model, (1, 1), cache)
+    parts = whole.parts
     bodies = parts["compliance"]["bodies"] + parts["error estimate"]["bodies"]
     design = _DESIGN * parts["contact"]["table"]
-    return PredictedDesigns(bodies, design, parts["error estimate"]["solutions"], model.across_face)
+    errors = parts["error estimate"]["solutions"]
+    return PredictedDesigns(bodies, design, errors, model.across_face, float(whole.memory_bytes))
 
 
 def _decided(decided: Decided, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:

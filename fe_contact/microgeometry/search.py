@@ -375,6 +375,27 @@ class Search:
         }
 
 
+LINEARIZED, FOLLOWED = 1.4, 75
+"""Assessments that a design with its slopes costs; designs of the walk to the end and of those beside it."""
+
+
+def usual_designs(search: Search) -> float:
+    """Return what a usual search takes, in assessments of a design at all positions."""
+    few, most, method = (
+        min(search.exploration / search.positions, 1.0),
+        float(search.evaluations),
+        search.method,
+    )
+    if isinstance(method, NelderMead):
+        return search.starts * most
+    explored = EXPLORED * most
+    if isinstance(method, DifferentialEvolution):
+        return search.starts * (few * explored + most - explored)
+    explored = min(method.sample, explored)
+    walked = min((method.trials + 1) * (TRIED + 1) + FOLLOWED, most - explored)
+    return search.starts * (few * explored + LINEARIZED * walked)
+
+
 @dataclass(frozen=True)
 class SearchRun:
     """The result of one start of a search.

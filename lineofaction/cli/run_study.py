@@ -28,22 +28,28 @@ from lineofaction.cli.output import (
     print_written,
     progress_bar,
 )
-from lineofaction.cli.subjects import assessed_scene, study_seconds, tabled_scene
+from lineofaction.cli.subjects import (
+    assessed_scene,
+    inputs_of_study,
+    study_cost,
+    tabled_scene,
+    tables_cost,
+)
 from lineofaction.gearbox.convert.case import CheckedCase, case_json
 from lineofaction.gearbox.convert.complaint import marks_of_case
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.input_file import InputFile, number_list
 from lineofaction.gearbox.problems import BadInput, JobFailed
-from lineofaction.gearbox.project import inputs_in, result_name, usual_speeds
+from lineofaction.gearbox.project import result_name
 from lineofaction.gearbox.registry import SUFFIX
 from lineofaction.gearbox.result_files import COMPLAINT, stamp, stamp_complaint
-from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
+from lineofaction.gearbox.schemas import Case, read_model, read_table
 from lineofaction.gearbox.schemas.model import BoundaryModel, item_type, spelling_of
 from lineofaction.gearbox.schemas.reading import located
 from lineofaction.gearbox.schemas.report import ReportInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.schemas.studied import OverSpeeds
 from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.cost import StudyCost
 from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.tabled_scene import open_executor
 from lineofaction.report.document import read_run, write_whole
@@ -51,7 +57,7 @@ from lineofaction.report.document import write as write_result
 from lineofaction.report.drawing.marks import marked_page_of_case
 from lineofaction.report.presentation import presentation_of
 from lineofaction.report.title_block import titled
-from model_studies.progress import announce
+from model_studies.progress import ANNOUNCED
 from model_studies.workers import Remembering, Workers
 from model_studies.workers.remembering import content_digest
 from service.version import solver_version
@@ -97,7 +103,8 @@ def run_study(study: Study, options: Json) -> None:
     for subject, _ in subjects:
         study.run.check(subject, inputs)
     written = [subject.case if isinstance(subject, CheckedCase) else subject for subject, _ in subjects]
-    expected = [study_seconds(study, subject, folder, inputs) for subject, folder in subjects]
+    if not options["json"]:
+        _announce_cost(study, subjects, inputs, options.get("service"))
     runs = targets[0].with_name(f"{targets[0].stem}_runs") if targets else None
     stopping = until_interrupted if study.run.interruptible else nullcontext
     with (
@@ -106,8 +113,6 @@ def run_study(study: Study, options: Json) -> None:
         progress_bar() as report,
         stopping() as cancel,
     ):
-        if None not in expected:
-            announce(report, study.stages[0][0], sum(filter(None, expected)), f"loa {study.name}")
         means = Means(cache_home(), report, workers, cancel, runs, run)
         results = [
             study.run.compute(_made(subject, folder, options.get("service"), report, workers), inputs, means)
@@ -127,6 +132,16 @@ def run_study(study: Study, options: Json) -> None:
         raise KeyboardInterrupt("interrupted. The result above is the best so far.")
     if failure := study.run.failure(result):
         raise JobFailed(failure)
+
+
+def _announce_cost(study: Study, subjects: Sequence[Any], inputs: Any, service: str | None) -> None:
+    """Say on standard error what the study will take, if that is more than a moment and can be predicted."""
+    costs = [study_cost(study, subject, folder, inputs) for subject, folder in subjects]
+    if study.run.tables and service is None:
+        costs += [tables_cost(*each) for each in subjects if isinstance(each[0], SceneInput)]
+    whole = sum(filter(None, costs), StudyCost(()))
+    if None not in costs and whole.seconds > ANNOUNCED:
+        sys.stderr.write(f"loa {study.name}: {whole.words}\n")
 
 
 def _tell(
@@ -157,22 +172,8 @@ def _tell(
 def _inputs(study: Study, options: Json, subject: CheckedCase | SceneInput, project: Path | None) -> Any:
     if isinstance(options.get("study"), BoundaryModel):  # of a verb that has read it
         return options["study"]
-    if not study.takes.from_file:
-        fields = _fields(study, options)
-        if isinstance(subject, SceneInput) and (count := _speeds_to_choose(study.inputs, fields)):
-            fields["speed_rpm"] = usual_speeds(subject, project, count)
-        return validated(study.inputs, fields)
-    file = options["study"] or (inputs_in(project, study) if project else None)
-    if file is None and not study.takes.bare:
-        raise BadInput.of("study", None, "a study file", f"For example: loa {study.name} {study.example}")
-    return validated(study.inputs, {}) if file is None else read_model(study.inputs, file)
-
-
-def _speeds_to_choose(inputs: type[BoundaryModel], fields: Json) -> int:
-    """Return how many speeds inputs need, of which neither those nor a run are named; 0: none."""
-    if not issubclass(inputs, OverSpeeds) or inputs.at_rest or fields.keys() & {"speed_rpm", "run"}:
-        return 0
-    return inputs.usual_speeds
+    fields = {} if study.takes.from_file else _fields(study, options)
+    return inputs_of_study(study, subject, project, fields, options.get("study"))
 
 
 def _fields(study: Study, options: Json) -> Json:

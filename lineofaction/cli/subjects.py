@@ -10,6 +10,7 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
+from bounds.types import Json
 from fe_contact.errors import DatabaseError
 from fe_contact.solver_version import SOLVER_VERSION, software_versions
 from fe_contact.ste import SteDatabase
@@ -18,15 +19,21 @@ from host.directories import cache_home
 from lineofaction.cli.guard import warn
 from lineofaction.cli.output import Report
 from lineofaction.gearbox.convert.case import CheckedCase, CheckedCases, case_at, case_json
+from lineofaction.gearbox.convert.live import plan_of
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.input_file import InputFile
-from lineofaction.gearbox.schemas import Case, read_model
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.project import inputs_in, usual_speeds
+from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.schemas.meshes import MeshInput
+from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.reading import located
 from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.schemas.studied import OverSpeeds
+from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.subjects import MeshTables, finished, scene_of, with_own_cases
 from lineofaction.gearbox.tabled_scene import ComputedTables
@@ -60,10 +67,53 @@ def assessed_scene(file: Path | InputFile) -> tuple[SceneInput, Path]:
     return scene, folder
 
 
-def study_seconds(study: Study, subject: CheckedCase | SceneInput, folder: Path, inputs: Any) -> float | None:
-    """Return predicted CPU seconds of a study, without the tables of a scene; None: not predicted."""
+def inputs_of_study(
+    study: Study,
+    subject: CheckedCase | SceneInput,
+    project: Path | None,
+    fields: Json,
+    file: Path | None = None,
+) -> Any:
+    """Return the inputs of a study: options, or its file, named or the one in the folder.
+
+    Speeds that a study of a scene needs and that nobody names are the usual ones. Raises `BadInput`.
+    """
+    if not study.takes.from_file:
+        if isinstance(subject, SceneInput) and (count := _speeds_to_choose(study.inputs, fields)):
+            fields = {**fields, "speed_rpm": usual_speeds(subject, project, count)}
+        return validated(study.inputs, fields)
+    file = file or (inputs_in(project, study) if project else None)
+    if file is None and not study.takes.bare:
+        raise BadInput.of("study", None, "a study file", f"For example: loa {study.name} {study.example}")
+    return validated(study.inputs, {}) if file is None else read_model(study.inputs, file)
+
+
+def _speeds_to_choose(inputs: type[BoundaryModel], fields: Json) -> int:
+    """Return how many speeds inputs need, of which neither those nor a run are named; 0: none."""
+    if not issubclass(inputs, OverSpeeds) or inputs.at_rest or fields.keys() & {"speed_rpm", "run"}:
+        return 0
+    return inputs.usual_speeds
+
+
+def study_cost(
+    study: Study, subject: CheckedCase | SceneInput, folder: Path, inputs: Any
+) -> StudyCost | None:
+    """Return the predicted cost of a study, without the tables of a scene; None: not predicted."""
     written = with_own_cases(subject, folder) if isinstance(subject, SceneInput) else subject
     return study.run.predicted(written, inputs, cache_home() / "compliance")
+
+
+def table_cost(case: Case) -> StudyCost:
+    """Return the predicted cost of the table of a case."""
+    cost = plan_of(CheckedCase(case), None, cache_home() / "compliance").chosen.cost
+    return StudyCost((Work("tables", cost.cpu_seconds),), cost.memory_bytes)
+
+
+def tables_cost(scene: SceneInput, folder: Path) -> StudyCost:
+    """Return the predicted cost of the tables of a scene that are not kept."""
+    written = (mesh.case for mesh in with_own_cases(scene, folder).meshes if isinstance(mesh.case, Case))
+    cases = {case.model_dump_json(): case for case in written}
+    return sum((table_cost(case) for case in cases.values() if not is_kept(case)), StudyCost(()))
 
 
 # Tables of cases are kept in the cache, under the name of all that decides them: this very program included.

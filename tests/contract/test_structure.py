@@ -11,18 +11,18 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (43_745, 818),
-    ("dynamics",): (45_014, 883),
-    ("lineofaction.gearbox",): (27_738, 567),
+    ("fe_contact",): (43_771, 819),
+    ("dynamics",): (45_014, 884),
+    ("lineofaction.gearbox",): (27_903, 571),
     ("lineofaction.report",): (12_424, 232),
     ("service",): (15_100, 357),
     ("lineofaction.client",): (2_944, 55),
-    ("lineofaction.cli",): (5_708, 80),
+    ("lineofaction.cli",): (5_760, 83),
     ("lineofaction.hardcases",): (3_841, 35),
     ("bounds", "host", "model_studies"): (4_523, 156),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 863
+MOST_FILES = 864
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""

@@ -21,6 +21,7 @@ from lineofaction.gearbox.schemas.figures import Figures
 from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.studies.cost import StudyCost
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.motion import OfferedMotion
 from model_studies.record_file import read_record, write_record
@@ -150,8 +151,8 @@ class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):
     def check(self, subject: Written, inputs: Inputs) -> None:
         """Refuse what a schema accepts, and compute nothing; raises `BadInput`."""
 
-    def predicted(self, _subject: Written, _inputs: Inputs, _cache: Path | None) -> float | None:
-        """Return the CPU seconds it takes once a scene has its tables; None where nothing predicts them.
+    def predicted(self, _subject: Written, _inputs: Inputs, _cache: Path | None) -> StudyCost | None:
+        """Return what it costs once a scene has its tables; None where nothing predicts it.
 
         The cases of a scene are written out. What is in the cache of compliances costs nothing.
         """

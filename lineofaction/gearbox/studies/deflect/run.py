@@ -20,6 +20,7 @@ from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
+from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.deflect import DeflectFigures, Inputs
 from lineofaction.gearbox.studies.deflect.agreement import (
     Agreement,
@@ -46,19 +47,20 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
         """Refuse load cases that cannot be, or that need what the scene lacks, before tables are computed."""
         check_cases(scene, inputs.load_cases)
 
-    def predicted(self, scene: SceneInput, inputs: Inputs, cache: Path | None) -> float:
+    def predicted(self, scene: SceneInput, inputs: Inputs, cache: Path | None) -> StudyCost:
         """Return what the tables of usual passes and the flanks of every load case take, by mesh."""
-        count, seconds = len(inputs.load_cases), 0.0
+        count, cost = len(inputs.load_cases), StudyCost(())
         cases = [case for mesh in scene.meshes if isinstance(case := mesh.case, Case)]
         for case in {case.model_dump_json(): case for case in cases}.values():
             with boundary_errors():
                 own = predicted = predicted_designs(CheckedCase(case).checked, cache)
                 if not own.across_face and case.accuracy.model not in PLANE:
                     predicted = predicted_designs(across_face(CheckedCase(case)).checked, cache)
-                    seconds += predicted.bodies  # otherwise those of its table
+                    gears = Work("gears", predicted.bodies)  # otherwise those of its table
+                    cost += StudyCost((gears,), predicted.bytes)
             knots = FIRST_KNOTS + count * USUAL_PASSES if predicted.across_face else 0
-            seconds += (knots + count) * predicted.design
-        return seconds
+            cost += StudyCost((Work("contacts", predicted.design, knots + count),), predicted.bytes)
+        return cost
 
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> GearboxDeflection:
         began, scene = spent(means.workers) - tabled.seconds, tabled.scene

@@ -14,6 +14,7 @@ from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, case
 from lineofaction.gearbox.convert.plausibility import phrased_for
 from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.studies.computation import Means, PointStudy, ResultFile
+from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.flank import FlankFigures, Inputs
 from lineofaction.gearbox.units import MM, UM, as_typed
 
@@ -37,11 +38,12 @@ class _FlankStudy(PointStudy[FlankFigures, LoadDistribution]):
         "format", (FORMAT,), LoadDistribution.to_netcdf, LoadDistribution.from_netcdf, LoadDistribution
     )
 
-    def predicted(self, case: CheckedCase, _inputs: FlankPoint, cache: Path | None) -> float:
+    def predicted(self, case: CheckedCase, _inputs: FlankPoint, cache: Path | None) -> StudyCost:
         """Return what the bodies and one solution with its errors take."""
         with boundary_errors():
             predicted = predicted_designs(case.at_point, cache)
-        return predicted.bodies + predicted.design + predicted.errors
+        contact = Work("contact", predicted.design), Work("its errors", predicted.errors)
+        return StudyCost((Work("gears", predicted.bodies), *contact), predicted.bytes)
 
     def compute(self, case: CheckedCase, _inputs: FlankPoint, means: Means) -> LoadDistribution:
         return flanks_of(case, means.analysis)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,21 +11,41 @@ from bounds import engineering
 from bounds.types import Json
 from dynamics.assembly.assemble import assemble
 from dynamics.linearize import ModalAnalysis, modal_analysis
+from dynamics.linearize.modal_analysis import resolved_to
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
+from lineofaction.gearbox.studies.cost import StudyCost, Work, scene_before_tables, sized
 from lineofaction.gearbox.studies.excitations import with_facts_of_scene
 from lineofaction.gearbox.studies.modes import Inputs, ModesFigures
 from lineofaction.gearbox.studies.motion import OfferedMotion, UnitMotion, chosen_rows
 from lineofaction.gearbox.units import RPM
 
 LEAST_SHARE = 1e-3
+_AT_REST, _LINEAR, _CUBIC = 3.5e-5, 1.2e-4, 1.9e-8
+"""CPU seconds by freedoms squared, freedoms, freedoms cubed: 5 to 301 of them, within a factor of 2."""
 MOST_GROUPS = 12
 """Speeds whose modes are listed to be looked at."""
 
 
 class _ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
     inputs, answer, file = Inputs, ModesFigures, array_file(ModalAnalysis)
+
+    def predicted(self, scene: SceneInput, inputs: Inputs, _cache: Path | None) -> StudyCost | None:
+        """Return what the modes at rest and at every speed take, by the number of freedoms.
+
+        Modes that a solid housing keeps are not known before and do not count.
+        """
+        with boundary_errors():
+            before = scene_before_tables(scene)
+            if before is None:
+                return None
+            speeds = np.array(inputs.speed_rpm) * RPM
+            highest = resolved_to(sized(before), speeds, inputs.orders, inputs.highest_frequency_hz)
+            freedoms = sized(before, highest or None).freedoms.column.size
+        at_rest, each = _AT_REST * freedoms**2, _LINEAR * freedoms + _CUBIC * freedoms**3
+        return StudyCost((Work("modes at rest", at_rest), Work("speeds", each, len(speeds))))
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> ModalAnalysis:
         with boundary_errors():

@@ -12,6 +12,8 @@ import numpy as np
 
 from bounds import engineering
 from bounds.types import Json
+from fe_contact.analysis.request.model_choice import decide
+from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.microgeometry.confirmation import HarrisMap
 from fe_contact.microgeometry.objective import Limits, WeightedMean, Worst
 from fe_contact.microgeometry.optimization import Optimization, OptimizationRequest
@@ -25,6 +27,7 @@ from fe_contact.microgeometry.search import (
     SequentialLinearProgramming,
     StagedLinearProgramming,
     never,
+    usual_designs,
 )
 from fe_contact.microgeometry.variables import DesignVariable
 from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
@@ -38,6 +41,7 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_text
 from lineofaction.gearbox.studies.change.question import check_driving, check_heard, heard_mesh
 from lineofaction.gearbox.studies.computation import Computation, Means, record_file
+from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.optimize import (
     HEARD_TRIALS,
     TRIALS,
@@ -98,6 +102,28 @@ class _OptimizeStudy(
         if mesh.case is not None:
             with boundary_errors():
                 _ = request_of(mesh.case, study).checked
+
+    def predicted(
+        self, subject: CheckedCase | SceneInput, study: Inputs, cache: Path | None
+    ) -> StudyCost | None:
+        """Return what the gears, the designs of a usual search and both analyses at the end take.
+
+        Of a scene nothing predicts it: what a design costs depends on its transfer functions, and is measured
+        and announced when the search begins.
+        """
+        if isinstance(subject, SceneInput):
+            return None
+        with boundary_errors():
+            request = subject.request(_library_request, study)
+            decided = decide(request.checked, cache, tried=True)
+            predicted, analysis = predicted_designs(request.checked, cache), decided.predicted(cache)
+        load = np.size(request.torques) / request.checked.request.load.size
+        each = load * request.scatter.nodes().weight.size * predicted.design
+        designs = usual_designs(request.search)
+        confirmed = Work("analyses", analysis.cpu_seconds - analysis.stages["compliance"], 2)
+        return StudyCost(
+            (Work("gears", predicted.bodies), Work("designs", each, designs), confirmed), predicted.bytes
+        )
 
     def normalized(self, subject: CheckedCase | SceneInput, study: Inputs) -> Json:
         """Return all inputs, with the usual variables if none are named."""

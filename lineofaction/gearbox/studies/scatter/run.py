@@ -21,6 +21,7 @@ from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.declared import figures
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, record_file
+from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.scatter import Inputs, ScatterFigures, ToleranceInputs
 from lineofaction.gearbox.units import UM, factor, in_um
 
@@ -44,7 +45,7 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
             raise BadInput.of("samples", inputs.samples, f"at most {MOST_SAMPLES}", advice)
         return super().normalized(case, inputs)
 
-    def predicted(self, case: CheckedCase, inputs: Inputs, cache: Path | None) -> float:
+    def predicted(self, case: CheckedCase, inputs: Inputs, cache: Path | None) -> StudyCost:
         """Return what the bodies, the pairs analyzed whole and the model of the others take."""
         with boundary_errors():
             request = case.request(scatter_request, inputs)
@@ -55,7 +56,8 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
         points = (
             sampling.positions * len(request.torques) * sampling.tangents * len(request.tolerances.widths)
         )
-        return predicted.bodies + solved * predicted.design + _ADDED * points * sampling.samples
+        pairs = Work("pairs", predicted.design, solved), Work("samples", _ADDED * points, sampling.samples)
+        return StudyCost((Work("gears", predicted.bodies), *pairs), predicted.bytes)
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> ToleranceStudy:
         """Sample the pairs of a case; in a plane model helix slopes do not deviate."""

@@ -7,13 +7,17 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from bounds.types import Json
 from fe_contact.analysis.request.request import Checked
+from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.analysis.studies.sensitivity import Sensitivity, study_sensitivity
 from fe_contact.options import TableAxes
 from lineofaction.gearbox.convert.case import PLANE, CheckedCase, across_face, boundary_errors, study_options
 from lineofaction.gearbox.stages import TableFraction
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, ResultFile
+from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.sensitivity import Inputs, SensitivityFigures
 from lineofaction.gearbox.units import UM
 from model_studies import Progress, in_unit
@@ -75,6 +79,16 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
     def check(self, case: CheckedCase, inputs: Inputs) -> None:
         """Refuse a case that cannot be, and deviations at which it cannot be."""
         _ = case.request(_tables, inputs)
+
+    def predicted(self, case: CheckedCase, inputs: Inputs, cache: Path | None) -> StudyCost:
+        """Return what the gears and the tables over each deviation take, without and with corner contact."""
+        with boundary_errors():
+            checked = case.request(_tables, inputs)
+            predicted = predicted_designs(checked, cache)
+        axes = checked.request.misalignment, checked.request.center_distance_change
+        values = 2 * sum(np.union1d(np.zeros(1), axis).size for axis in axes)
+        each = predicted.design + predicted.errors
+        return StudyCost((Work("gears", predicted.bodies), Work("values", each, values)), predicted.bytes)
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> Studies:
         """Study a case at its highest load; its own misalignments and center distances are left aside."""

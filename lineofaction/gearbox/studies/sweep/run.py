@@ -36,6 +36,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.declared import Figure, figures
 from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, record_file
+from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.sweep import Inputs, SweepFigures
 from lineofaction.gearbox.units import UM, factor, unit_name
 
@@ -256,12 +257,13 @@ class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
         with boundary_errors():
             _ = case.request(_request, inputs).checked
 
-    def predicted(self, case: CheckedCase, inputs: Inputs, cache: Path | None) -> float:
+    def predicted(self, case: CheckedCase, inputs: Inputs, cache: Path | None) -> StudyCost:
         """Return what the bodies and every design at all torques take."""
         with boundary_errors():
             request = case.request(_request, inputs)
             predicted = predicted_designs(request.checked, cache)
-        return predicted.bodies + len(request.designs) * predicted.design
+        designs = Work("designs", predicted.design, len(request.designs))
+        return StudyCost((Work("gears", predicted.bodies), designs), predicted.bytes)
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> SweepResult:
         """Sweep a case; what is not swept is at its highest load, its deviations nearest to zero."""

@@ -1,0 +1,95 @@
+"""What a study costs is said before it begins, and by the status of a folder; it grows with the work."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from command_line import loa
+from spur_case import spur_case
+
+from lineofaction.cli import run_study
+from lineofaction.cli.subjects import study_cost
+from lineofaction.gearbox.convert.case import CheckedCase
+from lineofaction.gearbox.registry import STUDIES
+from lineofaction.gearbox.schemas import Case, read_model, validated
+from lineofaction.gearbox.studies.cost import StudyCost, Work
+from lineofaction.gearbox.subjects import scene_of
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+SPEEDS = [100.0 * k for k in range(1, 61)]
+GROWING: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
+    "sensitivity": (
+        {"misalignment_um": [0.0], "center_distance_change_percent": [0.0, 0.1]},
+        {"misalignment_um": [0.0, 5.0, 10.0], "center_distance_change_percent": [0.0, 0.1, 0.2]},
+    ),
+    "optimize": ({"search": {"trials": 0}}, {"search": {"trials": 6}}),
+    "sweep": ({"over": ["torque=50:100:50"]}, {"over": ["pinion.profile_crowning=0:16:2"]}),
+    "scatter": ({"samples": 64}, {"samples": 4096}),
+    "modes": ({"speed_rpm": SPEEDS[:6]}, {"speed_rpm": SPEEDS}),
+}
+
+
+@pytest.fixture
+def case(tmp_path: Path) -> CheckedCase:
+    file = tmp_path / "case.toml"
+    file.write_text(spur_case(torques=[100.0]))
+    return CheckedCase(read_model(Case, file))
+
+
+def predicted(verb: str, inputs: dict[str, Any], case: CheckedCase) -> StudyCost:
+    study = STUDIES[verb]
+    subject, folder = scene_of(EXAMPLES / "jeffcott_scene.toml") if verb == "modes" else (case, Path())
+    checked = validated(study.inputs, inputs)
+    cost = study_cost(study, study.run.narrowed(subject, checked), folder, checked)
+    assert cost is not None
+    return cost
+
+
+@pytest.mark.parametrize("verb", GROWING)
+def test_a_prediction_is_made_and_grows_with_the_work(verb: str, case: CheckedCase) -> None:
+    less, more = (predicted(verb, inputs, case) for inputs in GROWING[verb])
+    assert 0.0 < less.seconds < more.seconds
+    assert less.seconds == pytest.approx(sum(part.seconds for part in less.parts))
+
+
+def test_of_a_usual_search_a_scatter_costs_by_its_nodes(case: CheckedCase) -> None:
+    alone = predicted("optimize", {"torque_n_m": [100.0]}, case)
+    scatter = {"pinion": {"profile_slope_um": 2.0}, "points": 5}
+    spread = predicted("optimize", {"torque_n_m": [100.0], "scatter": scatter}, case)
+    designs = [next(part for part in cost.parts if part.name == "designs") for cost in (alone, spread)]
+    assert designs[1].seconds == pytest.approx(5.0 * designs[0].seconds, rel=0.3)
+
+
+def test_the_cost_is_said_as_parts_of_a_whole() -> None:
+    gears, values = Work("gears", 1.6), Work("values", 1.6, 24)
+    whole = StudyCost((gears,), 2.0**30) + StudyCost((values, Work("values", 0.8, 24), Work("beside", 0.01)))
+    assert whole.words == "about 59 CPU s, 1 GiB: gears 1.6 s, 48 values at 1.2 s"
+
+
+@pytest.mark.parametrize("seconds", [1.0, 40.0])
+def test_the_verb_says_more_than_a_moment_on_standard_error(
+    seconds: float, case: CheckedCase, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(run_study, "study_cost", lambda *_: StudyCost((Work("values", seconds / 8.0, 8),)))
+    run_study._announce_cost(STUDIES["sensitivity"], [(case, Path())], None, None)
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    said = "loa sensitivity: about 40 CPU s: 8 values at 5 s\n"
+    assert printed.err == (said if seconds == 40.0 else "")
+
+
+def test_the_status_sums_what_is_due(case: CheckedCase, tmp_path: Path) -> None:
+    facts = json.loads(loa("status", tmp_path, "--json").stdout)
+    due = [row["cpu_seconds"] for row in facts["results"] if row["state"] != "fresh"]
+    known = [seconds for seconds in due if seconds is not None]
+    assert facts["due_cpu_seconds"] == pytest.approx(sum(known))
+    assert facts["not_predicted"] == len(due) - len(known) > 0
+    said = loa("status", tmp_path).stdout.splitlines()[1]
+    assert re.match(r"stale or missing: about [\d.]+ CPU s, without \d+ that nothing predicts$", said)
+    (tmp_path / "case.nc").write_bytes(b"")  # newer than the case
+    less = json.loads(loa("status", tmp_path, "--json").stdout)
+    assert less["due_cpu_seconds"] < facts["due_cpu_seconds"]
