@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,8 @@ import pytest
 from housing_solid import STIFFNESS, housed_scene, write_block
 from page_picture import CANVAS, different, frames, picture, rest, stopped
 from page_visit import PATIENCE, Visit, control, found_inaccessible, moved, shown, tab
-from playwright.sync_api import Browser, expect
+from PIL import Image
+from playwright.sync_api import Browser, Page, expect
 from running_service import until
 
 from lineofaction.gearbox.schemas.toml import toml_text
@@ -214,6 +216,54 @@ def test_a_browser_without_webgl_shows_the_drawing(browser: Browser, address: st
     expect(seen.page.locator("#mesh-drawing path").first).to_be_visible()
     assert seen.complaints == []
     seen.page.close()
+
+
+@pytest.mark.law
+def test_a_browser_without_webgl_shows_a_still_picture_of_a_unit(
+    view: Visit, browser: Browser, address: str, analyzed: str
+) -> None:
+    seen = shown(browser, address, analyzed)
+    page, said, canvas = seen.page, seen.page.locator("#view [role=status]"), seen.page.locator(CANVAS)
+    page.locator("#import-file").set_input_files(UNIT)
+    expect(said).to_contain_text("A still picture of the unit")
+    expect(page.locator("#mesh-drawing")).to_be_hidden()
+    expect(canvas).to_have_attribute("aria-label", "Gear unit with 3 shafts and 2 meshes")
+    view.page.locator("#import-file").set_input_files(UNIT)
+    expect(view.page.locator("#view [role=status]")).to_contain_text("click a mesh")
+    for own in (said, view.page.locator("#view [role=status]")):
+        own.evaluate("(node) => { node.style.visibility = 'hidden'; }")
+    plain = still_picture(page)
+    shapes = [outlined(plain), outlined(picture(view.page))]
+    assert np.mean(shapes[0] ^ shapes[1]) < 0.04, "as the moving picture shows it"
+    page.get_by_role("button", name="wheel 1", exact=True).press("Enter")
+    until(lambda: different(plain, still_picture(page)) > 0.002)
+    view.page.get_by_role("button", name="wheel 1", exact=True).press("Enter")
+    expect(view.page.locator("#unit [role=status]")).to_contain_text("wheel 1")
+    orange = [np.mean(marked_points(shot)) for shot in (still_picture(page), picture(view.page))]
+    assert orange[0] == pytest.approx(orange[1], rel=0.4), "through all that is before it, in both"
+    assert found_inaccessible(page, "#view") == {}
+    page.get_by_role("button", name="second stage, 21/74").press("Enter")
+    expect(page.locator("#view")).to_be_hidden()
+    expect(page.locator("#mesh-drawing path").first).to_be_visible()
+    assert seen.complaints == []
+    page.close()
+
+
+def marked_points(shot: np.ndarray) -> np.ndarray:
+    return (shot[..., 0] > 1.8 * shot[..., 2]) & (shot[..., 0] > 100)
+
+
+def outlined(shot: np.ndarray) -> np.ndarray:
+    """Return where the unit is (100, 100), over the box that holds it."""
+    covered = np.abs(shot - shot[-1, shot.shape[1] // 2]).max(axis=-1) > 25
+    rows, columns = (np.flatnonzero(covered.any(axis=axis)) for axis in (1, 0))
+    at = [np.linspace(ends[0], ends[-1], 100).round().astype(int) for ends in (rows, columns)]
+    return covered[np.ix_(*at)]
+
+
+def still_picture(page: Page) -> np.ndarray:
+    page.locator(f"{CANVAS}[data-drawn]").wait_for()
+    return np.asarray(Image.open(BytesIO(page.locator(CANVAS).screenshot())).convert("RGB")).astype(int)
 
 
 def test_nothing_rolls_by_itself_for_who_wants_less_motion(

@@ -5,6 +5,7 @@ import { button, byId, make } from "./elements.js";
 import { MOVING, Motions } from "./view_motion.js";
 import { most, RollingPair } from "./view_pair.js";
 import { drawable, Stage } from "./view_stage.js";
+import { STILL, stillOf } from "./view_still.js";
 import { gearboxOf } from "./view_unit.js";
 
 const BENT = 200; // times
@@ -13,8 +14,9 @@ const BENT = 200; // times
 
 /** The picture in a part of the page, with what it is steered by. */
 export class View {
-  /** @param {HTMLElement} target hidden where the browser has no WebGL2: the drawing stands for it */
+  /** @param {HTMLElement} target hidden where the browser has no WebGL2: a drawing stands for the pair, a still picture for a unit */
   constructor(target) {
+    this.target = target;
     /** @type {string | null} the motion of the result, by its number, as a word of the address */
     this.motion = null;
     target.hidden = !drawable();
@@ -67,13 +69,17 @@ export class View {
    * @param {any} scene null: the pair @param {string} [part] @param {(mesh: any) => void} [open] a mesh that is clicked
    */
   async see(scene, part = "", open = () => {}) {
-    if (!this.stage) return;
     const wanted = (this.wanted = { scene, part, open });
-    this.motions.seen(scene);
+    this.motions?.seen(scene);
     const gearbox = scene && (scene === this.gearbox?.scene ? this.gearbox : await gearboxOf(scene, open));
     if (this.wanted !== wanted) return;
     this.gearbox = gearbox ?? this.gearbox;
     gearbox?.mark(part);
+    if (!this.stage) {
+      this.target.hidden = !gearbox;
+      this.target.replaceChildren(...(gearbox ? [stillOf(gearbox, unitInWords(scene)), make("p", { class: "view-words", role: "status" }, STILL)] : []));
+      return;
+    }
     if (!this.stage.rolls && gearbox) gearbox.position = this.pair.position;
     this.stage.put(gearbox ?? this.pair);
     this.ofPair.hidden = Boolean(gearbox);
@@ -89,7 +95,7 @@ export class View {
   /** Say in words what is drawn. @param {any} scene null: the pair */
   label(scene) {
     const { pinion, wheel, internal } = this.pair.outline ?? { pinion: {}, wheel: {} };
-    const what = scene ? `Gear unit with ${scene.shafts.length} shafts and ${scene.meshes?.length ?? 0} meshes, in motion`
+    const what = scene ? `${unitInWords(scene)}, in motion`
       : `${pinion.teeth} teeth drive ${internal ? "a ring gear with " : ""}${wheel.teeth}, rolling in three dimensions`;
     this.stage.canvas.setAttribute("aria-label", `${what}. Drag or arrow keys turn the picture, wheel or + and − zoom, space stops and starts.`);
   }
@@ -125,6 +131,9 @@ export class View {
     this.stage.wake();
   }
 }
+
+/** @param {any} scene */
+const unitInWords = ({ shafts, meshes }) => `Gear unit with ${shafts.length} shafts and ${meshes?.length ?? 0} meshes`;
 
 /** Whether two outlines are of the same gears. @param {any} outline */
 const outlined = (outline) => outline && JSON.stringify([outline.pinion, outline.wheel]);

@@ -104,7 +104,7 @@ export class Gearbox {
     const pair = new RollingPair();
     pair.outline = outline;
     const on = { pinion: driver, wheel: driven };
-    return { mesh, pair, place: placement(angle, to), ratio: turned / step, on, angle, from: to[2] };
+    return { mesh, pair, place: placement(angle, to), ratio: turned / step, on, angle, to };
   }
 
   /** Let it move by a result. @param {import("./view_motion.js").UnitMotion | null} motion null: it stands */
@@ -122,13 +122,15 @@ export class Gearbox {
   begin(gl, programs) {
     Object.assign(this, { gl, programs, hull: null });
     for (const { pair } of this.stages) pair.begin(gl, programs);
-    const bodies = this.scene.shafts.map((shaft) => ({ name: shaft.name, shaft, mesh: held(gl, shaftMesh(shaft)), color: COLORS.shaft }));
+    this.bodies = this.parts.map((part) => ({ ...part, mesh: held(gl, part.mesh) }));
+  }
+
+  /** Shafts and bearings, each with its mesh about the axis of its shaft. */
+  get parts() {
+    const shafts = this.scene.shafts.map((shaft) => ({ name: shaft.name, shaft, mesh: shaftMesh(shaft), color: COLORS.shaft }));
     const bearings = [...(this.scene.rolling_bearings ?? []), ...(this.scene.bushings ?? [])].filter(({ shaft }) => this.shafts.has(shaft));
-    for (const bearing of bearings) {
-      const shaft = this.shafts.get(bearing.shaft);
-      bodies.push({ name: bearing.name, shaft, mesh: held(gl, bearingMesh(bearing, shaft)), color: COLORS.bearing });
-    }
-    this.bodies = bodies;
+    const own = bearings.map((bearing) => ({ bearing, shaft: this.shafts.get(bearing.shaft) }));
+    return [...shafts, ...own.map(({ bearing, shaft }) => ({ name: bearing.name, shaft, mesh: bearingMesh(bearing, shaft), color: COLORS.bearing }))];
   }
 
   /** Let go of what it holds. */
@@ -179,22 +181,26 @@ export class Gearbox {
   draw(gl, frame) {
     gl.enable(gl.CULL_FACE);
     if (!frame.picking) this.revolved(gl, frame, this.bodies);
-    this.stages.forEach(({ pair, place, ratio, on, angle, from }, k) => {
+    const marked = [];
+    this.stages.forEach(({ pair, place, ratio, on, angle, to }, k) => {
       const moved = (name) => {
         const [gear, shaft] = [on[name], this.shafts.get(on[name].shaft)];
-        const middle = shaft.origin_mm[2] + gear.position_mm - from;
+        const middle = shaft.origin_mm[2] + gear.position_mm - to[2];
         return [name, this.motion.ofDisc(shaft.name, gear.position_mm, middle, angle) ?? STILL];
       };
       pair.moved = this.motion && Object.fromEntries(GEARS.map(moved));
       pair.position = ratio * this.position;
       pair.meshes ??= pair.made(gl);
       const own = { ...frame, view: product(frame.view, place), code: 8 * k + 1 };
-      for (const name of GEARS) pair.gear(gl, name, frame.picking ? ["PICK"] : ["SMOOTH", "STEEL"], own, 1);
+      const gear = (name) => pair.gear(gl, name, frame.picking ? ["PICK"] : ["SMOOTH", "STEEL"], own, 1);
+      GEARS.forEach(gear);
+      marked.push(() => GEARS.filter((name) => on[name].name === this.marked).forEach(gear));
     });
     if (frame.picking) return;
     if (this.motion?.hull) this.surface(gl, frame);
-    gl.depthFunc(gl.ALWAYS); // what is marked is seen through all else
+    gl.clear(gl.DEPTH_BUFFER_BIT); // what is marked is seen through all else
     this.revolved(gl, frame, this.bodies.filter(({ name }) => name === this.marked));
+    for (const again of marked) again();
   }
 
   /** Draw the surface of a housing: by its levels, or so that the rest is seen through it. */
