@@ -30,7 +30,7 @@ napoleon_google_docstring = False
 napoleon_use_ivar = True  # attributes are a list, not entries of the index
 
 html_theme = "furo"
-html_static_path = ["_static"]
+html_static_path = ["_static", "images/relief.wav"]
 html_css_files = ["formulas.css"]
 html_title = "lineofaction"
 html_copy_source = False

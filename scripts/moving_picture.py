@@ -1,6 +1,6 @@
-"""Draw the moving picture of the README: tip relief moves, pressure on the flank and ripple follow.
+"""Draw the moving picture of the README: tip relief moves, pressure on the flank, ripple and sound follow.
 
-python scripts/moving_picture.py docs/images/relief.gif        about 40 CPU s
+python scripts/moving_picture.py docs/images/relief.gif        about 40 CPU s; writes relief.wav beside it
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image
 
 import lineofaction as loa
+from dynamics.acoustics.recording import Recording, write_wav
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, FloatArray, HeatMap, Line, Panel
 from lineofaction.report.drawing.image import panel_sheet
@@ -51,6 +52,9 @@ TORQUE = 80.0
 RELIEFS = tuple(float(relief) for relief in range(0, 25, 2))
 DOTS, FRAME_MS, REST_MS = 80, 160, 900
 COLORS = 96
+MESH_HZ, SAMPLE_RATE = 1400.0, 12_000
+"""The pitch of the tutorial's complaint; four harmonics are below half the sample rate."""
+FADE_S = 0.02
 
 
 def relieved(case: dict[str, Any], relief: float) -> dict[str, Any]:
@@ -65,6 +69,27 @@ def ripple_of(flanks: Any) -> FloatArray:
     """Return the transmission error less its mean over two pitches, µm."""
     curve = 1e6 * (flanks.deflection - flanks.deflection.mean())
     return np.asarray(np.concatenate([curve, curve, curve[:1]]))
+
+
+def velocities(ripple: FloatArray) -> FloatArray:
+    """Return the amplitudes of the harmonics of a curve over one pitch as velocities at the mesh, µm/s.
+
+    As the page sounds live curves: each harmonic by its velocity.
+    """
+    orders = np.arange(1, int(0.5 * SAMPLE_RATE / MESH_HZ) + 1)
+    amplitude = 2.0 * np.abs(np.fft.rfft(ripple)[orders]) / ripple.size
+    return np.asarray(2.0 * np.pi * orders * MESH_HZ * amplitude)
+
+
+def sound(ripples: Sequence[FloatArray], durations_ms: Sequence[int]) -> Recording:
+    """Return what the mesh excites while each curve is shown, all at one scale."""
+    counts = [round(1e-3 * duration * SAMPLE_RATE) for duration in durations_ms]
+    shown = np.repeat([velocities(ripple) for ripple in ripples], counts, axis=0)
+    fade = np.hanning(round(FADE_S * SAMPLE_RATE) + 2)[1:-1]
+    level = np.column_stack([np.convolve(each, fade / fade.sum(), "same") for each in shown.T])
+    phase = 2.0 * np.pi * MESH_HZ * np.arange(len(level)) / SAMPLE_RATE
+    samples = (level * np.sin(phase[:, None] * np.arange(1, level.shape[1] + 1))).sum(axis=1)
+    return Recording(samples, SAMPLE_RATE, "velocity of the transmission error; no sound pressure", "um/s")
 
 
 def panels(all_flanks: Sequence[Any], index: int) -> tuple[Panel, ...]:
@@ -111,20 +136,29 @@ def frame(drawn: tuple[Panel, ...]) -> Image.Image:
     return Image.open(buffer).convert("RGB").quantize(COLORS, Image.Quantize.MAXCOVERAGE)
 
 
+def there_and_back(count: int) -> list[tuple[int, int]]:
+    """Return which of the positions of the slider is shown, and for how many ms; it rests at both ends."""
+    rests = {0, count - 1}
+    return [(i, REST_MS if i in rests else FRAME_MS) for i in (*range(count), *range(count - 2, 0, -1))]
+
+
 def moving(frames: Sequence[Image.Image], output: Path) -> None:
-    """Write frames there and back as a GIF that repeats; it rests at both ends."""
-    there_and_back = [*frames, *frames[-2:0:-1]]
-    rests = {0, len(frames) - 1}
-    durations = [REST_MS if index in rests else FRAME_MS for index in range(len(there_and_back))]
-    first, *others = there_and_back
+    """Write frames there and back as a GIF that repeats."""
+    shown = there_and_back(len(frames))
+    first, *others = (frames[index] for index, _ in shown)
+    durations = [duration for _, duration in shown]
     first.save(output, save_all=True, append_images=others, duration=durations, loop=0, optimize=True)
 
 
 def main(output: Path) -> None:
-    """Compute all reliefs and write the picture."""
+    """Compute all reliefs and write the picture and its sound."""
     case = tomllib.loads(CASE)
     found = [loa.flank(relieved(case, relief), torque_n_m=TORQUE) for relief in RELIEFS]
     moving([frame(panels(found, index)) for index in range(len(found))], output)
+    shown = there_and_back(len(found))
+    curves = [1e6 * found[index].deflection for index, _ in shown]
+    heard = sound(curves, [duration for _, duration in shown])
+    write_wav(output.with_suffix(".wav"), heard, heard.peak)
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from PIL.GifImagePlugin import GifImageFile
+from scipy.io import wavfile
 
 from lineofaction.report.drawing.figure import Axis, Line, Panel
 
@@ -40,6 +41,32 @@ def test_frames_run_there_and_back_and_rest_at_the_ends(tmp_path: Path) -> None:
             seen.append((np.asarray(shown.convert("RGB")).tobytes(), shown.info["duration"]))
     assert len(seen) == 4 and seen[1][0] == seen[3][0] != seen[2][0]
     assert [duration for _, duration in seen] == [900, 160, 900, 160]
+
+
+def test_the_sound_lasts_as_long_as_the_picture_and_is_small() -> None:
+    file = PICTURE.with_suffix(".wav")
+    assert file.stat().st_size < 300_000
+    rate, samples = wavfile.read(file)
+    shown = moving_picture.there_and_back(len(moving_picture.RELIEFS))
+    assert len(samples) == pytest.approx(1e-3 * sum(duration for _, duration in shown) * rate, abs=len(shown))
+    assert np.abs(samples).max() == pytest.approx(1.0)
+    for page in ("README.md", "docs/index.md"):
+        assert "images/relief.wav" in (ROOT / page).read_text("utf-8")
+
+
+@pytest.mark.law
+def test_a_ripple_twice_as_large_sounds_twice_as_loud_and_each_harmonic_by_its_velocity() -> None:
+    angle = 2.0 * np.pi * np.arange(64) / 64
+    curve = 3.0 + 0.5 * np.sin(angle) + 0.25 * np.sin(2.0 * angle + 1.0)
+    first, second, *others = moving_picture.velocities(curve)
+    assert first == pytest.approx(second) == pytest.approx(np.pi * moving_picture.MESH_HZ)
+    assert np.allclose(others, 0.0)
+    heard = moving_picture.sound([curve, 2.0 * curve], [500, 500]).samples
+    half, edge = heard.size // 2, moving_picture.SAMPLE_RATE // 20
+    quiet, loud = (
+        np.sqrt(np.mean(np.square(part))) for part in (heard[edge : half - edge], heard[half + edge : -edge])
+    )
+    assert loud / quiet == pytest.approx(2.0, rel=1e-3)
 
 
 def test_both_gears_are_relieved_and_the_case_is_left_alone() -> None:
