@@ -28,7 +28,7 @@ from service.routes.scopes import ScopedRoute, needs
 from service.schemas.answers import ExampleBody, UnitBody, UnitFile
 from service.worker.process import ANALYZE
 
-_READING_FAILURES = (TooLarge, TooManyHeld, QueueFull, LiveUnavailable)
+READING_FAILURES = (TooLarge, TooManyHeld, QueueFull, LiveUnavailable)
 """What a reader of foreign bytes answers beside faults of the bytes."""
 _MOST_FILES = 16
 
@@ -140,7 +140,7 @@ def case_outline(body: CaseRequest) -> Response:
     "/cases/from-toml",
     summary="Read a case file",
     response_model=CaseBody,
-    responses=documented(*_READING_FAILURES),
+    responses=documented(*READING_FAILURES),
 )
 @needs(Scope.READ, body=CaseText)
 async def case_from_toml(body: CaseText, context: Ctx, request: Request) -> Response:
@@ -158,7 +158,7 @@ async def _read_by(context: Context, entry: str, body: BaseModel, request: Reque
     "/cases/as-made",
     summary="State what gears are as made",
     response_model=AsMadeBody,
-    responses=documented(*_READING_FAILURES),
+    responses=documented(*READING_FAILURES),
 )
 @needs(Scope.READ, body=AsMadeRequest)
 async def case_as_made(body: AsMadeRequest, context: Ctx, request: Request) -> Response:
@@ -206,7 +206,7 @@ class SceneBody(BaseModel):
     "/scenes/from-toml",
     summary="Read a scene file",
     response_model=SceneBody,
-    responses=documented(*_READING_FAILURES),
+    responses=documented(*READING_FAILURES),
 )
 @needs(Scope.READ, body=SceneText)
 async def scene_from_toml(body: SceneText, context: Ctx, request: Request) -> Response:
@@ -238,7 +238,7 @@ ENTRY = "lineofaction.gearbox.from_rexs.opened:unit_of_rexs"
     "/units/open",
     summary="Open a gear unit (REXS)",
     response_model=UnitBody,
-    responses=documented(*_READING_FAILURES),
+    responses=documented(*READING_FAILURES),
 )
 @needs(Scope.READ, body=UnitFile)
 async def open_unit(body: UnitFile, context: Ctx, request: Request) -> Response:

@@ -1,4 +1,4 @@
-"""Questions about a draft, as it is typed: its drawing, plan and curves; its faults are an answer.
+"""Questions about a draft, as it is typed: its drawing, plan, curves, its text; its faults are an answer.
 
 A draft is wrong most of the time. A browser logs every refused request as an error of the page, so here what
 elsewhere is refused as `BadInput` (422) of fields is answered (200). All else is refused as everywhere.
@@ -103,3 +103,22 @@ async def draft_plan(body: PlanRequest, context: Ctx) -> Response:
 async def draft_ste(key: Key, body: LiveInput, context: Ctx) -> Response:
     """Answer as `/v1/databases/{hash}/ste`, or with what is wrong."""
     return await queries.live_ste(key, body, context)
+
+
+@router.post("/drafts/scene", summary="Text of a drafted scene", response_model=cases.SceneText | FaultsBody)
+@needs(Scope.READ, body=cases.SceneRequest)
+def draft_scene(body: cases.SceneRequest) -> cases.SceneText:
+    """Answer as `/v1/scenes/to-files`, or with what is wrong."""
+    return cases.scene_to_files(body)
+
+
+@router.post(
+    "/drafts/scene-text",
+    summary="Scene of a drafted text",
+    response_model=cases.SceneBody | FaultsBody,
+    responses=documented(*cases.READING_FAILURES),
+)
+@needs(Scope.READ, body=cases.SceneText)
+async def draft_scene_text(body: cases.SceneText, context: Ctx, request: Request) -> Response:
+    """Answer as `/v1/scenes/from-toml`, or with what is wrong."""
+    return await cases.scene_from_toml(body, context, request)

@@ -92,7 +92,8 @@ def _request_fault(item: Mapping[str, Any], model: type[BaseModel] | None) -> Fa
         return fault_of(item, None, loc)
     if item["type"] == "json_invalid":
         return Fault("body", None, "valid JSON", f"{item.get('ctx', {}).get('error', '')}.")
-    if loc[:1] == ["inputs"] and loc[1:2] in (["case"], ["scene"]) and len(loc) > 2 and model is not None:
+    inside = len(loc) > 2 or (len(loc) == 2 and item["type"] == "refused")
+    if loc[:1] == ["inputs"] and loc[1:2] in (["case"], ["scene"]) and inside and model is not None:
         inner = model_in(model.model_fields["inputs"].annotation)
         named = None if inner is None else inner.model_fields.get(loc[1])
         if named is not None:

@@ -134,9 +134,7 @@ BODIES: dict[str, Json] = {
     },
     "/v1/databases/{key}/query": QUERY,
     "/v1/databases/{key}/ste": {"torque_n_m": [100.0], "pinion": {"tip_relief_um": 10.0}},
-    "/v1/plans": {"inputs": {"case": CASE}},
-    "/v1/cases/outline": {"inputs": {"case": CASE}},
-    "/v1/cases/to-toml": {"inputs": {"case": CASE}},
+    **{path: {"inputs": {"case": CASE}} for path in ("/v1/plans", "/v1/cases/outline", "/v1/cases/to-toml")},
     "/v1/cases/from-toml": {
         "toml": "[pair]\nnormal_module_mm = 4.0\ncenter_distance_mm = 80.0\n"
         "[pair.pinion]\nteeth = 20\nface_width_mm = 25.0\nbore_diameter_mm = 40.0\n"
@@ -156,6 +154,8 @@ _DRAFTS = {
     "/v1/drafts/outline": "/v1/cases/outline",
     "/v1/drafts/plan": "/v1/plans",
     "/v1/drafts/{key}/ste": "/v1/databases/{key}/ste",
+    "/v1/drafts/scene": "/v1/scenes/to-files",
+    "/v1/drafts/scene-text": "/v1/scenes/from-toml",
 }
 """Questions about drafts, and whose bodies and answers they have."""
 BODIES |= {draft: BODIES[path] for draft, path in _DRAFTS.items()}

@@ -26,6 +26,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "planetary_scene.toml"
 def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
     seen = shown(browser, address, analyzed)
     tab(seen.page, "Sound")
+    tab(seen.page, "TOML")
     yield seen
     seen.page.close()
 
@@ -174,7 +175,10 @@ def test_the_matrix_of_a_unit_is_a_file_beside_its_scene(visit: Visit) -> None:
     assert max(map(len, text.splitlines())) < 300
     refused = {"status": 422, "json": {"title": "Not now", "status": 422}}  # others wait for the worker
     page.route("**/execution", lambda route: route.fulfill(**refused))
-    with page.expect_request("**/v1/scenes/from-toml") as sent:
+    tab(page, "TOML")
+    page.get_by_label("Scene, TOML").press("End")
+    page.keyboard.type(" ")
+    with page.expect_request("**/v1/drafts/scene-text") as sent:
         page.get_by_role("button", name="Compute the scene").press("Enter")
     expect(page.locator("#scene-body [role=alert]")).to_contain_text("Not now")
     page.unroute("**/execution")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal, Self, get_origin
 
-from pydantic import BaseModel, Field, Strict, model_validator
+from pydantic import BaseModel, ConfigDict, Field, Strict, model_validator
 
 from dynamics.settings.run import Integration, Outputs
 from lineofaction.gearbox.schemas.bearings import BushingInput, PlanetBearingInput, RollingBearingInput
@@ -46,6 +46,8 @@ class IntegrationInput(BoundaryModel):
 
 class SceneInput(BoundaryModel):
     """A geared system and the run to make with it."""
+
+    model_config = ConfigDict(json_schema_extra=lambda schema: schema.update({"x-references": _references()}))
 
     class RunInput(BoundaryModel):
         """Duration of a run, and its reaction to an assumption that does not hold."""
@@ -156,10 +158,7 @@ class SceneInput(BoundaryModel):
                 if name in names[:index]:
                     refuse(f"{kind}[{index}].name", name, "a name that no other one of them has")
         shafts = [shaft.name for shaft in self.shafts]
-        for kind in _with_field("shaft"):
-            for index, part in enumerate(getattr(self, kind)):
-                _refuse_unknown(f"{kind}[{index}].shaft", part.shaft, shafts)
-        for field, name in _further_shafts(self):
+        for field, name in _named(self, "shafts"):
             _refuse_unknown(field, name, shafts)
         bushings = [*(part.name for part in self.bushings), *(part.name for part in self.rolling_bearings)]
         pins = [part.name for part in self.planet_bearings]
@@ -187,19 +186,26 @@ def _with_field(name: str) -> Iterator[str]:
     yield from (kind for kind, part in _KINDS.items() if name in part.model_fields)
 
 
-def _further_shafts(scene: SceneInput) -> Iterator[tuple[str, str]]:
-    """Yield the fields by which parts name shafts beside that they are on, and the names."""
-    fields = {
-        "shafts": ("frame",),
-        "couplings": ("first", "second"),
-        "planets": ("planet",),
-        "forces": ("turns_with", "of_shaft"),
+def _references() -> dict[str, dict[str, str]]:
+    """Return the fields by which parts name others, and the kind of what they name, by kind of part."""
+    further = {
+        "shafts": {"frame": "shafts"},
+        "couplings": {"first": "shafts", "second": "shafts"},
+        "planets": {"planet": "shafts"},
+        "forces": {"turns_with": "shafts", "of_shaft": "shafts"},
+        "meshes": {"driver": "gears", "driven": "gears"},
     }
-    for kind, names in fields.items():
+    on_shafts = {kind: {"shaft": "shafts"} for kind in _with_field("shaft")}
+    return {kind: on_shafts.get(kind, {}) | further.get(kind, {}) for kind in on_shafts | further}
+
+
+def _named(scene: SceneInput, named: str) -> Iterator[tuple[str, str]]:
+    """Yield the fields by which parts name parts of a kind, and the names."""
+    for kind, fields in _references().items():
         for index, part in enumerate(getattr(scene, kind)):
-            for name in names:
-                if getattr(part, name) is not None:
-                    yield f"{kind}[{index}].{name}", getattr(part, name)
+            for field, of in fields.items():
+                if of == named and getattr(part, field) is not None:
+                    yield f"{kind}[{index}].{field}", getattr(part, field)
 
 
 def _refuse_complaint(complaint: ComplaintInput, shafts: list[str], bearings: list[str]) -> None:

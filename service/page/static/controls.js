@@ -1,7 +1,7 @@
 // @ts-check
 /** What is typed on the page, by the id of its control. */
 
-const CONTROLS = "input[id]:not([type=file], [type=password]), select[id]:not([data-unkept]), textarea[id]";
+const CONTROLS = ":is(input, select, textarea)[id]:not([type=file], [type=password], [data-unkept])";
 
 /** @typedef {HTMLInputElement | HTMLSelectElement | HTMLTextAreaElement} Control */
 

@@ -4,7 +4,9 @@ import { make } from "./elements.js";
 import { kindOf, same } from "./schema.js";
 
 const UNITS = [
-  ["_n_per_um", "N/µm"], ["_n_per_mm3", "N/mm³"], ["_n_m", "N m"], ["_gpa", "GPa"], ["_deg", "°"], ["_mm", "mm"],
+  ["_n_per_um", "N/µm"], ["_n_per_mm3", "N/mm³"], ["_n_per_m", "N/m"], ["_n_s_per_m", "N s/m"], ["_n_m_per_rad", "N m/rad"],
+  ["_n_m_s_per_rad", "N m s/rad"], ["_n_m", "N m"], ["_gpa", "GPa"], ["_degc", "°C"], ["_deg", "°"], ["_per_k", "1/K"],
+  ["_g_mm", "g mm"], ["_mm", "mm"], ["_nm", "nm"],
   ["_um", "µm"], ["_rpm", "rpm"], ["_km_h", "km/h"], ["_hz", "Hz"], ["_percent", "%"], ["_n", "N"], ["_s", "s"],
 ];
 const NONE = "not set";

@@ -128,6 +128,8 @@ class Page {
     await this.results.show(this.address.get("database"));
     if (turn !== this.turn) return;
     this.fill(orders.filter(({ name }) => name in OF_RESULT)); // showing a result resets them
+    await this.scenes.follow();
+    if (turn !== this.turn) return;
     if (empty) this.first();
     this.undo?.begin();
   }
@@ -215,11 +217,12 @@ class Page {
 
   /** What may be undone. */
   get state() {
-    return { case: this.design.case, origin: this.address.kept.origin, ofResult: this.results.typed };
+    return { case: this.design.case, origin: this.address.kept.origin, ofResult: this.results.typed, ofScene: this.scenes.state };
   }
 
   /** Show what was undone or is done anew. @param {import("./undo.js").State} state */
-  async putBack({ case: content, origin, ofResult }) {
+  async putBack({ case: content, origin, ofResult, ofScene }) {
+    await this.scenes.putBack(ofScene);
     this.design.show(content, origin);
     this.design.settled();
     this.address.keep({ ofResult });

@@ -1,12 +1,13 @@
-/** A scene of one's own: opened or written as TOML, run over time or studied over speed. */
+/** A scene of one's own: edited in tables, or as TOML, run over time or studied over speed. */
 
-import { guarded, post } from "./api.js";
+import { ask, get, guarded, patiently } from "./api.js";
 import { card } from "./card.js";
 import { button, byId, make } from "./elements.js";
-import { showFailure } from "./job.js";
+import { faultsOf } from "./job.js";
 import { base64, deflated } from "./packed.js";
 import { evenly, saveScene, sceneOf } from "./scene.js";
-import { reveal } from "./tabs.js";
+import { SceneTable } from "./scene_table.js";
+import { Tabs, reveal } from "./tabs.js";
 
 const RUN = { process: "simulate", title: "Run over time", subjects: ["case", "scene"] };
 /** By which the text of a scene is known. */
@@ -25,10 +26,18 @@ export class SceneEditor {
    */
   constructor(studies, { slot, show, design }) {
     this.design = design;
+    /** @type {any} the scene that is edited, null: none; never changed in place */
+    this.scene = null;
+    /** Number of the scene; one that is edited keeps it. */
+    this.key = 0;
+    /** The text that is the scene. */
+    this.written = "";
     this.text = make("textarea", {
-      id: "scene-text", rows: 16, spellcheck: "false", autocomplete: "off", wrap: "off",
+      id: "scene-text", rows: 16, spellcheck: "false", autocomplete: "off", wrap: "off", onchange: () => this.settle(() => this.read()),
     });
-    this.refusal = make("div");
+    this.tables = make("div", { id: "scene-tables", "data-title": "Table" });
+    this.none();
+    this.faults = make("div", { role: "status" });
     this.spectrum = make("p", { class: "hint", role: "status" });
     this.chosen = make("p", { class: "hint", role: "status" });
     this.cases = [];
@@ -68,9 +77,11 @@ export class SceneEditor {
       chosen, make("label", { class: "button", for: "scene-file" }, "Open scene file…"), this.fromPair,
       button("Save scene", () => saveScene({ toml: this.text.value, files: this.files })),
     );
-    const label = make("label", { for: "scene-text", class: "above" }, "Scene, TOML");
+    const toml = make("div", { id: "scene-toml", "data-title": "TOML" }, make("label", { for: "scene-text", class: "above" }, "Scene, TOML"), this.text);
+    const [tabs, panels] = [make("div", { class: "tabs", role: "tablist", "aria-label": "Scene" }), make("div", {}, this.tables, toml)];
+    new Tabs(tabs, panels);
     const compute = make("div", { class: "row" }, make("label", { for: "scene-process" }, "Compute"), this.process);
-    return [row, this.chosen, label, this.text, this.spectrum, this.refusal, compute];
+    return [row, this.chosen, tabs, this.faults, panels, this.spectrum, compute];
   }
 
   /**
@@ -80,19 +91,105 @@ export class SceneEditor {
    */
   async take(name, { scene, load_cases: cases }) {
     await this.put(scene, name, cases);
-    reveal(this.text);
-    this.text.focus();
+    reveal(this.tables);
+    byId("scene-tables-tab").focus();
   }
 
-  /** Put a scene into the text. */
+  /** Begin with another scene. */
   async put(scene, name = "", cases = []) {
-    await this.careful(async () => {
-      const { toml, files } = await post("/v1/scenes/to-files", { inputs: { scene } });
-      this.text.value = toml;
-      this.with(files);
-      this.under(name, cases);
-      document.dispatchEvent(new Event("typed"));
+    this.key += 1;
+    this.under(name, cases);
+    await this.settle(() => this.edit(scene));
+  }
+
+  /** Take the scene as it is edited in a table or was before, and write its text anew. @param {any} scene */
+  async edit(scene) {
+    if (!scene) return this.none();
+    await this.tabled(scene);
+    return this.write();
+  }
+
+  /** Show a scene in the tables. */
+  async tabled(scene) {
+    this.scene = scene;
+    const { inputs } = this.table ? {} : await patiently(() => get("/v1/processes/simulate"));
+    this.table ??= new SceneTable(inputs.scene.schema, (edited) => {
+      this.scene = edited;
+      this.settle(() => this.write());
     });
+    this.table.show(this.scene);
+    this.tables.replaceChildren(this.table.block);
+    document.dispatchEvent(new Event("opened"));
+  }
+
+  async none() {
+    this.scene = null;
+    this.text.value = this.written = "";
+    this.tables.replaceChildren(make("p", { class: "hint" }, NONE));
+  }
+
+  async write() {
+    const { scene } = this;
+    const { toml, files } = await patiently(() => ask("scene", { inputs: { scene } }));
+    if (scene !== this.scene) return;
+    this.text.value = this.written = toml;
+    this.with(files);
+    document.dispatchEvent(new Event("typed"));
+  }
+
+  /** Read the scene that is typed as text. */
+  async read() {
+    const toml = this.text.value;
+    const { scene } = await patiently(() => ask("scene-text", { toml, files: this.files }));
+    if (toml !== this.text.value) return;
+    this.written = toml;
+    await this.tabled(scene);
+    document.dispatchEvent(new Event("typed"));
+  }
+
+  /** Read the text that a history entry brings back. */
+  async follow() {
+    if (this.text.value === this.written) return;
+    this.key += 1;
+    await this.settle(() => (this.text.value ? this.read() : this.none()));
+  }
+
+  /** What may be undone. */
+  get state() {
+    return { key: this.key, scene: this.scene };
+  }
+
+  /** @param {{key: number, scene: any}} state */
+  async putBack({ key, scene }) {
+    if (key === this.key && scene !== this.scene) await this.settle(() => this.edit(scene));
+  }
+
+  /** The scene as it is edited. @throws {Problem} it has faults */
+  async current() {
+    if (this.text.value !== this.written && !this.text.readOnly) this.settle(() => this.read());
+    await this.settling;
+    if (this.problem) throw this.problem;
+    return this.scene;
+  }
+
+  /** Do what changes the scene; what is wrong with it then is said, at its cell where it has one. @param {() => Promise<void>} action */
+  settle(action) {
+    const own = guarded(() => action().then(() => null), (problem) => problem).then((problem) => {
+      if (this.settling === own) this.refuse(problem);
+    });
+    this.settling = own;
+    return own;
+  }
+
+  /** Say what is wrong with the scene, null: nothing; until it is mended the other view stays as it is. */
+  refuse(problem) {
+    const ofText = this.text.value !== this.written;
+    this.problem = problem;
+    this.text.readOnly = Boolean(problem) && !ofText;
+    this.tables.inert = Boolean(problem) && ofText;
+    const marked = this.table?.refuse(ofText ? [] : problem?.errors ?? []);
+    const list = ofText || !marked ? problem && faultsOf(problem) : make("ul", {}, ...marked);
+    this.faults.replaceChildren(...(problem ? [make("strong", {}, "The scene has faults:"), problem.errors.length ? list : problem.message] : []));
   }
 
   /** Say under which load cases the scene is deflected; none: under its own loads. */
@@ -118,29 +215,18 @@ export class SceneEditor {
     this.with(name ? files : [...others, ...files]);
     if (name) {
       this.text.value = text;
+      this.key += 1;
       this.under("", []);
     }
-    document.dispatchEvent(new Event("typed"));
-    await this.careful(() => this.read());
-  }
-
-  async read() {
-    return (await post("/v1/scenes/from-toml", { toml: this.text.value, files: this.files })).scene;
-  }
-
-  /** Do something that the service may refuse; say so under the text. */
-  careful(action) {
-    this.refusal.replaceChildren();
-    return guarded(action, (problem) => showFailure(this.refusal, problem));
+    await this.settle(() => this.read());
   }
 
   job({ from, to, count, microphone_mm: microphone }) {
-    this.refusal.replaceChildren();
     const process = this.process.value;
     return {
       process,
       inputs: async () => {
-        const scene = await this.read();
+        const scene = await this.current();
         if (process === "listen") return { scene, run: this.run, microphone_mm: microphone };
         return { scene, ...this.varied(process, scene, evenly(from, to, count)) };
       },
@@ -185,6 +271,7 @@ const RESPONSES = [
   { quantity: "contact_loss" },
 ];
 
+const NONE = "No scene yet: write that of the pair, open a file or a gear unit, or type it as TOML.";
 const HELP = "Shafts, gears, bearings, meshes, drives and loads as in a scene file. A mesh carries its pair written out "
   + "([meshes.case]), names a result of this service (database_hash) or a file: choose the files of cases, flanks "
   + "and housings (STEP, mesh) together with the scene. "

@@ -66,4 +66,13 @@ export function put(content, path, value) {
   path.slice(0, last).reduce((inner, name) => (inner[name] ??= {}), content)[path[last]] = value;
 }
 
+/** A table with another value at a path, undefined: with none; what is not on the path is shared. */
+export function changed(content, [name, ...rest], value) {
+  const copy = Array.isArray(content) ? [...content] : { ...content };
+  if (rest.length) copy[name] = changed(content[name] ?? {}, rest, value);
+  else if (value === undefined) delete copy[name];
+  else copy[name] = value;
+  return copy;
+}
+
 export const same = (one, other) => JSON.stringify(one) === JSON.stringify(other);

@@ -8,7 +8,8 @@ const RESTED = 400; // milliseconds without an edit
 const MOST = 200;
 const TEXT = "textarea, input:not([type=range], [type=checkbox], [type=file])"; // they undo what is typed in them
 
-/** @typedef {{case: object, origin?: object, ofResult?: {key: string}}} State a design, where it came from, and its moved flanks */
+/** @typedef {{case: object, origin?: object, ofResult?: {key: string}, ofScene?: {key: number}}} State a design,
+ * where it came from, its moved flanks, and the scene */
 
 export class Undo {
   /** @param {() => State} now @param {(state: State) => Promise<void>} put */
@@ -42,8 +43,8 @@ export class Undo {
     if (this.going) return;
     const [before, now] = [this.shown, this.now()];
     this.shown = now;
-    const result = before.ofResult?.key === now.ofResult?.key;
-    if (same(before.case, now.case) && (!result || same(before.ofResult, now.ofResult))) return;
+    const edited = (part) => before[part]?.key === now[part]?.key && before[part] !== now[part] && !same(before[part], now[part]);
+    if (same(before.case, now.case) && !["ofResult", "ofScene"].some(edited)) return;
     this.states = [[...this.states[0].slice(1 - MOST), before], []];
     this.offer();
   }
