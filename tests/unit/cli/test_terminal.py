@@ -10,11 +10,14 @@ import sys
 from pathlib import Path
 
 import pytest
+import typer
 from command_line import loa
 from small_table import small_table
 from spur_case import spur_case
 
+from lineofaction.cli.commands import app
 from lineofaction.cli.output import console, table
+from lineofaction.cli.verbs.of_studies import GROUPS, StudyGroup
 
 COLUMNS = (80, 120)
 FIRST = 14
@@ -124,3 +127,26 @@ def test_the_finding_is_bold_errors_are_colored_and_what_is_beside_is_grey(files
     assert "\x1b" not in plain
     assert re.sub(r"\x1b\[[\d;]*m", "", shown) == plain
     assert "\x1b[3" not in seen_on_a_terminal(arguments, NO_COLOR="1")
+
+
+# The help: every verb once, under its group, and whole.
+
+
+@pytest.mark.parametrize("columns", COLUMNS)
+def test_the_help_has_every_verb_in_one_group_and_cuts_no_line(
+    columns: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", str(columns))
+    shown = loa("--help").stdout.split("Start:\n", 1)[1].splitlines()
+    own = typer.main.get_command(app)
+    assert isinstance(own, StudyGroup)
+    heads = [line.removesuffix(":").lower() for line in shown if re.fullmatch(r"[A-Z][a-z]+:", line)]
+    assert ["start", *heads] == list(GROUPS)
+    listed = [line.split()[0] for line in shown if re.match(r"  [a-z][a-z-]*(  |$)", line)]
+    verbs = own.list_commands(typer.Context(own))
+    assert sorted(listed) == sorted(verbs)
+    assert max(map(len, shown)) <= columns
+    text = "".join("".join(shown).split())  # a line may end behind a hyphen
+    for verb in verbs:
+        said = own.get_command(typer.Context(own), verb)
+        assert "".join((said.short_help or said.help).split()) in text
