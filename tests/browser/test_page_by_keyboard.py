@@ -67,6 +67,20 @@ def test_every_stop_is_seen_and_the_order_is_that_of_the_page(visit: Visit) -> N
     assert "undo" not in names, "what cannot be pressed is no stop"
 
 
+@pytest.mark.parametrize(
+    "field", ["#name", "#bar-torque_n_m", "#f-load-torque_n_m", "#f-accuracy-level", "#live-torque_n_m"]
+)
+def test_ctrl_enter_analyzes_from_any_field(visit: Visit, field: str) -> None:
+    page = visit.page
+    submitted: list[str] = []
+    page.route("**/analyze/execution", lambda route: submitted.append(route.request.url) or route.abort())
+    control(page, field).press("Control+Enter")
+    until(lambda: bool(submitted))
+    expect(page.locator("#analyze")).to_be_disabled()
+    page.unroute("**/analyze/execution")
+    expect(page.locator("#analyze")).to_be_enabled()
+
+
 def test_arrows_go_from_tab_to_tab_and_the_address_says_which(visit: Visit) -> None:
     page = visit.page
     page.locator("#ripple-tab").focus()

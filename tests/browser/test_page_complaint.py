@@ -109,11 +109,11 @@ def test_bar_form_undo_address_and_file_have_one_complaint(visit: Visit, browser
     page.get_by_label("Unit of the complaint's frequency").select_option("kHz")
     typed(page, frequency_hz="1,4", speed_rpm="1812", torque_n_m="80")
     assert fields(page) == {"frequency_hz": "1400", "speed_rpm": "1812", "torque_n_m": "80"}
-    said(page, "order 2.02 of the mesh: harmonic 2, off by −0.77 %")
+    said(page, "order 2.02: harmonic 2, off by −0.77 %")
     page.wait_for_timeout(RESTED)
     control(page, "#f-complaint-frequency_hz").fill("1500")
     assert bar(page) == {"frequency_hz": "1.5", "speed_rpm": "1812", "torque_n_m": "80"}
-    said(page, "order 2.16 of the mesh: none within 5 %")
+    said(page, "order 2.16: none within 5 %")
     page.wait_for_timeout(RESTED)
     page.locator("#undo").press("Enter")
     expect(page.locator("#bar-frequency_hz")).to_have_value("1.4")
@@ -175,7 +175,7 @@ def test_the_complaint_is_typed_by_keyboard_at_any_width(browser: Browser, addre
         stops.append(page.evaluate("document.activeElement.id"))
         page.keyboard.type(text)
     assert [stop for stop in stops if stop] == [f"bar-{name}" for name in FIELDS]
-    said(page, "order 2.02 of the mesh: harmonic 2, off by −0.77 %")
+    said(page, "order 2.02: harmonic 2, off by −0.77 %")
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     edges = page.locator("#complaint > :not([hidden])").evaluate_all(
         "all => all.map((node) => node.getBoundingClientRect().right)"
@@ -186,6 +186,27 @@ def test_the_complaint_is_typed_by_keyboard_at_any_width(browser: Browser, addre
     assert page.evaluate("document.activeElement.id") == "f-complaint-frequency_hz"
     assert visit.complaints == []
     page.close()
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("width", [1440, 1920])
+def test_the_bar_is_one_line_with_a_complaint_and_three_variants(
+    browser: Browser, address: str, width: int
+) -> None:
+    visit = opened(browser, address, width=width)
+    page = visit.page
+    for _ in range(2):
+        page.get_by_role("button", name="Another variant").press("Enter")
+    typed(page, frequency_hz="1400", speed_rpm="1812", torque_n_m="80")
+    boxes = page.locator(".bar > :not(.unseen, .hidden-file), #complaint > :not([hidden])").evaluate_all(
+        "all => all.map((node) => node.getBoundingClientRect())"
+    )
+    bar_box = page.locator(".bar").bounding_box()
+    assert bar_box is not None and bar_box["height"] < 48.0
+    assert all(box["right"] <= width for box in boxes)
+    words = page.locator("#complaint output")
+    assert words.evaluate("node => node.scrollWidth <= node.clientWidth"), "nothing of the words is cut"
+    visit.page.close()
 
 
 @pytest.mark.law

@@ -34,7 +34,7 @@ export function heardIn({ complaint = {}, pair = {}, load = {} }) {
 function wordsOf({ order, harmonic, within }) {
   if (!Number.isFinite(order)) return "";
   const near = harmonic ? `harmonic ${harmonic}, off by ${signed(100 * (harmonic / order - 1), 2)} %` : `none within ${within} %`;
-  return `order ${number(order, 3)} of the mesh: ${near}`;
+  return `order ${number(order, 3)}: ${near}`;
 }
 
 /** What it is on the axes of plots, by their labels. @param {Heard} heard @returns {Record<string, number>} */
@@ -115,7 +115,7 @@ export class Complaint {
       view.block.hidden = view.field.name === (road ? "speed_rpm" : "road_speed_km_h");
       view.follow(heard);
     }
-    this.words.textContent = wordsOf(heard);
+    this.words.textContent = this.words.title = wordsOf(heard);
     mark(axesOf(heard));
   }
 
