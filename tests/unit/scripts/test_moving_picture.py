@@ -50,8 +50,11 @@ def test_the_sound_lasts_as_long_as_the_picture_and_is_small() -> None:
     shown = moving_picture.there_and_back(len(moving_picture.RELIEFS))
     assert len(samples) == pytest.approx(1e-3 * sum(duration for _, duration in shown) * rate, abs=len(shown))
     assert np.abs(samples).max() == pytest.approx(1.0)
-    for page in ("README.md", "docs/index.md"):
-        assert "images/relief.wav" in (ROOT / page).read_text("utf-8")
+    for page, address in {
+        "README.md": "docs/images/relief.wav",
+        "docs/index.md": "_static/relief.wav",
+    }.items():
+        assert address in (ROOT / page).read_text("utf-8")
 
 
 @pytest.mark.law
