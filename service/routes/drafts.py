@@ -1,4 +1,4 @@
-"""Questions about a draft, as it is typed: its drawing, plan, curves, its text; its faults are an answer.
+"""Questions about a draft, as it is typed: drawing, plan, curves, text, gears as made; faults are an answer.
 
 A draft is wrong most of the time. A browser logs every refused request as an error of the page, so here what
 elsewhere is refused as `BadInput` (422) of fields is answered (200). All else is refused as everywhere.
@@ -79,6 +79,25 @@ router = APIRouter(tags=["drafts"], route_class=DraftRoute)
 def draft_outline(body: cases.CaseRequest) -> Response:
     """Answer as `/v1/cases/outline`, or with what is wrong."""
     return cases.case_outline(body)
+
+
+@router.post("/drafts/to-toml", summary="Case file of a draft", response_model=cases.TomlBody | FaultsBody)
+@needs(Scope.READ, body=cases.CaseRequest)
+def draft_to_toml(body: cases.CaseRequest) -> cases.TomlBody:
+    """Answer as `/v1/cases/to-toml`, or with what is wrong."""
+    return cases.case_to_toml(body)
+
+
+@router.post(
+    "/drafts/as-made",
+    summary="Gears of a draft as made",
+    response_model=cases.AsMadeBody | FaultsBody,
+    responses=documented(*cases.READING_FAILURES),
+)
+@needs(Scope.READ, body=cases.AsMadeRequest)
+async def draft_as_made(body: cases.AsMadeRequest, context: Ctx, request: Request) -> Response:
+    """Answer as `/v1/cases/as-made`, or with what is wrong."""
+    return await cases.case_as_made(body, context, request)
 
 
 @router.post(

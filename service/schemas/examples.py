@@ -151,7 +151,7 @@ BODIES: dict[str, Json] = {
 
 
 _DRAFTS = {
-    "/v1/drafts/outline": "/v1/cases/outline",
+    **{f"/v1/drafts/{name}": f"/v1/cases/{name}" for name in ("outline", "to-toml", "as-made")},
     "/v1/drafts/plan": "/v1/plans",
     "/v1/drafts/{key}/ste": "/v1/databases/{key}/ste",
     "/v1/drafts/scene": "/v1/scenes/to-files",

@@ -331,5 +331,10 @@ def test_a_plan_of_no_pair_names_the_field_as_an_execution_does(client: TestClie
     draft = client.post("/v1/drafts/plan", json=asked)
     assert draft.status_code == 200, "what is being typed is no error"
     assert draft.json() == {"detail": as_job.json()["detail"], "faults": as_job.json()["errors"]}
+    for question in ("to-toml", "as-made"):
+        incomplete = {"inputs": {"case": case(teeth=None)}}
+        refused, draft = (client.post(f"/v1/{of}/{question}", json=incomplete) for of in ("cases", "drafts"))
+        assert (refused.status_code, draft.status_code) == (422, 200), question
+        assert draft.json() == {"detail": refused.json()["detail"], "faults": refused.json()["errors"]}
     typo = client.post("/v1/plans", json={"inputs": {"case": case(teth=3)}}).json()
     assert [fault["field"] for fault in typo["errors"]] == ["pair.pinion.teth"]

@@ -17,6 +17,8 @@ SLIPS = {
     "pair-pinion-bore_diameter_mm": "220",
 }
 """Typed first; all but the module and the teeth are impossible."""
+DRAWN = "#node-teeth-as-made button"
+"""What draws both gears within a class."""
 TUTORIAL = {
     "pair-helix_angle_deg": "22",
     "pair-center_distance_mm": "87.5",
@@ -72,6 +74,10 @@ def test_a_pair_typed_with_slips_logs_no_error(refused: tuple[Visit, list[str]])
         field = page.locator(f"#f-pair-{key}")
         expect(field).to_have_attribute("aria-invalid", "true")
         expect(page.locator(f"#f-pair-{key}-fault")).to_contain_text("must be")
+    for press, question in (("#export-toml", "to-toml"), (DRAWN, "as-made")):
+        with page.expect_response(lambda response, question=question: f"drafts/{question}" in response.url):
+            control(page, press).click()
+        expect(page.locator("#form-errors")).to_be_visible()
     for key, text in TUTORIAL.items():
         typed_digit_by_digit(seen, key, text)
     expect(page.locator("#plan dl")).to_be_visible()

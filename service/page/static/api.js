@@ -69,8 +69,8 @@ export async function post(path, body, signal) {
 }
 
 /**
- * Ask about what is being typed: `outline`, `plan`, `HASH/ste`. What is wrong with it is an answer of the service, no refusal that
- * the browser logs; here it is thrown as a Problem like all others.
+ * Ask about what is being typed: `outline`, `to-toml`, `as-made`, `plan`, `HASH/ste`. What is wrong with it is an answer of the service,
+ * no refusal that the browser logs; here it is thrown as a Problem like all others.
  */
 export async function ask(question, body, signal) {
   const found = await post(`/v1/drafts/${question}`, body, signal);

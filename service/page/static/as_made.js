@@ -1,7 +1,7 @@
 // @ts-check
 /** Gears as made: the sheet of an inspection, or a draw within a class of ISO 1328, goes into the fields of the case. */
 
-import { post } from "./api.js";
+import { ask } from "./api.js";
 import { button, byId, make } from "./elements.js";
 
 const choice = (id, label, options) => make(
@@ -19,7 +19,7 @@ export function offerAsMade(design, careful) {
   const loaded = choice("made-loaded", "Flanks that carry", { right: "right flanks carry", left: "left flanks carry" });
   const file = make("input", { class: "hidden-file", id: "made-file", type: "file", accept: ".csv,.txt", "aria-label": "Open the sheet of an inspection, CSV" });
   const stated = (how, note) => careful(async () => {
-    const { case: made, left_out: left } = await post("/v1/cases/as-made", { inputs: { case: design.case }, ...how });
+    const { case: made, left_out: left } = await ask("as-made", { inputs: { case: design.case }, ...how });
     design.renew(made, [note, ...left.map((text) => `Left out: ${text}`)].join(". "));
   });
   file.addEventListener("change", async () => {

@@ -1,7 +1,7 @@
 // @ts-check
 /** Case files: opened into the form, saved from it. */
 
-import { Problem, guarded, post } from "./api.js";
+import { Problem, ask, guarded, post } from "./api.js";
 import { offerAsMade } from "./as_made.js";
 import { byId, save } from "./elements.js";
 import { OpenedUnit, isUnit } from "./unit.js";
@@ -15,7 +15,7 @@ export class CaseFiles {
     this.design = design;
     this.unit = new OpenedUnit(design, page);
     byId("export-toml").addEventListener("click", () => this.careful(async () => {
-      const { toml } = await post("/v1/cases/to-toml", { inputs: { case: design.case } });
+      const { toml } = await ask("to-toml", { inputs: { case: design.case } });
       save(toml, `${design.name || "case"}.toml`, "application/toml");
     }));
     offerAsMade(design, (action) => this.careful(action));
