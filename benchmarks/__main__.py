@@ -22,7 +22,7 @@ _IN_ORDER = """
     predicted_errors predicted_memory receipt_cost error_coverage live_coverage load_arm_coverage
     limit_coverage derivatives heard_flanks heard_designs heard_tolerances tolerance_kept
     influence_estimates quiet_helical dynamic_influence_estimates neglected_effects
-    deviating_cycles live_cost page_redraw page_motion service_queries cluster_rate worker_cost
+    deviating_cycles made_pairs live_cost page_redraw page_motion service_queries cluster_rate worker_cost
     shared_table divided_studies cold_start
 """
 SUBJECTS = tuple(_IN_ORDER.split())

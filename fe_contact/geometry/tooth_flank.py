@@ -119,6 +119,18 @@ def coordinates(gear: Tooth, roll_length: FloatArray, face_position: FloatArray)
     return np.clip(u, -1.0, 1.0), 2.0 * face_position / gear.face_width
 
 
+def tooth_shapes(gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> dict[str, FloatArray]:
+    """Return the excess of a unit of each slope and each form without waves, by field of `ToothFlank`."""
+    u, v = np.broadcast_arrays(*coordinates(gear, roll_length, face_position))
+    none = np.zeros(u.shape)
+    return {
+        "profile_slope": 0.5 * u,
+        "profile_form": _form(none + 1.0, none, u),
+        "helix_slope": 0.5 * v,
+        "helix_form": _form(none + 1.0, none, v),
+    }
+
+
 def flanks_excess(
     gear: Tooth, flanks: Sequence[ToothFlank], tooth: IntArray, roll_length: FloatArray, face: FloatArray
 ) -> FloatArray:

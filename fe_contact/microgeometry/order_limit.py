@@ -11,6 +11,7 @@ import numpy as np
 from scipy.stats import binomtest, sobol_indices
 
 from fe_contact.errors import InputError, integer, positive
+from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.microgeometry.tangent_model import TangentModel, highest_order, order_amplitude
 from fe_contact.types import FloatArray
 from model_studies import in_unit
@@ -23,28 +24,64 @@ BASE_PAIRS = 1024
 
 @dataclass(frozen=True)
 class OrderLimit:
-    """What the amplitude of a mesh order is to stay below.
+    """What the amplitude of an order is to stay below: of the mesh, or beside it by the turns of a gear.
 
     Attributes
     ----------
     order : int
-        1: the mesh frequency.
+        Of the mesh; 1: the mesh frequency. 0 with a gear: the order is one of its shaft.
     amplitude : float
         m.
+    gear : {"", "pinion", "wheel"}
+        Whose teeth make it; without one it is a mesh order.
+    turns : int
+        Turns of the gear beside the mesh order, either way, at most half its teeth.
     """
 
     order: int
     amplitude: float
+    gear: str = ""
+    turns: int = 0
 
     def __post_init__(self) -> None:
-        integer("limit.order", self.order, 1, 10_000)
+        integer("limit.order", self.order, 0 if self.gear else 1, 10_000)
         positive("limit.amplitude", self.amplitude)
 
-    def check(self, positions: int) -> None:
-        """Refuse an order that the positions do not resolve."""
+    @property
+    def name(self) -> str:
+        """As orders are named: "mesh 1", "mesh 1 - pinion 1", "wheel 1"."""
+        if not self.gear:
+            return f"mesh {self.order}"
+        if not self.order:
+            return f"{self.gear} {self.turns}"
+        return f"mesh {self.order} {'-' if self.turns < 0 else '+'} {self.gear} {abs(self.turns)}"
+
+    def teeth(self, pair: ParallelAxes) -> int:
+        """Return the base pitches in which the order is a whole number: those of a turn of its gear."""
+        return int(getattr(pair, self.gear).teeth) if self.gear else 1
+
+    def line(self, pair: ParallelAxes) -> int:
+        """Return the order in that many base pitches."""
+        return self.order * self.teeth(pair) + self.turns
+
+    def check(self, pair: ParallelAxes, positions: int) -> None:
+        """Refuse an order that the positions of a base pitch do not resolve, or teeth that differ already."""
         if self.order > (most := highest_order(positions)):
             advice = f"The {positions} positions of a base pitch resolve the mesh orders 1 to {most}."
             raise InputError("limit.order", self.order, f"a mesh order of the spectrum, 1 to {most}", advice)
+        if not self.gear:
+            return
+        most = self.teeth(pair) // 2
+        if self.turns == 0 or abs(self.turns) > most or self.line(pair) <= 0:
+            bound = f"from 1 to {most} turns of the {self.gear}, upwards where the mesh order is 0"
+            raise InputError("limit.turns", self.turns, bound, "Half its teeth lead to the next mesh order.")
+        for name in ("pinion", "wheel"):
+            own: Toothing = getattr(pair, name)
+            if own.deviates or not own.pitch_deviation.neutral:
+                advice = "The teeth are drawn: leave run-out, waves, pitches and flanks of teeth out."
+                raise InputError(
+                    "limit.gear", self.name, f"a mesh order where teeth of the {name} differ", advice
+                )
 
 
 @dataclass(frozen=True)
@@ -54,6 +91,8 @@ class PairsAbove:
     Attributes
     ----------
     limit : OrderLimit
+    names : tuple of str
+        The deviations.
     amplitude : ndarray, shape (N, L)
         Of the order, m.
     nominal : ndarray, shape (L,)
@@ -74,6 +113,7 @@ class PairsAbove:
     """
 
     limit: OrderLimit
+    names: tuple[str, ...]
     amplitude: FloatArray = field(metadata=in_unit("m", "sample", "torque"))
     nominal: FloatArray = field(metadata=in_unit("m", "torque"))
     share: FloatArray
@@ -104,12 +144,15 @@ class DrawnPairs:
 
     Attributes
     ----------
+    names : tuple of str
+        The deviations.
     held : int
         From which of the solved pairs on the model does not know them.
     of_pair : sequence
         Distribution of each deviation.
     """
 
+    names: tuple[str, ...]
     deviation: FloatArray
     ste: FloatArray
     held: int
@@ -124,23 +167,19 @@ def pairs_above(limit: OrderLimit, drawn: DrawnPairs, nominal: FloatArray, confi
     solved = order_amplitude(drawn.ste, limit.order, drawn.period)
     modeled = drawn.model.amplitude(drawn.deviation, limit.order, drawn.period)
     amplitude = np.concatenate([solved, modeled[len(solved) :]])
-    above = amplitude > limit.amplitude
-    bounds = [
-        binomtest(int(count), len(above)).proportion_ci(confidence, method="wilson")
-        for count in above.sum(axis=0)
-    ]
-    share = above.mean(axis=0)
+    share, low, high = shares(limit, amplitude, confidence)
     load = int(len(share) - 1 - np.argmax(share[::-1]))
     known, held = solved[drawn.held :], modeled[drawn.held : len(solved)]
     at_load = (modeled > limit.amplitude).mean(axis=0)[load]
     first, total = _indices(limit, drawn, load)
     return PairsAbove(
         limit,
+        drawn.names,
         amplitude,
         order_amplitude(nominal[None], limit.order, drawn.period)[0],
         share,
-        np.array([each.low for each in bounds]),
-        np.array([each.high for each in bounds]),
+        low,
+        high,
         load,
         first,
         total,
@@ -148,6 +187,19 @@ def pairs_above(limit: OrderLimit, drawn: DrawnPairs, nominal: FloatArray, confi
         np.sqrt(np.mean((held - known) ** 2, axis=0)),
         np.mean((held > limit.amplitude) != (known > limit.amplitude), axis=0),
     )
+
+
+def shares(
+    limit: OrderLimit, amplitude: FloatArray, confidence: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the share of pairs (N, L) above a limit, and its bounds, (L,) each."""
+    above = amplitude > limit.amplitude
+    bounds = [
+        binomtest(int(count), len(above)).proportion_ci(confidence, method="wilson")
+        for count in above.sum(axis=0)
+    ]
+    low, high = (np.array([getattr(each, end) for each in bounds]) for end in ("low", "high"))
+    return above.mean(axis=0), low, high
 
 
 def _level(limit: OrderLimit, drawn: DrawnPairs, load: int) -> Callable[[FloatArray], FloatArray]:

@@ -13,11 +13,13 @@ from fe_contact.analysis.request.request import Checked
 from fe_contact.errors import InputError, SolveError, integer, within
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.confirmation import DesignSpace, design_study, full_table, ripple_errors
+from fe_contact.microgeometry.drawn_teeth import ToothTolerances
 from fe_contact.microgeometry.evaluator import Evaluator, least_deviation
 from fe_contact.microgeometry.linearized_design import linearized
 from fe_contact.microgeometry.objective import NO_LIMITS
 from fe_contact.microgeometry.order_limit import DrawnPairs, OrderLimit, PairsAbove, pairs_above
 from fe_contact.microgeometry.scatter import MISALIGNMENT, ONE_NODE, Scatter, ScatterNodes, SobolSample
+from fe_contact.microgeometry.sidebands_above import MadePairs, sidebands_above
 from fe_contact.microgeometry.tangent_model import TangentModel
 from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.microgeometry.variables import figure
@@ -187,6 +189,7 @@ def scatter(
     *,
     misalignment: float = 0.0,
     limit: OrderLimit | None = None,
+    teeth: ToothTolerances | None = None,
 ) -> ToleranceStudy:
     """Sample pairs within their tolerances and find the peak-to-peak transmission error of each.
 
@@ -210,8 +213,10 @@ def scatter(
         As designed, m.
     limit : OrderLimit, optional
         Which pairs are above it is counted.
+    teeth : ToothTolerances, optional
+        By how much the teeth of the gear differ that makes an order beside the mesh.
     """
-    request = ToleranceRequest(pair, torques, tolerances, sampling, options, misalignment, limit)
+    request = ToleranceRequest(pair, torques, tolerances, sampling, options, misalignment, limit, teeth)
     return sampled(request, run)
 
 
@@ -226,6 +231,7 @@ class ToleranceRequest:
     options: AnalysisOptions
     misalignment: float
     limit: OrderLimit | None = None
+    teeth: ToothTolerances | None = None
 
     @property
     def space(self) -> DesignSpace:
@@ -239,7 +245,7 @@ class ToleranceRequest:
     def checked(self) -> Checked:
         """Everything is checked, nothing computed; raises `InputError`, also where it cannot be held."""
         if self.limit is not None:
-            self.limit.check(self.sampling.positions)
+            self.limit.check(self.pair, self.sampling.positions)
         checked = self.space.check(self.torques)
         self._require_memory(checked.model.period)
         return checked
@@ -274,12 +280,20 @@ def sampled(request: ToleranceRequest, run: Run) -> ToleranceStudy:
         model = model.corrected(deviation[held], ste[held])
     with clock.stage("model"):
         ripple, missed = _ripple(model, deviation, ste, held)
-        period = design.evaluation.ste.shape[1] // nominal.position.size
-        distributions = tolerances.distributions
-        drawn = DrawnPairs(deviation, ste, held.start, model, distributions, period, sampling.seed)
-        designed = design.evaluation.ste[0]
-        limit, confidence = request.limit, sampling.confidence
-        above = None if limit is None else pairs_above(limit, drawn, designed, confidence)
+    above = None
+    if request.teeth is not None and request.limit is not None:
+        with clock.stage("sidebands"):
+            drawn = request.teeth.drawn(sampling.samples, sampling.seed)
+            some = deviation[: sampling.solved]
+            made = MadePairs(study.evaluator, names, some, request.teeth.gear, drawn)
+            seed, confidence = sampling.seed, sampling.confidence
+            above = sidebands_above(request.limit, made, nominal, request.teeth, seed, confidence, run)
+    elif request.limit is not None:
+        with clock.stage("model"):
+            period = design.evaluation.ste.shape[1] // nominal.position.size
+            distributions = tolerances.distributions
+            pairs = DrawnPairs(names, deviation, ste, held.start, model, distributions, period, sampling.seed)
+            above = pairs_above(request.limit, pairs, design.evaluation.ste[0], sampling.confidence)
     with clock.stage("confirmation"):
         table = full_table(nominal, {}, study.decided, run.cache)
         error = ripple_errors(table, nominal)[0]

@@ -73,10 +73,7 @@ class Tolerances:
         widths = np.array(list(self.widths.values()))
         sequence = qmc.Sobol(widths.size, rng=seed)
         uniform = sequence.random_base2(max(count - 1, 1).bit_length())[:count]
-        if self.distribution == "uniform":
-            return np.asarray(widths * (2.0 * uniform - 1.0))
-        low = ndtr(-PROCESS_SPREAD)
-        return np.asarray(widths * ndtri(low + (1.0 - 2.0 * low) * uniform) / PROCESS_SPREAD)
+        return spread_within(widths, uniform, self.distribution)
 
     @property
     def distributions(self) -> tuple[Any, ...]:
@@ -96,6 +93,14 @@ class Tolerances:
             "modification_m": dict(self.modification),
             "distribution": self.distribution,
         }
+
+
+def spread_within(width: float | FloatArray, uniform: FloatArray, distribution: Distribution) -> FloatArray:
+    """Return deviations within half widths in m by numbers between 0 and 1."""
+    if distribution == "uniform":
+        return np.asarray(width * (2.0 * uniform - 1.0))
+    low = ndtr(-PROCESS_SPREAD)
+    return np.asarray(width * ndtri(low + (1.0 - 2.0 * low) * uniform) / PROCESS_SPREAD)
 
 
 Finishing = Literal["any", "generating_grinding", "form_grinding", "honing", "shaving", "hobbing"]

@@ -11,10 +11,10 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (43_771, 819),
+    ("fe_contact",): (44_194, 829),
     ("dynamics",): (45_014, 884),
-    ("lineofaction.gearbox",): (27_909, 571),
-    ("lineofaction.report",): (12_424, 232),
+    ("lineofaction.gearbox",): (27_939, 571),
+    ("lineofaction.report",): (12_430, 232),
     ("service",): (15_139, 361),
     ("lineofaction.client",): (2_944, 55),
     ("lineofaction.cli",): (5_760, 83),
@@ -22,7 +22,7 @@ BUDGETS = {
     ("bounds", "host", "model_studies"): (4_523, 156),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 864
+MOST_FILES = 866
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""

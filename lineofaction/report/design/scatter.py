@@ -49,7 +49,7 @@ def _panels(study: ToleranceStudy) -> tuple[Panel, Panel]:
 
 
 def _of_order(study: ToleranceStudy, above: PairsAbove) -> Panel:
-    across = Axis(f"amplitude of mesh order {above.limit.order}, µm")
+    across = Axis(f"amplitude of {above.limit.name}, µm")
     limit = Reference("limit", above.limit.amplitude / UM)
     lines = _shares(study, above.amplitude)
     return Panel(across, Axis("share of all pairs"), lines, references=(limit,), title="Limited order")
@@ -150,11 +150,17 @@ def _above_limit(study: ToleranceStudy, above: PairsAbove) -> list[str]:
     band = f"{_percent(above.low[k])} to {_percent(above.high[k])} with {100 * study.confidence:g} %"
     lines = [
         f"{_percent(above.share[k])} of all pairs ({band} confidence) are above "
-        f"{_amplitude(limit.amplitude)} at mesh order {limit.order} and {torque} N m; as designed "
+        f"{_amplitude(limit.amplitude)} at {limit.name} and {torque} N m; as designed "
         f"{_amplitude(above.nominal[k])}. The model puts {_percent(above.beyond[k])} of the pairs it is held "
         "against on the other side."
     ]
-    names = [boundary_name(name) for name in study.names]
+    if limit.gear:
+        alike = "wheel" if limit.gear == "pinion" else "pinion"
+        lines.append(
+            f"{study.solved} pairs are solved over a revolution of the {limit.gear}, whose teeth are drawn; "
+            f"those of the {alike} are alike. Further pairs and what decides are told to first order."
+        )
+    names = [boundary_name(name) for name in above.names]
     most = above.decides
     alone, all_of = (number(100.0 * float(each[most]), 2) for each in (above.first_order, above.total))
     part = f"it makes {alone} % of the variance of the level alone, {all_of} % with others"
@@ -187,12 +193,12 @@ def _limit_tables(study: ToleranceStudy) -> tuple[Table, ...]:
     order = np.argsort(-above.total, kind="stable")
     rows = tuple(
         (
-            *(boundary_name(study.names[i]), number(above.total[i], 2), number(above.first_order[i], 2)),
+            *(boundary_name(above.names[i]), number(above.total[i], 2), number(above.first_order[i], 2)),
             _percent(above.cured[i]),
         )
         for i in order
     )
-    caption = f"Pairs above {_amplitude(above.limit.amplitude)} at mesh order {above.limit.order}"
+    caption = f"Pairs above {_amplitude(above.limit.amplitude)} at {above.limit.name}"
     torque = thousands(study.torque.tolist())[above.load]
     why = f"What decides at {torque} N m: Sobol' indices of the level, and the share above a class finer"
     return (
@@ -219,7 +225,7 @@ def _page(study: ToleranceStudy) -> Page:
     section = Section("Distribution", " ".join(_verdict(study)), (figure,), _tables(study))
     if study.above is not None:
         share = _percent(study.above.share[study.above.load])
-        heads = (Headline("above the limit", share, f"mesh order {study.above.limit.order}"), *heads)
+        heads = (Headline("above the limit", share, study.above.limit.name), *heads)
     lead = f"{study.peak_to_peak.shape[0]} pairs sampled within their tolerances"
     return Page("Transmission error within tolerances", lead, heads, (section,))
 

@@ -84,8 +84,9 @@ class Inputs(ToleranceInputs):
         min_length=1,
         max_length=100,
         title="Limit on an order",
-        description="Limit of the amplitude of a mesh order of the transmission error: ORDER=VALUE in um, "
-        "nm, or dB re 1 um; left out: none",
+        description="Limit of the amplitude of an order of the transmission error: ORDER=VALUE in um, nm, or "
+        "dB re 1 um. ORDER is a mesh order, with turns of a gear beside it (1-pinion, 2+wheel 3), or turns "
+        "alone (pinion 2): teeth of that gear then differ, too. Left out: none",
         examples=["1=0.5um"],
     )
 
@@ -108,6 +109,10 @@ class ScatterFigures(Figures):
 
         Attributes
         ----------
+        name, order, gear, turns
+            The order as it is named; its mesh order, and turns of a gear beside it.
+        names
+            The deviations that decide.
         share, low, high
             Part of all pairs, and its bounds.
         missed_um, beyond
@@ -119,7 +124,11 @@ class ScatterFigures(Figures):
             Share if the tolerance of one deviation is a class finer.
         """
 
+        name: Annotated[str, Source("limit.name")]
         order: Annotated[int, Source("limit.order")]
+        gear: Annotated[str, Source("limit.gear")]
+        turns: Annotated[int, Source("limit.turns")]
+        names: list[str]
         limit_um: Annotated[float, Source("limit.amplitude")]
         nominal_um: list[float]
         share: list[float]

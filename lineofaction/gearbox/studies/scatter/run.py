@@ -12,6 +12,7 @@ from bounds.types import Json
 from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.flank.modification import FlankModification
 from fe_contact.geometry import ParallelAxes
+from fe_contact.microgeometry.drawn_teeth import ToothTolerances, iso1328_tooth_tolerances
 from fe_contact.microgeometry.order_limit import OrderLimit
 from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceRequest, ToleranceStudy, sampled
 from fe_contact.microgeometry.tolerances import Tolerances, iso1328_tolerances
@@ -52,7 +53,8 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
             predicted = predicted_designs(request.checked, cache)
         sampling = request.sampling
         alignments = request.checked.request.misalignment.size
-        solved = (sampling.solved + _TANGENT * sampling.tangents) / alignments
+        revolution = 0 if request.teeth is None else request.teeth.teeth
+        solved = ((1 + revolution) * sampling.solved + _TANGENT * sampling.tangents) / alignments
         points = (
             sampling.positions * len(request.torques) * sampling.tangents * len(request.tolerances.widths)
         )
@@ -83,7 +85,20 @@ def scatter_request(checked: CheckedCase, inputs: Inputs) -> ToleranceRequest:
     request = tolerance_request(checked, inputs)
     sampling = replace(request.sampling, exact=inputs.exact)
     limit = None if inputs.limit is None else order_limit(inputs.limit)
-    return replace(request, sampling=sampling, limit=limit)
+    teeth = None if limit is None or not limit.gear else _teeth(checked, inputs, limit.gear)
+    return replace(request, sampling=sampling, limit=limit, teeth=teeth)
+
+
+def _teeth(checked: CheckedCase, inputs: Inputs, gear: str) -> ToothTolerances:
+    """Return by how much the teeth of a gear of the class differ."""
+    return iso1328_tooth_tolerances(
+        checked.pair,
+        gear,
+        inputs.tolerance_class,
+        across_face=checked.case.accuracy.model not in PLANE,
+        distribution=inputs.distribution,
+        finishing=inputs.finishing,
+    )
 
 
 def tolerance_request(checked: CheckedCase, inputs: ToleranceInputs) -> ToleranceRequest:
@@ -135,22 +150,28 @@ def order_limit(text: str) -> OrderLimit:
     order, _, value = (part.strip() for part in text.partition("="))
     number = value.rstrip("µμumndBb ")
     unit = value.removeprefix(number).strip()
-    if not order.isdecimal() or int(order) < 1:
-        raise BadInput.of("limit", text, "a mesh order from 1, =, and an amplitude", _LIMITS)
+    named = _ORDER.fullmatch(order)
+    if named is None or not (int(named[1] or 0) or named[3]):
+        raise BadInput.of("limit", text, "a mesh order, turns of a gear beside it, =, an amplitude", _LIMITS)
     if not _NUMBER.fullmatch(number):
-        raise BadInput.of("limit", text, "a mesh order, =, and a number with its unit", _LIMITS)
+        raise BadInput.of("limit", text, "an order, =, and a number with its unit", _LIMITS)
+    mesh, sign, gear, turns = named.groups()
     if unit.lower() == "db":
-        return OrderLimit(int(order), UM * 10.0 ** (min(float(number), 200.0) / 20.0))
-    if unit not in _UNITS:
+        amplitude = UM * 10.0 ** (min(float(number), 200.0) / 20.0)
+    elif unit in _UNITS:
+        amplitude = _UNITS[unit] * float(number)
+    else:
         raise BadInput.of("limit", text, "an amplitude in um, nm or dB re 1 um", _LIMITS)
-    if float(number) <= 0.0:
+    if amplitude <= 0.0:
         raise BadInput.of("limit", text, "an amplitude above 0", _LIMITS)
-    return OrderLimit(int(order), _UNITS[unit] * float(number))
+    beside = int(turns or 1) * (-1 if sign == "-" else 1) if gear else 0
+    return OrderLimit(int(mesh or 0), amplitude, gear or "", beside)
 
 
+_ORDER = re.compile(r"(?:mesh )?(\d{1,6})?\s*(?:([+-])?\s*\b(pinion|wheel)\b\s*(\d{1,6})?)?")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _UNITS = {"um": UM, "µm": UM, "μm": UM, "nm": 1e-3 * UM}
-_LIMITS = "For example 1=0.5um, 1=500nm or 2=-12dB."
+_LIMITS = "For example 1=0.5um, 2=-12dB, 1-pinion=80nm, pinion 3=0.2um."
 
 
 RUN = _ScatterStudy()

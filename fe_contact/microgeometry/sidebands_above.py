@@ -1,0 +1,212 @@
+"""Orders beside the mesh that the teeth of one gear make: which pairs are above a limit, and why.
+
+Pairs are solved over one revolution of the gear, whose teeth are drawn; those of its mate are alike. Further
+pairs, and what decides, are told to first order in the deviations of single teeth, about the flanks as
+designed: an order is the Fourier sum of a deviation over the teeth times what one tooth does as it passes
+through the mesh. Where slopes and forms move the point at which teeth touch is left out.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import sobol_indices
+
+from fe_contact.contact import Candidates
+from fe_contact.contact.load_weights import load_weights
+from fe_contact.contact.touch import rolls_at
+from fe_contact.effects.pitch_error import PitchError
+from fe_contact.effects.tooth_deviations import ToothDeviations
+from fe_contact.errors import SolveError
+from fe_contact.geometry import ParallelAxes, Toothing
+from fe_contact.geometry.tooth_flank import tooth_shapes
+from fe_contact.microgeometry.drawn_teeth import FLANK, PITCH, RUN_OUT, DrawnTeeth, ToothTolerances
+from fe_contact.microgeometry.evaluator import Evaluator
+from fe_contact.microgeometry.order_limit import BASE_PAIRS, TIGHTENED, OrderLimit, PairsAbove, shares
+from fe_contact.microgeometry.scatter import ScatterNodes
+from fe_contact.options import Run
+from fe_contact.types import FloatArray
+
+ComplexArray = NDArray[np.complex128]
+
+IN_A_TASK = 4
+"""Pairs of a task."""
+_LEAST = 1e-15
+"""Amplitude in m below which there is no level."""
+
+
+@dataclass(frozen=True)
+class ToothPassing:
+    """What the teeth of a gear add to one order at L loads, to first order.
+
+    Attributes
+    ----------
+    line : int
+        The order, per revolution of the gear.
+    by_tooth : mapping of str to ndarray, shape (L,)
+        Complex amplitude by the Fourier sum of a deviation over the teeth, m/m.
+    """
+
+    line: int
+    by_tooth: Mapping[str, ComplexArray]
+
+    @classmethod
+    def of(cls, evaluator: Evaluator, limit: OrderLimit, names: Sequence[str]) -> ToothPassing:
+        """Find it about the flanks as designed."""
+        pair, problem, solution = next(iter(evaluator.solved({}, range(1))))
+        c, teeth = problem.candidates, limit.teeth(pair)
+        weight, _ = load_weights(problem, solution, np.empty((0, *c.gap.shape)))
+        line = limit.line(pair)
+        at = c.position[:, None] + c.pair
+        passing = weight * (c.motion_arm * np.exp(-2j * math.pi * line / teeth * at))[:, None]
+        shapes = _shapes(pair, c, limit.gear)
+        rows = passing.shape[0]
+        return cls(
+            line,
+            {name: -2.0 / (teeth * rows) * np.einsum("plm,pm->l", passing, shapes[name]) for name in names},
+        )
+
+    def lines(self, drawn: DrawnTeeth) -> ComplexArray:
+        """Return what each deviation adds to the order of N gears, (d, N, L) in m: run-out first."""
+        loads = len(next(iter(self.by_tooth.values())))
+        turning = -drawn.eccentricity * np.exp(-1j * drawn.angle) * (self.line == 1)
+        parts = [np.repeat(turning[:, None], loads, axis=1)]
+        for name, values in drawn.by_tooth.items():
+            teeth = values.shape[1]
+            wave = np.exp(-2j * math.pi * self.line / teeth * np.arange(teeth))
+            parts.append(np.outer(values @ wave, self.by_tooth[name]))
+        return np.stack(parts)
+
+
+def _shapes(pair: ParallelAxes, c: Candidates, gear: str) -> dict[str, FloatArray]:
+    """Return what a unit of each deviation of a tooth is at the candidates, (P, m)."""
+    own: Toothing = getattr(pair, gear)
+    there = np.isfinite(c.gap)
+    rolls = rolls_at(pair, np.where(there, c.touch.s_1, 1.0), np.where(there, c.touch.s_2, own.sign))
+    wheel = gear == "wheel"
+    face = c.face_position - (pair.axial_offset if wheel else 0.0)
+    shapes = {FLANK + name: shape for name, shape in tooth_shapes(own, rolls[int(wheel)], face).items()}
+    shapes[PITCH] = np.full(there.shape, math.cos(own.transverse_pressure_angle))
+    return {name: np.where(there, shape, 0.0) for name, shape in shapes.items()}
+
+
+@dataclass(frozen=True)
+class MadePairs:
+    """Pairs to solve whose flanks deviate by (n, d) in m, with the teeth of one gear for as many or more."""
+
+    evaluator: Evaluator
+    names: tuple[str, ...]
+    deviation: FloatArray
+    gear: str
+    drawn: DrawnTeeth
+
+    def evaluator_of(self, index: int) -> Evaluator:
+        """Return one of them."""
+        contact = self.evaluator.contact
+        gear: Toothing = getattr(contact.pair, self.gear)
+        made: dict[str, Any] = {self.gear: replace(gear, **self.drawn.fields(index))}
+        nodes = ScatterNodes(self.names, self.deviation[index : index + 1], np.ones(1))
+        on = dict.fromkeys((PitchError.name, ToothDeviations.name), "on")
+        pair = replace(contact.pair, **made)
+        choices = {**self.evaluator.choices, **on}
+        return replace(self.evaluator, contact=replace(contact, pair=pair), nodes=nodes, choices=choices)
+
+
+def lines_of_pairs(made: MadePairs, task: tuple[int, Sequence[int]]) -> ComplexArray:
+    """Return the complex amplitude of one line of some pairs (n, L), m: one task."""
+    line, some = task
+    lines = []
+    for index in some:
+        ((_, problem, solution),) = made.evaluator_of(index).solved({}, range(1))
+        if not solution.converged:
+            raise SolveError(f"the contact of pair {index} cannot be solved", solution)
+        rows = len(problem.candidates.position)
+        turn = np.exp(-2j * math.pi * line * np.arange(rows) / rows)
+        lines.append((2.0 / rows) * (turn @ solution.deflection))
+    return np.array(lines)
+
+
+def sidebands_above(
+    limit: OrderLimit,
+    pairs: MadePairs,
+    designed: Evaluator,
+    teeth: ToothTolerances,
+    seed: int,
+    confidence: float,
+    run: Run,
+) -> PairsAbove:
+    """Solve pairs over a revolution of one gear, count all drawn ones above a limit, and look for the cause.
+
+    Parameters
+    ----------
+    designed : Evaluator
+        The pair as designed, about which the cause and further pairs are told.
+    teeth : ToothTolerances
+        By which those of the pairs were drawn.
+    """
+    passing = ToothPassing.of(designed, limit, [name for name in teeth.widths if name != RUN_OUT])
+    numbers = range(len(pairs.deviation))
+    tasks = [(passing.line, numbers[k : k + IN_A_TASK]) for k in range(0, len(numbers), IN_A_TASK)]
+    solved = []
+    for count, lines in enumerate(run.workers.run(lines_of_pairs, pairs, tasks)):
+        solved.append(lines)
+        run.progress("sidebands", (count + 1) / len(tasks))
+    known, parts = np.abs(np.concatenate(solved)), passing.lines(pairs.drawn)
+    modeled = np.abs(parts.sum(axis=0))
+    held = modeled[: len(known)]
+    amplitude = np.concatenate([known, modeled[len(known) :]])
+    share, low, high = shares(limit, amplitude, confidence)
+    load = int(len(share) - 1 - np.argmax(share[::-1]))
+    first, total = _indices(limit, passing, teeth, load, seed)
+    at_load = float(np.mean(modeled[:, load] > limit.amplitude))
+    return PairsAbove(
+        limit,
+        teeth.names,
+        amplitude,
+        np.zeros(len(share)),
+        share,
+        low,
+        high,
+        load,
+        first,
+        total,
+        np.clip(share[load] + _tightened(limit, parts[..., load]) - at_load, 0.0, 1.0),
+        np.sqrt(np.mean((held - known) ** 2, axis=0)),
+        np.mean((held > limit.amplitude) != (known > limit.amplitude), axis=0),
+    )
+
+
+def _indices(
+    limit: OrderLimit, passing: ToothPassing, teeth: ToothTolerances, load: int, seed: int
+) -> tuple[FloatArray, FloatArray]:
+    """Return the first-order and total Sobol' indices of the level, (d,) each."""
+    drawn = passing.lines(teeth.drawn(2 * BASE_PAIRS, seed + 1))[..., load]
+    one, other = drawn[:, :BASE_PAIRS], drawn[:, BASE_PAIRS:]
+
+    def level(parts: ComplexArray) -> FloatArray:
+        amplitude = np.maximum(np.abs(parts.sum(axis=0)), _LEAST)
+        return np.asarray(20.0 * np.log10(amplitude / limit.amplitude))
+
+    mixed = []
+    for k in range(len(drawn)):
+        parts = one.copy()
+        parts[k] = other[k]
+        mixed.append(level(parts)[None])
+    values: Mapping[Literal["f_A", "f_B", "f_AB"], FloatArray]
+    values = {"f_A": level(one)[None], "f_B": level(other)[None], "f_AB": np.stack(mixed)}
+    indices = sobol_indices(func=values, n=BASE_PAIRS)
+    first, total = (np.ravel(getattr(indices, name)) for name in ("first_order", "total_order"))
+    acting = np.any(drawn != 0.0, axis=1)  # what adds nothing to the order has no part in it
+    return np.where(acting, first, 0.0), np.where(acting, total, 0.0)
+
+
+def _tightened(limit: OrderLimit, parts: ComplexArray) -> FloatArray:
+    """Return the share above to first order with each tolerance tightened by a class, (d,)."""
+    whole = parts.sum(axis=0)
+    narrow = np.abs(whole - (1.0 - TIGHTENED) * parts)
+    return np.asarray(np.mean(narrow > limit.amplitude, axis=1))

@@ -1,0 +1,198 @@
+"""Orders beside the mesh of pairs as made: what one tooth does, and which pairs are above a limit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fe_contact import Gear, GearPair, RunOut, analyze
+from fe_contact.errors import InputError
+from fe_contact.geometry.flank_tolerances import run_out_tolerance, single_pitch_tolerance
+from fe_contact.microgeometry.confirmation import design_study
+from fe_contact.microgeometry.drawn_teeth import (
+    FLANK,
+    PITCH,
+    RUN_OUT,
+    DrawnTeeth,
+    ToothTolerances,
+    iso1328_tooth_tolerances,
+)
+from fe_contact.microgeometry.evaluator import Evaluator
+from fe_contact.microgeometry.order_limit import OrderLimit, PairsAbove
+from fe_contact.microgeometry.scatter import ONE_NODE
+from fe_contact.microgeometry.sidebands_above import MadePairs, ToothPassing, lines_of_pairs
+from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceRequest, ToleranceStudy, scatter
+from fe_contact.microgeometry.tolerances import Tolerances, iso1328_tolerances
+from fe_contact.options import AnalysisOptions, Run
+from lineofaction.gearbox.studies.scatter.run import order_limit
+from model_studies.stage_clock import StageClock
+
+PINION, WHEEL = (Gear(z, normal_module=3e-3, face_width=20e-3, bore_diameter=20e-3) for z in (19, 28))
+PAIR = GearPair(PINION, WHEEL)
+TORQUES, POSITIONS = [100.0, 200.0], 16
+OPTIONS = AnalysisOptions(level="draft", model="plane_strain", effects={"corner_contact": "off"})
+ALIKE = Tolerances(0.0, {"pinion.profile_slope": 1e-6})
+SIDEBAND = OrderLimit(1, 1e-7, "pinion", -1)
+TEETH = iso1328_tooth_tolerances(PAIR, "pinion", 6, across_face=False, finishing="hobbing")
+KINDS = [name for name in TEETH.widths if name != RUN_OUT]
+
+
+@pytest.fixture(scope="module")
+def designed() -> Evaluator:
+    request = ToleranceRequest(PAIR, TORQUES, ALIKE, Sampling(positions=POSITIONS), OPTIONS, 0.0)
+    study = design_study(request.space, TORQUES, [], StageClock(), Run(), request.checked)
+    return replace(study.evaluator, nodes=ONE_NODE)
+
+
+def solved(designed: Evaluator, gear: str, drawn: DrawnTeeth, line: int) -> Any:
+    count = len(drawn.eccentricity)
+    return lines_of_pairs(MadePairs(designed, (), np.zeros((count, 0)), gear, drawn), (line, range(count)))
+
+
+def only(drawn: DrawnTeeth, names: Sequence[str], scale: float) -> DrawnTeeth:
+    by_tooth = {name: values * scale * (name in names) for name, values in drawn.by_tooth.items()}
+    return DrawnTeeth(drawn.eccentricity * scale * (RUN_OUT in names), drawn.angle, by_tooth)
+
+
+@pytest.mark.parametrize("gear", ["pinion", "wheel"])
+@pytest.mark.parametrize("name", [*KINDS, RUN_OUT])
+def test_small_deviations_make_orders_as_told_to_first_order(
+    designed: Evaluator, gear: str, name: str
+) -> None:
+    """Amplitude and phase of shaft order and sidebands, by each deviation alone, against all pitches solved.
+
+    A slope also moves the point at which teeth touch along the flank, which is left out.
+    """
+    teeth = replace(TEETH, gear=gear, teeth=getattr(PAIR, gear).teeth)
+    drawn = only(teeth.drawn(1, seed=2), [name], 1e-4)
+    limits = (OrderLimit(0, 1e-6, gear, 1), OrderLimit(1, 1e-6, gear, -1), OrderLimit(2, 1e-6, gear, 3))
+    told = [ToothPassing.of(designed, limit, KINDS).lines(drawn).sum(axis=0) for limit in limits]
+    found = [solved(designed, gear, drawn, limit.line(PAIR)) for limit in limits]
+    scale = np.abs(found).max()
+    assert scale > 1e-12
+    left_out = 0.02 if name.startswith(FLANK) else 1e-3
+    np.testing.assert_allclose(told, found, atol=left_out * scale, rtol=0.0)
+
+
+def test_the_mate_changes_an_order_by_squares_alone(designed: Evaluator) -> None:
+    """A sideband of the pinion is that of its own teeth: small deviations of the wheel leave it."""
+    drawn = only(TEETH.drawn(1, seed=2), [PITCH], 1e-3)
+    mate = iso1328_tooth_tolerances(PAIR, "wheel", 6, across_face=False).drawn(1, seed=4)
+    wheel = replace(WHEEL, **only(mate, [PITCH], 1e-3).fields(0))
+    both = replace(designed, contact=replace(designed.contact, pair=replace(PAIR, wheel=wheel)))
+    line = SIDEBAND.line(PAIR)
+    alone = solved(designed, "pinion", drawn, line)
+    cycle = solved(both, "pinion", drawn, line * WHEEL.teeth)
+    np.testing.assert_allclose(cycle, alone, atol=1e-2 * np.abs(alone).max(), rtol=0.0)
+
+
+def test_teeth_are_within_their_class() -> None:
+    for distribution in ("normal", "uniform"):
+        drawn = replace(TEETH, distribution=distribution).drawn(200, seed=1)
+        pitches = drawn.by_tooth[PITCH]
+        single = np.abs(pitches - np.roll(pitches, 1, axis=1)).max()
+        assert 0.5 < single / single_pitch_tolerance(PINION, 6) <= 1.0
+        assert 0.9 < 2.0 * drawn.eccentricity.max() / run_out_tolerance(PINION, 6) <= 1.0
+        for name, values in drawn.by_tooth.items():
+            assert 0.95 < np.abs(values).max() / TEETH.widths[name] <= 1.0
+            correlated = np.corrcoef(values.T) - np.eye(PINION.teeth)
+            assert np.abs(correlated).max() < 0.3  # of 200 gears
+        assert abs(np.exp(1j * drawn.angle).mean()) < 0.02
+    first, more = TEETH.drawn(3, seed=1), TEETH.drawn(9, seed=1)
+    np.testing.assert_array_equal(first.by_tooth[PITCH], more.by_tooth[PITCH][:3])
+
+
+def test_what_all_teeth_have_in_common_is_not_drawn_twice() -> None:
+    """Squares of the part in common and of the rest add up to the tolerance; all of it in common: no rest."""
+    every = iso1328_tooth_tolerances(PAIR, "wheel", 6, across_face=True)
+    assert set(every.widths) == {RUN_OUT, PITCH}
+    hobbed = iso1328_tooth_tolerances(PAIR, "wheel", 6, finishing="hobbing")
+    common = iso1328_tolerances(PAIR, 6, finishing="hobbing")
+    whole = iso1328_tolerances(PAIR, 6)
+    for name in ("profile_slope", "profile_form", "helix_slope", "helix_form"):
+        parts = common.widths[f"wheel.{name}"], hobbed.widths[FLANK + name]
+        assert np.hypot(*parts) == pytest.approx(whole.widths[f"wheel.{name}"])
+
+
+def sampled(limit: OrderLimit, teeth: ToothTolerances = TEETH) -> ToleranceStudy:
+    sampling = Sampling(samples=500, seed=3, positions=POSITIONS, exact=40)
+    return scatter(PAIR, TORQUES, ALIKE, sampling, OPTIONS, limit=limit, teeth=teeth)
+
+
+@pytest.fixture(scope="module")
+def above() -> PairsAbove:
+    found = sampled(SIDEBAND).above
+    assert found is not None
+    return found
+
+
+def test_a_limit_beside_the_mesh_counts_pairs_solved_over_a_revolution(above: PairsAbove) -> None:
+    np.testing.assert_array_equal(above.share, (above.amplitude > SIDEBAND.amplitude).mean(axis=0))
+    assert above.amplitude.shape == (500, 2) and 0.0 < above.share.max() < 1.0
+    assert np.all((above.low <= above.share) & (above.share <= above.high))
+    assert np.all(above.missed < 0.05 * np.median(above.amplitude, axis=0))
+    assert np.all(above.beyond < 0.1)
+    # a pair as made, whole: its order is that of the table
+    drawn = TEETH.drawn(500, 3)
+    slope = {"profile_slope": float(ALIKE.sample(1, 3)[0, 0])}
+    pinion = replace(PINION, modification=replace(PINION.modification, **slope), **drawn.fields(0))
+    effects = {"corner_contact": "off", "profile_modification": "on"}
+    wish = {"level": "draft", "model": "plane_strain", "positions": POSITIONS, "receipt": "minimal"}
+    table = analyze(replace(PAIR, pinion=pinion), torques=TORQUES, effects=effects, **wish)
+    curve = table.static_transmission_error[:, :, 0, 0]
+    line = 2.0 * np.abs(np.fft.fft(curve, axis=0)[SIDEBAND.line(PAIR)]) / len(curve)
+    np.testing.assert_allclose(above.amplitude[0], line, rtol=1e-9)
+
+
+def test_what_decides_of_an_order_is_what_makes_it(above: PairsAbove) -> None:
+    """Run-out alone makes the first order of a shaft, by its amount; pitches and flanks a sideband."""
+    assert above.names == TEETH.names and above.total[0] == above.first_order[0] == 0.0
+    assert above.cured[0] == above.share[above.load] >= above.cured.min()
+    turning = sampled(OrderLimit(0, 4e-6, "pinion", 1)).above
+    assert turning is not None
+    assert turning.decides == turning.cure == 0 and turning.total[0] > 0.9
+    eccentric = TEETH.drawn(500, 3).eccentricity
+    np.testing.assert_allclose(turning.amplitude[:, 0], eccentric, atol=2.5e-6)
+    # with the tolerance of a class finer, drawn anew
+    finer = replace(TEETH, widths={**TEETH.widths, RUN_OUT: TEETH.widths[RUN_OUT] / np.sqrt(2.0)})
+    other = sampled(turning.limit, finer).above
+    assert other is not None and turning.share[turning.load] > 0.1
+    assert other.share[turning.load] == pytest.approx(turning.cured[0], abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("changes", "limit", "field"),
+    [
+        ({}, OrderLimit(1, 1e-6, "pinion", 10), "limit.turns"),  # 19 teeth: 10 is nearer to mesh order 2
+        ({}, OrderLimit(1, 1e-6, "wheel", 0), "limit.turns"),
+        ({}, OrderLimit(0, 1e-6, "wheel", -1), "limit.turns"),
+        ({}, OrderLimit(8, 1e-6, "pinion", 1), "limit.order"),
+        ({"run_out": RunOut(1e-6)}, SIDEBAND, "limit.gear"),
+    ],
+)
+def test_orders_that_drawn_teeth_cannot_make_are_refused(
+    changes: dict[str, Any], limit: OrderLimit, field: str
+) -> None:
+    pair = replace(PAIR, wheel=replace(WHEEL, **changes))
+    with pytest.raises(InputError) as refused:
+        limit.check(pair, POSITIONS)
+    assert refused.value.field == field
+
+
+@pytest.mark.parametrize(
+    ("text", "limit", "name"),
+    [
+        ("1 = 500 nm", OrderLimit(1, 5e-7), "mesh 1"),
+        ("1-pinion=80nm", OrderLimit(1, 8e-8, "pinion", -1), "mesh 1 - pinion 1"),
+        ("mesh 2 + wheel 3=0dB", OrderLimit(2, 1e-6, "wheel", 3), "mesh 2 + wheel 3"),
+        ("pinion 11=0.2um", OrderLimit(0, 2e-7, "pinion", 11), "pinion 11"),
+    ],
+)
+def test_limits_are_written_as_orders_are_named(text: str, limit: OrderLimit, name: str) -> None:
+    found = order_limit(text)
+    assert (found.order, found.gear, found.turns) == (limit.order, limit.gear, limit.turns)
+    assert found.amplitude == pytest.approx(limit.amplitude) and found.name == name
