@@ -39,6 +39,7 @@ AT_40 = {"road_speed_km_h": 40.0, "tire_radius_mm": 310.0, "final_ratio": 3.2}
 
 LINES = """node => (node.layout?.shapes ?? []).map(({ xref, x0, x1, y0, y1, label }) => (
   [label.text, xref, x0, x1, y0, y1]))"""
+BARS = "node => node.data.at(-1).y.length"
 OF_A_RUN = """async ([mark, figure]) => {
   const { mark: put, marked } = await import("/page/plots.js");
   put(mark);
@@ -224,6 +225,13 @@ def test_the_order_is_marked_in_the_plots_of_the_pair_as_it_is_typed(
     typed(page, frequency_hz="1500")
     for plot in (live, spectrum):
         until(lambda plot=plot: plot.evaluate(LINES) == [["complaint", "x", 3, 3, 0, 1]])
+    for times, harmonics in ((12, 12), (25, 8), (3, 8)):  # a curve has twenty
+        typed(page, frequency_hz=str(500 * times))
+        marks = [["complaint", "x", times, times, 0, 1]] if times <= harmonics else []
+        until(lambda marks=marks: live.evaluate(LINES) == marks)
+        until(lambda harmonics=harmonics: live.evaluate(BARS) == harmonics)
+        rows = page.locator("#live-ripple details th[scope=row]", has_text=re.compile(r"^harmonic \d+$"))
+        expect(rows).to_have_count(harmonics)
     said_of_sound = page.locator("#live-sound output")
     expect(said_of_sound).to_have_text("The complaint, at 1500 rpm, passes after 0.60 s.")
     control(page, "#sound-from").fill("1600")

@@ -268,7 +268,7 @@ export class Live {
     this.describe(shown);
     return Promise.all([
       plot(this.blocks.ste.node, { ...this.ripple(shown), ...facts }),
-      plot(this.blocks.harmonics.node, harmonicsFigure(shown)),
+      plot(this.blocks.harmonics.node, harmonicsFigure(shown, this.count(curve))),
       plot(this.blocks.sharing.node, sharingFigure(curve)),
       this.flanks.draw(shown),
     ]);
@@ -292,9 +292,16 @@ export class Live {
     harmonics.block.querySelector("figcaption").textContent = words[2];
   }
 
+  /** How many harmonics are shown of a curve: up to that of the complaint, if it has that. @param {any} curve */
+  count({ harmonics_um: { length } }) {
+    const { harmonic } = heardIn(this.design.case);
+    return harmonic && harmonic <= length ? Math.max(SHOWN_HARMONICS, harmonic) : SHOWN_HARMONICS;
+  }
+
   describe(shown) {
     const now = shown.at(-1).curve;
-    const tables = [numbersOf(shown), ...(now.period > 1 ? [ordersOf(now)] : []), sourcesOf(now)];
+    const count = this.count(now);
+    const tables = [numbersOf(shown, count), ...(now.period > 1 ? [ordersOf(now)] : []), sourcesOf(now)];
     const numbers = tables.map((table) => dataTable(table));
     this.numbers.replaceChildren(make("summary", {}, "Numbers"), ...numbers);
     const ripple = shown.map(({ name, curve }) => `${name} ${number(curve.peak_to_peak_um, 3)} µm`).reverse().join(", ");
@@ -304,7 +311,7 @@ export class Live {
     );
     const tones = now.period > 1
       ? `Strongest orders: ${strongestOrders(now, SHOWN_HARMONICS).map(({ name, amplitude }) => `${name} ${number(amplitude, 3)}`).join(", ")} µm.`
-      : `Mesh harmonics 1 to ${SHOWN_HARMONICS}: ${now.harmonics_um.slice(0, SHOWN_HARMONICS).map((value) => number(value, 3)).join(", ")} µm.`;
+      : `Mesh harmonics 1 to ${count}: ${now.harmonics_um.slice(0, count).map((value) => number(value, 3)).join(", ")} µm.`;
     this.blocks.harmonics.node.setAttribute("aria-label", tones);
     this.blocks.sharing.node.setAttribute("aria-label", "Load share of each tooth pair over the base pitch.");
   }

@@ -78,12 +78,12 @@ function ordersFigure(shown) {
   return { data, layout: made };
 }
 
-/** @param {Shown[]} shown */
-export function harmonicsFigure(shown) {
+/** @param {Shown[]} shown @param {number} count of harmonics */
+export function harmonicsFigure(shown, count) {
   if (shown.at(-1).curve.period > 1) return ordersFigure(shown);
-  const order = Array.from({ length: SHOWN_HARMONICS }, (_, k) => k + 1);
+  const order = Array.from({ length: count }, (_, k) => k + 1);
   const data = shown.map(({ name, curve, color }) => ({
-    type: "bar", name, x: order, y: curve.harmonics_um.slice(0, SHOWN_HARMONICS), marker: { color },
+    type: "bar", name, x: order, y: curve.harmonics_um.slice(0, count), marker: { color },
   }));
   const made = layout("harmonic of the mesh", "amplitude, µm", { bargap: 0.25 });
   made.xaxis.dtick = 1;

@@ -1,7 +1,7 @@
 /** The numbers of the live curves: main figures with error and change, and all of them as a table. */
 
 import { number, signed } from "./elements.js";
-import { SHOWN_HARMONICS, strongestOrders } from "./live_figures.js";
+import { strongestOrders } from "./live_figures.js";
 
 const plusMinus = (error, coming) => (Number.isFinite(error) ? `± ${number(error, 2)}` : coming ? "± …" : "");
 
@@ -109,10 +109,10 @@ export function besideFigures(variants, heard) {
   };
 }
 
-/** Figures of every curve beside each other. @param {import("./live_figures.js").Shown[]} shown */
-export function numbersOf(shown) {
+/** Figures of every curve beside each other. @param {import("./live_figures.js").Shown[]} shown @param {number} count of harmonics */
+export function numbersOf(shown, count) {
   const row = (name, of) => [name, ...shown.map(({ curve }) => number(of(curve), 4))];
-  const tones = Array.from({ length: SHOWN_HARMONICS }, (_, k) => row(`harmonic ${k + 1}`, (curve) => curve.harmonics_um[k] ?? NaN));
+  const tones = Array.from({ length: count }, (_, k) => row(`harmonic ${k + 1}`, (curve) => curve.harmonics_um[k] ?? NaN));
   return {
     caption: "Transmission error, µm",
     head: ["figure", ...shown.map(({ name }) => name)],
