@@ -59,7 +59,7 @@ def amend(case: Path, **tables: Any) -> None:
 
 def opened(folder: Path, effort: Effort) -> Path:
     """Open the REXS file and return the scene; every case gets its accuracy, the scene its gear case."""
-    loa("open", UNIT / "two_stage.rexs", "--out", folder)
+    loa("open", UNIT / "two_stage.rexs", "-o", folder)
     for case in folder.glob("*_stage.toml"):
         amend(case, accuracy=ACCURACY)
     loads = tomllib.loads((folder / "load_cases.toml").read_text("utf-8"))["load_cases"]

@@ -44,6 +44,8 @@ def run_housing(
 ) -> None:
     """Show what a STEP file is as the housing of a scene, and write the scene with it.
 
+    The scene of a folder is written in place unless another file is named.
+
     Parameters
     ----------
     stands : tuple of str
@@ -54,6 +56,8 @@ def run_housing(
     material, stands_on = stands
     _check_known("--material", material, MATERIALS)
     _check_known("--stands-on", stands_on, DIRECTIONS)
+    if output is None and file.project is not None:
+        output = file.path
     if output is not None:
         check_writable(output)
     scene = read_model(SceneInput, file)
@@ -125,13 +129,18 @@ def _write(file: InputFile, step: Path, output: Path, made: StepHousing) -> list
 
 
 def _text(file: InputFile, output: Path, table: dict[str, Any], housing: dict[str, Any]) -> str:
-    """Return the scene as a file: TOML with its comments and the housing at the end, where that says it."""
+    """Return the scene as a file: TOML with its comments and the housing at the end, where that says it.
+
+    A housing that was written at the end before is replaced there.
+    """
     if output.suffix == ".json":
         return json.dumps(table, indent=1) + "\n"
-    text = f"{read_text(file.path, str(file.path)).rstrip()}\n\n{toml_text({'housings': [housing]})}"
-    with suppress(BadInput):
-        if toml_table(text, str(file.path)) == table:
-            return text
+    whole = read_text(file.path, str(file.path))
+    for kept in (whole, whole.rpartition("[[housings]]")[0]):
+        text = f"{kept.rstrip()}\n\n{toml_text({'housings': [housing]})}"
+        with suppress(BadInput):
+            if toml_table(text, str(file.path)) == table:
+                return text
     return toml_text(table)
 
 

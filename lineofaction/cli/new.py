@@ -388,13 +388,13 @@ def _new_text(kind: str, wanted: PairWishes) -> str:
 # ``loa open``.
 
 
-def run_open(file: Path, out: Path | None, assume: Sequence[str] = (), *, as_json: bool) -> None:
+def run_open(file: Path, output: Path | None, assume: Sequence[str] = (), *, as_json: bool) -> None:
     """Open a REXS file: write cases, scene, load cases and account, and print what is not taken as it is.
 
     What is left out of the scene comes first and last.
     """
     unit = OpenedUnit.of(read_rexs(file), [Assumption.of(text) for text in assume])
-    folder = out or Path(file.name).with_suffix("")
+    folder = output or Path(file.name).with_suffix("")
     written = _write_unit(unit, folder)
     counts = Counter[str](line.fate for line in unit.lines)
     left_out = unit.headline
@@ -422,7 +422,7 @@ def _write_unit(unit: OpenedUnit, folder: Path) -> list[Path]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise BadInput.of("out", str(folder), f"a folder that can be made ({error.strerror})") from None
+        raise BadInput.of("output", str(folder), f"a folder that can be made ({error.strerror})") from None
     written = []
     for name, text in unit.files().items():
         path = folder / name

@@ -32,7 +32,7 @@ VERBS = {
 @pytest.mark.nightly
 def test_every_verb_takes_the_folder_that_open_made(tmp_path: Path) -> None:
     unit = tmp_path / "unit"
-    assert loa("open", UNIT, "--out", unit).exit_code == 0
+    assert loa("open", UNIT, "-o", unit).exit_code == 0
     for verb, options in VERBS.items():
         done = loa(verb, unit, *options)
         assert done.exit_code == 0, (verb, done.output)

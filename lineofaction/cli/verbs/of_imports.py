@@ -24,13 +24,15 @@ _ASSUME = (
 )
 
 
-@verbs.command("open", rich_help_panel="start", epilog="Example: loa open gearbox.rexs --out gearbox")
+@verbs.command("open", rich_help_panel="start", epilog="Example: loa open gearbox.rexs -o gearbox")
 @computing
 def _open_unit(
     file: Annotated[Path, typer.Argument(help="Gear unit as REXS: .rexs, .rexsj, .rexsz or .rexs.zip.")],
-    out: Annotated[
+    output: Annotated[
         Path | None,
-        typer.Option("--out", help="Folder for the files; default: that of the file's name, here."),
+        typer.Option(
+            "-o", "--output", "--out", help="Folder for the files; default: that of the file's name, here."
+        ),
     ] = None,
     assume: Annotated[
         list[str] | None,
@@ -39,7 +41,7 @@ def _open_unit(
     json: AsJson = False,
 ) -> None:
     """Open a gear unit of another tool (REXS): write its cases, its scene and the report of the import."""
-    new.run_open(file, out, assume or (), as_json=json)
+    new.run_open(file, output, assume or (), as_json=json)
 
 
 @verbs.command(
@@ -74,7 +76,7 @@ def _measured(
 @verbs.command(
     "housing",
     rich_help_panel="gearbox",
-    epilog="Example: loa housing gearbox case.step --material cast_aluminum -o gearbox/scene.toml",
+    epilog="Example: loa housing gearbox case.step --material cast_aluminum",
 )
 @computing
 @overridable("scene", "scene")
@@ -93,7 +95,8 @@ def _housing(
     x_axis: Annotated[str | None, typer.Option(help="Its x axis in the scene, x,y,z.")] = None,
     z_axis: Annotated[str | None, typer.Option(help="Its z axis in the scene, x,y,z.")] = None,
     output: Annotated[
-        Path | None, to_file("Scene with the housing to write; the STEP file goes beside it.")
+        Path | None,
+        to_file("Scene with the housing to write, the STEP file beside it; of a folder, default: its scene."),
     ] = None,
     json: AsJson = False,
 ) -> None:

@@ -17,6 +17,7 @@ from spur_case import spur_case
 
 from lineofaction.cli.commands import app
 from lineofaction.cli.output import console, table
+from lineofaction.cli.verbs import of_imports
 from lineofaction.cli.verbs.of_studies import GROUPS, StudyGroup
 
 COLUMNS = (80, 120)
@@ -132,12 +133,10 @@ def test_the_finding_is_bold_errors_are_colored_and_what_is_beside_is_grey(files
 # The help: every verb once, under its group, and whole.
 
 
-@pytest.mark.parametrize("columns", COLUMNS)
-def test_the_help_has_every_verb_in_one_group_and_cuts_no_line(
-    columns: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("COLUMNS", str(columns))
-    shown = loa("--help").stdout.split("Start:\n", 1)[1].splitlines()
+def check_help(columns: int) -> None:
+    done = loa("--help")
+    assert done.exit_code == 0, done.exception
+    shown = done.stdout.split("Start:\n", 1)[1].splitlines()
     own = typer.main.get_command(app)
     assert isinstance(own, StudyGroup)
     heads = [line.removesuffix(":").lower() for line in shown if re.fullmatch(r"[A-Z][a-z]+:", line)]
@@ -150,3 +149,18 @@ def test_the_help_has_every_verb_in_one_group_and_cuts_no_line(
     for verb in verbs:
         said = own.get_command(typer.Context(own), verb)
         assert "".join((said.short_help or said.help).split()) in text
+
+
+@pytest.mark.parametrize("columns", COLUMNS)
+def test_the_help_has_every_verb_in_one_group_and_cuts_no_line(
+    columns: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", str(columns))
+    check_help(columns)
+
+
+@pytest.mark.parametrize("group", [None, "further"])
+def test_a_verb_in_no_group_fails_the_check(group: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(of_imports.verbs.registered_commands[0], "rich_help_panel", group)
+    with pytest.raises(AssertionError, match="KeyError"):
+        check_help(80)

@@ -172,7 +172,7 @@ def test_the_answer_and_the_verb_show_the_forces_that_differ(tmp_path: Path) -> 
     answer = UnitBody.model_validate(_unit_json(OpenedUnit.of(document)))
     assert [[force.force_n for force in case.forces] for case in answer.load_cases] == [[], [[0.0, 5.0, 0.0]]]
     (tmp_path / "unit.rexs").write_bytes(serialized(document, "unit.rexs"))
-    shown = loa("open", tmp_path / "unit.rexs", "--out", tmp_path / "unit")
+    shown = loa("open", tmp_path / "unit.rexs", "-o", tmp_path / "unit")
     assert "external_load 44 [0.0, 5.0, 0.0] N and [0.0, 0.0, 0.0] N m in x, y, z" in shown.stdout
 
 

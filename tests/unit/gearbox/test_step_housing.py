@@ -16,7 +16,9 @@ from housing_solid import housed_scene, housing, write_block
 from dynamics.housings import Bore
 from lineofaction.gearbox.convert.placement import Placement
 from lineofaction.gearbox.from_step.placement import found, placed_bore, seated
+from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.project import file_of
 from lineofaction.gearbox.schemas import read_model
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_text
@@ -167,6 +169,22 @@ def test_without_an_output_it_shows_and_writes_nothing(block: Path, scene: Path,
     assert facts["mass_kg"] == pytest.approx(7200.0 * 1e-9 * exact, rel=1e-9)
     assert facts["foot_area_mm2"] == pytest.approx(160.0 * 30.0, rel=1e-9)
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_the_scene_of_a_folder_is_written_in_place(block: Path, scene: Path, tmp_path: Path) -> None:
+    """It keeps comments and other parts, also where the housing is replaced; no other scene appears."""
+    folder = InputFile(scene.parent)
+    for material in ("gray_cast_iron", "cast_aluminum"):
+        before = tomllib.loads(scene.read_text())
+        ended = loa("housing", tmp_path, block, "--material", material)
+        assert ended.exit_code == 0, ended.output
+        after = tomllib.loads(scene.read_text())
+        (part,) = after.pop("housings")
+        assert (part["material"], part["step_file"]) == (material, "block.step")
+        assert after == {name: own for name, own in before.items() if name != "housings"}
+        assert scene.read_text().startswith("# of the test bench\n")
+        assert file_of(folder, "scene").path == scene
+    assert (tmp_path / "block.step").read_bytes() == block.read_bytes()
 
 
 def test_a_bearing_in_no_bore_is_the_first_line(block: Path, scene: Path, tmp_path: Path) -> None:

@@ -33,7 +33,7 @@ STAGES = ("cylindrical_stage_21", "cylindrical_stage_22")
 
 
 def printed(file: Path, folder: Path, *options: str) -> str:
-    result = loa("open", file, "--out", folder, *options)
+    result = loa("open", file, "-o", folder, *options)
     assert result.exit_code == 0, result.output
     return result.output
 
@@ -61,7 +61,7 @@ def test_as_json_the_report_is_an_object(tmp_path: Path) -> None:
 def test_a_file_that_is_none_is_refused_in_one_line(tmp_path: Path) -> None:
     file = tmp_path / "gearbox.rexs"
     file.write_text("<model", encoding="utf-8")
-    result = loa("open", file, "--out", tmp_path / "out")
+    result = loa("open", file, "-o", tmp_path / "out")
     assert result.exit_code == 2
     assert not (tmp_path / "out").exists()
 
@@ -105,7 +105,7 @@ def test_the_service_refuses_what_is_no_file(client: TestClient, text: str, boun
 @needs_reference
 @pytest.mark.parametrize("file", examples(), ids=lambda file: file.name)
 def test_the_reference_files_open(file: Path, tmp_path: Path) -> None:
-    answer = loa("open", file, "--out", tmp_path, "--strict", "--json")
+    answer = loa("open", file, "-o", tmp_path, "--strict", "--json")
     facts = json.loads(answer.stdout)
     assert facts["cases"]
     # the planetary set accounts for gravity, which its scene cannot have
@@ -121,7 +121,7 @@ HAND = LEFT_OUT["hand of a wheel"][1](TWO_STAGE)
 def opened(text: str, folder: Path, *options: str) -> Result:
     file = folder / "unit.rexs"
     file.write_text(text, encoding="utf-8")
-    return loa("open", file, "--out", folder / "out", "--strict", *options)
+    return loa("open", file, "-o", folder / "out", "--strict", *options)
 
 
 @pytest.mark.parametrize("fault", LEFT_OUT)
