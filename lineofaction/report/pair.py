@@ -53,6 +53,7 @@ from lineofaction.report.drawing.figure import (
     number,
 )
 from lineofaction.report.drawing.page import Section
+from lineofaction.report.teeth_as_made import teeth_as_made
 
 _PARTS: dict[str, Callable[..., object]] = {
     "modification": FlankModification,
@@ -453,9 +454,8 @@ def data_sheet_section(pair: ParallelAxes, tolerance_class: int | None = None) -
     """Return the sheet as a section: what speaks against it, the drawing, then the tables."""
     remarks = " ".join(f"Warning: {remark['message']}" for remark in pair_remarks(pair))
     text = remarks or "No warnings: undercut, backlash, tip clearance, tip thickness, contact ratio."
-    return Section(
-        "Data sheet", text, figures=(pair_drawing(pair, tolerance_class),), tables=data_sheet(pair)
-    )
+    figures = (pair_drawing(pair, tolerance_class), *teeth_as_made(pair))
+    return Section("Data sheet", text, figures=figures, tables=data_sheet(pair))
 
 
 def data_sheet_json(pair: ParallelAxes) -> Json:

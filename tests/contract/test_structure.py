@@ -14,7 +14,7 @@ BUDGETS = {
     ("fe_contact",): (44_194, 829),
     ("dynamics",): (45_014, 884),
     ("lineofaction.gearbox",): (27_939, 571),
-    ("lineofaction.report",): (12_430, 232),
+    ("lineofaction.report",): (12_507, 234),
     ("service",): (15_139, 361),
     ("lineofaction.client",): (2_944, 55),
     ("lineofaction.cli",): (5_772, 83),
@@ -22,7 +22,7 @@ BUDGETS = {
     ("bounds", "host", "model_studies"): (4_523, 156),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 866
+MOST_FILES = 867
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
