@@ -29,7 +29,7 @@ _HASH = r"[0-9a-f]{64}"
 _JOB = r"[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}"
 _PACKED, _VARIANT, _ANY = r"[\w-]+", r"[\w.-]+", r"(?s).+"
 _VIEWS = {
-    **{"case": _PACKED, "live": _PACKED, "unit": _VARIANT, "a": _VARIANT, "b": _VARIANT, "c": _VARIANT},
+    **{"case": _PACKED, "live": _PACKED, **dict.fromkeys(("unit", "toml", "a", "b", "c"), _VARIANT)},
     **{"tab": "[a-z]+", "name": _ANY, "at": r"\d(\.\d+)?", "motion": r"\d+", "see": _ANY, "on": "[abc]"},
 }
 """What a view may be; variants that are not shown are views of the one that is."""

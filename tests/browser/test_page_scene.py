@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from faulty_units import LEFT_OUT, TWO_STAGE
 from housing_solid import STIFFNESS, housed_scene, write_block
-from page_visit import PATIENCE, Visit, shown, tab
+from page_visit import PATIENCE, Visit, other_browser, shown, tab
 from playwright.sync_api import Browser, Route, expect
 from running_service import until
 
@@ -150,6 +150,33 @@ def test_files_chosen_with_a_scene_go_with_it(visit: Visit) -> None:
     (mesh,) = sent[0]["meshes"]
     assert mesh["case"]["pair"]["pinion"]["teeth"] == 20
     assert mesh.get("case_file") is None
+
+
+def test_a_reload_and_a_second_browser_show_the_edited_scene_with_its_files(
+    browser: Browser, address: str, tmp_path: Path
+) -> None:
+    step, file = write_block(tmp_path / "block.step"), tmp_path / "scene.toml"
+    scene = housed_scene(tmp_path)
+    scene["meshes"][0] |= {"database_file": None, "stiffness": STIFFNESS}
+    file.write_text("# as typed\n" + toml_text(scene), encoding="utf-8")
+    with other_browser(browser, f"{address}/#tab=sound") as page:
+        page.locator("#scene-file").set_input_files([file, step])
+        expect(page).to_have_url(re.compile("toml="))
+        text, files = page.locator("#scene-text"), page.locator("#scene-body")
+        written = text.input_value()
+        assert "# as typed" in written
+        page.reload()
+        expect(files).to_contain_text("With block.step.")
+        expect(text).to_have_value(written)
+        length, known = page.locator("#scene-shafts-0-length_mm"), page.url
+        length.fill("31.5")
+        length.press("Tab")
+        expect(text).to_have_value(re.compile("length_mm = 31.5"))
+        expect(page).not_to_have_url(known)
+        with other_browser(browser, page.url) as second:
+            expect(second.locator("#scene-shafts-0-length_mm")).to_have_value("31.5")
+            expect(second.locator("#scene-body")).to_contain_text("With block.step.")
+            assert second.locator("#scene-text").input_value() == text.input_value()
 
 
 def test_the_card_of_a_gear_unit_begins_with_what_is_left_out(visit: Visit) -> None:

@@ -6,7 +6,7 @@ export const HASH = /^[0-9a-f]{64}$/;
 export const JOB = /^[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}$/;
 const DESIGN = /^[\w-]+$/; // typed (see packed.js), a job or a result
 const VARIANT = /^[\w.-]+$/; // a design, a result and its moved flanks, or a file
-const VIEWS = { tab: /^[a-z]+$/, case: DESIGN, live: DESIGN, name: /./, at: /^\d(\.\d+)?$/, motion: /^\d+$/, unit: VARIANT, see: /./, on: /^[abc]$/, a: VARIANT, b: VARIANT, c: VARIANT };
+const VIEWS = { tab: /^[a-z]+$/, case: DESIGN, live: DESIGN, name: /./, at: /^\d(\.\d+)?$/, motion: /^\d+$/, unit: VARIANT, toml: VARIANT, see: /./, on: /^[abc]$/, a: VARIANT, b: VARIANT, c: VARIANT };
 const LEFT = "left";
 /** Views of one design and its result. */
 export const OF_DESIGN = { case: null, live: null, at: null, motion: null, unit: null, see: null, name: null };

@@ -105,6 +105,7 @@ class Page {
     byId("name").value = views.get("name") ?? "";
     this.called();
     this.design.view.motion = views.get("motion") ?? null;
+    this.scenes.word = views.get("toml") ?? null;
     this.design.view.stand(views.get("at"));
     this.more = false; // what was typed last belongs to the entry that is left
     if (this.results.stands) this.results.retype();
@@ -200,7 +201,7 @@ class Page {
     const keep = () => {
       this.more = Boolean(this.resting);
       if (this.more) return;
-      this.address.view({ live: this.results.moved, name: byId("name").value.trim(), at: this.design.view.at, motion: this.design.view.motion });
+      this.address.view({ live: this.results.moved, name: byId("name").value.trim(), at: this.design.view.at, motion: this.design.view.motion, toml: this.scenes.word });
       this.called();
       this.address.keep(this.typed);
       this.resting = setTimeout(rested, RESTING);
@@ -257,7 +258,7 @@ class Page {
 
   /** Show what came of an earlier job. */
   async reopen({ jobID: job, title }) {
-    this.address.turn({ job }, { ...OF_DESIGN, name: title }, {});
+    this.address.turn({ job }, { ...OF_DESIGN, toml: null, name: title }, {});
     this.tabs.select("jobs");
     const before = document.activeElement;
     await this.render();

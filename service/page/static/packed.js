@@ -1,6 +1,8 @@
 // @ts-check
 /** A design or a file as a word of the address: whoever opens it has the same, whether anything was computed or not. */
 
+export const MOST = 1_000_000; // characters of a file that an address carries
+
 /** @param {Uint8Array} bytes */
 export function base64(bytes) {
   let text = "";

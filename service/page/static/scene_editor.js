@@ -4,7 +4,8 @@ import { ask, get, guarded, patiently } from "./api.js";
 import { card } from "./card.js";
 import { button, byId, make } from "./elements.js";
 import { faultsOf } from "./job.js";
-import { base64, deflated } from "./packed.js";
+import { sayMissing } from "./notice.js";
+import { MOST, base64, deflated, packedFile, unpackedFile } from "./packed.js";
 import { evenly, saveScene, sceneOf } from "./scene.js";
 import { SceneTable } from "./scene_table.js";
 import { Tabs, reveal } from "./tabs.js";
@@ -32,6 +33,12 @@ export class SceneEditor {
     this.key = 0;
     /** The text that is the scene. */
     this.written = "";
+    /** @type {string | null} word of the address for it, null: that of a job, none, or one that is too long */
+    this.word = null;
+    /** What the editor holds of the address. */
+    this.held = null;
+    /** The scene of a job, which is in the address by the job. */
+    this.ofJob = null;
     this.text = make("textarea", {
       id: "scene-text", rows: 16, spellcheck: "false", autocomplete: "off", wrap: "off", onchange: () => this.settle(() => this.read()),
     });
@@ -40,6 +47,7 @@ export class SceneEditor {
     this.faults = make("div", { role: "status" });
     this.spectrum = make("p", { class: "hint", role: "status" });
     this.chosen = make("p", { class: "hint", role: "status" });
+    this.name = "";
     this.cases = [];
     /** Hash of the run that was shown last, whose sound is heard. */
     this.run = undefined;
@@ -104,9 +112,9 @@ export class SceneEditor {
 
   /** Take the scene as it is edited in a table or was before, and write its text anew. @param {any} scene */
   async edit(scene) {
-    if (!scene) return this.none();
-    await this.tabled(scene);
-    return this.write();
+    if (scene) await this.tabled(scene);
+    else this.none();
+    return scene ? this.write() : this.carry();
   }
 
   /** Show a scene in the tables. */
@@ -134,7 +142,7 @@ export class SceneEditor {
     if (scene !== this.scene) return;
     this.text.value = this.written = toml;
     this.with(files);
-    document.dispatchEvent(new Event("typed"));
+    await this.carry();
   }
 
   /** Read the scene that is typed as text. */
@@ -144,14 +152,42 @@ export class SceneEditor {
     if (toml !== this.text.value) return;
     this.written = toml;
     await this.tabled(scene);
+    await this.carry();
+  }
+
+  /** Let the address carry the scene with its files and load cases. */
+  async carry() {
+    const { scene, name, written: toml, files, cases } = this;
+    const word = scene && scene !== this.ofJob ? await packedFile(name, new TextEncoder().encode(JSON.stringify({ toml, files, cases }))) : null;
+    if (scene !== this.scene) return;
+    this.long = word?.length > MOST;
+    this.word = this.held = this.long ? null : word;
+    this.with(files);
     document.dispatchEvent(new Event("typed"));
   }
 
-  /** Read the text that a history entry brings back. */
+  /** Show the scene of the address, and the text that a history entry brings back. */
   async follow() {
+    const { word } = this;
+    await this.settling;
+    try {
+      if (word && word !== this.held) await this.unpack(word);
+    } catch (fault) { // what a damaged address holds
+      sayMissing(`The scene: ${fault.message}`);
+    }
     if (this.text.value === this.written) return;
     this.key += 1;
     await this.settle(() => (this.text.value ? this.read() : this.none()));
+  }
+
+  /** @param {string} word */
+  async unpack(word) {
+    const { name, bytes } = await unpackedFile(word);
+    const { toml, files, cases } = JSON.parse(new TextDecoder().decode(bytes));
+    if (this.text.value === this.written) this.text.value = toml; // else it is as typed last
+    this.written = "";
+    this.under(name, cases);
+    this.with(files);
   }
 
   /** What may be undone. */
@@ -194,8 +230,11 @@ export class SceneEditor {
 
   /** Say under which load cases the scene is deflected; none: under its own loads. */
   under(name, cases) {
-    this.cases = cases;
-    const leave = button("Leave them out", () => this.under("", []));
+    Object.assign(this, { name, cases });
+    const leave = button("Leave them out", () => {
+      this.under(name, []);
+      this.carry();
+    });
     const words = `A deflection takes the load cases of ${name}: ${cases.map((load) => load.name).join(", ")}. `;
     this.spectrum.replaceChildren(...(cases.length ? [words, leave] : []));
   }
@@ -203,7 +242,10 @@ export class SceneEditor {
   /** Say which files go with the text. */
   with(files) {
     this.files = files;
-    this.chosen.replaceChildren(...(files.length ? [`With ${files.map(({ name }) => name).join(", ")}.`] : []));
+    this.chosen.replaceChildren(
+      ...(files.length ? [`With ${files.map(({ name }) => name).join(", ")}.`] : []),
+      ...(this.long ? [" The scene is too long for the address: a reload forgets its files."] : []),
+    );
   }
 
   /** Open a scene with the files that it names; files without one belong to the scene that is here. */
@@ -237,7 +279,8 @@ export class SceneEditor {
   typedFor({ processID, inputs }) {
     this.run = inputs.run ?? this.run;
     this.process.value = processID;
-    this.put(inputs.scene, "this address", inputs.load_cases);
+    this.ofJob = inputs.scene;
+    if (!this.word) this.put(inputs.scene, "this address", inputs.load_cases);
     const speeds = inputs.speed_rpm ?? inputs.factors?.[0].levels ?? [];
     const range = { from: speeds[0], to: speeds.at(-1), count: speeds.length || undefined };
     return { ...range, microphone_mm: inputs.microphone_mm };

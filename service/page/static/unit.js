@@ -4,12 +4,11 @@
 import { Problem, patiently, post } from "./api.js";
 import { button, byId, folded, make, number, save } from "./elements.js";
 import { sayMissing } from "./notice.js";
-import { base64, packedFile, unpackedFile } from "./packed.js";
+import { MOST, base64, packedFile, unpackedFile } from "./packed.js";
 import { saveScene } from "./scene.js";
 
 const FATES = ["taken", "assumed", "derived", "defaulted", "ignored", "refused"];
 const ENDINGS = /\.(rexs|rexsj|rexsz|zip)$/i;
-const MOST = 1_000_000; // characters of a file that an address carries
 export const WHOLE = "unit"; // what is seen of a unit that is opened
 
 /** @param {string} name of a file */
