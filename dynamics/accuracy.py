@@ -20,7 +20,7 @@ from dynamics.errors import InputError, SolveError
 from dynamics.integrators import Trajectory, integrate, static_equilibrium
 from dynamics.integrators.method_choice import EVALUATIONS
 from dynamics.linearize import HarmonicResponse, harmonic_response
-from dynamics.mechanism.additions import COAST_FLANKS
+from dynamics.mechanism.additions import COAST_FLANKS, TEETH_AS_MADE
 from dynamics.motion.observation import observe, observe_laws, static_deflections
 from dynamics.results.order_fit import order_amplitudes, orders_seen, unwrapped
 from dynamics.scene import Outputs, Scene
@@ -132,8 +132,8 @@ class _Fidelity(model_studies.Fidelity[Scene], Protocol):
         """
 
 
-BY_TORSION = (COAST_FLANKS,)
-IN_PLANE = (COAST_FLANKS, "x", "y")
+BY_TORSION = (COAST_FLANKS, TEETH_AS_MADE)
+IN_PLANE = (*BY_TORSION, "x", "y")
 
 
 @dataclass(frozen=True)

@@ -74,6 +74,10 @@ class Effect:
         """
         return scene
 
+    def neglected(self, scene: Scene) -> Scene:
+        """Return `scene` without what causes the effect, which is switched off."""
+        return scene
+
     def check(self, mechanism: Mechanism) -> None:
         """Refuse a mechanism that the effect, if it is not switched off, cannot do with.
 

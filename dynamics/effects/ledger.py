@@ -220,8 +220,8 @@ def _shared_mechanism(scene: Scene, registry: tuple[Effect, ...]) -> Mechanism:
         one_of(f"effects.{name}", choice, CHOICES)
     allowed = [effect for effect in registry if scene.effects.get(effect.name) != "off"]
     requested = [effect for effect in registry if scene.effects.get(effect.name) == "on"]
-    for effect in allowed:
-        scene = effect.prepared(scene)
+    for effect in registry:
+        scene = effect.prepared(scene) if effect in allowed else effect.neglected(scene)
     mechanism = gather_mechanism(scene, Additions(_added(allowed), _added(requested)))
     for effect in allowed:
         effect.check(mechanism)

@@ -19,6 +19,7 @@ from dynamics.effects.lateral import Lateral
 from dynamics.effects.mesh_temperature import MeshTemperature
 from dynamics.effects.moving_application_point import MovingApplicationPoint
 from dynamics.effects.tilt import Tilt
+from dynamics.effects.tooth_deviations import ToothDeviations
 
 EFFECTS: tuple[Effect, ...] = (
     Lateral(),
@@ -37,6 +38,7 @@ EFFECTS: tuple[Effect, ...] = (
     DynamicCenterDistance(),
     MovingApplicationPoint(),
     Friction(),
+    ToothDeviations(),
 )
 
 LEFT_OUT: dict[str, str] = {

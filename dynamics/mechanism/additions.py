@@ -17,6 +17,8 @@ LOAD_ARM = "load_arm"
 """Of a mesh force about the axis of a misalignment."""
 MISALIGNMENT = "misalignment"
 CENTER_DISTANCE_CHANGE = "center_distance_change"
+TEETH_AS_MADE = "teeth_as_made"
+"""Base pitches that differ; without them their mean."""
 
 
 @dataclass(frozen=True)

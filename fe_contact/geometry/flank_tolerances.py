@@ -18,6 +18,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from bounds.pitch_tolerance import RUN_OUT_SHARE, cumulative_pitch_of_class
 from fe_contact.errors import InputError, integer, within
 from fe_contact.geometry.parallel_axes import ParallelAxes
 from fe_contact.geometry.toothing import Toothing
@@ -38,7 +39,7 @@ def cumulative_pitch_tolerance(gear: Toothing, tolerance_class: int) -> float:
 
 def run_out_tolerance(gear: Toothing, tolerance_class: int) -> float:
     """F_rT in m: 0.9 F_pT, which is not rounded before (annex E)."""
-    return _of_class(0.9 * _cumulative_pitch(gear), tolerance_class)
+    return _of_class(RUN_OUT_SHARE * _cumulative_pitch(gear), tolerance_class)
 
 
 def profile_slope_tolerance(gear: Toothing, tolerance_class: int) -> float:
@@ -79,7 +80,7 @@ def _sizes(gear: Toothing) -> tuple[float, float, float]:
 def _cumulative_pitch(gear: Toothing) -> float:
     """Of class 5, um."""
     module, diameter, _ = _sizes(gear)
-    return 0.002 * diameter + 0.55 * math.sqrt(diameter) + 0.7 * module + 12.0
+    return cumulative_pitch_of_class(module, diameter)
 
 
 def _profile_slope(gear: Toothing) -> float:
