@@ -20,8 +20,7 @@ from scipy.stats import sobol_indices
 from fe_contact.contact import Candidates
 from fe_contact.contact.load_weights import load_weights
 from fe_contact.contact.touch import rolls_at
-from fe_contact.effects.pitch_error import PitchError
-from fe_contact.effects.tooth_deviations import ToothDeviations
+from fe_contact.effects import EFFECTS
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.geometry.tooth_flank import tooth_shapes
@@ -111,7 +110,7 @@ class MadePairs:
         gear: Toothing = getattr(contact.pair, self.gear)
         made: dict[str, Any] = {self.gear: replace(gear, **self.drawn.fields(index))}
         nodes = ScatterNodes(self.names, self.deviation[index : index + 1], np.ones(1))
-        on = dict.fromkeys((PitchError.name, ToothDeviations.name), "on")
+        on = {effect.name: "on" for effect in EFFECTS if "period" in effect.adds}
         pair = replace(contact.pair, **made)
         choices = {**self.evaluator.choices, **on}
         return replace(self.evaluator, contact=replace(contact, pair=pair), nodes=nodes, choices=choices)
