@@ -175,6 +175,33 @@ def test_the_highest_torque_is_the_load(small: Path, monkeypatch: pytest.MonkeyP
     assert found.normal_force == pytest.approx(100.0 / 37.5877e-3, rel=1e-5)
 
 
+ALLOWANCE = "thickness_allowance_um = 90.0"
+
+
+@pytest.mark.parametrize(
+    ("allowance", "ends"),
+    [("", (0.0, 0.2)), (ALLOWANCE, (-0.1, 0.1)), ("thickness_allowance_um = 200.0", (-0.2, 0.2))],
+)
+def test_by_default_the_center_distance_stays_where_the_teeth_do_not_jam(
+    allowance: str, ends: tuple[float, float], small: Path
+) -> None:
+    """Five changes, as far as the backlash lets them; what is named is kept and refused."""
+    small.write_text(SMALL.replace(ALLOWANCE, allowance))
+    case = RUN.narrowed(CheckedCase(read_model(Case, small)), Inputs())
+    RUN.check(case, Inputs())
+    own = RUN.normalized(case, Inputs())["center_distance_change_percent"]
+    assert (own[0], own[-1], len(own)) == (*ends, 5)
+    named = Inputs(center_distance_change_percent=(-5.0, 0.0))
+    with pytest.raises(BadInput, match="jam"):
+        RUN.check(case, named)
+
+
+def test_by_default_a_ring_gear_comes_closer() -> None:
+    case = RUN.narrowed(CheckedCase(read_model(Case, ROOT / "examples" / "internal_gear.toml")), Inputs())
+    RUN.check(case, Inputs())
+    assert max(RUN.normalized(case, Inputs())["center_distance_change_percent"]) == 0.0
+
+
 def test_studies_come_back_from_their_file(tmp_path: Path) -> None:
     wide = study("pair b", 2.0)
     curves = tuple(

@@ -25,11 +25,11 @@ class Inputs(BoundaryModel):
         examples=[[0.0, 30.0]],
     )
     center_distance_change_percent: Row[Percent] = Field(
-        default=(-0.2, -0.1, 0.0, 0.1, 0.2),
+        default=(),
         title="Changes of the center distance, %",
-        min_length=1,
         max_length=64,
-        description="Changes of the center distance in per cent of the nominal one, increasing",
+        description="Changes of the center distance in per cent of the nominal one, increasing; default: "
+        "five from -0.2 to 0.2, of a pair whose teeth jam there from -0.1 to 0.1 or to one side",
         examples=[[0.0, 0.1]],
     )
 

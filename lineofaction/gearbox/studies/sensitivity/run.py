@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from bounds.types import Json
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.analysis.studies.sensitivity import Sensitivity, study_sensitivity
+from fe_contact.errors import InputError
 from fe_contact.options import TableAxes
 from lineofaction.gearbox.convert.case import PLANE, CheckedCase, across_face, boundary_errors, study_options
 from lineofaction.gearbox.stages import TableFraction
@@ -63,6 +65,16 @@ def _read_studies(path: Path) -> Studies:
     return stored.pairs
 
 
+_USUAL = (
+    (-0.2, -0.1, 0.0, 0.1, 0.2),
+    (-0.1, -0.05, 0.0, 0.05, 0.1),
+    (0.0, 0.05, 0.1, 0.15, 0.2),
+    (-0.2, -0.15, -0.1, -0.05, 0.0),
+)
+"""Changes of the center distance in per cent where none are named: the first at which a pair meshes.
+
+As many of each: pairs of one study have equally many.
+"""
 TABLES = 4
 """Of a pair: over each deviation, without and with corner contact."""
 
@@ -75,6 +87,12 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
     def narrowed(self, checked: CheckedCase, _inputs: Inputs) -> CheckedCase:
         """Return a case in three dimensions: no model of the plane knows a misalignment."""
         return across_face(checked) if checked.case.accuracy.model in PLANE else checked
+
+    def normalized(self, case: CheckedCase, inputs: Inputs) -> Json:
+        """Return all inputs, with the usual changes of the center distance if none are named."""
+        with boundary_errors():
+            changes = _changes(self.narrowed(case, inputs), inputs)
+        return super().normalized(case, inputs) | {"center_distance_change_percent": list(changes)}
 
     def check(self, case: CheckedCase, inputs: Inputs) -> None:
         """Refuse a case that cannot be, and deviations at which it cannot be."""
@@ -126,11 +144,25 @@ class _TableByTable:
         self._report("tables", min(done / TABLES, 1.0))
 
 
+def _changes(checked: CheckedCase, inputs: Inputs) -> tuple[float, ...]:
+    """Return the changes of the center distance in per cent: those named, or usual ones that mesh."""
+
+    def meshes(changes: tuple[float, ...]) -> bool:
+        with suppress(InputError):
+            return bool(_at_changes(checked, inputs, changes))
+        return False
+
+    return inputs.center_distance_change_percent or next(filter(meshes, _USUAL), _USUAL[0])
+
+
 def _tables(checked: CheckedCase, inputs: Inputs) -> Checked:
     """Return the request at the highest load of the case over both deviations."""
+    return _at_changes(checked, inputs, _changes(checked, inputs))
+
+
+def _at_changes(checked: CheckedCase, inputs: Inputs, percent: tuple[float, ...]) -> Checked:
     pair, load = checked.pair, checked.case.load
     torques, forces = load.torque_n_m, load.normal_force_n
-    percent = inputs.center_distance_change_percent
     axes = TableAxes(
         normal_forces=[float(pair.normal_force(torques[-1])) if torques else float((forces or ())[-1])],
         misalignments=[value * UM for value in inputs.misalignment_um],
