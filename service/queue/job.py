@@ -147,7 +147,7 @@ def job_of(row: Any) -> Job:
         stated=row.stated or row.inputs,
         label=Label.from_row(row),
         differences=differences_of(row.differences),
-        headline=None if row.headline is None else json.loads(row.headline),
+        headline=None if row.headline is None else json.loads(row.headline) or None,
     )
 
 

@@ -28,6 +28,7 @@ from service.queue.job import Job, JobFilter, subject_of
 from service.queue.terms import Delivery, Transmission, delivery
 from service.queue.terms import Response as Form
 from service.routes.context import Context, Ctx, caller_of
+from service.routes.headlines import with_headlines
 from service.routes.media_types import (
     JSON,
     OF_VERSIONS,
@@ -161,7 +162,7 @@ def list_jobs(
 ) -> JobList:
     """Jobs, the newest first; filters add up."""
     page = context.submissions.page(limit + 1, job_filter, mark_of(cursor))
-    shown = [status_info(job, context.registry) for job in page[:limit]]
+    shown = [status_info(job, context.registry) for job in with_headlines(page[:limit], context)]
     last = Mark(page[limit - 1].created, page[limit - 1].id) if len(page) > limit else None
     return JobList(jobs=shown, links=page_links(request, "/v1/jobs", last))
 
@@ -170,7 +171,8 @@ def list_jobs(
 @needs(Scope.READ)
 def job_status(job_id: str, context: Ctx) -> StatusInfo:
     """Status and progress of the job."""
-    status = status_info(context.submissions.find(job_id), context.registry)
+    (job,) = with_headlines([context.submissions.find(job_id)], context)
+    status = status_info(job, context.registry)
     return status.model_copy(update={"webhooks": Calls(context.engine).of(job_id) or None})
 
 

@@ -181,7 +181,8 @@ class StatusInfo(BaseModel):
         description="Implausible inputs: check, field, value, unit, message; null in lists",
     )
     headline: Headline | None = Field(
-        default=None, description="Of the result; null: there is none, or an older version made it"
+        default=None,
+        description="Of the result; null: there is none, or it is a large one of an older version",
     )
     webhooks: list[WebhookState] | None = Field(
         default=None, description="Calls about the job; null in lists and events"

@@ -226,7 +226,7 @@ STEPS: Mapping[str, Callable[[Operations], None]] = {
     # jobs of before, or of a former program, have the inputs of their computation alone
     "0014": _added("job", ("stated", "", sa.Text)),
     "0015": _one_owner,
-    # what a list of jobs shows of a result; those of before have nothing
+    # what a list of jobs shows of a result; those of before get it when they are listed
     "0016": _added("result", ("headline", "", sa.Text)),
 }
 REVISIONS = tuple(STEPS)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import time
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -291,6 +291,23 @@ class ResultStore:
         with writing(self._engine, patience_ms=BRIEF_MS) as connection:
             connection.execute(update(results).where(*mine, results.c.used < before).values(used=now()))
         self._noted[(key, kind)] = time.monotonic()
+
+    @retried
+    def without_headline(self, keys: Collection[str], kind: str, limit: int) -> list[IndexLine]:
+        """Return up to `limit` lines of these keys for which nothing was ever noted as a headline."""
+        addresses = [address_of(self.project, key) for key in keys]
+        mine = results.c.key.in_(addresses), results.c.kind == kind, results.c.headline == ""
+        with reading(self._engine) as connection:
+            rows = connection.execute(select(results).where(*mine).order_by(results.c.key).limit(limit)).all()
+        return [_read(row) for row in rows]
+
+    @optional
+    def note_headline(self, key: str, kind: str, headline: Mapping[str, Any]) -> None:
+        """Note what a list shows of a result that was stored without; empty: there is nothing."""
+        mine = results.c.key == address_of(self.project, key), results.c.kind == kind
+        step = update(results).where(*mine, results.c.headline == "").values(headline=json.dumps(headline))
+        with writing(self._engine, patience_ms=BRIEF_MS) as connection:
+            connection.execute(step)
 
     def set_aside(self, line: IndexLine) -> None:
         """Take a damaged file out of service."""

@@ -15,14 +15,14 @@ BUDGETS = {
     ("dynamics",): (45_184, 888),
     ("lineofaction.gearbox",): (27_971, 571),
     ("lineofaction.report",): (12_507, 234),
-    ("service",): (15_139, 361),
+    ("service",): (15_208, 362),
     ("lineofaction.client",): (2_944, 55),
     ("lineofaction.cli",): (5_772, 83),
     ("lineofaction.hardcases",): (3_841, 35),
     ("bounds", "host", "model_studies"): (4_537, 157),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 870
+MOST_FILES = 871
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""

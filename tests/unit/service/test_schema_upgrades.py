@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import re
 import sqlite3
@@ -10,18 +11,27 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from inspect import getsource as inspect_source
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from alembic.operations import Operations
 from command_line import loa
+from fastapi.testclient import TestClient
 from postgres_server import PostgresServer
 from running_service import bench
 from service_fakes import REGISTRY
+from small_table import small_table
 from sqlalchemy import Engine, inspect, text
 from typer.testing import CliRunner
 
+from fe_contact.ste import SteDatabase
 from lineofaction.cli.commands import app
+from lineofaction.gearbox.convert.answers import headline_json
 from lineofaction.gearbox.problems import BadInput
+from service.app import create_app
+from service.routes import headlines
+from service.settings import Settings
 from service.store import migrations
 from service.store.database import Schema, database_engine, metadata, open_database, writing
 from service.store.migrations import REVISIONS, STEPS, USABLE_SINCE
@@ -91,6 +101,51 @@ def test_a_data_directory_without_numbers_is_upgraded_and_keeps_all(tmp_path: Pa
     text = "The job was entered by version 0.2.0 or older; submit it again."
     assert [machine.ended(job).message for job in seen[:2]] == [text, text]
     machine.close()
+
+
+def test_a_table_of_before_gets_its_headline_when_it_is_listed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file, place = tmp_path / "service.sqlite3", tmp_path / "results" / "database" / KEYS[2][:2]
+    fill(file, tmp_path / "results")
+    table = small_table()
+    table.to_netcdf(place / f"{KEYS[2]}.nc")
+    content = (place / f"{KEYS[2]}.nc").read_bytes()
+    with closing(sqlite3.connect(file)) as old:
+        old.execute("UPDATE computation SET process = 'analyze'")
+        facts = hashlib.sha256(content).hexdigest(), len(content)
+        old.execute("UPDATE result SET sha256 = ?, size = ? WHERE kind = 'database'", facts)
+        old.commit()
+    read: list[SteDatabase] = []
+
+    def noted(found: SteDatabase) -> dict[str, Any]:
+        read.append(found)
+        return headline_json(found)
+
+    monkeypatch.setattr(headlines, "headline_json", noted)
+    client = TestClient(create_app(Settings(data_directory=tmp_path)))
+    for _ in range(2):
+        listed = {job["jobID"]: job["headline"] for job in client.get("/v1/jobs").json()["jobs"]}
+        assert {identifier for identifier, found in listed.items() if found} == {*IDENTIFIERS[2:]}
+        expected = headline_json(table)
+        assert {name: listed[IDENTIFIERS[2]][name] for name in expected} == expected
+    assert len(read) == 1, "kept: the second list reads no table"
+
+
+def test_a_table_that_cannot_be_read_is_listed_and_read_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fill(tmp_path / "service.sqlite3", tmp_path / "results")  # its table is no netCDF file
+    with closing(sqlite3.connect(tmp_path / "service.sqlite3")) as old:
+        old.execute("UPDATE computation SET process = 'analyze'")
+        old.commit()
+    noted: list[dict[str, object]] = []
+    monkeypatch.setattr(headlines, "logger", SimpleNamespace(warning=lambda *_, **facts: noted.append(facts)))
+    client = TestClient(create_app(Settings(data_directory=tmp_path)))
+    for _ in range(2):
+        found = client.get(f"/v1/jobs/{IDENTIFIERS[2]}").json()
+        assert (found["status"], found["headline"]) == ("successful", None)
+    assert [facts["key"] for facts in noted] == [KEYS[2]]
 
 
 @pytest.fixture

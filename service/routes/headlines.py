@@ -1,0 +1,49 @@
+"""Headlines of results that an older version stored without: they get one when a job of theirs is shown."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import structlog
+
+from lineofaction.gearbox.loading import on_demand
+from lineofaction.gearbox.problems import DatabaseUnavailable, StoreUnavailable
+from service.queue.job import Job
+from service.routes.context import Context
+from service.worker.process import ANALYZE
+
+logger = structlog.get_logger(__name__)
+headline_json = on_demand("lineofaction.gearbox.convert.answers:headline_json")
+
+MOST_AT_ONCE = 4
+"""Tables that one list reads; the next list goes on."""
+LARGEST_BYTES = 8_000_000
+"""Of a table that is read for it: those of long periods take seconds."""
+
+
+def with_headlines(jobs: Sequence[Job], context: Context) -> list[Job]:
+    """Return jobs with the headlines of their tables; of a few that have none it is computed and kept."""
+    lacking = {job.key for job in jobs if job.process == ANALYZE.id and _ended_without(job)}
+    lines = context.store.without_headline(lacking, ANALYZE.kind, MOST_AT_ONCE) if lacking else []
+    made = {line.key: _kept(line.key, line.size, context) for line in lines}
+    return [replace(job, headline=made.get(job.key) or job.headline) for job in jobs]
+
+
+def _ended_without(job: Job) -> bool:
+    return job.status == "successful" and job.headline is None
+
+
+def _kept(key: str, size: int, context: Context) -> dict[str, Any]:
+    """Compute and keep the headline of a table; that there is none is kept, too: it is read once."""
+    made: dict[str, Any] = {}
+    try:
+        if size <= LARGEST_BYTES:
+            made = headline_json(context.databases.get(context.store, key).database)
+    except (DatabaseUnavailable, StoreUnavailable):
+        return made
+    except Exception as error:  # noqa: BLE001 (a list is shown whatever is wrong with an old file)
+        logger.warning("no headline", key=key, error=str(error))
+    context.store.note_headline(key, ANALYZE.kind, made)
+    return made
