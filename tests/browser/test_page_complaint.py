@@ -375,3 +375,32 @@ def number(pattern: re.Pattern[str], text: str, group: int) -> float:
     found = pattern.search(text)
     assert found is not None, text
     return float(found[group].replace("−", "-"))
+
+
+MESHES = (
+    """async ([scene, complaint]) => (await import("/page/unit_heard.js")).meshesHeard(scene, complaint)"""
+)
+
+
+@pytest.mark.law
+def test_meshes_of_a_unit_are_heard_by_the_teeth_on_the_way(visit: Visit) -> None:
+    def mesh(name: str, driver: str, driven: str, teeth: tuple[int, int]) -> dict[str, Any]:
+        pair = {gear: {"teeth": count} for gear, count in zip(("pinion", "wheel"), teeth, strict=True)}
+        return {"name": name, "driver": driver, "driven": driven, "case": {"pair": pair}}
+
+    shafts = {"a": "input", "b": "middle", "c": "middle", "d": "output", "e": "alone", "f": "alone too"}
+    scene = {
+        "gears": [{"name": name, "shaft": shaft} for name, shaft in shafts.items()],
+        "meshes": [
+            mesh("in", "a", "b", (20, 60)),
+            mesh("out", "c", "d", (18, 54)),
+            mesh("no", "e", "f", (9, 9)),
+        ],
+    }
+    heard = visit.page.evaluate(MESHES, [scene, {"frequency_hz": 560.0, "speed_rpm": 2800.0}])
+    assert [each["name"] for each in heard] == ["in", "out"], "what no mesh drives has no speed"
+    first, second = heard
+    assert first["frequency"] == pytest.approx(2800 / 60 * 20)
+    assert second["frequency"] == pytest.approx(2800 / 60 * 20 / 60 * 18)
+    assert (first["harmonic"], second["harmonic"]) == (None, 2)
+    assert second["off"] == pytest.approx(0.0, abs=1e-9)

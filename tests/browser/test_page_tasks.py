@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from page_visit import Visit, answered, answers, found_inaccessible, opened
-from playwright.sync_api import Browser, Locator, expect
+from playwright.sync_api import Browser, Locator, Page, expect
 from running_service import until
 
 ROOT = Path(__file__).parents[2]
@@ -70,7 +70,25 @@ def type_pair(hand: Hand) -> None:
     for field, text in PAIR.items():
         hand.on(f"#f-pair-{field}").fill(text)
     hand.show("Loads")
-    hand.on("#f-load-torque_n_m").fill("40")
+    hand.on("#f-load-torque_n_m").fill("20, 80")
+
+
+def tone(page: Page) -> float:
+    """Return the amplitude of the first harmonic in the dock, in um."""
+    row = page.locator("#live-figures > div").filter(has_text="first harmonic")
+    return float(row.locator("dd").inner_text().split()[0])
+
+
+def dragged(hand: Hand, slider: str, steps: list[str]) -> dict[str, float]:
+    """Move a slider along, which is one action; returns the first harmonic at each step."""
+    exact = hand.on(f"{slider}-exact")
+    found = {}
+    for step in steps:
+        before = answers(hand.page)
+        exact.fill(step)
+        until(lambda before=before: answers(hand.page) > before)
+        found[step] = tone(hand.page)
+    return found
 
 
 @pytest.mark.nightly
@@ -79,15 +97,24 @@ def test_an_own_pair_is_typed_analyzed_relieved_and_sent(seen: Visit, browser: B
     type_pair(hand)
     hand.analyze()
     expect(page.locator("#live-figures")).to_contain_text(re.compile("peak to peak.*±"))
-    hand.move("#live-pinion-tip_relief_um")
+    hand.show("Flanks, live")
+    expect(page.locator("#live-torque_n_m-exact")).to_have_value("80")
+    relief = "#live-pinion-tip_relief_um"
+    along = dragged(hand, relief, ["0", "5", "10", "15", "20"])
+    least = min(along, key=lambda step: along[step])
+    page.locator(f"{relief}-exact").fill(least)  # where the hand lets go
+    until(lambda: tone(page) == along[least])
+    assert along[least] < along["0"] and least != "20", "the least lies within the slider"
+    (cost,) = dragged(hand, "#live-torque_n_m", ["20"]).values()
     expect(page.locator("#live-figures")).to_contain_text(re.compile(r"first harmonic.*[+−][\d.]+ dB"))
+    assert cost > 0.0
     hand.on("#name").fill("own pair")
     hand.did("My own pair")
     expect(page).to_have_url(re.compile("live=.*name=own%20pair|name=own%20pair.*live="))
     other = opened(browser, page.url).page
     answered(other)
-    most = page.locator("#live-pinion-tip_relief_um").input_value()
-    expect(other.locator("#live-pinion-tip_relief_um")).to_have_value(most)
+    for control, value in ((relief, least), ("#live-torque_n_m", "20")):
+        expect(other.locator(f"{control}-exact")).to_have_value(value)
     other.close()
 
 
@@ -116,8 +143,18 @@ def test_an_own_pair_with_a_run_out_shows_a_revolution_and_its_sidebands(seen: V
 def test_an_own_unit_is_opened_and_its_flanks_are_misaligned(seen: Visit) -> None:
     page, hand = seen.page, Hand(seen)
     hand.on("#import-file").set_input_files(UNIT)
+    expect(page.locator("#f-pair-pinion-teeth")).to_have_value("20")
+    hand.on("#bar-frequency_hz").fill("933")
+    hand.on("#bar-speed_rpm").fill("2800")
+    makes = "cylindrical_stage 21 at 933.3 Hz: harmonic 1, off by +0.036 %"
+    expect(page.locator("#unit-heard")).to_contain_text(makes)
     hand.on(page.locator("#unit [data-part]").nth(2)).click()
     assert not found_inaccessible(page, "#unit")
+    hand.press("Open scene")
+    hand.on("#scene-process").select_option("deflect")
+    hand.press("Compute the scene")
+    causes = page.locator("#scene-body table").filter(has_text="misalignment over the face by cause")
+    expect(causes).to_contain_text("cylindrical_stage 21")
     hand.on(page.locator("#unit details").filter(has_text="Meshes").get_by_role("button").first).click()
     hand.show("Accuracy")
     hand.on("#f-accuracy-tolerance").fill("")
@@ -133,15 +170,24 @@ def test_an_own_unit_is_opened_and_its_flanks_are_misaligned(seen: Visit) -> Non
 @pytest.mark.nightly
 def test_a_search_brings_three_decibels_that_are_heard(seen: Visit) -> None:
     page, hand = seen.page, Hand(seen)
+    for field, text in {"frequency_hz": "1533", "speed_rpm": "4000", "torque_n_m": "120"}.items():
+        hand.on(f"#bar-{field}").fill(text)  # 23 teeth: harmonic 1
     hand.analyze()
     hand.press("Another variant")
     hand.press("Search better flanks")
     hand.press("Take the optimum into the case")
     hand.analyze()
-    tone = page.locator("#compared tr").filter(has_text="first harmonic, dB from A")
-    expect(tone).to_have_count(1)
-    change = re.search(r"([+−][\d.]+)$", tone.inner_text())
-    assert change is not None and float(change[1].replace("−", "-")) < -3.0
+    rows = page.locator("#compared tr")
+    tone = rows.filter(has_text="first harmonic, dB from A").locator("td").nth(1)
+    expect(tone).to_have_text(re.compile("[+−]"))
+    assert float(tone.inner_text().replace("−", "-")) < -3.0
+    heard = rows.filter(has_text="the same, dB from A").locator("td").nth(1)
+    expect(heard).to_have_text(re.compile(r"−[\d.]+\s±\s[\d.]+|within the errors"))
+    hand.on("#band-on").check()
+    words = page.locator(".made-band output")
+    expect(words).to_contain_text(
+        re.compile(r"A: nine of ten pairs within class 6.*B: nine|B: nine.*A: nine")
+    )
     hand.on(page.get_by_role("tab", name="Sound", exact=True)).click()
     for letter in "AB":
         hand.press(f"Play {letter}")

@@ -24,6 +24,7 @@ import { Slot } from "./slot.js";
 import { showResult, showStudies, studiesOf } from "./studies.js";
 import { Tabs, reveal } from "./tabs.js";
 import { Undo } from "./undo.js";
+import { UnitHeard } from "./unit_heard.js";
 import { Variants } from "./variants.js";
 
 const EXAMPLES = "/v1/examples";
@@ -47,6 +48,7 @@ class Page {
     this.design = new Design(analyze.inputs.case.schema, effects, examples, this);
     new Complaint(this.design);
     this.files = new CaseFiles(this.design, { scene: (name, unit) => this.scenes.take(name, unit), go: (views) => this.go(views) });
+    new UnitHeard(this.design, this.files.unit);
     /** @type {Map<string, Slot>} */
     this.slots = new Map();
     this.parts(ofCases, studies);
