@@ -111,3 +111,15 @@ def test_a_file_keeps_mean_squares_and_not_the_floor(few, tmp_path):
     assert read.floor is None
     np.testing.assert_array_equal(read.bearing_mean_square, found.bearing_mean_square)
     np.testing.assert_array_equal(read.bearing_floor_error, found.bearing_floor_error)
+
+
+@pytest.mark.parametrize("choice", ["off", "on"])
+def test_totals_lack_the_lines_left_out_where_shafts_gyrate_and_say_so(few, choice):
+    """Gyroscopic terms of shafts alone, without a carrier: transfer functions are others at every speed."""
+    table = repeated(spring_table(4e8, 1e-7), LONG, 1e-6 * np.random.default_rng(1).normal(size=LONG))
+    effects = {"lateral": "on", "tilt": "on", "gyroscopic": choice}
+    made = forced_response(assemble(gear_pair_scene(table, effects=effects)), SPEED[:3], ORDERS)
+    there = choice == "off"
+    assert made.facts["lines_left_out"]["in_totals"] == there == (made.floor is not None)
+    assert 0.0 < made.facts["lines_left_out"]["force"] < 1.0
+    assert bool(made.bearing_floor.size) == there
