@@ -42,7 +42,7 @@ from lineofaction.gearbox.input_file import InputFile, number_list
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.project import result_name
 from lineofaction.gearbox.registry import SUFFIX
-from lineofaction.gearbox.result_files import COMPLAINT, stamp, stamp_complaint
+from lineofaction.gearbox.result_files import COMPLAINT, stamp, stamp_scene
 from lineofaction.gearbox.schemas import Case, read_model, read_table
 from lineofaction.gearbox.schemas.model import BoundaryModel, item_type, spelling_of
 from lineofaction.gearbox.schemas.reading import located
@@ -158,7 +158,7 @@ def _tell(
         _writers(study, *subject)[target.suffix](result, target)
         stamp(target, warnings_so_far())
         if target.suffix == SUFFIX and (marks := _marks(subject[0])):
-            stamp_complaint(target, {COMPLAINT: marks})
+            stamp_scene(target, {COMPLAINT: marks})
     if options["json"]:
         names = [str(target) for target in targets]
         files: Json = {"written": names[0], "file": names[0]} if names else {}

@@ -26,7 +26,7 @@ from lineofaction.gearbox.convert.effects import run_lines
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.project import RUN
-from lineofaction.gearbox.result_files import run_json, stamp, stamp_complaint
+from lineofaction.gearbox.result_files import run_json, stamp, stamp_scene
 from lineofaction.gearbox.stages import staged
 from lineofaction.gearbox.studies.excitations import facts_of_scene
 from lineofaction.gearbox.tabled_scene import open_executor
@@ -77,7 +77,7 @@ def run_simulate(
         tabled = tabled_scene(scene, folder, service, report, workers)
         _run(tabled.scene, output, report, resume=resume)
     stamp(output, warnings_so_far())
-    stamp_complaint(output, facts_of_scene(tabled))
+    stamp_scene(output, facts_of_scene(tabled))
     facts = {"file": str(output), **run_json(output)}
     if as_json:
         print_json(facts)

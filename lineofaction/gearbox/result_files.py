@@ -12,6 +12,7 @@ import numpy as np
 
 from bounds.types import Json
 from lineofaction.gearbox.registry import study_of
+from lineofaction.gearbox.studies.bodies import UNIT
 from lineofaction.gearbox.units import boundary_ledger
 from model_studies.netcdf import opened, opened_netcdf
 
@@ -28,11 +29,12 @@ def stamp(file: Path, warnings: Sequence[Json]) -> None:
         file.write_text(f"{text}\n", encoding="utf-8")
 
 
-def stamp_complaint(file: Path, facts: Json) -> None:
-    """Write what the facts of a scene say of its complaint into the file of a run, if they say it."""
-    if COMPLAINT in facts:
-        with h5netcdf.File(file, "r+") as content:
-            content.attrs[COMPLAINT] = json.dumps(facts[COMPLAINT])
+def stamp_scene(file: Path, facts: Json) -> None:
+    """Write what the facts of a scene say of its complaint and its unit into the file of a result."""
+    with h5netcdf.File(file, "r+") as content:
+        for name in (COMPLAINT, UNIT):
+            if name in facts:
+                content.attrs[name] = json.dumps(facts[name])
 
 
 def stamped(file: Path) -> list[Json]:

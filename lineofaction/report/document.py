@@ -20,6 +20,7 @@ from lineofaction.gearbox.convert.complaint import marks_of_case
 from lineofaction.gearbox.problems import BadInput, DamagedFile
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.result_files import COMPLAINT, making_of, stamped
+from lineofaction.gearbox.studies.bodies import UNIT
 from lineofaction.gearbox.study import Study
 from lineofaction.report.drawing.attaching import attached
 from lineofaction.report.drawing.figure import Figure, Table, panel_rows
@@ -40,6 +41,7 @@ from lineofaction.report.presentation import presentation_of
 from lineofaction.report.run.page import dynamic_alarms, dynamic_headlines, dynamic_making, dynamic_results
 from lineofaction.report.run.view import RunView
 from lineofaction.report.ste.page import static_alarms, static_headlines, static_making, static_results
+from lineofaction.report.unit_picture import is_picture, one_picture, picture_sections
 from model_studies.netcdf import UnreadableFile, opened_netcdf
 
 
@@ -89,8 +91,8 @@ class Inputs:
     """The results that were read; at least one of them.
 
     `pages` are those of studies, by the kind of their results; `warnings` are those of all files, in words;
-    `view` is what of the run is shown, `marks` what its scene complains of; `records` are what the files say
-    of their making, by name.
+    `view` is what of the run is shown, `marks` what its scene complains of, `unit` the bodies that this is
+    drawn as; `records` are what the files say of their making, by name.
     """
 
     database: SteDatabase | None = None
@@ -99,6 +101,7 @@ class Inputs:
     warnings: tuple[str, ...] = ()
     view: RunView = field(default_factory=RunView)
     marks: Marks | None = None
+    unit: list[Json] | None = None
     records: Mapping[str, Json] = field(default_factory=dict)
 
     @property
@@ -130,9 +133,10 @@ def read_inputs(files: Sequence[Path]) -> Inputs:
         key=lambda pair: list(STUDIES).index(pair[0].name),
     )
     pages = {study.kind: _study_page(study, file, database) for study, file in studies}
-    marks = json.loads(file_attributes(by_kind["run"][1]).get(COMPLAINT, "null")) if "run" in read else None
+    said = file_attributes(by_kind["run"][1]) if "run" in read else {}
+    marks, unit = (json.loads(said.get(name, "null")) for name in (COMPLAINT, UNIT))
     records = {file.name: making_of(file) for file in files}
-    return Inputs(**read, pages=pages, warnings=warnings, marks=marks, records=records)
+    return Inputs(**read, pages=pages, warnings=warnings, marks=marks, unit=unit, records=records)
 
 
 def read_result(file: Path) -> SteDatabase | RunResult:
@@ -194,7 +198,7 @@ def page_of(read: Inputs) -> Page:
     """
     page = _page_of(read)
     alarms = (*(f"Warning: {text}" for text in read.warnings), *page.alarms)
-    sections = sorted(one_effects_section(page.sections), key=lambda section: section.part)
+    sections = sorted(one_effects_section(one_picture(page.sections)), key=lambda section: section.part)
     return replace(page, alarms=alarms, sections=tuple(sections), records=read.records)
 
 
@@ -213,7 +217,7 @@ def _page_of(read: Inputs) -> Page:
         sections += study.sections
         alarms += study.alarms
     if run is not None:
-        sections += (*_marked_results(run, read), *dynamic_making(run))
+        sections += (*picture_sections(read.unit), *_marked_results(run, read), *dynamic_making(run))
         alarms += dynamic_alarms(run)
     parts = []
     if read.database is not None:
@@ -289,13 +293,13 @@ def of_the_store() -> Iterator[None]:
 
 
 def page_json(page: Page) -> Json:
-    """Return a report as plain JSON."""
+    """Return a report as plain JSON, without the picture of a unit: programs have its bodies."""
     return {
         "title": page.title,
         "lead": page.lead,
         "alarms": list(page.alarms),
         "headlines": [{"name": h.name, "value": h.value, "remark": h.remark} for h in page.headlines],
-        "sections": [_section(section) for section in page.sections],
+        "sections": [_section(section) for section in page.sections if not is_picture(section)],
     }
 
 

@@ -13,12 +13,14 @@ from typing import Any
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.effects import beyond_lines, run_lines, scene_table
 from lineofaction.gearbox.loading import LOADING
+from lineofaction.gearbox.studies.bodies import UNIT
 from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.units import boundary_ledger
 from lineofaction.report.drawing.figure import Figure, Table
 from lineofaction.report.drawing.marks import marked, marked_page, marks_of
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.tables import cost_tables, ledger_section
+from lineofaction.report.unit_picture import with_picture
 
 
 @dataclass(frozen=True)
@@ -45,11 +47,14 @@ def presentation_of(study: Study) -> Presentation:
     with LOADING:
         files = (f"{__package__}.{subject}.{study.package}" for subject in _SUBJECTS)
         shown: Presentation = import_module(next(filter(find_spec, files))).PAGE
-    return _marking(shown)
+    return _of_its_unit(shown)
 
 
-def _marking(shown: Presentation) -> Presentation:
-    """Return a presentation that marks what is complained of in the plots of a result that says it."""
+def _of_its_unit(shown: Presentation) -> Presentation:
+    """Return a presentation with what a result says of its unit.
+
+    The page begins with its picture; what is complained of is marked in all plots.
+    """
 
     def figure(result: Any) -> Figure:
         marks, plain = marks_of(result), shown.figure(result)
@@ -57,7 +62,8 @@ def _marking(shown: Presentation) -> Presentation:
 
     def page(result: Any) -> Page:
         marks, plain = marks_of(result), shown.page(result)
-        return plain if marks is None else marked_page(plain, marks)
+        whole = plain if marks is None else marked_page(plain, marks)
+        return with_picture(whole, getattr(result, "facts", {}).get(UNIT))
 
     return replace(shown, figure=figure, page=page)
 

@@ -25,7 +25,7 @@ from lineofaction.gearbox.convert.plausibility import scene_warnings
 from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
 from lineofaction.gearbox.level_quantity import with_quantity
 from lineofaction.gearbox.problems import BadInput, JobFailed
-from lineofaction.gearbox.result_files import stamp_complaint
+from lineofaction.gearbox.result_files import stamp_scene
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -162,7 +162,7 @@ def simulate_scene(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     ordered = ordered_scene(order, progress)
     file = order.workspace / "run.nc"
     _run(ordered.tabled.scene, file, progress)
-    stamp_complaint(file, facts_of_scene(ordered.tabled))
+    stamp_scene(file, facts_of_scene(ordered.tabled))
     return (*ordered.products, Product(order.key, "run", file, ordered.warnings))
 
 

@@ -13,8 +13,8 @@ ROOT = Path(__file__).parents[2]
 BUDGETS = {
     ("fe_contact",): (44_194, 829),
     ("dynamics",): (45_184, 888),
-    ("lineofaction.gearbox",): (27_971, 571),
-    ("lineofaction.report",): (12_507, 234),
+    ("lineofaction.gearbox",): (28_158, 574),
+    ("lineofaction.report",): (12_910, 244),
     ("service",): (15_208, 362),
     ("lineofaction.client",): (2_944, 55),
     ("lineofaction.cli",): (5_772, 83),
@@ -22,7 +22,7 @@ BUDGETS = {
     ("bounds", "host", "model_studies"): (4_537, 157),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 871
+MOST_FILES = 875
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""

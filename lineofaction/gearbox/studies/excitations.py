@@ -19,6 +19,8 @@ from fe_contact.analysis.estimates.excitation_errors import excitation_errors
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.complaint import Complaint, complaint_of
 from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.studies.bodies import UNIT
+from lineofaction.gearbox.studies.unit_bodies import bodies_of
 
 Result = TypeVar("Result")
 BESIDE_MESH = 6
@@ -113,13 +115,14 @@ def facts_of_scene(subject: TabledScene) -> Json:
     """Return what a result says of its scene.
 
     Its `reduction_cost`, the fields of the `WorkCost` of the reductions by housing: a file of modes may be
-    without them. What is `turning`, by which orders are named. Of a scene with one its `complaint`, as plots
-    mark it.
+    without them. What is `turning`, by which orders are named. The bodies that its `unit` is drawn as. Of a
+    scene with one its `complaint`, as plots mark it.
     """
     costs = {name: asdict(body.cost) for name, body in subject.housings.items() if body.cost is not None}
     known = {
         "reduction_cost": costs,
         "turning": turning_orders(subject.scene, solve_kinematics(subject.scene)),
+        UNIT: bodies_of(subject),
     }
     if subject.inputs.complaint is None:
         return known

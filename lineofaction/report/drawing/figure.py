@@ -248,7 +248,8 @@ class Figure:
 
     `key` names the image file and the anchor of the page; `caption` says how to read it (signs, conventions);
     `alternative` is the finding in words: the first sentences under the plot, and what stands for it where it
-    is not seen. `table` holds its main numbers.
+    is not seen. `table` holds its main numbers. `picture` draws as a PNG file what no panels hold; it is a
+    picture on every page.
     """
 
     key: str
@@ -258,6 +259,7 @@ class Figure:
     content: tuple[Panel, ...]
     table: Table | None = None
     sound: Sound | None = None
+    picture: Callable[[], bytes] | None = None
 
 
 def category_lines(

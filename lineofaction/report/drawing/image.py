@@ -122,6 +122,8 @@ _DASH = {"solid": "-", "dash": "--", "dot": ":"}
 
 def png(figure: Figure, across: int = 1) -> bytes:
     """Draw `figure`, narrow panels `across` beside each other, and return the PNG file's bytes."""
+    if figure.picture is not None:
+        return figure.picture()
     return _image(figure, "png", {"Title": figure.title, "Description": figure.alternative}, across)
 
 
@@ -139,9 +141,9 @@ def svg(figure: Figure) -> bytes:
 
 
 def _image(figure: Figure, form: str, metadata: dict[str, str | None], across: int = 1) -> bytes:
-    sheet = panel_sheet(rewritten(figure.content, _drawable), across)
+    sheet = panel_sheet(rewritten(figure.content, drawable), across)
     sheet.suptitle(
-        _drawable(figure.title), x=0.01, ha="left", fontsize=12, fontweight="bold", color=palette.INK
+        drawable(figure.title), x=0.01, ha="left", fontsize=12, fontweight="bold", color=palette.INK
     )
     FigureCanvasAgg(sheet)
     buffer = BytesIO()
@@ -149,7 +151,7 @@ def _image(figure: Figure, form: str, metadata: dict[str, str | None], across: i
     return buffer.getvalue()
 
 
-def _drawable(text: str) -> str:
+def drawable(text: str) -> str:
     """Write a text so that it is no formula to matplotlib and has no endless words.
 
     Characters that the font lacks are written by their numbers.

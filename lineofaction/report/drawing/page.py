@@ -216,17 +216,20 @@ def _section(section: Section, index: int, images: dict[str, bytes], *, still: b
 
 
 def _figure(figure: Figure, image: bytes, *, still: bool) -> str:
-    """One plot with its caption, its still image and its numbers."""
+    """One plot with its caption, its still image and its numbers; a picture has no plot."""
+    still, shown = still or figure.picture is not None, "picture" if figure.picture else "still"
     alternative = escape(f"{figure.title}. {figure.alternative}", quote=True)
     numbers = _folded(figure.table, "Numbers") if figure.table else ""
     plot = f'<div class="plot" role="img" aria-label="{alternative}" data-figure="{figure.key}-data"></div>'
-    data = f'<script type="application/json" id="{figure.key}-data">{_embedded(figure)}</script>\n'
+    data = ""
+    if not still:
+        data = f'<script type="application/json" id="{figure.key}-data">{_embedded(figure)}</script>\n'
     encoded = base64.b64encode(image).decode("ascii")
     return (
         f'<figure id="{figure.key}">\n<h3>{escape(figure.title)}</h3>\n{"" if still else plot}'
-        f'<img class="still" alt="{alternative}" src="data:image/png;base64,{encoded}">\n'
+        f'<img class="{shown}" alt="{alternative}" src="data:image/png;base64,{encoded}">\n'
         f"<figcaption><strong>{escape(figure.alternative)}</strong> {escape(figure.caption)}</figcaption>\n"
-        f"{_player(figure)}{numbers}{'' if still else data}</figure>"
+        f"{_player(figure)}{numbers}{data}</figure>"
     )
 
 

@@ -32,7 +32,7 @@ from lineofaction.report.drawing.figure import (
     legend_names,
     number,
 )
-from lineofaction.report.drawing.image import _drawable, panel_sheet, png
+from lineofaction.report.drawing.image import drawable, panel_sheet, png
 from lineofaction.report.drawing.interactive import plotly_figure
 from lineofaction.report.drawing.placing import rewritten
 
@@ -287,11 +287,11 @@ def texts(plot: Any, key: str = "") -> Iterator[str]:
 @pytest.mark.parametrize("name", NAMES)
 def test_an_image_holds_every_name_and_no_formula(name: str) -> None:
     assert png(named(name)).startswith(b"\x89PNG")
-    sheet = panel_sheet(rewritten(named(name).content, _drawable))
+    sheet = panel_sheet(rewritten(named(name).content, drawable))
     FigureCanvasAgg(sheet).draw()
     drawn = [text.get_text() for text in sheet.findobj(Text)]
     assert not any(map(is_math_text, drawn))
-    written = _drawable(name)
+    written = drawable(name)
     assert sum(written in text for text in drawn) >= 7
     assert (
         written.replace(r"\$", "$") == name or not name.isprintable() or not name.isascii() or len(name) > 25

@@ -135,6 +135,8 @@ class GearboxDeflection:
         CPU time, with that of the tables and housings that were made for it.
     scene : dict
         The scene as it was written, without the cases; empty in files of versions that did not keep it.
+    facts : dict
+        The bodies that its `unit` is drawn as; empty in files of versions that did not keep it.
     """
 
     deflection: Deflection
@@ -146,6 +148,7 @@ class GearboxDeflection:
     cases: Json
     seconds: float
     scene: Json = field(default_factory=dict)
+    facts: Json = field(default_factory=dict)
 
 
 RIGID_DIAMETER = 0.08

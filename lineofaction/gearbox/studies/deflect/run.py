@@ -19,6 +19,7 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.studies.bodies import UNIT
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
 from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.deflect import DeflectFigures, Inputs
@@ -32,6 +33,7 @@ from lineofaction.gearbox.studies.deflect.cases import check_cases, load_cases
 from lineofaction.gearbox.studies.deflect.figures import figures_by_case, write_spectrum
 from lineofaction.gearbox.studies.deflect.result import HARMONICS, GearboxDeflection, MeshFlanks, Outline
 from lineofaction.gearbox.studies.motion import OfferedMotion, UnitMotion
+from lineofaction.gearbox.studies.unit_bodies import bodies_of
 from model_studies.workers import divided, spent
 
 ALONG_FACE, ALONG_PROFILE = 41, 40
@@ -84,6 +86,7 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
             written,
             spent(means.workers) - began,
             scene_of(tabled.inputs),
+            {UNIT: bodies_of(tabled)},
         )
 
     def _derived(self, result: GearboxDeflection) -> Json:

@@ -1,0 +1,137 @@
+"""The bodies that a scene is drawn as: shafts by their sections, gears, bearings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict
+
+import numpy as np
+
+from bounds.types import Json
+from dynamics.bearings import CatalogLine
+from dynamics.effects.ledger import mechanism_of
+from dynamics.scene import Scene
+from dynamics.shafts import Shaft
+from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.convert.declared import in_si
+from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.reading import validated
+from lineofaction.gearbox.studies.bodies import BEARING, PINION, SHAFT, WHEEL, Body, Ring
+
+SLENDER = 8.0
+"""Length over diameter of a shaft without sections."""
+BUSHING = 1.7
+"""Outside over shaft diameter of a bearing whose outside no catalog states."""
+WIDTH = 1.1
+"""Of a bearing over its height."""
+ADDENDUM, DEDENDUM = 1.0, 1.25
+"""Over the module, of gears that no case has."""
+
+
+def bodies_of(subject: TabledScene) -> list[Json]:
+    """Return the bodies of a scene, planets that it copies too, as a result has them among its facts."""
+    scene = subject.scene
+    parts = (*_shafts(scene), *_gears(subject), *_bearings(subject))
+    return [{**asdict(part), "axis": list(part.axis), "rings": [*map(asdict, part.rings)]} for part in parts]
+
+
+def _body(kind: str, name: str, shaft: Shaft, *rings: Ring) -> Body:
+    """Return a body on a shaft; its rings count from the left end of that."""
+    x, y, z = map(float, shaft.origin)
+    at = (
+        Ring(ring.low + z, ring.high + z, ring.inner, ring.outer, ring.outer_high)
+        for ring in rings
+        if ring.high > ring.low
+    )
+    return Body(kind, name, (x, y), tuple(at))
+
+
+def _shafts(scene: Scene) -> Iterator[Body]:
+    for shaft in scene.shafts:
+        yield _body(SHAFT, shaft.name, shaft, *_sections(shaft))
+
+
+def _sections(shaft: Shaft) -> Iterator[Ring]:
+    if not shaft.sections:
+        radius = 0.5 * shaft.length / SLENDER
+        yield Ring(0.0, shaft.length, 0.0, radius, radius)
+    low = 0.0
+    for section in shaft.sections:
+        end = section.end_outer_diameter or section.outer_diameter
+        radii = (0.5 * size for size in (section.bore_diameter, section.outer_diameter, end))
+        yield Ring(low, low + section.length, *radii)
+        low += section.length
+
+
+def _radius(shaft: Shaft, position: float) -> float:
+    """Return the radius of a shaft at a position along it, m."""
+    rings = list(_sections(shaft))
+    ring = next((ring for ring in rings if position <= ring.high + 1e-12), rings[-1])
+    part = min(max((position - ring.low) / (ring.high - ring.low), 0.0), 1.0)
+    return ring.outer + part * (ring.outer_high - ring.outer)
+
+
+def _gears(subject: TabledScene) -> Iterator[Body]:
+    """Yield gears as discs of their face width and tip diameter; ring gears as rings of two tooth heights."""
+    scene, radii = subject.scene, _gear_radii(subject)
+    driven = {mesh.driven for mesh in scene.meshes} - {mesh.driver for mesh in scene.meshes}
+    for gear in scene.gears:
+        low, high = (gear.position + side * 0.5 * gear.face_width for side in (-1.0, 1.0))
+        tip, root = radii[gear.name]
+        inner, outer = (tip, 2.0 * root - tip) if gear.internal else (0.0, tip)
+        kind = WHEEL if gear.name in driven else PINION
+        yield _body(kind, gear.name, scene.shaft(gear.shaft), Ring(low, high, inner, outer, outer))
+
+
+def _gear_radii(subject: TabledScene) -> dict[str, tuple[float, float]]:
+    """Return the radii of tip and root of every gear, m; by the module of gears that no case has."""
+    scene, of_cases = subject.scene, _radii_of_cases(subject)
+    lines = mechanism_of(scene).lines if scene.meshes else ()
+    cosine: dict[str, float] = {}
+    for mesh, line in zip(scene.meshes, lines, strict=True):
+        cosine |= dict.fromkeys((mesh.driver, mesh.driven), float(np.cos(line.working_pressure_angle)))
+    radii = {}
+    for gear in scene.gears:
+        pitch = gear.base_radius / cosine.get(gear.name, 1.0)
+        module, sign = 2.0 * pitch / gear.teeth, -1.0 if gear.internal else 1.0
+        by_module = (pitch + sign * ADDENDUM * module, pitch - sign * DEDENDUM * module)
+        radii[gear.name] = of_cases.get(gear.name, by_module)
+    return radii
+
+
+def _radii_of_cases(subject: TabledScene) -> dict[str, tuple[float, float]]:
+    """Return the radii of the gears whose meshes have a case; copies of a planet share the table of one."""
+    meshes, known = subject.scene.meshes, subject.databases
+    written = {mesh.name: mesh for mesh in subject.inputs.meshes}
+    tables = {id(mesh.table): mesh.name for mesh in meshes if mesh.name in known}
+    radii: dict[str, tuple[float, float]] = {}
+    for mesh in meshes:
+        name = mesh.name if mesh.name in known else tables.get(id(mesh.table), "")
+        if name not in known or not (case := known[name].metadata.case):
+            continue
+        try:
+            pair = gear_pair(validated(Case, case))
+        except BadInput:  # a table of another version, or one that no case here made
+            continue
+        names = (mesh.driven, mesh.driver) if written[name].wheel_drives else (mesh.driver, mesh.driven)
+        for gear, own in zip(names, (pair.pinion, pair.wheel), strict=True):
+            radii[gear] = (own.tip_radius, own.root_radius)
+    return radii
+
+
+def _bearings(subject: TabledScene) -> Iterator[Body]:
+    scene = subject.scene
+    outside = {
+        part.name: 0.5 * in_si(CatalogLine, part.catalog)["outside_diameter"]
+        for part in subject.inputs.rolling_bearings
+        if part.catalog is not None
+    }
+    for part in (*scene.ground_bearings, *scene.planet_bearings):
+        shaft = scene.shaft(part.shaft)
+        inner = _radius(shaft, part.position)
+        outer = max(outside.get(part.name, BUSHING * inner), inner)
+        half = 0.5 * WIDTH * (outer - inner)
+        ring = Ring(part.position - half, part.position + half, inner, outer, outer)
+        yield _body(BEARING, part.name, shaft, ring)

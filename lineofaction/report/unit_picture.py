@@ -1,0 +1,150 @@
+"""A picture of the gear unit that a result is of, with the names of its shafts and gears."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from hashlib import sha256
+from io import BytesIO
+from textwrap import shorten
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure as Sheet
+from matplotlib.lines import Line2D
+
+from bounds.types import Json
+from lineofaction.gearbox.studies.bodies import BEARING, PINION, SHAFT, WHEEL, Body
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.bodies import Camera, Rendered, rendered
+from lineofaction.report.drawing.figure import Figure
+from lineofaction.report.drawing.image import drawable
+from lineofaction.report.drawing.page import Page, Section
+
+SIZE = (1000, 560)
+"""Pixels across and down."""
+ABOVE, EDGE = 14.0, 6.0
+"""Pixels above and below the unit, and beside its names."""
+COLORS = {
+    SHAFT: (0.62, 0.64, 0.67),
+    BEARING: (0.42, 0.46, 0.52),
+    PINION: (0.58, 0.70, 0.82),
+    WHEEL: (0.82, 0.66, 0.52),
+}
+"""As the page has them."""
+DPI, TYPE = 100, 8.5
+CHARACTER, ROW, LONGEST = 7.4, 16.0, 24
+"""Pixels of a character across and of a row of names; the most characters of a name."""
+AWAY = 24.0
+"""Pixels from the unit to names."""
+TITLE = "The gear unit"
+CAPTION = (
+    "To scale: shafts by their sections, gears as discs of their face width and tip diameter, bearings as "
+    "rings; what drives is blue, what is driven brown. Diameters of shafts without sections, and of bearings "
+    "without a line of a catalog, are assumed. The housing is not drawn."
+)
+
+
+def with_picture(page: Page, unit: Sequence[Json] | None) -> Page:
+    """Return a page that begins with the picture of a unit; as it is without one."""
+    return replace(page, sections=(*picture_sections(unit), *page.sections))
+
+
+def picture_sections(unit: Sequence[Json] | None) -> tuple[Section, ...]:
+    """Return the section with the picture of bodies as a result has them; nothing without any."""
+    bodies = tuple(body for body in map(Body.of, unit or ()) if body.rings)
+    if not bodies:
+        return ()
+    figure = Figure(
+        key=f"unit_{sha256(repr(bodies).encode()).hexdigest()[:8]}",
+        title=TITLE,
+        caption=CAPTION,
+        alternative=_words(bodies),
+        content=(),
+        picture=partial(unit_png, bodies),
+    )
+    return (Section("Unit", figures=(figure,)),)
+
+
+def one_picture(sections: Sequence[Section]) -> tuple[Section, ...]:
+    """Return sections with the picture of each unit once, before all else."""
+    pictures = {section.figures[0].key: section for section in sections if is_picture(section)}
+    return (*pictures.values(), *(section for section in sections if not is_picture(section)))
+
+
+def is_picture(section: Section) -> bool:
+    """Whether a section is the picture of a unit."""
+    return any(figure.picture is not None for figure in section.figures)
+
+
+def _words(bodies: Sequence[Body]) -> str:
+    """Say how many shafts, gears and bearings there are, and name them."""
+    counts = [
+        (sum(body.kind in kinds for body in bodies), word)
+        for kinds, word in (((SHAFT,), "shaft"), ((PINION, WHEEL), "gear"), ((BEARING,), "bearing"))
+    ]
+    *more, last = [f"{count} {word}{'' if count == 1 else 's'}" for count, word in counts if count]
+    shafts = ", ".join(body.name for body in bodies if body.kind == SHAFT)
+    gears = ", ".join(body.name for body in bodies if body.kind in (PINION, WHEEL))
+    said = f"{', '.join(more)} and {last}" if more else last
+    return f"{said}. Shafts: {shafts}." + (f" Gears: {gears}." if gears else "")
+
+
+def unit_png(bodies: tuple[Body, ...]) -> bytes:
+    """Draw bodies of revolution with the names of shafts and gears, and return the PNG file's bytes."""
+    longest = max(len(_short(body.name)) for body in bodies if body.kind != BEARING)
+    across = CHARACTER * longest + AWAY + EDGE
+    seen = rendered(bodies, Camera.on(bodies, SIZE, (across, ABOVE)), COLORS)
+    sheet = Sheet(figsize=(SIZE[0] / DPI, SIZE[1] / DPI), dpi=DPI)
+    FigureCanvasAgg(sheet)
+    sheet.figimage(seen.color)
+    columns = np.flatnonzero(np.any(seen.body >= 0, axis=0))
+    _write(sheet, _points(bodies, seen, (SHAFT,), 0.0), float(columns[0]) - AWAY, "right")
+    _write(sheet, _points(bodies, seen, (PINION, WHEEL), 1.0), float(columns[-1]) + AWAY, "left")
+    buffer = BytesIO()
+    sheet.savefig(buffer, format="png", dpi=DPI, metadata={"Title": TITLE})
+    return buffer.getvalue()
+
+
+def _short(name: str) -> str:
+    return drawable(shorten(name, LONGEST, placeholder="\N{HORIZONTAL ELLIPSIS}"))
+
+
+def _points(
+    bodies: Sequence[Body], seen: Rendered, kinds: tuple[str, ...], side: float
+) -> list[tuple[str, float, float]]:
+    """Return names of bodies that are seen, each with a pixel of its own near a side, from top to bottom."""
+    points = []
+    for index, body in enumerate(bodies):
+        rows, columns = np.nonzero(seen.body == index)
+        if body.kind in kinds and rows.size:
+            column = int(np.quantile(columns, 0.05 + 0.9 * side, method="nearest"))
+            own = rows[columns == column]
+            points.append((_short(body.name), float(column), float(own[own.size // 2])))
+    return sorted(points, key=lambda point: point[2])[: int(SIZE[1] / ROW) - 1]
+
+
+def _write(sheet: Sheet, points: list[tuple[str, float, float]], at: float, side: str) -> None:
+    """Write names in a column that begins or ends at a pixel, each with a line to what it names."""
+    width, height = SIZE
+    middles = _apart([row for _, _, row in points])
+    for (text, column, row), middle in zip(points, middles, strict=True):
+        end = at + (-2.0 if side == "left" else 2.0)
+        line = Line2D([end / width, column / width], [1.0 - middle / height, 1.0 - row / height])
+        line.set(color=palette.INK, lw=0.6, marker="o", ms=2.4, markevery=[1])
+        sheet.add_artist(line)
+        sheet.text(
+            at / width, 1.0 - middle / height, text, ha=side, va="center", fontsize=TYPE, color=palette.INK
+        )
+
+
+def _apart(rows: Sequence[float]) -> list[float]:
+    """Return the middles of names, rows apart and within the picture, near increasing rows of pixels."""
+    low, high = 0.5 * ROW, SIZE[1] - 0.5 * ROW
+    middles: list[float] = []
+    for row in rows:
+        middles.append(max(row, low if not middles else middles[-1] + ROW))
+    for k in reversed(range(len(middles))):
+        middles[k] = min(middles[k], high if k == len(middles) - 1 else middles[k + 1] - ROW)
+    return middles
