@@ -217,6 +217,22 @@ GEAR_CALLS = (("pinion", 3), ("pinion", 4), ("wheel", 5), ("wheel", 6))
 
 
 @pytest.mark.law
+def test_a_wheel_stands_at_its_own_place_in_mesh(visit: Visit, outline: dict[str, Any]) -> None:
+    shift = 7.0
+    pinion, wheel = SCENE["gears"]
+    slid = SCENE | {"gears": [pinion, wheel | {"position_mm": wheel["position_mm"] + shift}]}
+    steps = [AT_REST, "if (!subject.follow(subject.given)) throw new Error()"]
+    before, after = vertices(visit.page, UNIT, steps, scene=SCENE, outline=outline, motion=slid)
+    twist = np.radians(outline["wheel"]["twist_deg_per_mm"])
+    for name, call in GEAR_CALLS:
+        moved = shift if name == "wheel" else 0.0
+        center = np.array([0.0, -DISTANCE if name == "wheel" else 0.0])
+        np.testing.assert_allclose(after[call][:, 2] - before[call][:, 2], moved, atol=1e-4)
+        turned = rotation(before[call], after[call], center)
+        np.testing.assert_allclose(turned, twist * moved, atol=1e-4)
+
+
+@pytest.mark.law
 def test_the_largest_motion_is_drawn_with_a_share_of_the_unit(visit: Visit, outline: dict[str, Any]) -> None:
     drawn = []
     for size in (1.0, 1e-3):

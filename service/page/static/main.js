@@ -47,7 +47,9 @@ class Page {
     this.caller = `page-${Math.random().toString(36).slice(2, 12)}`;
     this.design = new Design(analyze.inputs.case.schema, effects, examples, this);
     new Complaint(this.design);
-    this.files = new CaseFiles(this.design, { scene: (name, unit) => this.scenes.take(name, unit), go: (views) => this.go(views) });
+    const scene = (name, unit) => this.scenes.take(name, unit);
+    const slide = (part, position) => this.scenes.slide(part, position);
+    this.files = new CaseFiles(this.design, { scene, slide, go: (views) => this.go(views) });
     new UnitHeard(this.design, this.files.unit);
     /** @type {Map<string, Slot>} */
     this.slots = new Map();
@@ -73,7 +75,7 @@ class Page {
       if (scene) await this.design.view.offer(scene, reference, signal);
       await showResult(target, reference, { take, signal });
     };
-    const page = { design: this.design, slot, show };
+    const page = { design: this.design, unit: this.files.unit, slot, show };
     showStudies(ofCases, page);
     const dynamics = new Dynamics(studies.find(({ process }) => process === "modes"), page);
     this.scenes = new SceneEditor(studies, page);

@@ -7,12 +7,16 @@ import { faultsOf } from "./job.js";
 import { sayMissing } from "./notice.js";
 import { MOST, base64, deflated, packedFile, unpackedFile } from "./packed.js";
 import { evenly, saveScene, sceneOf } from "./scene.js";
+import { changed } from "./schema.js";
 import { SceneTable } from "./scene_table.js";
 import { Tabs, reveal } from "./tabs.js";
 
 const RUN = { process: "simulate", title: "Run over time", subjects: ["case", "scene"] };
 /** By which the text of a scene is known. */
 const SCENE = /^\s*\[\[\s*shafts\s*\]\]/m;
+/** Lists of parts with a place on a shaft that the picture moves. */
+const SLIDING = ["gears", "rolling_bearings", "bushings"];
+const RESTED = 150; // milliseconds after which a drag is written
 const FIELDS = {
   from: { type: "number", title: "Speeds from, rpm", default: 300 },
   to: { type: "number", title: "to, rpm", default: 3000 },
@@ -23,10 +27,10 @@ const FIELDS = {
 export class SceneEditor {
   /**
    * @param {ReturnType<typeof import("./studies.js").studiesOf>} studies of which those of a scene are offered
-   * @param {{slot: Function, show: Function, design: import("./design.js").Design}} page
+   * @param {{slot: Function, show: Function, design: import("./design.js").Design, unit: import("./unit.js").OpenedUnit}} page
    */
-  constructor(studies, { slot, show, design }) {
-    this.design = design;
+  constructor(studies, { slot, show, design, unit }) {
+    Object.assign(this, { design, unit });
     /** @type {any} the scene that is edited, null: none; never changed in place */
     this.scene = null;
     /** Number of the scene; one that is edited keeps it. */
@@ -98,16 +102,42 @@ export class SceneEditor {
    * @param {{scene: object, load_cases: object[]}} unit
    */
   async take(name, { scene, load_cases: cases }) {
-    await this.put(scene, name, cases);
+    await this.put(scene, name, cases, this.unit.mark);
     reveal(this.tables);
     byId("scene-tables-tab").focus();
   }
 
   /** Begin with another scene. */
-  async put(scene, name = "", cases = []) {
-    this.key += 1;
-    this.under(name, cases);
+  async put(scene, name = "", cases = [], mark = null) {
+    this.another(name, cases, mark);
     await this.settle(() => this.edit(scene));
+  }
+
+  /** Leave the scene that was here. @param {string | null} mark of the unit that the next one is of */
+  another(name, cases, mark) {
+    this.key += 1;
+    this.mark = mark;
+    this.under(name, cases);
+  }
+
+  /** Move a gear or bearing of the unit that is open along its shaft. @param {string} part @param {number} position mm */
+  slide(part, position) {
+    const { name, unit, mark } = this.unit;
+    if (this.problem && this.mark === mark) { // to be mended first
+      reveal(this.text.readOnly ? this.tables : this.text);
+      return;
+    }
+    if (this.mark !== mark || !this.scene) {
+      this.another(name, unit.load_cases, mark);
+      this.scene = unit.scene;
+      document.dispatchEvent(new Event("opened")); // what it was before the edit
+    }
+    const rows = SLIDING.flatMap((kind) => (this.scene[kind] ?? []).map((row, k) => ({ row, path: [kind, k, "position_mm"] })));
+    const moved = rows.find(({ row }) => row.name === part);
+    if (moved) this.scene = changed(this.scene, moved.path, position);
+    this.unit.take(mark, this.scene);
+    clearTimeout(this.resting);
+    this.resting = setTimeout(() => this.settle(() => this.edit(this.scene)), RESTED);
   }
 
   /** Take the scene as it is edited in a table or was before, and write its text anew. @param {any} scene */
@@ -155,10 +185,11 @@ export class SceneEditor {
     await this.carry();
   }
 
-  /** Let the address carry the scene with its files and load cases. */
+  /** Let the address carry the scene with its files and load cases, and the unit that it is of show it. */
   async carry() {
-    const { scene, name, written: toml, files, cases } = this;
-    const word = scene && scene !== this.ofJob ? await packedFile(name, new TextEncoder().encode(JSON.stringify({ toml, files, cases }))) : null;
+    this.unit.take(this.mark, this.scene);
+    const { scene, name, written: toml, files, cases, mark } = this;
+    const word = scene && scene !== this.ofJob ? await packedFile(name, new TextEncoder().encode(JSON.stringify({ toml, files, cases, mark }))) : null;
     if (scene !== this.scene) return;
     this.long = word?.length > MOST;
     this.word = this.held = this.long ? null : word;
@@ -175,7 +206,10 @@ export class SceneEditor {
     } catch (fault) { // what a damaged address holds
       sayMissing(`The scene: ${fault.message}`);
     }
-    if (this.text.value === this.written) return;
+    if (this.text.value === this.written) {
+      this.unit.take(this.mark, this.scene);
+      return;
+    }
     this.key += 1;
     await this.settle(() => (this.text.value ? this.read() : this.none()));
   }
@@ -183,9 +217,10 @@ export class SceneEditor {
   /** @param {string} word */
   async unpack(word) {
     const { name, bytes } = await unpackedFile(word);
-    const { toml, files, cases } = JSON.parse(new TextDecoder().decode(bytes));
+    const { toml, files, cases, mark } = JSON.parse(new TextDecoder().decode(bytes));
     if (this.text.value === this.written) this.text.value = toml; // else it is as typed last
     this.written = "";
+    this.mark = mark;
     this.under(name, cases);
     this.with(files);
   }
@@ -221,6 +256,7 @@ export class SceneEditor {
   refuse(problem) {
     const ofText = this.text.value !== this.written;
     this.problem = problem;
+    if (this.mark && this.mark === this.unit.mark) this.unit.say(problem?.errors);
     this.text.readOnly = Boolean(problem) && !ofText;
     this.tables.inert = Boolean(problem) && ofText;
     const marked = this.table?.refuse(ofText ? [] : problem?.errors ?? []);
@@ -257,8 +293,7 @@ export class SceneEditor {
     this.with(name ? files : [...others, ...files]);
     if (name) {
       this.text.value = text;
-      this.key += 1;
-      this.under("", []);
+      this.another("", [], null);
     }
     await this.settle(() => this.read());
   }

@@ -9,6 +9,7 @@ import { saveScene } from "./scene.js";
 
 const FATES = ["taken", "assumed", "derived", "defaulted", "ignored", "refused"];
 const ENDINGS = /\.(rexs|rexsj|rexsz|zip)$/i;
+const MARK = 8; // characters at the end of its word, a checksum
 export const WHOLE = "unit"; // what is seen of a unit that is opened
 
 /** @param {string} name of a file */
@@ -19,6 +20,7 @@ export class OpenedUnit {
    * @param {import("./design.js").Design} design
    * @param {object} page
    * @param {(name: string, unit: object) => Promise<void>} page.scene opens the scene
+   * @param {(part: string, position: number) => void} page.slide moves a part along its shaft, mm
    * @param {(views: Record<string, string | null>) => Promise<void>} page.go goes on to an entry of the history that shows the unit
    */
   constructor(design, page) {
@@ -60,13 +62,36 @@ export class OpenedUnit {
     return this.unit.scene?.meshes.filter((mesh) => mesh.case) ?? this.unit.cases;
   }
 
+  /** By which its scene is known; null: none is shown. */
+  get mark() {
+    return this.place.hidden || !this.unit?.scene ? null : this.word.slice(-MARK);
+  }
+
+  /** Show the scene of a unit as it is edited. @param {string | null} mark of the unit @param {any} scene */
+  take(mark, scene) {
+    if (!mark || mark !== this.mark || !scene || scene === this.unit.scene) return;
+    const before = this.unit.scene;
+    this.unit.scene = scene;
+    this.place.querySelector(".parts").replaceWith(this.tree());
+    this.say();
+    this.design.view.replace(before, scene);
+  }
+
   /** Mark what is seen, in the tree and in three dimensions; nothing: the pair is seen. @param {string | undefined} part */
   see(part) {
     const scene = this.place.hidden ? null : this.unit.scene;
+    this.part = part;
+    this.say();
+    this.design.view.see(part ? scene : null, part, (mesh) => this.openMesh(mesh), this.page.slide);
+  }
+
+  /** Say in the tree and below it what is seen. @param {{field: string, bound: string}[]} [faults] of its scene */
+  say(faults = []) {
+    const { part } = this;
     for (const button of this.place.querySelectorAll("[data-part]")) button.setAttribute("aria-pressed", String(button.dataset.part === part));
     const fact = this.place.querySelector("[role=status]");
-    if (fact) fact.textContent = this.facts?.get(part) ?? this.summary;
-    this.design.view.see(part ? scene : null, part, (mesh) => this.openMesh(mesh));
+    const wrong = faults.map(({ field, bound }) => `${field} must be ${bound}.`);
+    if (fact) fact.textContent = [this.facts?.get(part) ?? this.summary, ...wrong].join(" ");
   }
 
   /** @param {string} part */
@@ -79,10 +104,9 @@ export class OpenedUnit {
     this.design.goTo(mesh.case, `${this.name}, ${mesh.name}`);
   }
 
-  /** Show what the service made of a file. */
-  put(word, name, unit) {
-    Object.assign(this, { word, name, unit });
-    const { scene } = unit;
+  /** The parts of the scene and the meshes. */
+  tree() {
+    const { name, unit: { scene } } = this;
     this.facts = new Map();
     const shown = (text, seen) => make("li", {}, button(text, () => this.look(seen), { class: "part", "data-part": seen }));
     const part = (text, fact) => {
@@ -92,12 +116,19 @@ export class OpenedUnit {
     const tree = scene ? [shown(name, WHOLE), make("li", {}, ...branches(scene, part))] : [];
     const meshes = this.meshes.map((mesh) => (
       make("li", {}, button(`${mesh.name}, ${teeth(mesh.case)}`, () => this.openMesh(mesh), { class: "part" }))));
+    return make("ul", { class: "parts" }, ...tree, make("li", {}, branch("Meshes", meshes)));
+  }
+
+  /** Show what the service made of a file. */
+  put(word, name, unit) {
+    Object.assign(this, { word, name, unit });
+    const { scene } = unit;
     const small = (text, action) => button(text, action, { class: "small" });
     const files = scene ? [small("Open scene", () => this.page.scene(name, unit)), small("Save scene", () => this.saveScene())] : [];
     this.summary = summary(name, unit);
     this.place.replaceChildren(
       ...unit.left_out.map((text) => make("p", { class: "alarm", role: "alert" }, `Left out of the scene: ${text}`)),
-      make("ul", { class: "parts" }, ...tree, make("li", {}, branch("Meshes", meshes))),
+      this.tree(),
       make("p", { class: "hint", role: "status" }, this.summary),
       make("p", { class: "buttons" }, ...files, small("Save report", () => save(`${JSON.stringify(unit.lines, null, 1)}\n`, "import.json", "application/json"))),
       ...(unit.load_cases.length ? [folded("Load cases", loads(unit.load_cases))] : []),

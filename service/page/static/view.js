@@ -67,14 +67,17 @@ export class View {
   /**
    * Draw a gear unit with one of its parts marked, or the pair.
    * @param {any} scene null: the pair @param {string} [part] @param {(mesh: any) => void} [open] a mesh that is clicked
+   * @param {((part: string, position: number) => void) | null} [slid] the part is moved along its shaft, mm
    */
-  async see(scene, part = "", open = () => {}) {
-    const wanted = (this.wanted = { scene, part, open });
+  async see(scene, part = "", open = () => {}, slid = null) {
+    const wanted = (this.wanted = { scene, part, open, slid });
     this.motions?.seen(scene);
-    const gearbox = scene && (scene === this.gearbox?.scene ? this.gearbox : await gearboxOf(scene, open));
+    const drawn = scene && (scene === this.gearbox?.scene || this.gearbox?.follow(scene));
+    const gearbox = scene && (drawn ? this.gearbox : await gearboxOf(scene, open));
     if (this.wanted !== wanted) return;
     this.gearbox = gearbox ?? this.gearbox;
     gearbox?.mark(part);
+    if (gearbox) Object.assign(gearbox, { open, slid });
     if (!this.stage) {
       this.target.hidden = !gearbox;
       this.target.replaceChildren(...(gearbox ? [stillOf(gearbox, unitInWords(scene)), make("p", { class: "view-words", role: "status" }, STILL)] : []));
@@ -83,8 +86,16 @@ export class View {
     if (!this.stage.rolls && gearbox) gearbox.position = this.pair.position;
     this.stage.put(gearbox ?? this.pair);
     this.ofPair.hidden = Boolean(gearbox);
-    this.words.textContent = gearbox ? "The unit of the scene: click a mesh to open its pair." : "";
+    const slides = gearbox?.middle ? ` Drag ${part} along its shaft, or press ← and →: 1 mm, with Shift 10 mm.` : "";
+    this.words.textContent = gearbox ? `The unit of the scene: click a mesh to open its pair.${slides}` : "";
     this.label(scene);
+  }
+
+  /** Draw a scene in place of what it was before an edit. */
+  replace(before, scene) {
+    const { wanted, motions } = this;
+    if (motions?.before?.scene === before) motions.before.scene = scene;
+    if (wanted?.scene === before) this.see(scene, wanted.part, wanted.open, wanted.slid);
   }
 
   /** Offer the motions of a result, if it has any, in the picture of its scene. @param {any} scene @param {any} result reference to it @param {AbortSignal} signal */

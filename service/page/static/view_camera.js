@@ -3,6 +3,7 @@
 
 const FIELD = 1 / Math.tan((15 * Math.PI) / 180); // half of the field of view, upright
 const STEEPEST = 1.5; // rad
+const STEEPLY = 0.2; // of a length across the picture, at which one along z is taken to be seen at least
 const STEP = 0.08; // rad a key
 const STILL = 4; // pixels within which a press is a click
 
@@ -66,22 +67,44 @@ export class Camera {
   }
 
   /**
-   * Follow the pointers over a canvas: one turns, two or the wheel zoom.
-   * @param {HTMLCanvasElement} canvas
-   * @param {{moved: () => void, clicked: (x: number, y: number) => void}} told places in CSS pixels from the upper left
+   * How a point that moves along z moves over a picture. @param {number[]} point @param {{clientWidth: number, clientHeight: number}} size in CSS pixels
+   * @returns {[number, number]} mm along z a pixel to the right and a pixel down
    */
-  follow(canvas, { moved, clicked }) {
+  along([x, y, z], { clientWidth: width, clientHeight: height }) {
+    const view = this.matrix(width / height);
+    const seen = (depth) => {
+      const [across, up, , w] = [0, 1, 2, 3].map((k) => view[k] * x + view[4 + k] * y + view[8 + k] * depth + view[12 + k]);
+      return [(0.5 * width * across) / w, (-0.5 * height * up) / w];
+    };
+    const [from, to] = [seen(z), seen(z + 1)];
+    const [right, down] = [to[0] - from[0], to[1] - from[1]];
+    const least = (STEEPLY * FIELD * Math.min(width, height)) / (2 * this.distance); // where one looks along it
+    const size = Math.max(Math.hypot(right, down), least) ** 2;
+    return [right / size, down / size];
+  }
+
+  /**
+   * Follow the pointers over a canvas: one turns or drags what it holds, two or the wheel zoom.
+   * @param {HTMLCanvasElement} canvas
+   * @param {{moved: () => void, clicked: (x: number, y: number) => void, dragged: (event: PointerEvent) => ((right: number, down: number) => void) | null}} told
+   * places in CSS pixels from the upper left
+   */
+  follow(canvas, { moved, clicked, dragged }) {
     /** @type {Map<number, {x: number, y: number}>} */
     const held = new Map();
     let way = 0;
+    /** @type {((right: number, down: number) => void) | null} */
+    let drag = null;
     const apart = () => {
       const [a, b] = [...held.values()];
       return Math.hypot(a.x - b.x, a.y - b.y);
     };
-    canvas.addEventListener("pointerdown", ({ pointerId, clientX: x, clientY: y }) => {
+    canvas.addEventListener("pointerdown", (event) => {
+      const { pointerId, clientX: x, clientY: y } = event;
       canvas.setPointerCapture(pointerId);
       held.set(pointerId, { x, y });
       way = held.size > 1 ? Infinity : 0;
+      drag = held.size > 1 ? null : dragged(event);
     });
     canvas.addEventListener("pointermove", ({ pointerId, clientX: x, clientY: y }) => {
       const before = held.get(pointerId);
@@ -90,6 +113,7 @@ export class Camera {
       held.set(pointerId, { x, y });
       way += Math.hypot(x - before.x, y - before.y);
       if (distance) this.zoom(distance / apart());
+      else if (drag) drag(x - before.x, y - before.y);
       else this.turn(0.008 * (x - before.x), 0.008 * (y - before.y));
       moved();
     });

@@ -164,8 +164,8 @@ export class Motions {
     this.factor.textContent = "";
     this.levels.hidden = true;
     this.view.gearbox?.move(null);
-    const { scene = null, part, open } = this.before ?? {};
-    return this.view.see(scene, part, open);
+    const { scene = null, part, open, slid } = this.before ?? {};
+    return this.view.see(scene, part, open, slid);
   }
 
   /** Another thing is shown. @param {any} scene */

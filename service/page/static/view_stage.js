@@ -9,16 +9,20 @@ const SLOW = 40; // ms a frame, beyond which fewer pixels are drawn while it mov
 const LEAST = 0.5; // of the pixels across
 const QUICK = 20; // ms a frame, below which a still picture may be fine
 const FINE = 2; // pixels drawn a pixel shown where nothing moves: edges are smooth
+const SLIDES = { ArrowLeft: -1, ArrowRight: 1 }; // mm
+const FINEST = 0.1; // mm of a drag
 const CALM = matchMedia("(prefers-reduced-motion: reduce)");
 
 /**
  * @typedef {object} Subject what is drawn
  * @property {(gl: WebGL2RenderingContext, programs: any) => void} begin make what it needs
  * @property {(gl: WebGL2RenderingContext) => void} end let go of it
- * @property {(gl: WebGL2RenderingContext, frame: {view: Float32Array, back: number[], moving: boolean, picking: boolean}) => void} draw
+ * @property {(gl: WebGL2RenderingContext, frame: {view: Float32Array, back: number[], moving: boolean, picking: boolean | "marked"}) => void} draw
  * @property {(seconds: number) => void} advance
  * @property {(texel: Uint8Array | null) => void} picked what is drawn at a place that was clicked; null: nothing
  * @property {(camera: Camera) => void} frame
+ * @property {(mm: number) => void} [slide] move the part that is marked along its shaft
+ * @property {number[] | null} [middle] of that part; null: it has no place on a shaft
  */
 
 /** @returns {boolean} whether this browser has WebGL2 */
@@ -41,7 +45,7 @@ export class Stage {
     this.canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
     this.canvas.addEventListener("webglcontextrestored", () => this.begin());
     this.canvas.addEventListener("keydown", (event) => this.key(event));
-    this.camera.follow(this.canvas, { moved: () => this.moved(), clicked: (x, y) => this.pick(x, y) });
+    this.camera.follow(this.canvas, { moved: () => this.moved(), clicked: (x, y) => this.pick(x, y), dragged: (event) => this.dragged(event) });
     new ResizeObserver(() => this.wake()).observe(this.canvas);
     new IntersectionObserver(([entry]) => {
       this.seen = entry.isIntersecting;
@@ -84,9 +88,24 @@ export class Stage {
   /** @param {KeyboardEvent} event */
   key(event) {
     if (event.key === " ") this.roll(!this.rolls);
+    else if (SLIDES[event.key] && this.subject.middle) this.subject.slide(SLIDES[event.key] * (event.shiftKey ? 10 : 1));
     else if (event.ctrlKey || event.metaKey || event.altKey || !this.camera.press(event.key)) return;
     else this.moved();
     event.preventDefault();
+  }
+
+  /** What a pointer drags that is pressed: the part that is marked, along its shaft; null: nothing. @param {PointerEvent} event */
+  dragged({ shiftKey, offsetX: x, offsetY: y }) {
+    const { subject, camera, canvas } = this;
+    if (!subject.middle || !(shiftKey || this.texel(x, y, "marked")[0])) return null;
+    let rest = 0;
+    return (right, down) => {
+      const along = camera.along(subject.middle, canvas);
+      rest += along[0] * right + along[1] * down;
+      const whole = Math.round(rest / FINEST) * FINEST;
+      if (whole) subject.slide(whole);
+      rest -= whole;
+    };
   }
 
   moved() {
@@ -124,7 +143,7 @@ export class Stage {
     else if (this.took < 0.5 * SLOW) this.part = Math.min(1, 1.01 * this.part);
   }
 
-  /** @param {boolean} picking */
+  /** @param {boolean | "marked"} picking which parts are drawn to be picked */
   paint(picking) {
     const { gl, canvas, camera } = this;
     const still = !this.rolls && !this.moving && !picking;
@@ -141,13 +160,19 @@ export class Stage {
 
   /** Say the subject what stands at a place of the canvas. */
   pick(x, y) {
+    const texel = this.texel(x, y, true);
+    this.subject.picked(texel[0] ? texel : null);
+  }
+
+  /** What stands at a place of the canvas. @param {true | "marked"} picking */
+  texel(x, y, picking) {
     const { gl, canvas } = this;
     const texel = new Uint8Array(4);
-    this.paint(true);
+    this.paint(picking);
     const scale = canvas.width / canvas.clientWidth;
     gl.readPixels(Math.round(scale * x), canvas.height - 1 - Math.round(scale * y), 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, texel);
-    this.subject.picked(texel[0] ? texel : null);
     this.paint(false);
     this.wake();
+    return texel;
   }
 }

@@ -34,7 +34,7 @@ function* solidsOf(unit) {
         const at = (Math.PI / 180) * gear.angle_deg + (gear.turn * 2 * Math.PI * tooth) / gear.teeth;
         const place = (point) => {
           const [x, y, z] = about(at + (Math.PI / 180) * gear.twist_deg_per_mm * (point[2] - middle))(point);
-          return turned([x + gear.centre_mm[0], y + gear.centre_mm[1], z]).map((value, k) => value + to[k]);
+          return turned([x + gear.centre_mm[0], y + gear.centre_mm[1], z]).map((value, k) => value + to[name][k]);
         };
         yield { ...solid, place };
       }

@@ -3,6 +3,7 @@
 
 import { post } from "./api.js";
 import { caseOf } from "./orders.js";
+import { same } from "./schema.js";
 import { freed, held, Meshing } from "./view_gl.js";
 import { Motion, STATIONS } from "./view_motion.js";
 import { COLORS as OF_PAIR, GEARS, put, RollingPair } from "./view_pair.js";
@@ -61,6 +62,19 @@ function bearingMesh({ position_mm: place, catalog }, shaft) {
   return made.mesh;
 }
 
+/** @param {{face_mm: number[]}} gear */
+const middleOf = ({ face_mm: [low, high] }) => 0.5 * (low + high);
+
+const mapped = (values, to) => Object.fromEntries(Object.entries(values).map(([name, value]) => [name, to(value)]));
+
+const bearingsOf = (scene) => [...(scene.rolling_bearings ?? []), ...(scene.bushings ?? [])];
+
+/** What is drawn of a scene but for the places on shafts. @param {any} scene */
+function unplaced({ shafts, gears, meshes, rolling_bearings: rolling = [], bushings = [] }) {
+  const parts = [gears, rolling, bushings].map((list) => list.map((part) => ({ ...part, position_mm: 0 })));
+  return { shafts, meshes, parts };
+}
+
 /** By columns: turned about z, then moved. @param {number} angle @param {number[]} to */
 function placement(angle, [x, y, z]) {
   const [c, s] = [Math.cos(angle), Math.sin(angle)];
@@ -81,30 +95,50 @@ export class Gearbox {
    * @param {(mesh: any) => void} open what is done with a mesh that is clicked
    */
   constructor(scene, stages, open) {
-    Object.assign(this, { scene, open });
+    this.open = open;
+    /** @type {((part: string, position: number) => void) | null} what moves a part along its shaft; null: nothing does */
+    this.slid = null;
     this.position = 0;
     /** @type {Motion | null} */
     this.motion = null;
+    this.stand(scene, stages.map((stage) => ({ ...stage, pair: new RollingPair() })));
+  }
+
+  /** Let parts stand where a scene has them. */
+  stand(scene, stages) {
+    this.scene = scene;
     this.shafts = new Map(scene.shafts.map((shaft) => [shaft.name, shaft]));
     const gears = new Map(scene.gears.map((gear) => [gear.name, gear]));
     /** @type {Map<string, number>} turns of shafts in rad a base pitch of the first mesh, counter-clockwise */
     this.turns = new Map();
-    this.stages = stages.map(({ mesh, outline }) => this.stage(mesh, outline, gears.get(mesh.driver), gears.get(mesh.driven)));
+    this.stages = stages.map(({ mesh, outline, pair }) => this.stage(mesh, outline, pair, gears.get(mesh.driver), gears.get(mesh.driven)));
   }
 
-  stage(mesh, outline, driver, driven) {
+  /** Follow a scene whose parts stand elsewhere on their shafts and are the same otherwise. @returns {boolean} whether it is one */
+  follow(scene) {
+    if (!this.bodies || !same(unplaced(scene), unplaced(this.scene))) return false;
+    this.move(null);
+    this.stand(scene, this.stages);
+    freed(this.gl, this.bodies.map(({ mesh }) => mesh));
+    this.embody();
+    return true;
+  }
+
+  stage(mesh, outline, pair, driver, driven) {
     const [one, other] = [driver, driven].map(({ shaft }) => this.shafts.get(shaft));
     const [x, y] = [0, 1].map((k) => other.origin_mm[k] - one.origin_mm[k]);
     const angle = Math.atan2(y, x) + (outline.internal ? 1 : -1) * (Math.PI / 2);
-    const to = [one.origin_mm[0], one.origin_mm[1], one.origin_mm[2] + driver.position_mm];
-    const step = (-2 * Math.PI) / outline.pinion.teeth; // of the pinion, a base pitch
+    const { pinion, wheel } = outline;
+    const height = { pinion: one.origin_mm[2] + driver.position_mm, wheel: other.origin_mm[2] + driven.position_mm - middleOf(wheel) };
+    const to = mapped(height, (z) => [one.origin_mm[0], one.origin_mm[1], z]);
+    const lead = wheel.twist_deg_per_mm * (height.wheel - height.pinion); // teeth fit wherever the wheel stands
+    const step = (-2 * Math.PI) / pinion.teeth; // of the pinion, a base pitch
     const turned = this.turns.get(one.name) ?? step;
     this.turns.set(one.name, turned);
-    this.turns.set(other.name, (turned / step) * outline.wheel.turn * ((2 * Math.PI) / outline.wheel.teeth));
-    const pair = new RollingPair();
-    pair.outline = outline;
+    this.turns.set(other.name, (turned / step) * wheel.turn * ((2 * Math.PI) / wheel.teeth));
+    pair.outline = { ...outline, wheel: { ...wheel, angle_deg: wheel.angle_deg + lead } };
     const on = { pinion: driver, wheel: driven };
-    return { mesh, pair, place: placement(angle, to), ratio: turned / step, on, angle, to };
+    return { mesh, outline, pair, place: mapped(to, (place) => placement(angle, place)), ratio: turned / step, on, angle, to };
   }
 
   /** Let it move by a result. @param {import("./view_motion.js").UnitMotion | null} motion null: it stands */
@@ -122,13 +156,17 @@ export class Gearbox {
   begin(gl, programs) {
     Object.assign(this, { gl, programs, hull: null });
     for (const { pair } of this.stages) pair.begin(gl, programs);
-    this.bodies = this.parts.map((part) => ({ ...part, mesh: held(gl, part.mesh) }));
+    this.embody();
+  }
+
+  embody() {
+    this.bodies = this.parts.map((part) => ({ ...part, mesh: held(this.gl, part.mesh) }));
   }
 
   /** Shafts and bearings, each with its mesh about the axis of its shaft. */
   get parts() {
     const shafts = this.scene.shafts.map((shaft) => ({ name: shaft.name, shaft, mesh: shaftMesh(shaft), color: COLORS.shaft }));
-    const bearings = [...(this.scene.rolling_bearings ?? []), ...(this.scene.bushings ?? [])].filter(({ shaft }) => this.shafts.has(shaft));
+    const bearings = bearingsOf(this.scene).filter(({ shaft }) => this.shafts.has(shaft));
     const own = bearings.map((bearing) => ({ bearing, shaft: this.shafts.get(bearing.shaft) }));
     return [...shafts, ...own.map(({ bearing, shaft }) => ({ name: bearing.name, shaft, mesh: bearingMesh(bearing, shaft), color: COLORS.bearing }))];
   }
@@ -136,6 +174,7 @@ export class Gearbox {
   /** Let go of what it holds. */
   end(gl) {
     freed(gl, this.bodies.map(({ mesh }) => mesh));
+    this.bodies = null;
     this.letHullGo();
     for (const { pair } of this.stages) pair.end(gl);
   }
@@ -152,6 +191,21 @@ export class Gearbox {
       const color = (gear, own) => (gear === name ? MARKED : own);
       pair.colors = { pinion: color(mesh.driver, OF_PAIR.pinion), wheel: color(mesh.driven, OF_PAIR.wheel) };
     }
+  }
+
+  /** The gear or bearing that is marked. */
+  get sliding() {
+    return [...this.scene.gears, ...bearingsOf(this.scene)].find(({ name, shaft }) => name === this.marked && this.shafts.has(shaft));
+  }
+
+  get middle() {
+    const part = this.slid && this.sliding;
+    return part ? this.shafts.get(part.shaft).origin_mm.map((value, k) => value + (k === 2 ? part.position_mm : 0)) : null;
+  }
+
+  /** @param {number} mm */
+  slide(mm) {
+    this.slid(this.marked, Number((this.sliding.position_mm + mm).toFixed(6)));
   }
 
   /** Both corners of a box about the axes and the housing that moves. */
@@ -182,22 +236,18 @@ export class Gearbox {
     gl.enable(gl.CULL_FACE);
     if (!frame.picking) this.revolved(gl, frame, this.bodies);
     const marked = [];
-    this.stages.forEach(({ pair, place, ratio, on, angle, to }, k) => {
-      const moved = (name) => {
-        const [gear, shaft] = [on[name], this.shafts.get(on[name].shaft)];
-        const middle = shaft.origin_mm[2] + gear.position_mm - to[2];
-        return [name, this.motion.ofDisc(shaft.name, gear.position_mm, middle, angle) ?? STILL];
-      };
+    this.stages.forEach(({ pair, place, ratio, on, angle }, k) => {
+      const moved = (name) => [name, this.motion.ofDisc(on[name].shaft, on[name].position_mm, middleOf(pair.outline[name]), angle) ?? STILL];
       pair.moved = this.motion && Object.fromEntries(GEARS.map(moved));
       pair.position = ratio * this.position;
       pair.meshes ??= pair.made(gl);
-      const own = { ...frame, view: product(frame.view, place), code: 8 * k + 1 };
-      const gear = (name) => pair.gear(gl, name, frame.picking ? ["PICK"] : ["SMOOTH", "STEEL"], own, 1);
-      GEARS.forEach(gear);
+      const own = (name) => ({ ...frame, view: product(frame.view, place[name]), code: 8 * k + 1 });
+      const gear = (name) => pair.gear(gl, name, frame.picking ? ["PICK"] : ["SMOOTH", "STEEL"], own(name), 1);
+      if (frame.picking !== "marked") GEARS.forEach(gear);
       marked.push(() => GEARS.filter((name) => on[name].name === this.marked).forEach(gear));
     });
-    if (frame.picking) return;
-    if (this.motion?.hull) this.surface(gl, frame);
+    if (frame.picking === true) return;
+    if (this.motion?.hull && !frame.picking) this.surface(gl, frame);
     gl.clear(gl.DEPTH_BUFFER_BIT); // what is marked is seen through all else
     this.revolved(gl, frame, this.bodies.filter(({ name }) => name === this.marked));
     for (const again of marked) again();

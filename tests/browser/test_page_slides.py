@@ -1,0 +1,132 @@
+"""A gear or bearing of the unit in the picture, moved along its shaft by keys and by the pointer."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from page_picture import CANVAS, different, picture, stopped
+from page_visit import Visit, opened
+from playwright.sync_api import Browser, Page, Route, expect
+
+UNIT = Path(__file__).parents[2] / "examples" / "two_stage" / "two_stage.rexs"
+
+
+@pytest.fixture
+def visit(drawing_browser: Browser, address: str) -> Iterator[Visit]:
+    seen = opened(drawing_browser, f"{address}/#tab=sound")
+    seen.page.locator("#import-file").set_input_files(UNIT)
+    expect(seen.page.locator("#view [role=status]")).to_contain_text("click a mesh")
+    seen.page.locator(CANVAS).scroll_into_view_if_needed()
+    stopped(seen.page)
+    yield seen
+    assert seen.complaints == []
+    seen.page.close()
+
+
+def select(page: Page, part: str) -> None:
+    page.get_by_role("button", name=part, exact=True).press("Enter")
+    expect(page.locator("#view [role=status]")).to_contain_text(f"Drag {part} along its shaft")
+
+
+def stands(page: Page, part: str, place: str) -> None:
+    """Wait until tree, table and text have a part at a place."""
+    expect(page.locator("#unit [role=status]")).to_contain_text(re.compile(f"{part}: .*, at {place} mm"))
+    cell = page.locator("#scene-tables").get_by_label(f"Position, mm, {part}", exact=True)
+    expect(cell).to_have_value(str(float(place)).removesuffix(".0"))
+    expect(page.locator("#scene-text")).to_have_value(
+        re.compile(rf'name = "{part}"(\n.+)*\nposition_mm = {float(place)}\n')
+    )
+
+
+@pytest.mark.law
+def test_arrow_keys_move_what_is_selected_in_picture_tree_table_and_text(visit: Visit) -> None:
+    page, canvas = visit.page, visit.page.locator(CANVAS)
+    select(page, "wheel 1")
+    canvas.press("ArrowUp")
+    before = picture(page)
+    canvas.press("ArrowRight")
+    stands(page, "wheel 1", "51.00")
+    canvas.press("Shift+ArrowLeft")
+    stands(page, "wheel 1", "41.00")
+    assert different(before, picture(page)) > 0.002
+    page.wait_for_timeout(500)  # ms: an edit that rests is a step
+    page.locator("#undo").press("Enter")
+    for _ in range(2):  # on a slow machine each key is a step
+        if "50.00" not in page.locator("#unit [role=status]").inner_text():
+            page.locator("#undo").press("Enter")
+            page.wait_for_timeout(500)
+    stands(page, "wheel 1", "50.00")
+    assert different(before, picture(page)) < 0.002, "seen from where it was seen"
+    page.locator(CANVAS).press("ArrowRight")
+    stands(page, "wheel 1", "51.00")
+    sent: list[Any] = []
+
+    def refuse(route: Route) -> None:
+        sent.append(route.request.post_data_json["inputs"]["scene"])
+        route.fulfill(status=422, json={"title": "Not now", "status": 422})
+
+    page.route("**/processes/simulate/execution", refuse)
+    page.get_by_role("button", name="Compute the scene").press("Enter")
+    expect(page.locator("#scene-body [role=alert]")).to_contain_text("Not now")
+    assert [gear["position_mm"] for gear in sent[0]["gears"]] == [50.0, 51.0, 108.0, 108.0]
+    page.reload()
+    stands(page, "wheel 1", "51.00")
+
+
+def drag(page: Page, start: np.ndarray, way: tuple[float, float]) -> None:
+    box = page.locator(CANVAS).bounding_box()
+    assert box is not None
+    x, y = box["x"] + start[0], box["y"] + start[1]
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + way[0], y + way[1], steps=3)
+    page.mouse.up()
+
+
+def marked(page: Page) -> np.ndarray:
+    """Return the places (n, 2) of what is marked in the picture, CSS pixels."""
+    shown = picture(page).astype(int)
+    rows, columns = np.nonzero((shown[..., 0] > 90) & (shown[..., 2] < 25))
+    return np.stack([columns, rows], axis=1)
+
+
+@pytest.mark.law
+def test_the_pointer_drags_what_is_selected_and_turns_the_picture_beside_it(visit: Visit) -> None:
+    page = visit.page
+    select(page, "output, far side")
+    places = marked(page)
+    before = np.mean(places, axis=0)
+    fact = page.locator("#unit [role=status]")
+    known, way = fact.inner_text(), np.array([-30.0, 0.0])
+    drag(page, places[len(places) // 2], (-30.0, 0.0))
+    expect(fact).not_to_have_text(known)
+    moved = np.mean(marked(page), axis=0) - before
+    assert moved @ moved == pytest.approx(way @ moved, rel=0.2)  # as far along its shaft as the pointer
+    assert way @ moved > 20.0
+    place = re.search(r"at (\S+) mm", fact.inner_text())
+    assert place is not None
+    stands(page, "output, far side", place[1])
+    known, beside = fact.inner_text(), np.array([20.0, 200.0])
+    seen = picture(page)
+    drag(page, beside, (40.0, 0.0))
+    assert fact.inner_text() == known
+    assert different(seen, picture(page)) > 0.01, "the camera turned"
+    page.keyboard.down("Shift")
+    drag(page, beside, (15.0, 0.0))
+    page.keyboard.up("Shift")
+    expect(fact).not_to_have_text(known)
+    length = page.locator("#scene-shafts-2-length_mm")
+    was = length.input_value()
+    length.fill("-3")
+    length.press("Tab")
+    expect(fact).to_contain_text("shafts[2].length_mm must be above 0")
+    page.locator(CANVAS).press("ArrowLeft")
+    expect(page.locator("#scene-tables")).to_be_visible()
+    length.fill(was)
+    length.press("Tab")
+    expect(fact).not_to_contain_text("must be")
