@@ -189,7 +189,6 @@ def scatter(
     *,
     misalignment: float = 0.0,
     limit: OrderLimit | None = None,
-    teeth: ToothTolerances | None = None,
 ) -> ToleranceStudy:
     """Sample pairs within their tolerances and find the peak-to-peak transmission error of each.
 
@@ -212,17 +211,15 @@ def scatter(
     misalignment : float
         As designed, m.
     limit : OrderLimit, optional
-        Which pairs are above it is counted.
-    teeth : ToothTolerances, optional
-        By how much the teeth of the gear differ that makes an order beside the mesh.
+        Which pairs are above it is counted; of an order beside the mesh by `sampled`, which takes `teeth`.
     """
-    request = ToleranceRequest(pair, torques, tolerances, sampling, options, misalignment, limit, teeth)
+    request = ToleranceRequest(pair, torques, tolerances, sampling, options, misalignment, limit)
     return sampled(request, run)
 
 
 @dataclass(frozen=True)
 class ToleranceRequest:
-    """What `scatter` takes."""
+    """What `scatter` takes, and how much `teeth` of the gear differ that makes an order beside the mesh."""
 
     pair: ParallelAxes
     torques: Levels
@@ -246,6 +243,9 @@ class ToleranceRequest:
         """Everything is checked, nothing computed; raises `InputError`, also where it cannot be held."""
         if self.limit is not None:
             self.limit.check(self.pair, self.sampling.positions)
+            if self.limit.gear and self.teeth is None:
+                advice = "State how much they differ: `iso1328_tooth_tolerances`."
+                raise InputError("limit.gear", self.limit.name, "a mesh order where teeth are alike", advice)
         checked = self.space.check(self.torques)
         self._require_memory(checked.model.period)
         return checked

@@ -25,7 +25,13 @@ from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.order_limit import OrderLimit, PairsAbove
 from fe_contact.microgeometry.scatter import ONE_NODE
 from fe_contact.microgeometry.sidebands_above import MadePairs, ToothPassing, lines_of_pairs
-from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceRequest, ToleranceStudy, scatter
+from fe_contact.microgeometry.tolerance_study import (
+    Sampling,
+    ToleranceRequest,
+    ToleranceStudy,
+    sampled,
+    scatter,
+)
 from fe_contact.microgeometry.tolerances import Tolerances, iso1328_tolerances
 from fe_contact.options import AnalysisOptions, Run
 from lineofaction.gearbox.studies.scatter.run import order_limit
@@ -118,14 +124,14 @@ def test_what_all_teeth_have_in_common_is_not_drawn_twice() -> None:
         assert np.hypot(*parts) == pytest.approx(whole.widths[f"wheel.{name}"])
 
 
-def sampled(limit: OrderLimit, teeth: ToothTolerances = TEETH) -> ToleranceStudy:
+def study_of(limit: OrderLimit, teeth: ToothTolerances = TEETH) -> ToleranceStudy:
     sampling = Sampling(samples=500, seed=3, positions=POSITIONS, exact=40)
-    return scatter(PAIR, TORQUES, ALIKE, sampling, OPTIONS, limit=limit, teeth=teeth)
+    return sampled(ToleranceRequest(PAIR, TORQUES, ALIKE, sampling, OPTIONS, 0.0, limit, teeth), Run())
 
 
 @pytest.fixture(scope="module")
 def above() -> PairsAbove:
-    found = sampled(SIDEBAND).above
+    found = study_of(SIDEBAND).above
     assert found is not None
     return found
 
@@ -152,14 +158,14 @@ def test_what_decides_of_an_order_is_what_makes_it(above: PairsAbove) -> None:
     """Run-out alone makes the first order of a shaft, by its amount; pitches and flanks a sideband."""
     assert above.names == TEETH.names and above.total[0] == above.first_order[0] == 0.0
     assert above.cured[0] == above.share[above.load] >= above.cured.min()
-    turning = sampled(OrderLimit(0, 4e-6, "pinion", 1)).above
+    turning = study_of(OrderLimit(0, 4e-6, "pinion", 1)).above
     assert turning is not None
     assert turning.decides == turning.cure == 0 and turning.total[0] > 0.9
     eccentric = TEETH.drawn(500, 3).eccentricity
     np.testing.assert_allclose(turning.amplitude[:, 0], eccentric, atol=2.5e-6)
     # with the tolerance of a class finer, drawn anew
     finer = replace(TEETH, widths={**TEETH.widths, RUN_OUT: TEETH.widths[RUN_OUT] / np.sqrt(2.0)})
-    other = sampled(turning.limit, finer).above
+    other = study_of(turning.limit, finer).above
     assert other is not None and turning.share[turning.load] > 0.1
     assert other.share[turning.load] == pytest.approx(turning.cured[0], abs=0.01)
 
@@ -181,6 +187,11 @@ def test_orders_that_drawn_teeth_cannot_make_are_refused(
     with pytest.raises(InputError) as refused:
         limit.check(pair, POSITIONS)
     assert refused.value.field == field
+
+
+def test_teeth_that_are_alike_make_no_sideband() -> None:
+    with pytest.raises(InputError, match="teeth are alike"):
+        scatter(PAIR, TORQUES, ALIKE, Sampling(positions=POSITIONS), OPTIONS, limit=SIDEBAND)
 
 
 @pytest.mark.parametrize(
