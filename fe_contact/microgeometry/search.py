@@ -386,11 +386,11 @@ def usual_designs(search: Search) -> float:
         float(search.evaluations),
         search.method,
     )
-    if isinstance(method, NelderMead):
-        return search.starts * most
     explored = EXPLORED * most
     if isinstance(method, DifferentialEvolution):
         return search.starts * (few * explored + most - explored)
+    if not isinstance(method, (SequentialLinearProgramming, StagedLinearProgramming)):
+        return search.starts * most
     explored = min(method.sample, explored)
     walked = min((method.trials + 1) * (TRIED + 1) + FOLLOWED, most - explored)
     return search.starts * (few * explored + LINEARIZED * walked)

@@ -46,8 +46,8 @@ def excess_of_teeth(
 def _figure(pair: ParallelAxes, model: ContactModel, index: int) -> Figure | None:
     """Return the maps of a gear; None where its teeth are as designed."""
     gear, name = (pair.pinion, pair.wheel)[index], ("pinion", "wheel")[index]
-    ends = sorted((gear.form_roll_length, gear.tip_form_roll_length))
-    roll = np.linspace(*ends, _ROLLS)
+    first, last = sorted((gear.form_roll_length, gear.tip_form_roll_length))
+    roll = np.linspace(first, last, _ROLLS)
     face = np.linspace(-0.5, 0.5, _FACES) * gear.face_width
     excess = excess_of_teeth(pair, model, index, roll, face) / UM
     if not excess.any():

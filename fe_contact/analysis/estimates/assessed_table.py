@@ -392,8 +392,13 @@ class AssessedTable:
 
     def stated(self, table: SteDatabase, metadata: Metadata) -> SteDatabase:
         """Return the table with them, and with the metadata that state them."""
-        errors = {"curve_error": self.curve_error, "load_arm_error": self.load_arm_error}
-        return replace(table, error_estimate=self.band, metadata=metadata, **errors)
+        return replace(
+            table,
+            error_estimate=self.band,
+            metadata=metadata,
+            curve_error=self.curve_error,
+            load_arm_error=self.load_arm_error,
+        )
 
     def with_derivatives(self, derived: DerivedCycle | None) -> AssessedTable:
         """Return them with what derivatives miss, if any base pitch of the table is by them."""

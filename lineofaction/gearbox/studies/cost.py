@@ -25,18 +25,18 @@ class Work(NamedTuple):
 
     name: str
     each: float
-    count: float = 1.0
+    pieces: float = 1.0
 
     @property
     def seconds(self) -> float:
         """CPU seconds of all pieces."""
-        return self.each * self.count
+        return self.each * self.pieces
 
     @property
     def words(self) -> str:
         """Say the work: "24 values at 1.6 s", of a single piece "gears 3.2 s"."""
         each = engineering(self.each, 2)
-        return f"{self.name} {each} s" if self.count == 1.0 else f"{self.count:.0f} {self.name} at {each} s"
+        return f"{self.name} {each} s" if self.pieces == 1.0 else f"{self.pieces:.0f} {self.name} at {each} s"
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class StudyCost:
         """The parts, those of one name as one with their mean."""
         for name in dict.fromkeys(part.name for part in self.parts):
             same = [part for part in self.parts if part.name == name]
-            count = sum(part.count for part in same)
+            count = sum(part.pieces for part in same)
             yield Work(name, sum(part.seconds for part in same) / max(count, 1.0), count)
 
     def __add__(self, later: StudyCost) -> StudyCost:

@@ -65,7 +65,7 @@ def _read_studies(path: Path) -> Studies:
     return stored.pairs
 
 
-_USUAL = (
+_USUAL: tuple[tuple[float, ...], ...] = (
     (-0.2, -0.1, 0.0, 0.1, 0.2),
     (-0.1, -0.05, 0.0, 0.05, 0.1),
     (0.0, 0.05, 0.1, 0.15, 0.2),
@@ -152,7 +152,7 @@ def _changes(checked: CheckedCase, inputs: Inputs) -> tuple[float, ...]:
             return bool(_at_changes(checked, inputs, changes))
         return False
 
-    return inputs.center_distance_change_percent or next(filter(meshes, _USUAL), _USUAL[0])
+    return tuple(inputs.center_distance_change_percent) or next(filter(meshes, _USUAL), _USUAL[0])
 
 
 def _tables(checked: CheckedCase, inputs: Inputs) -> Checked:
