@@ -1,9 +1,9 @@
 """Child process that reads a mesh by meshlane, and does nothing else.
 
-Run as a script by `dynamics.housings.mesh_files`, never imported by it, in a folder of its own, which is
-all that it can reach (`host.confine`): meshlane has readers of many formats, and some follow references to
-other files. It reads one JSON object from standard input and writes one to standard output, and the mesh as
-``mesh.npz`` into its folder::
+Run as a script by `dynamics.housings.mesh_files`, in a folder of its own, which is all that it can reach
+(`host.confine`): meshlane has readers of many formats, and some follow references to other files. A process
+that is confined already calls `mesh_arrays` itself. The script reads one JSON object from standard input and
+writes one to standard output, and the mesh as ``mesh.npz`` into its folder::
 
     {"file": "housing.msh", "format": "gmsh", "seconds": 60}
     {"groups": ["base", ...]}   or   {"unreadable": true}   or   {"cells": ["hexahedron"]}
@@ -32,15 +32,15 @@ PHYSICAL, PROPERTY = "gmsh:physical", "nastran:ref"
 Nodes = NDArray[np.int64]
 
 
-class _Unreadable(Exception):
+class UnreadableMesh(Exception):
     """The file is not what its format says."""
 
 
-class _OtherCells(Exception):
+class OtherCells(Exception):
     """The solid is not of one kind of tetrahedra."""
 
 
-def _read(file: Path, title: str) -> tuple[dict[str, NDArray[Any]], list[str]]:
+def mesh_arrays(file: Path, title: str) -> tuple[dict[str, NDArray[Any]], list[str]]:
     """Return the arrays of a file and the names of its groups."""
     reader = import_module(f"meshlane.{title}")
     try:
@@ -49,7 +49,7 @@ def _read(file: Path, title: str) -> tuple[dict[str, NDArray[Any]], list[str]]:
     except (Exception, SystemExit) as error:
         if isinstance(error, MemoryError):
             raise
-        raise _Unreadable from None
+        raise UnreadableMesh from None
     groups = dict(_named_parts(content))
     arrays = {f"group_{number}": nodes for number, nodes in enumerate(groups.values())}
     return arrays | {"points": content.points, "tetrahedra": _tetrahedra(content)}, list(groups)
@@ -65,10 +65,10 @@ def _tetrahedra(content: Any) -> Nodes:
     solid = sorted(kind for kind, dimension in dimensions.items() if dimension == 3)
     others = [kind for kind in solid if kind not in NODES]
     if others or len(solid) != 1:
-        raise _OtherCells(others or solid or list(blocks))
+        raise OtherCells(others or solid or list(blocks))
     nodes = np.vstack(blocks[solid[0]])
     if nodes.shape[1] != NODES[solid[0]]:
-        raise _Unreadable
+        raise UnreadableMesh
     return nodes
 
 
@@ -105,12 +105,12 @@ def _main() -> None:
     end_after(int(request["seconds"]) + 1)
     confine(Path.cwd())
     try:
-        arrays, names = _read(Path(request["file"]), request["format"])
+        arrays, names = mesh_arrays(Path(request["file"]), request["format"])
         np.savez("mesh.npz", allow_pickle=False, **arrays)
         answer: dict[str, Any] = {"groups": names}
-    except _Unreadable:
+    except UnreadableMesh:
         answer = {"unreadable": True}
-    except _OtherCells as error:
+    except OtherCells as error:
         answer = {"cells": error.args[0]}
     except MemoryError:
         answer = {"error": "MemoryError"}

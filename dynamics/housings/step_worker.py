@@ -1,16 +1,17 @@
-"""Child process that meshes a STEP file with gmsh or measures its faces, and does nothing else.
+"""Child process that meshes a STEP file with gmsh, measures its faces or draws them, and does nothing else.
 
-Run as a script by `dynamics.housings.mesh_files`, never imported by it: gmsh changes signal handlers, may
-crash on hard input and keeps global state, so it lives and dies here, in a folder of its own, which is all
-that it can reach (`host.confine`). It reads one JSON object from standard input and writes one to standard
-output::
+Run as a script by `dynamics.housings.step_files`: gmsh changes signal handlers, may crash on hard input and
+keeps global state, so it lives and dies here, in a folder of its own, which is all that it can reach
+(`host.confine`). A process that is confined already and answers once calls `step_answer` itself. The script
+reads one JSON object from standard input and writes one to standard output::
 
     {"step": "housing.step", "mesh": "housing.msh", "size": m or null, "wall_elements": 0.7, "seconds": 600}
     {"solids": 1, "size": 0.014}   or   {"error": "..."}
 
 With no mesh to write the answer has the volume and the surface of the solid, its flat faces as ``planes``
 (point, outward normal, area) and its hollow faces of cylinders as ``walls`` (a point on the axis, the axis,
-radius, area, both ends along the axis from the point); m.
+radius, area, both ends along the axis from the point); m. With ``triangles`` to draw at most, it has the
+``points`` (m) and ``facets`` of about as many coarse ones, all corners on the surface.
 """
 
 from __future__ import annotations
@@ -28,6 +29,8 @@ from host import Limits, confine, end_after, handlers_kept
 RESET_BY_GMSH = ("SIGTERM", "SIGHUP", "SIGPIPE", "SIGINT")
 MILLIMETER = 1e-3
 ELEMENTS_A_TURN = 12
+DRAWN_A_TURN, DRAWN_ELEMENTS, DRAWN_SMALLEST = 16, 40, 400
+"""Of a drawn surface: elements a turn; across the body at most, where it is flat and where it is curved."""
 FRONTAL_DELAUNAY = 6
 WORST = 0.05
 """Quality of a tetrahedron (its inverse condition number, 1 if it is regular) below which a mesh is made
@@ -57,8 +60,10 @@ def _start_gmsh() -> Any:
     return gmsh
 
 
-def _answer(gmsh: Any, request: dict[str, Any]) -> dict[str, Any]:
-    """Mesh the one solid of a file, or measure it."""
+def step_answer(request: dict[str, Any]) -> dict[str, Any]:
+    """Mesh the one solid of a file, measure it or draw it; raises MemoryError, or Exception by gmsh."""
+    gmsh = _start_gmsh()
+    gmsh.clear()  # of an earlier file in the same process
     try:
         gmsh.model.occ.importShapes(request["step"])
         gmsh.model.occ.synchronize()
@@ -67,7 +72,8 @@ def _answer(gmsh: Any, request: dict[str, Any]) -> dict[str, Any]:
     solids = gmsh.model.getEntities(3)
     if len(solids) != 1:
         return {"solids": len(solids)}
-    return (_meshed if request["mesh"] else _measured)(gmsh, solids[0][1], request)
+    kind = _drawn if request.get("triangles") else _meshed if request["mesh"] else _measured
+    return kind(gmsh, solids[0][1], request)
 
 
 def _meshed(gmsh: Any, solid: int, request: dict[str, Any]) -> dict[str, Any]:
@@ -87,6 +93,31 @@ def _meshed(gmsh: Any, solid: int, request: dict[str, Any]) -> dict[str, Any]:
         return {"error": str(error)}
     gmsh.write(request["mesh"])
     return {"solids": 1, "size": size}
+
+
+def _drawn(gmsh: Any, solid: int, request: dict[str, Any]) -> dict[str, Any]:
+    """Return triangles between points of the surface, m; more than wanted where it has many small faces.
+
+    Equilateral triangles with edge h that cover the area S are 4 S/(sqrt(3) h^2).
+    """
+    corners = np.reshape(gmsh.model.getBoundingBox(3, solid), (2, 3))
+    area, across = sum(_areas(gmsh, solid).values()), float(np.linalg.norm(corners[1] - corners[0]))
+    size = max(np.sqrt(4.0 / np.sqrt(3.0) * area / request["triangles"]), across / DRAWN_ELEMENTS)
+    gmsh.option.setNumber("Mesh.MeshSizeMax", size)
+    gmsh.option.setNumber("Mesh.ElementOrder", 1)
+    gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", DRAWN_A_TURN)
+    gmsh.option.setNumber("Mesh.MeshSizeMin", across / DRAWN_SMALLEST)
+    try:
+        gmsh.model.mesh.generate(2)
+    except Exception:  # noqa: BLE001 - its text may hold what is in the file
+        return {"error": "gmsh does not mesh its faces"}
+    tags, points, _ = gmsh.model.mesh.getNodes()
+    number = np.zeros(int(max(tags, default=0)) + 1, dtype=np.int64)
+    number[tags] = np.arange(len(tags))
+    _, _, nodes = gmsh.model.mesh.getElements(2)
+    facets = [number[part].reshape(-1, 3).tolist() for part in nodes]
+    points = MILLIMETER * np.reshape(points, (-1, 3))
+    return {"solids": 1, "points": points.tolist(), "facets": [facet for part in facets for facet in part]}
 
 
 def _wall_thickness(gmsh: Any, solid: int) -> float:
@@ -163,7 +194,7 @@ def _main() -> None:
     end_after(int(request["seconds"]) + 1)  # ends this process even when its parent is gone
     confine(Path.cwd(), Limits(memory_mb=None, cpu_seconds=int(request["seconds"]) + 1))
     try:
-        answer = _answer(_start_gmsh(), request)
+        answer = step_answer(request)
     except MemoryError:
         answer = {"error": "MemoryError"}
     except Exception:  # noqa: BLE001 - bare Exception is what gmsh raises; its text may hold what is in the file

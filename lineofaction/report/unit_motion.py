@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import base64
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from bounds.types import FloatArray, Json
+from bounds.types import Json
 from dynamics.vibration import SurfaceShape
+from lineofaction.gearbox.convert.drawn_housing import node_normals, packed, packed_surface
 from lineofaction.gearbox.problems import BadInput, DamagedFile, NotFound
 from lineofaction.gearbox.registry import study_of
 from lineofaction.gearbox.studies.motion import OfferedMotion, UnitMotion
@@ -81,29 +81,13 @@ def _surface_json(surface: SurfaceShape, is_velocity: bool) -> Json:
     points, motion, facets = surface.points[used], surface.motion[used], facets.reshape(-1, 3)
     if not (np.all(np.isfinite(points)) and np.all(np.isfinite(motion))):
         raise DamagedFile("The stored motion of the surface has values that are not finite.")
-    corners = np.moveaxis(points[facets], 1, 0)
-    across = np.cross(corners[1] - corners[0], corners[2] - corners[0])
-    normals = np.zeros_like(points)
-    for corner in facets.T:
-        np.add.at(normals, corner, across)
-    normals /= np.maximum(np.linalg.norm(normals, axis=1), np.finfo(float).tiny)[:, None]
     level = None
     if is_velocity:
+        normals = node_normals(points, facets)
         rms = np.abs(np.sum(motion * normals, axis=1)) / np.sqrt(2.0)
-        level = _packed(20.0 * np.log10(np.maximum(rms, QUIETEST) / VELOCITY_REFERENCE))
-    return {
-        "place_mm": _packed(points / MM),
-        "normal": _packed(normals),
-        "real": _packed(motion.real / MM),
-        "imaginary": _packed(motion.imag / MM),
-        "level_db": level,
-        "facets": base64.b64encode(facets.astype("<u4").tobytes()).decode(),
-    }
-
-
-def _packed(values: FloatArray) -> str:
-    """Return 32-bit floats, little-endian, in Base64."""
-    return base64.b64encode(values.astype("<f4").tobytes()).decode()
+        level = packed(20.0 * np.log10(np.maximum(rms, QUIETEST) / VELOCITY_REFERENCE))
+    moved = {"real": packed(motion.real / MM), "imaginary": packed(motion.imag / MM)}
+    return packed_surface(points, facets) | moved | {"level_db": level}
 
 
 def _rounded(values: Any) -> list[list[float]]:

@@ -7,12 +7,14 @@ from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Request
 from pydantic import BaseModel, Field, Strict
+from starlette.concurrency import run_in_threadpool
 from starlette.responses import JSONResponse, Response
 
 from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import LiveUnavailable, QueueFull, TooLarge, TooManyHeld
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.files import FileContentInput, side_files
+from lineofaction.gearbox.schemas.housings import HousingInput
 from lineofaction.gearbox.schemas.model import BoundaryModel, Named
 from lineofaction.gearbox.schemas.plan import OutlineBody
 from lineofaction.gearbox.schemas.reading import validated
@@ -25,7 +27,8 @@ from service.routes.context import Context, Ctx, key_of
 from service.routes.media_types import JSON
 from service.routes.openapi import documented
 from service.routes.scopes import ScopedRoute, needs
-from service.schemas.answers import ExampleBody, UnitBody, UnitFile
+from service.schemas.answers import ExampleBody, HousingSurface, UnitBody, UnitFile
+from service.version import program_tag
 from service.worker.process import ANALYZE
 
 READING_FAILURES = (TooLarge, TooManyHeld, QueueFull, LiveUnavailable)
@@ -227,6 +230,52 @@ def scene_to_files(body: SceneRequest) -> SceneText:
     """Write the scene as a file's text, without defaults; solids and matrices are files beside it."""
     table, files = side_files(body.inputs.scene.model_dump(mode="json", exclude_unset=True))
     return SceneText(toml=toml_text(table), files=tuple(files))
+
+
+DRAWN = "lineofaction.gearbox.convert.drawn_housing:drawn_housings"
+
+
+class HousingsRequest(BoundaryModel):
+    """Housings of a scene."""
+
+    housings: Annotated[tuple[HousingInput, ...], Strict(False)] = Field(
+        min_length=1, max_length=100, description="The housings, as in an execution of simulate"
+    )
+
+    @property
+    def shape(self) -> str:
+        """What their surfaces depend on, as text."""
+        fields = {"step_file", "mesh_file", "mesh_unit", "origin_mm", "x_axis", "z_axis"}
+        return self.model_dump_json(include={"housings": {"__all__": fields}})
+
+
+class HousingSurfaceBody(BaseModel):
+    """The surface of housings where they stand in their scene."""
+
+    surface: HousingSurface | None = Field(description="Null: none of them has the file of a solid")
+
+
+@scenes_router.post(
+    "/scenes/housing-surface",
+    summary="Surface of housings, to draw",
+    response_model=HousingSurfaceBody,
+    responses=documented(*READING_FAILURES),
+)
+@needs(Scope.READ, body=HousingsRequest)
+async def housing_surface(body: HousingsRequest, context: Ctx, request: Request) -> Response:
+    """Return at most 20 000 coarse triangles of the solids of housings, where they stand; nothing is reduced.
+
+    A process of its own reads the files. Equal files that stand alike are read once.
+    """
+    tag = f"surface-{program_tag()}-{body.shape}"
+    known = await run_in_threadpool(context.kept.find, tag)
+    if known is not None:
+        return Response(known, media_type=JSON)
+    answer = await _read_by(
+        context, "lineofaction.gearbox.convert.drawn_housing:drawn_housings", body, request
+    )
+    await run_in_threadpool(context.kept.keep, tag, bytes(answer.body))
+    return answer
 
 
 units_router = APIRouter(tags=["units"], route_class=ScopedRoute)

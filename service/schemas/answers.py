@@ -376,17 +376,22 @@ class ShaftMotion(BaseModel):
     imaginary: list[list[float]] = Field(description="A quarter of a period before")
 
 
-class SurfaceMotion(BaseModel):
-    """Complex amplitudes of a housing's surface; 32-bit numbers, little-endian, in Base64, node by node."""
+class HousingSurface(BaseModel):
+    """A housing's surface; 32-bit numbers, little-endian, in Base64, node by node."""
 
     place_mm: str = Field(description="x, y, z of each node")
     normal: str = Field(description="Outward, of length 1")
+    facets: str = Field(description="Unsigned integers: three nodes each, counter-clockwise from outside")
+
+
+class SurfaceMotion(HousingSurface):
+    """A housing's surface and the complex amplitudes of its motion."""
+
     real: str = Field(description="At phase 0: x, y, z in mm, mm/s where there are levels")
     imaginary: str = Field(description="A quarter of a period before")
     level_db: str | None = Field(
         description="Level of the normal velocity, root mean square, re 50 nm/s; null: a shape without size"
     )
-    facets: str = Field(description="Unsigned integers: three nodes each, counter-clockwise from outside")
 
 
 class MovedUnit(BaseModel):

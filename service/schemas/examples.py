@@ -8,6 +8,7 @@ from zlib import compress
 
 from lineofaction.gearbox.registry import RESULTS, STUDIES
 from lineofaction.gearbox.study import Study
+from service.schemas.housing_example import MESHED_HOUSING
 from service.version import solver_version
 
 Json = dict[str, Any]
@@ -142,13 +143,12 @@ BODIES: dict[str, Json] = {
         "[load]\ntorque_n_m = [100.0]\n"
     },
     "/v1/cases/as-made": {"inputs": {"case": CASE}, "tolerance_class": 6, "seed": 1},
-    "/v1/scenes/to-toml": {"inputs": {"scene": SCENE}},
+    **{path: {"inputs": {"scene": SCENE}} for path in ("/v1/scenes/to-toml", "/v1/scenes/to-files")},
     "/v1/scenes/from-toml": {"toml": _SCENE_FILE},
-    "/v1/scenes/to-files": {"inputs": {"scene": SCENE}},
+    "/v1/scenes/housing-surface": {"housings": [MESHED_HOUSING]},
     "/v1/units/open": {"rexs_base64": b64encode(_REXS_FILE).decode()},
 }
 """Other bodies, by path."""
-
 
 _DRAFTS = {
     **{f"/v1/drafts/{name}": f"/v1/cases/{name}" for name in ("outline", "to-toml", "as-made")},
@@ -171,7 +171,6 @@ def request_example(path: str) -> Json | None:
 
 
 # Bodies that the service answers with.
-
 
 HASH = "5f1d8a3c0e7b4692d85c13f7a9e06b24c7d3185ae94f620bb1873ce5f90d24a6"
 JOB = "3f1c0e5a-6c3d-4c1e-9b1e-2f6f0a1b2c3d"
@@ -423,6 +422,7 @@ ANSWERS: dict[str, Any] = {
     "/v1/scenes/from-toml": BODIES["/v1/scenes/to-toml"]["inputs"],
     "/v1/scenes/to-toml": BODIES["/v1/scenes/from-toml"],
     "/v1/scenes/to-files": BODIES["/v1/scenes/from-toml"],
+    "/v1/scenes/housing-surface": {"surface": None},
     "/v1/units/open": {
         "left_out": ["gear_unit 1, scene: no load case fits the train"],
         "cases": [],

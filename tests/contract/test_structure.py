@@ -12,17 +12,17 @@ ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
     ("fe_contact",): (44_199, 829),
-    ("dynamics",): (45_184, 888),
-    ("lineofaction.gearbox",): (28_158, 574),
-    ("lineofaction.report",): (12_910, 244),
-    ("service",): (15_208, 362),
+    ("dynamics",): (45_334, 895),
+    ("lineofaction.gearbox",): (28_244, 578),
+    ("lineofaction.report",): (12_894, 244),
+    ("service",): (15_286, 366),
     ("lineofaction.client",): (2_944, 55),
     ("lineofaction.cli",): (5_772, 83),
     ("lineofaction.hardcases",): (3_841, 35),
     ("bounds", "host", "model_studies"): (4_537, 157),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 875
+MOST_FILES = 878
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""

@@ -296,6 +296,7 @@ export class SceneEditor {
       this.another("", [], null);
     }
     await this.settle(() => this.read());
+    this.design.view.open(this.problem ? null : this.scene);
   }
 
   job({ from, to, count, microphone_mm: microphone }) {

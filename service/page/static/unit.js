@@ -6,6 +6,7 @@ import { button, byId, folded, make, number, save } from "./elements.js";
 import { sayMissing } from "./notice.js";
 import { MOST, base64, packedFile, unpackedFile } from "./packed.js";
 import { saveScene } from "./scene.js";
+import { isSolid } from "./view_housing.js";
 
 const FATES = ["taken", "assumed", "derived", "defaulted", "ignored", "refused"];
 const ENDINGS = /\.(rexs|rexsj|rexsz|zip)$/i;
@@ -166,7 +167,7 @@ function branches(scene, part) {
     row.append(make("ul", {}, ...items));
     return [row];
   });
-  const housings = (scene.housings ?? []).map((housing) => part(housing.name, `${housing.name}: housing.`));
+  const housings = (scene.housings ?? []).map((housing) => part(housing.name, `${housing.name}: housing${isSolid(housing) ? "" : " by matrices, which have no surface to draw"}.`));
   return [branch("Shafts", shafts), ...(housings.length ? [branch("Housing", housings)] : [])];
 }
 

@@ -1,7 +1,9 @@
 // @ts-check
 /** What the design is, in three dimensions: the pair as it rolls, or the unit that was opened; and how it is steered. */
 
+import { saidIn } from "./api.js";
 import { button, byId, make } from "./elements.js";
+import { isHoused, surfaceOf } from "./view_housing.js";
 import { MOVING, Motions } from "./view_motion.js";
 import { most, RollingPair } from "./view_pair.js";
 import { drawable, Stage } from "./view_stage.js";
@@ -9,6 +11,7 @@ import { STILL, stillOf } from "./view_still.js";
 import { gearboxOf } from "./view_unit.js";
 
 const BENT = 200; // times
+const READ = "The housing is read from its file.";
 
 /** @typedef {import("./view_pair.js").Curve} Curve */
 
@@ -87,8 +90,25 @@ export class View {
     this.stage.put(gearbox ?? this.pair);
     this.ofPair.hidden = Boolean(gearbox);
     const slides = gearbox?.middle ? ` Drag ${part} along its shaft, or press ← and →: 1 mm, with Shift 10 mm.` : "";
-    this.words.textContent = gearbox ? `The unit of the scene: click a mesh to open its pair.${slides}` : "";
+    const words = gearbox ? `The unit of the scene: click a mesh to open its pair.${slides}` : "";
+    this.words.textContent = words;
     this.label(scene);
+    if (gearbox && !gearbox.housing && isHoused(scene)) saidIn(this.words, () => this.house(gearbox, words));
+  }
+
+  /** Draw the housing of a unit, once its file is read. @param {any} gearbox @param {string} words about the unit */
+  async house(gearbox, words) {
+    this.words.textContent = READ;
+    const surface = await surfaceOf(gearbox.scene);
+    if (this.stage.subject !== gearbox || gearbox.housing) return;
+    gearbox.house(surface);
+    this.stage.frame();
+    if (this.words.textContent === READ) this.words.textContent = words;
+  }
+
+  /** Show a scene whose housing is known by its file, as it is opened. @param {any} scene null: it has faults */
+  open(scene) {
+    if (this.stage && isHoused(scene)) saidIn(this.words, () => this.see(scene));
   }
 
   /** Draw a scene in place of what it was before an edit. */

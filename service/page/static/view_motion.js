@@ -11,17 +11,19 @@ const SHARE = 0.08; // of the size of the unit that the largest motion is drawn 
 export const MOVING = new Set(["modes", "deflection", "vibration"]); // kinds of results that have motions
 
 /** @typedef {{name: string, position_mm: number[], real: number[][], imaginary: number[][]}} ShaftMotion six at each station: mm and rad */
-/** @typedef {{place_mm: string, normal: string, real: string, imaginary: string, level_db: string | null, facets: string}} SurfaceMotion */
+/** @typedef {{place_mm: string, normal: string, facets: string}} Surface */
+/** @typedef {Surface & {real: string, imaginary: string, level_db: string | null}} SurfaceMotion */
 /** @typedef {{oscillates: boolean, shafts: ShaftMotion[], surface: SurfaceMotion | null}} UnitMotion */
 /** @typedef {{values: Float32Array, stations: number[]}} Moved displacement and rotation of each station; first place, distance, whether it is all one disc */
 
 /** @param {number[][]} rows */
 const whole = (rows) => rows.length === STATIONS && rows.every((row) => row.length === 6 && row.every(Number.isFinite));
 
-/** A surface as it is drawn, and the ends of its scale. @param {SurfaceMotion} surface */
-function hullOf(surface) {
+/** A surface as it is drawn, and the ends of its scale. @param {Surface & Partial<SurfaceMotion>} surface without a motion: it stands */
+export function hullOf(surface) {
   const floats = (text) => new Float32Array(bytesOf(text).buffer);
-  const [place, normal, real, imaginary] = [surface.place_mm, surface.normal, surface.real, surface.imaginary].map(floats);
+  const [place, normal] = [surface.place_mm, surface.normal].map(floats);
+  const [real, imaginary] = [surface.real, surface.imaginary].map((part) => (part === undefined ? new Float32Array(place.length) : floats(part)));
   const levels = surface.level_db && floats(surface.level_db);
   const indices = new Uint32Array(bytesOf(surface.facets).buffer);
   const count = place.length / 3;

@@ -5,7 +5,7 @@ import { post } from "./api.js";
 import { caseOf } from "./orders.js";
 import { same } from "./schema.js";
 import { freed, held, Meshing } from "./view_gl.js";
-import { Motion, STATIONS } from "./view_motion.js";
+import { hullOf, Motion, STATIONS } from "./view_motion.js";
 import { COLORS as OF_PAIR, GEARS, put, RollingPair } from "./view_pair.js";
 
 const SIDES = 32; // of a body of revolution
@@ -101,6 +101,8 @@ export class Gearbox {
     this.position = 0;
     /** @type {Motion | null} */
     this.motion = null;
+    /** @type {ReturnType<typeof hullOf> | null} its housing where it stands */
+    this.housing = null;
     this.stand(scene, stages.map((stage) => ({ ...stage, pair: new RollingPair() })));
   }
 
@@ -151,6 +153,17 @@ export class Gearbox {
     };
     this.letHullGo();
     this.motion = motion && new Motion(motion, this.reach, reachAt);
+  }
+
+  /** Let its housing stand about it. @param {import("./view_motion.js").Surface} surface */
+  house(surface) {
+    this.letHullGo();
+    this.housing = hullOf(surface);
+  }
+
+  /** The housing as it is drawn: that of the motion, or where it stands. */
+  get drawnHousing() {
+    return this.motion?.hull ?? this.housing;
   }
 
   begin(gl, programs) {
@@ -208,10 +221,10 @@ export class Gearbox {
     this.slid(this.marked, Number((this.sliding.position_mm + mm).toFixed(6)));
   }
 
-  /** Both corners of a box about the axes and the housing that moves. */
+  /** Both corners of a box about the axes and the housing. */
   get box() {
     const corners = this.scene.shafts.flatMap(({ origin_mm: [x, y, z], length_mm: length }) => [[x, y, z], [x, y, z + length]]);
-    return [Math.min, Math.max].map((end) => [0, 1, 2].map((k) => end(...[...corners, ...(this.motion?.hull?.ends ?? [])].map((corner) => corner[k]))));
+    return [Math.min, Math.max].map((end) => [0, 1, 2].map((k) => end(...[...corners, ...(this.drawnHousing?.ends ?? [])].map((corner) => corner[k]))));
   }
 
   /** Half of its size in mm. */
@@ -247,7 +260,7 @@ export class Gearbox {
       marked.push(() => GEARS.filter((name) => on[name].name === this.marked).forEach(gear));
     });
     if (frame.picking === true) return;
-    if (this.motion?.hull && !frame.picking) this.surface(gl, frame);
+    if (this.drawnHousing && !frame.picking) this.surface(gl, frame);
     gl.clear(gl.DEPTH_BUFFER_BIT); // what is marked is seen through all else
     this.revolved(gl, frame, this.bodies.filter(({ name }) => name === this.marked));
     for (const again of marked) again();
@@ -256,7 +269,8 @@ export class Gearbox {
   /** Draw the surface of a housing: by its levels, or so that the rest is seen through it. */
   surface(gl, frame) {
     const { program, at } = this.programs.hull;
-    const { hull: { mesh, parts, levels }, phase, part, factor } = this.motion;
+    const { mesh, parts, levels } = this.drawnHousing;
+    const { phase, part, factor } = this.motion ?? { phase: 0, part: 0, factor: 0 };
     this.hull ??= held(gl, mesh, parts);
     gl.useProgram(program);
     gl.uniformMatrix4fv(at.view, false, frame.view);

@@ -1,0 +1,86 @@
+"""The surface of a scene's housings where they stand, as a picture draws it before anything is computed."""
+
+from __future__ import annotations
+
+import base64
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dynamics.errors import InputError
+from dynamics.types import FloatArray, IntArray
+from lineofaction.gearbox.convert.errors import named
+from lineofaction.gearbox.convert.housings import solid_file
+from lineofaction.gearbox.convert.placement import Placement
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.housings import HousingInput
+from lineofaction.gearbox.schemas.reading import validated
+from lineofaction.gearbox.units import MM
+
+Json = dict[str, Any]
+
+
+def drawn_housings(inputs: Json, folder: Path) -> Json:
+    """Return ``{"surface": {...}}`` of ``{"housings": [...]}``; None in its place: none of them has a file.
+
+    Work of a confined process that answers once. Raises `BadInput`: a file is no solid, or damaged.
+    """
+    from dynamics.housings.drawn_surface import MOST_TRIANGLES  # noqa: PLC0415 (start-up time)
+
+    housings = [validated(HousingInput, housing) for housing in inputs["housings"]]
+    solid = [(index, housing) for index, housing in enumerate(housings) if housing.is_solid]
+    points, facets = np.empty((0, 3)), np.empty((0, 3), dtype=np.int64)
+    for index, housing in solid:
+        own_points, own_facets = _drawn(index, housing, folder, MOST_TRIANGLES // len(solid))
+        points, facets = np.vstack([points, own_points]), np.vstack([facets, own_facets + len(points)])
+    return {"surface": packed_surface(points, facets) if solid else None}
+
+
+def _drawn(index: int, housing: HousingInput, folder: Path, most: int) -> tuple[FloatArray, IntArray]:
+    """Return points in the scene, m, and facets of a housing given by its solid."""
+    from dynamics.housings.drawn_surface import drawn_mesh, drawn_step  # noqa: PLC0415 (start-up time)
+
+    part = f"housings[{index}]"
+    try:
+        field, suffix, data = solid_file(housing)
+    except BadInput as error:
+        raise error.within(part) from None
+    file = folder / f"housing_{index}{suffix}"
+    file.write_bytes(data)
+    with named(part):
+        try:
+            of_step = field == "step_file"
+            surface = drawn_step(file, most) if of_step else drawn_mesh(file, str(housing.mesh_unit), most)
+        except InputError as error:
+            content = housing.step_file or housing.mesh_file
+            assert content is not None  # the schema comes first
+            own = f"{error.field}_mm" if error.field.endswith((".size", ".place")) else error.field
+            value = content.name if error.value == file.name else error.value
+            raise InputError(own, value, error.bound, error.suggestion) from None
+    placement = Placement.of(housing.own_x_axis, housing.own_z_axis, housing.origin_mm or (0.0, 0.0, 0.0))
+    return placement.points(surface.points), surface.facets
+
+
+def packed_surface(points: FloatArray, facets: IntArray) -> Json:
+    """Return nodes (m), their normals and facets as the page takes them: 32 bits each, in Base64."""
+    return {
+        "place_mm": packed(points / MM),
+        "normal": packed(node_normals(points, facets)),
+        "facets": base64.b64encode(facets.astype("<u4").tobytes()).decode(),
+    }
+
+
+def node_normals(points: FloatArray, facets: IntArray) -> FloatArray:
+    """Return the normals of length 1 of nodes, in the mean of the facets at each by their areas."""
+    corners = np.moveaxis(points[facets], 1, 0)
+    across = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+    normals = np.zeros_like(points)
+    for corner in facets.T:
+        np.add.at(normals, corner, across)
+    return np.asarray(normals / np.maximum(np.linalg.norm(normals, axis=1), np.finfo(float).tiny)[:, None])
+
+
+def packed(values: FloatArray) -> str:
+    """Return 32-bit floats, little-endian, in Base64."""
+    return base64.b64encode(values.astype("<f4").tobytes()).decode()

@@ -1,0 +1,114 @@
+"""The housing of a scene is drawn as the scene is opened: from its file, where it stands, seen through."""
+
+from __future__ import annotations
+
+import base64
+import copy
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from housing_solid import STIFFNESS, housed_scene, write_block
+from page_picture import different, picture, stopped, vertices
+from page_visit import PATIENCE, Visit, opened, shown, tab
+from playwright.sync_api import Browser, Page, expect
+
+from lineofaction.gearbox.schemas.toml import toml_text
+
+ROUTE = "**/v1/scenes/housing-surface"
+BARE = """async ({ scene, surface }) => {
+  const { Gearbox } = await import("/page/view_unit.js");
+  return Object.assign(new Gearbox(scene, [], () => {}), { given: surface });
+}"""
+"""A unit without meshes: its shafts, its bearings."""
+SHAFT: dict[str, Any] = {"name": "a", "origin_mm": [0.0, 0.0, 0.0], "length_mm": 80.0, "diameter_mm": 12.0}
+
+
+@pytest.fixture(scope="module")
+def visit(drawing_browser: Browser, address: str) -> Iterator[Visit]:
+    seen = opened(drawing_browser, address)
+    yield seen
+    seen.page.close()
+
+
+def surface_of(place: np.ndarray, facets: np.ndarray) -> dict[str, str]:
+    parts = {"place_mm": place.astype("<f4"), "normal": place.astype("<f4"), "facets": facets.astype("<u4")}
+    return {name: base64.b64encode(values.tobytes()).decode() for name, values in parts.items()}
+
+
+@pytest.mark.law
+def test_a_housing_is_drawn_where_its_surface_stands(visit: Visit) -> None:
+    place = np.array([[0.0, 0.0, 0.0], [200.0, 0.0, 0.0], [0.0, 90.0, 0.0], [0.0, 0.0, 70.0]])
+    facets = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    steps = ["subject.move(null)", "subject.house(subject.given)"]
+    values = {"scene": {"shafts": [SHAFT], "gears": []}, "surface": surface_of(place, facets)}
+    bare, housed = vertices(visit.page, BARE, steps, **values)
+    added = [calls for calls in housed if not any(np.array_equal(calls, known) for known in bare)]
+    assert len(added) == 1, "the surface and nothing else"
+    np.testing.assert_allclose(added[0], place[facets.ravel()], atol=1e-5)
+
+
+def opened_scene(page: Page, folder: Path, **fields: Any) -> None:
+    """Open the scene of a block in its housing, as a user does."""
+    step, file = write_block(folder / "block.step"), folder / "scene.toml"
+    scene = copy.deepcopy(housed_scene(folder, **fields))
+    scene["meshes"][0] |= {"database_file": None, "stiffness": STIFFNESS}
+    file.write_text(toml_text(scene), encoding="utf-8")
+    page.locator("#scene-file").set_input_files([file, step])
+    expect(page.get_by_text("With block.step.")).to_be_visible()
+
+
+@pytest.mark.law
+def test_a_scene_that_is_opened_shows_its_housing_and_what_is_in_it(
+    drawing_browser: Browser, address: str, analyzed: str, tmp_path: Path
+) -> None:
+    """What is in it shows through: a housing that hid it would leave the picture of the housing alone."""
+    seen = shown(drawing_browser, address, analyzed)
+    page, words = seen.page, seen.page.locator("#view [role=status]")
+    tab(page, "Sound")
+    stopped(page)
+    pair = picture(page)
+    with page.expect_response(ROUTE, timeout=PATIENCE) as answered:
+        opened_scene(page, tmp_path)
+    assert answered.value.json()["surface"]["facets"]
+    expect(words).to_have_text("The unit of the scene: click a mesh to open its pair.")
+    housed = picture(page)
+    assert different(pair, housed) > 0.05
+    bare = drawn_anew(page, 'Object.defineProperty(Gearbox.prototype, "drawnHousing", { get: () => null });')
+    body = np.abs(housed - bare).max(axis=-1) > 12
+    assert body.mean() > 0.01, "the housing is seen"
+    through, behind = housed[body].mean(axis=-1), bare[body].mean(axis=-1)
+    assert np.std(behind) > 10.0
+    assert np.corrcoef(through, behind)[0, 1] > 0.8, "and what is in it"
+    assert seen.complaints == []
+    page.close()
+
+
+def drawn_anew(page: Page, statement: str) -> np.ndarray:
+    """Return the picture from where it was seen after a statement about the class of the unit."""
+    script = f"""async () => {{ const {{ Gearbox }} = await import("/page/view_unit.js"); {statement} }}"""
+    page.evaluate(script)
+    page.locator("canvas.view").press("+")
+    page.locator("canvas.view").press("-")
+    return picture(page)
+
+
+@pytest.mark.law
+def test_a_file_that_is_no_housing_is_said_under_the_picture(
+    drawing_browser: Browser, address: str, analyzed: str, tmp_path: Path
+) -> None:
+    seen = shown(drawing_browser, address, analyzed)
+    page, words = seen.page, seen.page.locator("#view [role=status]")
+    tab(page, "Sound")
+    stopped(page)
+    problem = {
+        "title": "The input cannot be used",
+        "detail": "housings[0].step_file: no solid",
+        "status": 422,
+    }
+    page.route(ROUTE, lambda route: route.fulfill(status=422, json=problem))
+    opened_scene(page, tmp_path)
+    expect(words).to_have_text("housings[0].step_file: no solid")
+    page.close()
