@@ -232,9 +232,6 @@ def scene_to_files(body: SceneRequest) -> SceneText:
     return SceneText(toml=toml_text(table), files=tuple(files))
 
 
-DRAWN = "lineofaction.gearbox.convert.drawn_housing:drawn_housings"
-
-
 class HousingsRequest(BoundaryModel):
     """Housings of a scene."""
 

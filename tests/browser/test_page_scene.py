@@ -246,6 +246,31 @@ def test_a_gear_unit_is_deflected_under_the_load_cases_of_its_file(visit: Visit)
     assert "load_cases" not in sent[1]
 
 
+def test_flanks_of_a_unit_are_searched_by_what_is_heard(visit: Visit) -> None:
+    """Of the mesh whose pair is typed, under the load cases of the file, over the speeds of the card."""
+    page = visit.page
+    sent: list[Any] = []
+
+    def refuse(route: Route) -> None:
+        sent.append(route.request.post_data_json["inputs"])
+        route.fulfill(status=422, json={"title": "Not now", "status": 422})
+
+    page.route("**/processes/optimize/execution", refuse)
+    page.locator("#import-file").set_input_files(UNIT)
+    page.get_by_role("button", name="Open scene", exact=True).press("Enter")
+    expect(page.get_by_text("A deflection takes the load cases")).to_be_visible()
+    page.get_by_label("Compute", exact=True).select_option("optimize")
+    with page.expect_response("**/processes/optimize/execution"):
+        page.get_by_role("button", name="Compute the scene").press("Enter")
+    expect(page.locator("#scene-body [role=alert]")).to_contain_text("Not now")
+    page.unroute("**/processes/optimize/execution")
+    ((inputs),) = sent
+    first = next(mesh for mesh in inputs["scene"]["meshes"] if mesh.get("case"))
+    heard = inputs["heard"]
+    assert heard["mesh"] == first["name"] and heard["speed_rpm"][0] == 300
+    assert [case["torque_n_m"] for case in heard["load_cases"]] == [50.0, 80.0, 30.0]
+
+
 def test_a_deflection_shows_its_tables_of_bearings(visit: Visit) -> None:
     page = visit.page
     page.locator("#scene-file").set_input_files(EXAMPLE.with_name("jeffcott_scene.toml"))

@@ -317,15 +317,22 @@ export class SceneEditor {
     this.process.value = processID;
     this.ofJob = inputs.scene;
     if (!this.word) this.put(inputs.scene, "this address", inputs.load_cases);
-    const speeds = inputs.speed_rpm ?? inputs.factors?.[0].levels ?? [];
+    const speeds = inputs.speed_rpm ?? inputs.heard?.speed_rpm ?? inputs.factors?.[0].levels ?? [];
     const range = { from: speeds[0], to: speeds.at(-1), count: speeds.length || undefined };
     return { ...range, microphone_mm: inputs.microphone_mm };
   }
 
+  /** The mesh whose pair is typed; undefined: none is, so the only one with a case is meant. */
+  meshOf({ meshes = [] }) {
+    return meshes.find(({ case: own }) => own && !this.design.edits(own).length)?.name;
+  }
+
   /** What a process varies of a scene; a study runs it at each speed of its first drive. */
   varied(process, scene, speeds) {
+    const loads = this.cases.length ? { load_cases: this.cases } : {};
+    if (process === "optimize") return { heard: { ...loads, mesh: this.meshOf(scene), speed_rpm: speeds } };
     if (this.whole.has(process)) return {};
-    if (process === "deflect") return this.cases.length ? { load_cases: this.cases } : {};
+    if (process === "deflect") return loads;
     if (process === "change") return { after: this.design.case, speed_rpm: speeds };
     if (process !== "study") return { speed_rpm: speeds };
     const path = `drives.${(scene.drives ?? [{ name: "?" }])[0].name}.speed_rpm`;
