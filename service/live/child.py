@@ -27,6 +27,7 @@ from service.live.order import AnswerHead, Json, LiveOrder, LiveWork
 from service.worker.usage import begin_work, hold_to
 
 Note: TypeAlias = Callable[[], None]
+Write: TypeAlias = Callable[[Json], bytes]
 _NICENESS = 5
 """Less than that of jobs: somebody waits for the answer."""
 translated = on_demand("lineofaction.gearbox.convert.errors:translated")
@@ -55,7 +56,25 @@ def _listen(orders: queue.SimpleQueue[bytes]) -> None:
     kill_own_group()
 
 
-def worked(order: LiveOrder, *further: Path, note: Note = traceback.print_exc) -> tuple[AnswerHead, bytes]:
+def written(answer: Json) -> bytes:
+    """Return an answer as JSON, every number by the shortest decimals that give it.
+
+    Raises `ValueError`: a number is not finite. Without memory for it the process ends: of small answers.
+    """
+    body: bytes = to_json(answer, inf_nan_mode="constants")
+    if any(word in body for word in (b"NaN", b"Infinity")):
+        json.dumps(answer, allow_nan=False)  # a text may have the word
+    return body
+
+
+def written_plainly(answer: Json) -> bytes:
+    """Return the same, with a `MemoryError` where there is no memory for it."""
+    return json.dumps(answer, allow_nan=False, separators=(",", ":")).encode()
+
+
+def worked(
+    order: LiveOrder, *further: Path, note: Note = traceback.print_exc, write: Write = written
+) -> tuple[AnswerHead, bytes]:
     """Do the work; the text of an exception leaves only if it was raised on purpose.
 
     Parameters
@@ -65,11 +84,13 @@ def worked(order: LiveOrder, *further: Path, note: Note = traceback.print_exc) -
         What the work is called with behind its inputs.
     note : callable
         Writes the exception being handled, a defect, into the log.
+    write : callable
+        Turns what the work returns into bytes.
     """
     try:
         module, _, name = order.entry.partition(":")
         work: LiveWork = getattr(importlib.import_module(module), name)
-        answer = _written(work(order.inputs, *further))
+        answer = write(work(order.inputs, *further))
     except MemoryError:
         return AnswerHead("memory"), b""
     except Exception as error:  # noqa: BLE001 (a defect is logged by its traceback and reported by number)
@@ -79,17 +100,6 @@ def worked(order: LiveOrder, *further: Path, note: Note = traceback.print_exc) -
             return AnswerHead("defect"), b""
         return problem(known)
     return AnswerHead("answer", len(answer)), answer
-
-
-def _written(answer: Json) -> bytes:
-    """Return an answer as JSON, every number by the shortest decimals that give it.
-
-    Raises `ValueError`: a number is not finite.
-    """
-    body: bytes = to_json(answer, inf_nan_mode="constants")
-    if any(word in body for word in (b"NaN", b"Infinity")):
-        json.dumps(answer, allow_nan=False)  # a text may have the word
-    return body
 
 
 def problem(error: ServiceError) -> tuple[AnswerHead, bytes]:

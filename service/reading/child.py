@@ -15,7 +15,7 @@ from pathlib import Path
 
 from host import READING, confine, end_after, lower_priority
 from lineofaction.gearbox.problems import TooLarge
-from service.live.child import problem, worked
+from service.live.child import problem, worked, written_plainly
 from service.live.order import AnswerHead, LiveOrder
 from service.worker.usage import begin_work
 
@@ -41,7 +41,7 @@ def _answer() -> tuple[AnswerHead, bytes]:
         order = LiveOrder.from_line(sys.stdin.buffer.read())
     except MemoryError:
         return AnswerHead("memory"), b""
-    head, body = worked(order, Path.cwd(), note=_note)
+    head, body = worked(order, Path.cwd(), note=_note, write=written_plainly)
     if len(body) > MOST_ANSWER_BYTES:
         return problem(TooLarge(f"What the files hold has more than {MOST_ANSWER_BYTES} bytes as JSON."))
     return head, body
