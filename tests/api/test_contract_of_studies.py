@@ -367,7 +367,8 @@ def test_a_job_is_served_as_figures_as_its_file_and_as_a_report(runs: StudyRuns)
     report = http.get(f"/v1/results/{job.key}/figures").json()
     shown = presentation_of(runs.study).page(runs.python.result)
     keys = [figure["key"] for section in report["sections"] for figure in section["figures"]]
-    assert keys == pictures(shown)
+    # the page draws the unit itself
+    assert keys == [key for key in pictures(shown) if not key.startswith("unit_")]
     if runs.study.name not in (
         "frontier",
         "study",

@@ -52,6 +52,7 @@ def test_a_cell_changes_the_text_and_the_text_the_cell(visit: Visit) -> None:
 
 def test_a_fault_stands_at_its_cell_until_it_is_mended(visit: Visit) -> None:
     page = visit.page
+    expect(page.locator("#scene-text")).not_to_have_value("")
     before = page.locator("#scene-text").input_value()
     typed(page, "Length, mm, output", "-3")
     length = cell(page, "Length, mm, output")
@@ -100,10 +101,11 @@ def test_a_part_is_copied_named_removed_and_undone_by_keyboard(visit: Visit) -> 
     until(lambda: [gear["name"] for gear in scene_in(page)["gears"]] == ["pinion", "wheel", "idler"])
     until(lambda: scene_in(page)["gears"][2]["position_mm"] == 120.0)
     expect(page.locator("#undo")).to_be_enabled()
+    page.wait_for_timeout(500)  # ms: an edit that rests is a step
     page.get_by_role("button", name="Remove idler").press("Enter")
     expect(page.get_by_role("button", name="Remove wheel")).to_be_focused()
     until(lambda: len(scene_in(page)["gears"]) == 2)
-    page.wait_for_timeout(500)  # ms: an edit that rests is a step
+    page.wait_for_timeout(500)
     page.locator("#undo").press("Enter")
     expect(cell(page, "Position, mm, idler")).to_have_value("120")
     until(lambda: len(scene_in(page)["gears"]) == 3)
