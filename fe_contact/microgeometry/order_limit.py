@@ -166,10 +166,11 @@ def pairs_above(limit: OrderLimit, drawn: DrawnPairs, nominal: FloatArray, confi
     """Count the pairs above a limit and look for the cause; `nominal` (P, L) is the curve as designed, m."""
     solved = order_amplitude(drawn.ste, limit.order, drawn.period)
     modeled = drawn.model.amplitude(drawn.deviation, limit.order, drawn.period)
-    amplitude = np.concatenate([solved, modeled[len(solved) :]])
+    known, told = solved[drawn.held :], modeled[drawn.held : len(solved)]
+    held = as_spread(told, told, known)
+    amplitude = np.concatenate([solved, as_spread(modeled[len(solved) :], told, known)])
     share, low, high = shares(limit, amplitude, confidence)
     load = int(len(share) - 1 - np.argmax(share[::-1]))
-    known, held = solved[drawn.held :], modeled[drawn.held : len(solved)]
     at_load = (modeled > limit.amplitude).mean(axis=0)[load]
     first, total = _indices(limit, drawn, load)
     return PairsAbove(
@@ -187,6 +188,13 @@ def pairs_above(limit: OrderLimit, drawn: DrawnPairs, nominal: FloatArray, confi
         np.sqrt(np.mean((held - known) ** 2, axis=0)),
         np.mean((held > limit.amplitude) != (known > limit.amplitude), axis=0),
     )
+
+
+def as_spread(values: FloatArray, told: FloatArray, known: FloatArray) -> FloatArray:
+    """Return values (N, L) as those told (n, L) become in mean and standard deviation those known, >= 0."""
+    spread = told.std(axis=0)
+    scale = np.where(spread > 0.0, known.std(axis=0) / np.where(spread > 0.0, spread, 1.0), 1.0)
+    return np.maximum(known.mean(axis=0) + scale * (values - told.mean(axis=0)), 0.0)
 
 
 def shares(

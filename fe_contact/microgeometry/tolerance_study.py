@@ -17,7 +17,7 @@ from fe_contact.microgeometry.drawn_teeth import ToothTolerances
 from fe_contact.microgeometry.evaluator import Evaluator, least_deviation
 from fe_contact.microgeometry.linearized_design import linearized
 from fe_contact.microgeometry.objective import NO_LIMITS
-from fe_contact.microgeometry.order_limit import DrawnPairs, OrderLimit, PairsAbove, pairs_above
+from fe_contact.microgeometry.order_limit import DrawnPairs, OrderLimit, PairsAbove, as_spread, pairs_above
 from fe_contact.microgeometry.scatter import MISALIGNMENT, ONE_NODE, Scatter, ScatterNodes, SobolSample
 from fe_contact.microgeometry.sidebands_above import MadePairs, sidebands_above
 from fe_contact.microgeometry.tangent_model import TangentModel
@@ -341,11 +341,18 @@ def tangents_about(
 def _ripple(
     model: TangentModel, deviation: FloatArray, ste: FloatArray, held: slice
 ) -> tuple[FloatArray, FloatArray]:
-    """Return peak-to-peak of all pairs (N, L), of the first as solved, and what the model misses, m."""
+    """Return peak-to-peak of all pairs (N, L), of the first as solved, and what the model misses, m.
+
+    Tangents lie above, the more so the further a pair is from them. So mean and spread of the model are made
+    those of the solved pairs that it is held against.
+    """
     solved = np.ptp(ste, axis=1)
+    known, told = solved[held], model.peak_to_peak(deviation[held])
     further = deviation[len(solved) :]
-    ripple = np.concatenate([solved, model.peak_to_peak(further)]) if len(further) else solved
-    return ripple, model.peak_to_peak(deviation[held]) - solved[held]
+    ripple = solved
+    if len(further):
+        ripple = np.concatenate([solved, as_spread(model.peak_to_peak(further), told, known)])
+    return ripple, as_spread(told, told, known) - known
 
 
 def _solved(

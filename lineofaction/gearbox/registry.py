@@ -204,7 +204,7 @@ class Studies:
         group="design",
         kind="scatter",
         stages=(("compliance", 0.2), ("samples", 0.7), ("confirmation", 0.1)),
-        version="5",
+        version="6",
     )
     sweep = StudyOf(
         _case(lambda: SWEEP),

@@ -14,7 +14,7 @@ from spur_gears import LONG_RELIEFS, PAIR
 
 from fe_contact import GearPair, PitchDeviation, analyze
 from fe_contact.errors import InputError
-from fe_contact.microgeometry.order_limit import OrderLimit
+from fe_contact.microgeometry.order_limit import OrderLimit, as_spread
 from fe_contact.microgeometry.sweep import Sweep, SweepAxis, SweepRequest, sweep
 from fe_contact.microgeometry.tolerance_study import (
     Sampling,
@@ -99,6 +99,23 @@ def test_quantiles_of_the_model_are_within_the_sampling_band_of_solved_pairs(fou
     for many, few in zip(model.quantiles, found.quantiles, strict=True):
         assert np.all((few.low <= many.value) & (many.value <= few.high))
         assert np.all(many.high - many.low < 0.2 * (few.high - few.low))
+
+
+def test_what_a_model_tells_too_high_and_too_wide_has_mean_and_spread_of_what_is_known() -> None:
+    """The law by which pairs by tangents, which lie above, are distributed as pairs that are solved."""
+    draw = np.random.default_rng(7)
+    known = draw.gamma(4.0, 0.1, (400, 2))
+    told = 0.05 + 1.2 * known
+    np.testing.assert_allclose(as_spread(told, told, known), known, rtol=1e-12)
+    further = 0.05 + 1.2 * draw.gamma(4.0, 0.1, (10_000, 2))
+    made = np.quantile(as_spread(further, told, known), (0.05, 0.5, 0.95), axis=0)
+    np.testing.assert_allclose(
+        made, np.quantile((further - 0.05) / 1.2, (0.05, 0.5, 0.95), axis=0), rtol=1e-9
+    )
+    alike = np.ones((5, 2))
+    np.testing.assert_array_equal(
+        as_spread(alike, alike, known[:5]), np.broadcast_to(known[:5].mean(0), (5, 2))
+    )
 
 
 def test_a_limit_counts_pairs_and_finds_what_decides() -> None:
