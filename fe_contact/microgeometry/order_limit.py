@@ -194,7 +194,7 @@ def as_spread(values: FloatArray, told: FloatArray, known: FloatArray) -> FloatA
     """Return values (N, L) as those told (n, L) become in mean and standard deviation those known, >= 0."""
     spread = told.std(axis=0)
     scale = np.where(spread > 0.0, known.std(axis=0) / np.where(spread > 0.0, spread, 1.0), 1.0)
-    return np.maximum(known.mean(axis=0) + scale * (values - told.mean(axis=0)), 0.0)
+    return np.asarray(np.maximum(known.mean(axis=0) + scale * (values - told.mean(axis=0)), 0.0))
 
 
 def shares(
