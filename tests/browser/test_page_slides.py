@@ -120,6 +120,9 @@ def test_the_pointer_drags_what_is_selected_and_turns_the_picture_beside_it(visi
     drag(page, beside, (15.0, 0.0))
     page.keyboard.up("Shift")
     expect(fact).not_to_have_text(known)
+    place = re.search(r"at (\S+) mm", fact.inner_text())
+    assert place is not None
+    stands(page, "output, far side", place[1])  # the tables are written anew when the drag rests
     length = page.locator("#scene-shafts-2-length_mm")
     was = length.input_value()
     length.fill("-3")
