@@ -5,15 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.special import ndtri
 from scipy.stats import binomtest, sobol_indices
 
 from fe_contact.errors import InputError, integer, positive
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.microgeometry.tangent_model import TangentModel, highest_order, order_amplitude
-from fe_contact.types import FloatArray
+from fe_contact.types import BoolArray, FloatArray
 from model_studies import in_unit
 
 TIGHTENED = 1.0 / math.sqrt(2.0)
@@ -98,7 +99,8 @@ class PairsAbove:
     nominal : ndarray, shape (L,)
         As designed, m.
     share, low, high : ndarray, shape (L,)
-        Part of all pairs above, and its bounds by Wilson.
+        Part of all pairs above, and its bounds: by Wilson, and wider by what the model misses of pairs that
+        it is held against.
     load : int
         Index of the torque at which most are above, the last of equal ones.
     first_order, total : ndarray, shape (d,)
@@ -162,32 +164,99 @@ class DrawnPairs:
     seed: int
 
 
-def pairs_above(limit: OrderLimit, drawn: DrawnPairs, nominal: FloatArray, confidence: float) -> PairsAbove:
-    """Count the pairs above a limit and look for the cause; `nominal` (P, L) is the curve as designed, m."""
+class Causes(NamedTuple):
+    """What d deviations do to an order at one load, by a model.
+
+    Attributes
+    ----------
+    first_order, total : ndarray, shape (d,)
+        Sobol' indices of the level in dB.
+    share : float
+        Of pairs above the limit.
+    tightened : ndarray, shape (d,)
+        The same with the tolerance of one deviation tightened by a class.
+    """
+
+    first_order: FloatArray
+    total: FloatArray
+    share: float
+    tightened: FloatArray
+
+
+@dataclass(frozen=True)
+class ModeledPairs:
+    """Amplitudes of one order of pairs that a model knows all of: modeled (N, L), and solved (n, L), m.
+
+    Attributes
+    ----------
+    names : tuple of str
+        The deviations.
+    nominal : ndarray, shape (L,)
+        As designed, m.
+    held : int
+        From which of the solved pairs on the model does not know them.
+    """
+
+    names: tuple[str, ...]
+    nominal: FloatArray
+    solved: FloatArray
+    modeled: FloatArray
+    held: int = 0
+
+    def above(self, limit: OrderLimit, confidence: float, causes: Callable[[int], Causes]) -> PairsAbove:
+        """Count the pairs above a limit; `causes` says why at one of the loads."""
+        known, told = self.solved[self.held :], self.modeled[self.held : len(self.solved)]
+        held = as_spread(told, told, known)
+        further = as_spread(self.modeled[len(self.solved) :], told, known)
+        amplitude = np.concatenate([self.solved, further])
+        share, low, high = _shares(limit, amplitude, confidence)
+        beyond = (held > limit.amplitude) != (known > limit.amplitude)
+        wider = len(further) / len(amplitude) * _missed_share(beyond, confidence)
+        load = int(len(share) - 1 - np.argmax(share[::-1]))
+        why = causes(load)
+        return PairsAbove(
+            limit,
+            self.names,
+            amplitude,
+            self.nominal,
+            share,
+            np.maximum(share - np.hypot(share - low, wider), 0.0),
+            np.minimum(share + np.hypot(high - share, wider), 1.0),
+            load,
+            why.first_order,
+            why.total,
+            np.clip(share[load] + (why.tightened - why.share), 0.0, 1.0),
+            np.sqrt(np.mean((held - known) ** 2, axis=0)),
+            beyond.mean(axis=0),
+        )
+
+
+def _missed_share(beyond: BoolArray, confidence: float) -> FloatArray:
+    """Return by how much the share of a model may be off (L,), by which of n pairs it puts on the other side.
+
+    The difference of two shares has at most the variance of a part of the pairs, by the rule of succession.
+    """
+    count = len(beyond)
+    part = (beyond.sum(axis=0) + 1.0) / (count + 2.0)
+    return np.asarray(ndtri(0.5 + 0.5 * confidence) * np.sqrt(part / count))
+
+
+def mesh_order_above(
+    limit: OrderLimit, drawn: DrawnPairs, nominal: FloatArray, confidence: float
+) -> PairsAbove:
+    """Count the pairs above a limit of a mesh order and look for the cause.
+
+    `nominal` (P, L) is the curve as designed, m.
+    """
+    designed = order_amplitude(nominal[None], limit.order, drawn.period)[0]
     solved = order_amplitude(drawn.ste, limit.order, drawn.period)
     modeled = drawn.model.amplitude(drawn.deviation, limit.order, drawn.period)
-    known, told = solved[drawn.held :], modeled[drawn.held : len(solved)]
-    held = as_spread(told, told, known)
-    amplitude = np.concatenate([solved, as_spread(modeled[len(solved) :], told, known)])
-    share, low, high = shares(limit, amplitude, confidence)
-    load = int(len(share) - 1 - np.argmax(share[::-1]))
-    at_load = (modeled > limit.amplitude).mean(axis=0)[load]
-    first, total = _indices(limit, drawn, load)
-    return PairsAbove(
-        limit,
-        drawn.names,
-        amplitude,
-        order_amplitude(nominal[None], limit.order, drawn.period)[0],
-        share,
-        low,
-        high,
-        load,
-        first,
-        total,
-        np.clip(share[load] + _tightened(limit, drawn, load) - at_load, 0.0, 1.0),
-        np.sqrt(np.mean((held - known) ** 2, axis=0)),
-        np.mean((held > limit.amplitude) != (known > limit.amplitude), axis=0),
-    )
+
+    def causes(load: int) -> Causes:
+        share = float((modeled[:, load] > limit.amplitude).mean())
+        return Causes(*_indices(limit, drawn, load), share, _tightened(limit, drawn, load))
+
+    return ModeledPairs(drawn.names, designed, solved, modeled, drawn.held).above(limit, confidence, causes)
 
 
 def as_spread(values: FloatArray, told: FloatArray, known: FloatArray) -> FloatArray:
@@ -197,7 +266,7 @@ def as_spread(values: FloatArray, told: FloatArray, known: FloatArray) -> FloatA
     return np.asarray(np.maximum(known.mean(axis=0) + scale * (values - told.mean(axis=0)), 0.0))
 
 
-def shares(
+def _shares(
     limit: OrderLimit, amplitude: FloatArray, confidence: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the share of pairs (N, L) above a limit, and its bounds, (L,) each."""

@@ -26,7 +26,14 @@ from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.geometry.tooth_flank import tooth_shapes
 from fe_contact.microgeometry.drawn_teeth import FLANK, PITCH, RUN_OUT, DrawnTeeth, ToothTolerances
 from fe_contact.microgeometry.evaluator import Evaluator
-from fe_contact.microgeometry.order_limit import BASE_PAIRS, TIGHTENED, OrderLimit, PairsAbove, shares
+from fe_contact.microgeometry.order_limit import (
+    BASE_PAIRS,
+    TIGHTENED,
+    Causes,
+    ModeledPairs,
+    OrderLimit,
+    PairsAbove,
+)
 from fe_contact.microgeometry.scatter import ScatterNodes
 from fe_contact.options import Run
 from fe_contact.types import FloatArray
@@ -155,29 +162,17 @@ def sidebands_above(
     for count, lines in enumerate(run.workers.run(lines_of_pairs, pairs, tasks)):
         solved.append(lines)
         run.progress("sidebands", (count + 1) / len(tasks))
-    known, parts = np.abs(np.concatenate(solved)), passing.lines(pairs.drawn)
+    parts = passing.lines(pairs.drawn)
     modeled = np.abs(parts.sum(axis=0))
-    held = modeled[: len(known)]
-    amplitude = np.concatenate([known, modeled[len(known) :]])
-    share, low, high = shares(limit, amplitude, confidence)
-    load = int(len(share) - 1 - np.argmax(share[::-1]))
-    first, total = _indices(limit, passing, teeth, load, seed)
-    at_load = float(np.mean(modeled[:, load] > limit.amplitude))
-    return PairsAbove(
-        limit,
-        teeth.names,
-        amplitude,
-        np.zeros(len(share)),
-        share,
-        low,
-        high,
-        load,
-        first,
-        total,
-        np.clip(share[load] + _tightened(limit, parts[..., load]) - at_load, 0.0, 1.0),
-        np.sqrt(np.mean((held - known) ** 2, axis=0)),
-        np.mean((held > limit.amplitude) != (known > limit.amplitude), axis=0),
-    )
+
+    def causes(load: int) -> Causes:
+        share = float(np.mean(modeled[:, load] > limit.amplitude))
+        indices = _indices(limit, passing, teeth, load, seed)
+        return Causes(*indices, share, _tightened(limit, parts[..., load]))
+
+    alike = np.zeros(modeled.shape[1])  # teeth as designed make no sidebands
+    made = ModeledPairs(teeth.names, alike, np.abs(np.concatenate(solved)), modeled)
+    return made.above(limit, confidence, causes)
 
 
 def _indices(

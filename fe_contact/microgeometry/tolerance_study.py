@@ -17,7 +17,13 @@ from fe_contact.microgeometry.drawn_teeth import ToothTolerances
 from fe_contact.microgeometry.evaluator import Evaluator, least_deviation
 from fe_contact.microgeometry.linearized_design import linearized
 from fe_contact.microgeometry.objective import NO_LIMITS
-from fe_contact.microgeometry.order_limit import DrawnPairs, OrderLimit, PairsAbove, as_spread, pairs_above
+from fe_contact.microgeometry.order_limit import (
+    DrawnPairs,
+    OrderLimit,
+    PairsAbove,
+    as_spread,
+    mesh_order_above,
+)
 from fe_contact.microgeometry.scatter import MISALIGNMENT, ONE_NODE, Scatter, ScatterNodes, SobolSample
 from fe_contact.microgeometry.sidebands_above import MadePairs, sidebands_above
 from fe_contact.microgeometry.tangent_model import TangentModel
@@ -293,7 +299,7 @@ def sampled(request: ToleranceRequest, run: Run) -> ToleranceStudy:
             period = design.evaluation.ste.shape[1] // nominal.position.size
             distributions = tolerances.distributions
             pairs = DrawnPairs(names, deviation, ste, held.start, model, distributions, period, sampling.seed)
-            above = pairs_above(request.limit, pairs, design.evaluation.ste[0], sampling.confidence)
+            above = mesh_order_above(request.limit, pairs, design.evaluation.ste[0], sampling.confidence)
     with clock.stage("confirmation"):
         table = full_table(nominal, {}, study.decided, run.cache)
         error = ripple_errors(table, nominal)[0]

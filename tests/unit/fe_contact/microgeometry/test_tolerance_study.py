@@ -14,7 +14,7 @@ from spur_gears import LONG_RELIEFS, PAIR
 
 from fe_contact import GearPair, PitchDeviation, analyze
 from fe_contact.errors import InputError
-from fe_contact.microgeometry.order_limit import OrderLimit, as_spread
+from fe_contact.microgeometry.order_limit import Causes, ModeledPairs, OrderLimit, as_spread
 from fe_contact.microgeometry.sweep import Sweep, SweepAxis, SweepRequest, sweep
 from fe_contact.microgeometry.tolerance_study import (
     Sampling,
@@ -116,6 +116,21 @@ def test_what_a_model_tells_too_high_and_too_wide_has_mean_and_spread_of_what_is
     np.testing.assert_array_equal(
         as_spread(alike, alike, known[:5]), np.broadcast_to(known[:5].mean(0), (5, 2))
     )
+
+
+@pytest.mark.parametrize(("solved", "noise"), [(12, 0.5), (60, 0.5), (250, 0.2)])
+def test_bounds_of_a_share_hold_what_a_model_misses(solved: int, noise: float) -> None:
+    """Of 10 000 pairs of which few are solved, by a model that misses each: the true share is within."""
+    draw, limit = np.random.default_rng(11), OrderLimit(1, 1.2e-6)
+    none = Causes(np.zeros(1), np.zeros(1), 0.0, np.zeros(1))
+    within = []
+    for _ in range(200):
+        true = 1e-6 * draw.lognormal(0.0, 0.4, (10_000, 1))
+        modeled = true * draw.lognormal(0.0, noise, true.shape)
+        pairs = ModeledPairs(("a",), np.zeros(1), true[:solved], modeled)
+        above = pairs.above(limit, 0.95, lambda _load: none)
+        within.append(above.low[0] <= (true > limit.amplitude).mean() <= above.high[0])
+    assert np.mean(within) > 0.93
 
 
 def test_a_limit_counts_pairs_and_finds_what_decides() -> None:
