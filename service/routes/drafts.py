@@ -11,28 +11,14 @@ from typing import Any
 
 from fastapi import APIRouter, Request
 from fastapi.exceptions import RequestValidationError
+from fastapi.routing import APIRoute
 from pydantic import BaseModel, Field
 from starlette.responses import JSONResponse, Response
 
-from lineofaction.gearbox.problems import (
-    BadInput,
-    DamagedFile,
-    LiveUnavailable,
-    NotAnalyzed,
-    NotFound,
-    QueueFull,
-    ServiceError,
-    Superseded,
-)
-from lineofaction.gearbox.schemas.live import LiveInput, LiveOutput, PlanRequest
-from lineofaction.gearbox.schemas.plan import OutlineBody, PlanBody
-from service.access.keyring import Scope
+from lineofaction.gearbox.problems import BadInput, ServiceError
 from service.routes import cases, queries
-from service.routes.context import Ctx
 from service.routes.middleware import refusal_of
-from service.routes.openapi import documented
-from service.routes.results import Key
-from service.routes.scopes import ScopedRoute, needs
+from service.routes.scopes import ScopedRoute
 from service.schemas.answers import FaultBody
 
 
@@ -71,73 +57,36 @@ def _faults_of(refusal: ServiceError) -> Response:
     return JSONResponse({"detail": problem["detail"], "faults": problem["errors"]})
 
 
+DRAFTS = {
+    "/cases/outline": ("outline", "Drawing of a draft"),
+    "/cases/to-toml": ("to-toml", "Case file of a draft"),
+    "/cases/as-made": ("as-made", "Gears of a draft as made"),
+    "/plans": ("plan", "Plan of a draft"),
+    "/databases/{key}/ste": ("{key}/ste", "Transmission error of drafted flanks"),
+    "/scenes/to-files": ("scene", "Text of a drafted scene"),
+    "/scenes/from-toml": ("scene-text", "Scene of a drafted text"),
+}
+"""Questions that may be asked of a draft, by their own path: the path below `/drafts`, and what they are."""
+
 router = APIRouter(tags=["drafts"], route_class=DraftRoute)
 
 
-@router.post("/drafts/outline", summary="Drawing of a draft", response_model=OutlineBody | FaultsBody)
-@needs(Scope.READ, body=cases.CaseRequest)
-def draft_outline(body: cases.CaseRequest) -> Response:
-    """Answer as `/v1/cases/outline`, or with what is wrong."""
-    return cases.case_outline(body)
+def _add(route: APIRoute) -> None:
+    """Ask the question of a route of a draft as well."""
+    path, summary = DRAFTS[route.path]
+    words = path.removeprefix("{key}/").replace("-", "_")
+    router.add_api_route(
+        f"/drafts/{path}",
+        route.endpoint,
+        methods=["POST"],
+        name=f"draft_{words}",
+        summary=summary,
+        description=f"Answer as `/v1{route.path}`, or with what is wrong.",
+        response_model=route.response_model | FaultsBody,
+        responses=route.responses,
+    )
 
 
-@router.post("/drafts/to-toml", summary="Case file of a draft", response_model=cases.TomlBody | FaultsBody)
-@needs(Scope.READ, body=cases.CaseRequest)
-def draft_to_toml(body: cases.CaseRequest) -> cases.TomlBody:
-    """Answer as `/v1/cases/to-toml`, or with what is wrong."""
-    return cases.case_to_toml(body)
-
-
-@router.post(
-    "/drafts/as-made",
-    summary="Gears of a draft as made",
-    response_model=cases.AsMadeBody | FaultsBody,
-    responses=documented(*cases.READING_FAILURES),
-)
-@needs(Scope.READ, body=cases.AsMadeRequest)
-async def draft_as_made(body: cases.AsMadeRequest, context: Ctx, request: Request) -> Response:
-    """Answer as `/v1/cases/as-made`, or with what is wrong."""
-    return await cases.case_as_made(body, context, request)
-
-
-@router.post(
-    "/drafts/plan",
-    summary="Plan of a draft",
-    response_model=PlanBody | FaultsBody,
-    responses=documented(QueueFull, Superseded, LiveUnavailable),
-)
-@needs(Scope.READ, body=PlanRequest)
-async def draft_plan(body: PlanRequest, context: Ctx) -> Response:
-    """Answer as `/v1/plans`, or with what is wrong."""
-    return await queries.plan(body, context)
-
-
-@router.post(
-    "/drafts/{key}/ste",
-    summary="Transmission error of drafted flanks",
-    response_model=LiveOutput | FaultsBody,
-    responses=documented(QueueFull, Superseded, NotAnalyzed, LiveUnavailable, NotFound, DamagedFile),
-)
-@needs(Scope.READ, body=LiveInput)
-async def draft_ste(key: Key, body: LiveInput, context: Ctx) -> Response:
-    """Answer as `/v1/databases/{hash}/ste`, or with what is wrong."""
-    return await queries.live_ste(key, body, context)
-
-
-@router.post("/drafts/scene", summary="Text of a drafted scene", response_model=cases.SceneText | FaultsBody)
-@needs(Scope.READ, body=cases.SceneRequest)
-def draft_scene(body: cases.SceneRequest) -> cases.SceneText:
-    """Answer as `/v1/scenes/to-files`, or with what is wrong."""
-    return cases.scene_to_files(body)
-
-
-@router.post(
-    "/drafts/scene-text",
-    summary="Scene of a drafted text",
-    response_model=cases.SceneBody | FaultsBody,
-    responses=documented(*cases.READING_FAILURES),
-)
-@needs(Scope.READ, body=cases.SceneText)
-async def draft_scene_text(body: cases.SceneText, context: Ctx, request: Request) -> Response:
-    """Answer as `/v1/scenes/from-toml`, or with what is wrong."""
-    return await cases.scene_from_toml(body, context, request)
+for asked in (*cases.router.routes, *cases.scenes_router.routes, *queries.live_router.routes):
+    if isinstance(asked, APIRoute) and asked.path in DRAFTS:
+        _add(asked)

@@ -222,11 +222,8 @@ STE, PLAN = "service.live.work:live_ste", "service.live.work:live_plan"
 @live_router.post(
     "/databases/{key}/ste",
     summary="Transmission error with other flanks",
-    response_class=Response,
-    responses={
-        200: {"model": LiveOutput, "description": "The curves"},
-        **documented(QueueFull, Superseded, NotAnalyzed, LiveUnavailable, NotFound, DamagedFile),
-    },
+    response_model=LiveOutput,
+    responses=documented(QueueFull, Superseded, NotAnalyzed, LiveUnavailable, NotFound, DamagedFile),
 )
 @needs(Scope.READ, body=LiveInput)
 async def live_ste(key: Key, body: LiveInput, context: Ctx) -> Response:
@@ -244,11 +241,8 @@ async def live_ste(key: Key, body: LiveInput, context: Ctx) -> Response:
 @live_router.post(
     "/plans",
     summary="Plan and cost of a run",
-    response_class=Response,
-    responses={
-        200: {"model": PlanBody, "description": "The plan"},
-        **documented(QueueFull, Superseded, LiveUnavailable),
-    },
+    response_model=PlanBody,
+    responses=documented(QueueFull, Superseded, LiveUnavailable),
 )
 @needs(Scope.READ, body=PlanRequest)
 async def plan(body: PlanRequest, context: Ctx) -> Response:

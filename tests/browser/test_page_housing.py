@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import base64
-import copy
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from housing_solid import STIFFNESS, housed_scene, write_block
 from page_picture import different, picture, stopped, vertices
-from page_visit import PATIENCE, Visit, opened, shown, tab
+from page_visit import PATIENCE, Visit, opened, opened_scene, shown, tab
 from playwright.sync_api import Browser, Page, expect
-
-from lineofaction.gearbox.schemas.toml import toml_text
 
 ROUTE = "**/v1/scenes/housing-surface"
 BARE = """async ({ scene, surface }) => {
@@ -48,16 +44,6 @@ def test_a_housing_is_drawn_where_its_surface_stands(visit: Visit) -> None:
     added = [calls for calls in housed if not any(np.array_equal(calls, known) for known in bare)]
     assert len(added) == 1, "the surface and nothing else"
     np.testing.assert_allclose(added[0], place[facets.ravel()], atol=1e-5)
-
-
-def opened_scene(page: Page, folder: Path, **fields: Any) -> None:
-    """Open the scene of a block in its housing, as a user does."""
-    step, file = write_block(folder / "block.step"), folder / "scene.toml"
-    scene = copy.deepcopy(housed_scene(folder, **fields))
-    scene["meshes"][0] |= {"database_file": None, "stiffness": STIFFNESS}
-    file.write_text(toml_text(scene), encoding="utf-8")
-    page.locator("#scene-file").set_input_files([file, step])
-    expect(page.get_by_text("With block.step.")).to_be_visible()
 
 
 @pytest.mark.law

@@ -10,15 +10,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from housing_solid import STIFFNESS, housed_scene, write_block
 from page_picture import CANVAS, different, picture, stopped, vertices
-from page_visit import PATIENCE, Visit, opened, shown, tab
+from page_visit import PATIENCE, Visit, opened, opened_scene, shown, tab
 from playwright.sync_api import Browser, Page, expect
 
 from lineofaction.gearbox.convert.live import outline_json
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.reading import validated
-from lineofaction.gearbox.schemas.toml import toml_text
 
 APART = 4.0  # um, of the flanks
 SINE = 2e-5  # rad, of the sines and cosines of shaders
@@ -283,12 +281,7 @@ def test_a_unit_in_its_housing_moves_in_a_mode_and_stands_deflected(
     seen = shown(drawing_browser, address, analyzed)
     page = seen.page
     tab(page, "Sound")
-    step, file = write_block(tmp_path / "block.step"), tmp_path / "scene.toml"
-    scene = housed_scene(tmp_path)
-    scene["meshes"][0] |= {"database_file": None, "stiffness": STIFFNESS}
-    file.write_text(toml_text(scene), encoding="utf-8")
-    page.locator("#scene-file").set_input_files([file, step])
-    expect(page.get_by_text("With block.step.")).to_be_visible()
+    opened_scene(page, tmp_path)
     page.get_by_label("number", exact=True).fill("2")
     stopped(page)
     motion, amplitude = page.get_by_label("Motion", exact=True), page.get_by_label("Amplitude", exact=True)

@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 from faulty_units import LEFT_OUT, TWO_STAGE
 from housing_solid import STIFFNESS, housed_scene, write_block
-from page_visit import PATIENCE, Visit, other_browser, shown, tab
-from playwright.sync_api import Browser, Route, expect
+from page_visit import PATIENCE, Visit, other_browser, refused, shown, tab
+from playwright.sync_api import Browser, expect
 from running_service import until
 
 from lineofaction.gearbox.registry import STUDIES
@@ -136,18 +136,11 @@ def test_files_chosen_with_a_scene_go_with_it(visit: Visit) -> None:
     page.locator("#scene-file").set_input_files([case, scene])
     expect(page.get_by_label("Scene, TOML")).to_have_value(scene.read_text(encoding="utf-8"))
     expect(page.get_by_text("With palermo_spur_20_20.toml.")).to_be_visible()
-    sent: list[Any] = []
-
-    def refuse(route: Route) -> None:
-        sent.append(route.request.post_data_json["inputs"]["scene"])
-        route.fulfill(status=422, json={"title": "Not now", "status": 422})
-
-    page.route("**/processes/simulate/execution", refuse)
     page.get_by_label("Compute", exact=True).select_option("simulate")
-    page.get_by_role("button", name="Compute the scene").press("Enter")
-    expect(page.locator("#scene-body [role=alert]")).to_contain_text("Not now")
-    page.unroute("**/processes/simulate/execution")
-    (mesh,) = sent[0]["meshes"]
+    with refused(page, "simulate") as sent:
+        page.get_by_role("button", name="Compute the scene").press("Enter")
+        expect(page.locator("#scene-body [role=alert]")).to_contain_text("Not now")
+    (mesh,) = sent[0]["scene"]["meshes"]
     assert mesh["case"]["pair"]["pinion"]["teeth"] == 20
     assert mesh.get("case_file") is None
 
@@ -217,30 +210,20 @@ def test_the_matrix_of_a_unit_is_a_file_beside_its_scene(visit: Visit) -> None:
 
 def test_a_gear_unit_is_deflected_under_the_load_cases_of_its_file(visit: Visit) -> None:
     page = visit.page
-    sent: list[Any] = []
-
-    def refuse(route: Route) -> None:
-        sent.append(route.request.post_data_json["inputs"])
-        route.fulfill(status=422, json={"title": "Not now", "status": 422})
-
-    page.route("**/processes/deflect/execution", refuse)
     page.locator("#import-file").set_input_files(UNIT)
     page.get_by_role("button", name="Open scene", exact=True).press("Enter")
     text, cases = page.get_by_label("Scene, TOML"), page.get_by_text("A deflection takes the load cases")
     expect(text).to_have_value(re.compile(r'\[\[bushings\]\]\nname = "concept_bearing 31"'))
     expect(cases).to_contain_text("of two_stage_gearbox.rexs: load case 1, load case 2, load case 3.")
     page.get_by_label("Compute", exact=True).select_option("deflect")
-    compute, refused = (
-        page.get_by_role("button", name="Compute the scene"),
-        page.locator("#scene-body [role=alert]"),
-    )
-    compute.press("Enter")
-    expect(refused).to_contain_text("Not now")
-    page.get_by_role("button", name="Leave them out").press("Enter")
-    expect(cases).to_have_count(0)
-    with page.expect_response("**/processes/deflect/execution"):
+    compute = page.get_by_role("button", name="Compute the scene")
+    with refused(page, "deflect") as sent:
         compute.press("Enter")
-    page.unroute("**/processes/deflect/execution")
+        expect(page.locator("#scene-body [role=alert]")).to_contain_text("Not now")
+        page.get_by_role("button", name="Leave them out").press("Enter")
+        expect(cases).to_have_count(0)
+        with page.expect_response("**/processes/deflect/execution"):
+            compute.press("Enter")
     assert [case["torque_n_m"] for case in sent[0]["load_cases"]] == [50.0, 80.0, 30.0]
     assert len(sent[0]["scene"]["bushings"]) == 6
     assert "load_cases" not in sent[1]
@@ -249,25 +232,18 @@ def test_a_gear_unit_is_deflected_under_the_load_cases_of_its_file(visit: Visit)
 def test_flanks_of_a_unit_are_searched_by_what_is_heard(visit: Visit) -> None:
     """Of the mesh whose pair is typed, under the load cases of the file, over the speeds of the card."""
     page = visit.page
-    sent: list[Any] = []
-
-    def refuse(route: Route) -> None:
-        sent.append(route.request.post_data_json["inputs"])
-        route.fulfill(status=422, json={"title": "Not now", "status": 422})
-
-    page.route("**/processes/optimize/execution", refuse)
     page.locator("#import-file").set_input_files(UNIT)
     page.get_by_role("button", name="Open scene", exact=True).press("Enter")
     expect(page.get_by_text("A deflection takes the load cases")).to_be_visible()
     page.get_by_label("Compute", exact=True).select_option("optimize")
-    with page.expect_response("**/processes/optimize/execution"):
-        page.get_by_role("button", name="Compute the scene").press("Enter")
-    expect(page.locator("#scene-body [role=alert]")).to_contain_text("Not now")
-    page.unroute("**/processes/optimize/execution")
-    ((inputs),) = sent
-    first = next(mesh for mesh in inputs["scene"]["meshes"] if mesh.get("case"))
-    heard = inputs["heard"]
-    assert heard["mesh"] == first["name"] and heard["speed_rpm"][0] == 300
+    page.get_by_label("Speeds from, rpm").fill("400")
+    with refused(page, "optimize") as sent:
+        with page.expect_response("**/processes/optimize/execution"):
+            page.get_by_role("button", name="Compute the scene").press("Enter")
+        expect(page.locator("#scene-body [role=alert]")).to_contain_text("Not now")
+    first = next(mesh for mesh in sent[0]["scene"]["meshes"] if mesh.get("case"))
+    heard = sent[0]["heard"]
+    assert heard["mesh"] == first["name"] and heard["speed_rpm"][0] == 400
     assert [case["torque_n_m"] for case in heard["load_cases"]] == [50.0, 80.0, 30.0]
 
 

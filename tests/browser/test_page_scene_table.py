@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from page_visit import Visit, found_inaccessible, shown, tab
-from playwright.sync_api import Browser, Locator, Page, Route, expect
+from page_visit import Visit, found_inaccessible, refused, shown, tab
+from playwright.sync_api import Browser, Locator, Page, expect
 from running_service import until
 
 
@@ -134,18 +134,11 @@ def test_fields_and_parts_of_the_schema_are_added(visit: Visit) -> None:
 
 def test_what_is_computed_is_what_the_table_shows(visit: Visit) -> None:
     page = visit.page
-    sent: list[Any] = []
-
-    def refuse(route: Route) -> None:
-        sent.append(route.request.post_data_json["inputs"]["scene"])
-        route.fulfill(status=422, json={"title": "Not now", "status": 422})
-
-    page.route("**/processes/simulate/execution", refuse)
     cell(page, "Duration, s, Run").fill("0.25")
-    page.get_by_role("button", name="Compute the scene").press("Enter")
-    expect(page.locator("#scene-body [role=alert]")).to_contain_text("Not now")
-    page.unroute("**/processes/simulate/execution")
-    assert sent[0]["run"]["duration_s"] == 0.25
+    with refused(page, "simulate") as sent:
+        page.get_by_role("button", name="Compute the scene").press("Enter")
+        expect(page.locator("#scene-body [role=alert]")).to_contain_text("Not now")
+    assert sent[0]["scene"]["run"]["duration_s"] == 0.25
     visit.console.clear()  # the browser logs that refusal
 
 

@@ -9,14 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from housing_solid import STIFFNESS, housed_scene, write_block
 from page_picture import CANVAS, different, frames, picture, rest, stopped
-from page_visit import PATIENCE, Visit, control, found_inaccessible, moved, shown, tab
+from page_visit import PATIENCE, Visit, control, found_inaccessible, moved, opened_scene, shown, tab
 from PIL import Image
 from playwright.sync_api import Browser, Page, expect
 from running_service import until
-
-from lineofaction.gearbox.schemas.toml import toml_text
 
 UNIT = Path(__file__).parents[2] / "examples" / "two_stage" / "two_stage.rexs"
 
@@ -171,12 +168,7 @@ def test_the_surface_of_a_housing_moves_in_the_colors_of_its_velocity(
     seen = shown(drawing_browser, address, analyzed)
     page = seen.page
     tab(page, "Sound")
-    step, file = write_block(tmp_path / "block.step"), tmp_path / "scene.toml"
-    scene = housed_scene(tmp_path)
-    scene["meshes"][0] |= {"database_file": None, "stiffness": STIFFNESS}
-    file.write_text(toml_text(scene), encoding="utf-8")
-    page.locator("#scene-file").set_input_files([file, step])
-    expect(page.get_by_text("With block.step.")).to_be_visible()
+    opened_scene(page, tmp_path)
     page.get_by_label("Compute", exact=True).select_option("vibration")
     page.get_by_label("number", exact=True).fill("3")
     page.get_by_role("button", name="Compute the scene").press("Enter")

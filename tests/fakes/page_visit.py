@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import os
 import subprocess
@@ -13,10 +14,12 @@ from pathlib import Path
 from typing import Any
 
 from axe_playwright_python.sync_playwright import Axe
-from playwright.sync_api import Browser, Locator, Page, expect
+from housing_solid import STIFFNESS, housed_scene, write_block
+from playwright.sync_api import Browser, Locator, Page, Route, expect
 from running_service import PATIENCE_S, until
 
 from lineofaction.client import LineOfActionClient
+from lineofaction.gearbox.schemas.toml import toml_text
 
 GEAR: dict[str, Any] = {"teeth": 20, "face_width_mm": 4.0, "bore_diameter_mm": 10.0}
 CASE: dict[str, Any] = {
@@ -188,3 +191,28 @@ def shows_the_same(page: Page, sent: Page) -> None:
     with suppress(AssertionError):
         until(lambda: typed(page) == typed(sent))
     assert typed(page) == typed(sent)
+
+
+def opened_scene(page: Page, folder: Path, **fields: Any) -> None:
+    """Open the scene of two gears in the housing of a block, with its STEP file, as a user does."""
+    step, file = write_block(folder / "block.step"), folder / "scene.toml"
+    scene = copy.deepcopy(housed_scene(folder, **fields))
+    scene["meshes"][0] |= {"database_file": None, "stiffness": STIFFNESS}
+    file.write_text(toml_text(scene), encoding="utf-8")
+    page.locator("#scene-file").set_input_files([file, step])
+    expect(page.get_by_text("With block.step.")).to_be_visible()
+
+
+@contextmanager
+def refused(page: Page, process: str) -> Iterator[list[Any]]:
+    """Refuse jobs of a process, since others wait for the worker; yields the inputs that were sent."""
+    sent: list[Any] = []
+
+    def refuse(route: Route) -> None:
+        sent.append(route.request.post_data_json["inputs"])
+        route.fulfill(status=422, json={"title": "Not now", "status": 422})
+
+    address = f"**/processes/{process}/execution"
+    page.route(address, refuse)
+    yield sent
+    page.unroute(address)
