@@ -5,13 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from page_picture import CANVAS, different, picture, stopped
-from page_visit import Visit, opened
-from playwright.sync_api import Browser, Page, Route, expect
+from page_visit import Visit, opened, refused
+from playwright.sync_api import Browser, Page, expect
 
 UNIT = Path(__file__).parents[2] / "examples" / "two_stage" / "two_stage.rexs"
 
@@ -64,18 +63,30 @@ def test_arrow_keys_move_what_is_selected_in_picture_tree_table_and_text(visit: 
     assert different(before, picture(page)) < 0.002, "seen from where it was seen"
     page.locator(CANVAS).press("ArrowRight")
     stands(page, "wheel 1", "51.00")
-    sent: list[Any] = []
-
-    def refuse(route: Route) -> None:
-        sent.append(route.request.post_data_json["inputs"]["scene"])
-        route.fulfill(status=422, json={"title": "Not now", "status": 422})
-
-    page.route("**/processes/simulate/execution", refuse)
-    page.get_by_role("button", name="Compute the scene").press("Enter")
-    expect(page.locator("#scene-body [role=alert]")).to_contain_text("Not now")
-    assert [gear["position_mm"] for gear in sent[0]["gears"]] == [50.0, 51.0, 108.0, 108.0]
+    with refused(page, "simulate") as sent:
+        page.get_by_role("button", name="Compute the scene").press("Enter")
+        expect(page.locator("#scene-body [role=alert]")).to_contain_text("Not now")
+    assert [gear["position_mm"] for gear in sent[0]["scene"]["gears"]] == [50.0, 51.0, 108.0, 108.0]
     page.reload()
     stands(page, "wheel 1", "51.00")
+
+
+@pytest.mark.law
+def test_what_is_typed_while_a_move_comes_to_rest_is_kept_with_it(visit: Visit) -> None:
+    page = visit.page
+    select(page, "wheel 1")
+    place = re.search(r"at (\S+) mm", page.locator("#unit [role=status]").inner_text())
+    assert place is not None
+    page.locator(CANVAS).press("ArrowLeft")
+    stands(page, "wheel 1", f"{float(place[1]) - 1.0:.2f}")
+    page.locator(CANVAS).press("ArrowRight")
+    duration = page.locator("#scene-tables").get_by_label("Duration, s, Run", exact=True)
+    duration.fill("0.25")
+    page.wait_for_timeout(700)  # ms: longer than a move takes to rest
+    page.keyboard.press("Tab")
+    expect(page.locator("#scene-text")).to_have_value(re.compile("duration_s = 0.25"), timeout=30_000)
+    stands(page, "wheel 1", f"{float(place[1]):.2f}")
+    expect(duration).to_have_value("0.25")
 
 
 def drag(page: Page, start: np.ndarray, way: tuple[float, float]) -> None:

@@ -134,10 +134,12 @@ export class SceneEditor {
     }
     const rows = SLIDING.flatMap((kind) => (this.scene[kind] ?? []).map((row, k) => ({ row, path: [kind, k, "position_mm"] })));
     const moved = rows.find(({ row }) => row.name === part);
+    const shown = this.table?.scene === this.scene;
     if (moved) this.scene = changed(this.scene, moved.path, position);
+    if (moved && shown) this.table.take(this.scene, moved.path);
     this.unit.take(mark, this.scene);
     clearTimeout(this.resting);
-    this.resting = setTimeout(() => this.settle(() => this.edit(this.scene)), RESTED);
+    this.resting = setTimeout(() => this.settle(() => (this.table?.scene === this.scene ? this.write() : this.edit(this.scene))), RESTED);
   }
 
   /** Take the scene as it is edited in a table or was before, and write its text anew. @param {any} scene */

@@ -35,6 +35,12 @@ export class SceneTable {
     byId(focus)?.select?.();
   }
 
+  /** Take a scene of which one value was changed elsewhere; what is typed in the other cells stays. */
+  take(scene, path) {
+    this.scene = scene;
+    this.fields.get(path.join(".")).value = at(scene, path);
+  }
+
   get listed() {
     return [...this.kinds.keys()].filter((kind) => this.kinds.get(kind).listed);
   }
