@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from first_result import first_result
 from page_visit import CASE, Visit, answers, computed, control, found_inaccessible, opened, tab, unfold
-from playwright.sync_api import Browser, CDPSession, Page, expect
+from playwright.sync_api import Browser, CDPSession, Page, Route, expect
 
 
 @pytest.mark.law
@@ -32,6 +32,29 @@ def test_the_first_example_stands_there_with_its_errors_when_the_page_opens(
     expect(page).to_have_url(re.compile("#case="))
     tab(page, "Flank")
     expect(page.locator("[data-figure=live_pressure] .plot")).to_have_attribute("data-drawn", "yes")
+    page.close()
+
+
+@pytest.mark.law
+def test_no_figure_of_a_result_stands_under_the_title_of_another(
+    browser: Browser, address: str, analyzed: str
+) -> None:
+    page = opened(browser, f"{address}/#").page
+    figures = page.locator("#live-figures")
+    expect(figures).to_contain_text("peak to peak")
+    before = figures.locator("dd").first.inner_text()
+
+    def hold(route: Route) -> None:
+        assert route.request.method == "POST"
+
+    page.route("**/ste", hold)
+    with page.expect_request("**/ste"):
+        page.evaluate(f"location.hash = 'database={analyzed}'")
+    expect(page.locator("#dock-words")).to_contain_text("Gear pair 20/20")
+    expect(figures).not_to_contain_text(before)
+    expect(figures).to_contain_text("mean STE")
+    page.unroute("**/ste", hold)  # lets go what was held
+    expect(figures).to_contain_text("first harmonic")
     page.close()
 
 

@@ -60,12 +60,10 @@ export class Live {
     this.known = known && { ...known, highest: known.torques.at(-1) };
     this.analyzed = known && new Other("before", known, UNMOVED);
     this.heard = null;
+    for (const id of ["live-figures", "compared", "sliders", "quick", ...Object.values(PLACES)]) byId(id).replaceChildren(); // of another result
+    this.design.view.press(null);
     if (known) this.controls();
     if (known && !known.long) this.plots();
-    else {
-      this.design.view.press(null);
-      for (const id of [...(known ? [] : ["live-figures", "compared", "sliders", "quick"]), ...Object.values(PLACES)]) byId(id).replaceChildren();
-    }
   }
 
   /** Show a curve that came with the program. @param {object} content its case @param {any} curve */

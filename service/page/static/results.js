@@ -101,7 +101,8 @@ export class Results {
     const report = await reported;
     if (signal.aborted) return;
     this.offer(known);
-    if (long) this.asAnalyzed(facts.period, report);
+    figures(byId("live-figures"), (report?.headlines ?? []).map(({ name, value, remark }) => [name, value, remark])); // until sliders have theirs
+    if (long) this.asAnalyzed(facts.period);
     this.shown = key;
   }
 
@@ -115,9 +116,8 @@ export class Results {
     return report;
   }
 
-  /** Show figures as analyzed where no curves follow sliders. @param {number} period @param {any} report */
-  asAnalyzed(period, { headlines }) {
-    figures(byId("live-figures"), headlines.map(({ name, value, remark }) => [name, value, remark]));
+  /** Show all as analyzed where no curves follow sliders. @param {number} period */
+  asAnalyzed(period) {
     for (const tab of Object.keys(TABS)) byId(`report-${tab}`).parentElement.open = true;
     byId("dock-words").append(` Over ${period} base pitches curves are as analyzed: sliders take at most ${LONGEST}.`);
   }
