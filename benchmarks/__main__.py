@@ -22,8 +22,8 @@ _IN_ORDER = """
     predicted_errors predicted_memory receipt_cost error_coverage live_coverage load_arm_coverage
     limit_coverage derivatives heard_flanks heard_designs heard_tolerances tolerance_kept
     influence_estimates quiet_helical dynamic_influence_estimates neglected_effects
-    deviating_cycles made_pairs live_cost page_redraw page_motion service_queries cluster_rate worker_cost
-    shared_table divided_studies cold_start
+    deviating_cycles made_pairs live_cost page_redraw page_motion page_memory service_queries
+    cluster_rate worker_cost shared_table divided_studies cold_start
 """
 SUBJECTS = tuple(_IN_ORDER.split())
 """Modules here, in the order of the page."""
