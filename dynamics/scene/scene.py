@@ -28,7 +28,7 @@ from dynamics.meshes import GearMesh
 from dynamics.settings import Integration, Outputs
 from dynamics.settings.level_quantity import LevelQuantity
 from dynamics.shafts import DiscBody, GearBody, Shaft
-from dynamics.shafts.shaft import on_length
+from dynamics.shafts.shaft import PLACED, on_length
 from dynamics.temperatures import Temperatures
 from dynamics.types import FloatArray
 
@@ -282,8 +282,6 @@ def _check_parts(scene: Scene) -> None:
         check(scene)
 
 
-PLACED = ("gears", "discs", "bushings", "rolling_bearings", "planet_bearings", "forces", "unbalances")
-"""Kinds whose parts lie within the length of their shaft."""
 ON_VIOLATION = ("repeat", "fail", "report")
 TOLERANCES = (1e-6, 0.5)
 SAMPLE_LIMIT = 2e7  # a run's states are held in memory

@@ -17,6 +17,9 @@ from dynamics.shafts.bodies import EXPANSION, STEEL_EXPANSION, TEMPERATURE, Iner
 SAME_POSITION = 1e-9
 """Of the shaft's length: positions nearer than this coincide. n added lengths round by n eps of their sum."""
 
+PLACED = ("gears", "discs", "bushings", "rolling_bearings", "planet_bearings", "forces", "unbalances")
+"""Kinds of parts of a scene that lie within the length of their shaft."""
+
 
 class OnShaft(Protocol):
     """A part at a position on a shaft, m from its left end."""

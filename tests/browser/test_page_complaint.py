@@ -6,6 +6,7 @@ import math
 import re
 import tomllib
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import httpx2
@@ -22,7 +23,7 @@ from page_visit import (
     shown,
     tab,
 )
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Page, Route, expect
 from running_service import until
 
 from lineofaction.gearbox.convert.complaint import complaint_of_case
@@ -46,6 +47,9 @@ OF_A_RUN = """async ([mark, figure]) => {
   const { shapes } = marked(figure).layout;
   return (shapes ?? []).map(({ xref, yref, x0, y0 }) => [xref, yref, xref === "x" ? x0 : y0]);
 }"""
+
+
+UNIT = Path(__file__).parents[2] / "examples" / "two_stage_gearbox.rexs"
 
 
 @pytest.fixture
@@ -404,3 +408,27 @@ def test_meshes_of_a_unit_are_heard_by_the_teeth_on_the_way(visit: Visit) -> Non
     assert second["frequency"] == pytest.approx(2800 / 60 * 20 / 60 * 18)
     assert (first["harmonic"], second["harmonic"]) == (None, 2)
     assert second["off"] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.law
+def test_a_complaint_that_is_typed_while_a_unit_opens_is_kept(visit: Visit) -> None:
+    """What was typed before belongs to the design that is left."""
+    page, waiting = visit.page, list[Route]()
+
+    def hold(route: Route) -> None:
+        waiting.append(route)
+
+    page.locator("#bar-torque_n_m").fill("77")
+    page.locator("#import-file").set_input_files(UNIT)
+    expect(page.locator("#f-pair-pinion-teeth")).to_have_value("20")
+    assert bar(page) == dict.fromkeys(FIELDS, "")
+    page.route("**/v1/units/open", hold)
+    page.locator("#import-file").set_input_files(UNIT)
+    until(lambda: page.wait_for_timeout(20) or waiting)
+    page.locator("#bar-frequency_hz").fill("933")
+    page.locator("#bar-speed_rpm").fill("2800")
+    waiting[0].continue_()
+    page.unroute("**/v1/units/open")
+    expect(page.locator("#unit-heard")).to_contain_text("cylindrical_stage 21 at 933.3 Hz: harmonic 1")
+    assert bar(page) == {"frequency_hz": "933", "speed_rpm": "2800", "torque_n_m": ""}
+    expect(page.locator("#f-complaint-frequency_hz")).to_have_value("933")

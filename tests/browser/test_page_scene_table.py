@@ -64,9 +64,9 @@ def test_a_fault_stands_at_its_cell_until_it_is_mended(visit: Visit) -> None:
     expect(length).to_be_focused()
     page.get_by_role("button", name="Compute the scene").press("Enter")
     expect(page.locator("#scene-body [role=alert]")).to_contain_text("shafts[1].length_mm must be above 0")
-    typed(page, "Length, mm, output", "180")
+    typed(page, "Length, mm, output", "220")
     expect(page.locator("#scene-tables [aria-invalid=true]")).to_have_count(0)
-    until(lambda: scene_in(page)["shafts"][1]["length_mm"] == 180.0)
+    until(lambda: scene_in(page)["shafts"][1]["length_mm"] == 220.0)
     cell(page, "Driven, mesh").select_option("pinion")
     expect(cell(page, "Driven, mesh")).to_have_attribute("aria-invalid", "true")
 

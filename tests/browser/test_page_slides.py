@@ -12,7 +12,8 @@ from page_picture import CANVAS, different, picture, stopped
 from page_visit import Visit, opened, refused
 from playwright.sync_api import Browser, Page, expect
 
-UNIT = Path(__file__).parents[2] / "examples" / "two_stage" / "two_stage.rexs"
+EXAMPLES = Path(__file__).parents[2] / "examples"
+UNIT = EXAMPLES / "two_stage" / "two_stage.rexs"
 
 
 @pytest.fixture
@@ -87,6 +88,52 @@ def test_what_is_typed_while_a_move_comes_to_rest_is_kept_with_it(visit: Visit) 
     expect(page.locator("#scene-text")).to_have_value(re.compile("duration_s = 0.25"), timeout=30_000)
     stands(page, "wheel 1", f"{float(place[1]):.2f}")
     expect(duration).to_have_value("0.25")
+
+
+@pytest.mark.law
+def test_undo_brings_back_whole_the_scene_whose_place_a_move_takes(visit: Visit) -> None:
+    page = visit.page
+    text, under = page.locator("#scene-text"), page.get_by_text("A deflection takes the load cases")
+    page.locator("#import-file").set_input_files(EXAMPLES / "two_stage_gearbox.rexs")
+    expect(page.locator("#unit")).to_contain_text("two_stage_gearbox.rexs")
+    page.get_by_role("button", name="Open scene", exact=True).press("Enter")
+    expect(text).to_have_value(re.compile("concept_bearing 31"))
+    duration = page.locator("#scene-tables").get_by_label("Duration, s, Run", exact=True)
+    duration.fill("0.25")
+    duration.press("Tab")
+    expect(text).to_have_value(re.compile("duration_s = 0.25"))
+    known, cases = text.input_value(), under.inner_text()
+    page.locator("#import-file").set_input_files(UNIT)
+    select(page, "wheel 1")
+    page.locator(CANVAS).press("ArrowRight")
+    stands(page, "wheel 1", "51.00")
+    page.wait_for_timeout(500)  # ms: an edit that rests is a step
+    for place in ("51.00", "50.00"):
+        expect(page.locator("#unit [role=status]")).to_contain_text(f"at {place} mm")
+        page.locator("#undo").press("Enter")
+    expect(text).to_have_value(known)
+    expect(duration).to_have_value("0.25")
+    assert under.inner_text() == cases
+    page.locator("#redo").press("Enter")
+    stands(page, "wheel 1", "50.00")
+
+
+@pytest.mark.law
+def test_the_picture_moves_a_part_to_an_end_of_its_shaft_and_tables_refuse_more(visit: Visit) -> None:
+    page, fact = visit.page, visit.page.locator("#unit [role=status]")
+    select(page, "wheel 1")
+    for _ in range(6):
+        page.locator(CANVAS).press("Shift+ArrowLeft")
+    stands(page, "wheel 1", "0")
+    cell = page.locator("#scene-tables").get_by_label("Position, mm, wheel 1", exact=True)
+    cell.fill("-1")
+    cell.press("Tab")
+    bound = 'must be on the shaft "intermediate", from 0 to 170 mm from its left end'
+    expect(fact).to_contain_text(f"gears[1].position_mm {bound}")
+    expect(page.locator("#scene-body")).to_contain_text(bound)
+    cell.fill("1")
+    cell.press("Tab")
+    expect(fact).not_to_contain_text("must be")
 
 
 def drag(page: Page, start: np.ndarray, way: tuple[float, float]) -> None:

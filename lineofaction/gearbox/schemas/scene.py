@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal, Self, get_origin
 from pydantic import BaseModel, ConfigDict, Field, Strict, model_validator
 
 from dynamics.settings.run import Integration, Outputs
+from dynamics.shafts.shaft import PLACED, on_length
 from lineofaction.gearbox.schemas.bearings import BushingInput, PlanetBearingInput, RollingBearingInput
 from lineofaction.gearbox.schemas.bodies import (
     CouplingInput,
@@ -160,6 +161,7 @@ class SceneInput(BoundaryModel):
         shafts = [shaft.name for shaft in self.shafts]
         for field, name in _named(self, "shafts"):
             _refuse_unknown(field, name, shafts)
+        _refuse_beside_shafts(self)
         bushings = [*(part.name for part in self.bushings), *(part.name for part in self.rolling_bearings)]
         pins = [part.name for part in self.planet_bearings]
         for index, housing in enumerate(self.housings):
@@ -216,6 +218,18 @@ def _refuse_complaint(complaint: ComplaintInput, shafts: list[str], bearings: li
     if complaint.torque_n_m is not None:
         bound = "left out: the loads of the scene are those at which it is heard"
         refuse("complaint.torque_n_m", complaint.torque_n_m, bound, "Change the loads.")
+
+
+def _refuse_beside_shafts(scene: SceneInput) -> None:
+    """Refuse a part whose position lies beyond an end of its shaft."""
+    lengths = {shaft.name: shaft.length_mm for shaft in scene.shafts}
+    for kind in PLACED:
+        for index, part in enumerate(getattr(scene, kind)):
+            length = lengths[part.shaft]
+            if not on_length(part.position_mm, length):
+                bound = f'on the shaft "{part.shaft}", from 0 to {length:g} mm from its left end'
+                advice = "Lengthen the shaft, or move what sits on it."
+                refuse(f"{kind}[{index}].position_mm", part.position_mm, bound, advice)
 
 
 def _refuse_unknown(field: str, name: str, known: list[str]) -> None:

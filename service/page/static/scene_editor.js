@@ -33,8 +33,8 @@ export class SceneEditor {
     Object.assign(this, { design, unit });
     /** @type {any} the scene that is edited, null: none; never changed in place */
     this.scene = null;
-    /** Number of the scene; one that is edited keeps it. */
-    this.key = 0;
+    /** Texts with their files by the scene that they were read or written for. @type {WeakMap<object, {toml: string, files: object[]}>} */
+    this.texts = new WeakMap();
     /** The text that is the scene. */
     this.written = "";
     /** @type {string | null} word of the address for it, null: that of a job, none, or one that is too long */
@@ -113,17 +113,17 @@ export class SceneEditor {
     await this.settle(() => this.edit(scene));
   }
 
-  /** Leave the scene that was here. @param {string | null} mark of the unit that the next one is of */
+  /** Leave the scene that was here, which undo brings back. @param {string | null} mark of the unit that the next one is of */
   another(name, cases, mark) {
-    this.key += 1;
+    document.dispatchEvent(new Event("opened"));
     this.mark = mark;
     this.under(name, cases);
   }
 
-  /** Move a gear or bearing of the unit that is open along its shaft. @param {string} part @param {number} position mm */
+  /** Move a gear or bearing of the unit that is open along its shaft: its scene is edited, in place of another. @param {string} part @param {number} position mm */
   slide(part, position) {
     const { name, unit, mark } = this.unit;
-    if (this.problem && this.mark === mark) { // to be mended first
+    if (this.problem || this.text.value !== this.written) { // to be mended or read first
       reveal(this.text.readOnly ? this.tables : this.text);
       return;
     }
@@ -170,7 +170,8 @@ export class SceneEditor {
 
   async write() {
     const { scene } = this;
-    const { toml, files } = await patiently(() => ask("scene", { inputs: { scene } }));
+    const { toml, files } = this.texts.get(scene) ?? await patiently(() => ask("scene", { inputs: { scene } }));
+    this.texts.set(scene, { toml, files });
     if (scene !== this.scene) return;
     this.text.value = this.written = toml;
     this.with(files);
@@ -183,6 +184,7 @@ export class SceneEditor {
     const { scene } = await patiently(() => ask("scene-text", { toml, files: this.files }));
     if (toml !== this.text.value) return;
     this.written = toml;
+    this.texts.set(scene, { toml, files: this.files });
     await this.tabled(scene);
     await this.carry();
   }
@@ -212,7 +214,6 @@ export class SceneEditor {
       this.unit.take(this.mark, this.scene);
       return;
     }
-    this.key += 1;
     await this.settle(() => (this.text.value ? this.read() : this.none()));
   }
 
@@ -229,12 +230,16 @@ export class SceneEditor {
 
   /** What may be undone. */
   get state() {
-    return { key: this.key, scene: this.scene };
+    const { scene, name, cases, mark } = this;
+    return { scene, name, cases, mark };
   }
 
-  /** @param {{key: number, scene: any}} state */
-  async putBack({ key, scene }) {
-    if (key === this.key && scene !== this.scene) await this.settle(() => this.edit(scene));
+  /** @param {{scene: any, name: string, cases: any[], mark: string | null}} state */
+  async putBack({ scene, name, cases, mark }) {
+    if (scene === this.scene) return;
+    this.mark = mark;
+    this.under(name, cases);
+    await this.settle(() => this.edit(scene));
   }
 
   /** The scene as it is edited. @throws {Problem} it has faults */

@@ -8,7 +8,7 @@ const RESTED = 400; // milliseconds without an edit
 const MOST = 200;
 const TEXT = "textarea, input:not([type=range], [type=checkbox], [type=file])"; // they undo what is typed in them
 
-/** @typedef {{case: object, origin?: object, ofResult?: {key: string}, ofScene?: {key: number}}} State a design,
+/** @typedef {{case: object, origin?: object, ofResult?: {key: string}, ofScene?: {scene: any}}} State a design,
  * where it came from, its moved flanks, and the scene */
 
 export class Undo {

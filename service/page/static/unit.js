@@ -6,6 +6,7 @@ import { button, byId, folded, make, number, save } from "./elements.js";
 import { sayMissing } from "./notice.js";
 import { MOST, base64, packedFile, unpackedFile } from "./packed.js";
 import { saveScene } from "./scene.js";
+import { same } from "./schema.js";
 import { isSolid } from "./view_housing.js";
 
 const FATES = ["taken", "assumed", "derived", "defaulted", "ignored", "refused"];
@@ -36,11 +37,14 @@ export class OpenedUnit {
   async open(file) {
     this.word = null;
     this.place.replaceChildren(); // the buttons of an earlier unit would open that one
+    const { complaint: before = {} } = this.design.case;
     const bytes = new Uint8Array(await file.arrayBuffer());
     const unit = await post("/v1/units/open", { rexs_base64: base64(bytes) });
     this.put(await packedFile(file.name, bytes), file.name, unit);
     if (this.word.length > MOST) this.place.append(make("p", { class: "hint" }, "The file is too long for the address: a reload forgets it."));
+    const { complaint: typed = {} } = this.design.case; // meanwhile
     await this.page.go({ unit: this.word.length > MOST ? null : this.word, see: WHOLE, name: file.name.replace(/\.\w+$/, "") });
+    if (!same(before, typed)) this.design.take(Object.fromEntries(Object.entries(typed).map(([field, value]) => [`complaint.${field}`, value])));
   }
 
   /** Show the unit of an address, or none. @param {string | undefined} word @returns {Promise<any>} the pair of its first mesh */

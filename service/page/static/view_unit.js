@@ -216,9 +216,11 @@ export class Gearbox {
     return part ? this.shafts.get(part.shaft).origin_mm.map((value, k) => value + (k === 2 ? part.position_mm : 0)) : null;
   }
 
-  /** @param {number} mm */
+  /** Move the part that is marked, to an end of its shaft at most. @param {number} mm */
   slide(mm) {
-    this.slid(this.marked, Number((this.sliding.position_mm + mm).toFixed(6)));
+    const { shaft, position_mm: position } = this.sliding;
+    const place = Math.min(Math.max(position + mm, 0), this.shafts.get(shaft).length_mm);
+    this.slid(this.marked, Number(place.toFixed(6)));
   }
 
   /** Both corners of a box about the axes and the housing. */

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from changed_scenes import DROP, By, changed_scene, check_refused
+from changed_scenes import DROP, By, changed, changed_scene, check_refused, refused
 from small_table import small_table
 
 from dynamics.assembly.assemble import assemble
@@ -131,6 +131,24 @@ UNIT = {"mass_kg": 1.0, "polar_kg_m2": 1.0, "transverse_kg_m2": 1.0}
 )
 def test_shafts_that_cannot_be_are_one_fault_by_name(field: str, value: Any) -> None:
     check_refused(EXAMPLE, field, value)
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("kind", ["gears", "bushings", "discs"])
+def test_a_part_beyond_an_end_of_its_shaft_is_a_fault_of_the_draft(kind: str) -> None:
+    """Before any engine sees it; the ends themselves are on the shaft."""
+    length = EXAMPLE["shafts"][0]["length_mm"]
+
+    def placed(position: float) -> SceneInput:
+        return validated(SceneInput, changed(EXAMPLE, disc() | {f"{kind}[0].position_mm": position}))
+
+    for end in (0.0, length):
+        placed(end)
+    for beyond in (-0.1, length + 0.1):
+        with refused(f"{kind}[0].position_mm", "from 0 to 180 mm from its left end") as faults:
+            placed(beyond)
+        assert faults[0].value == beyond
+        assert faults[0].suggestion == "Lengthen the shaft, or move what sits on it."
 
 
 OSCILLATOR = tomllib.loads((ROOT / "examples" / "backlash_oscillator_scene.toml").read_text())
