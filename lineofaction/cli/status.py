@@ -10,13 +10,12 @@ from typing import Any
 from bounds import engineering
 from lineofaction.cli.output import console, print_json, table
 from lineofaction.cli.subjects import inputs_of_study, study_cost, table_cost, tables_cost
-from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import ResultState, file_of, status_of
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, read_model, read_table
-from lineofaction.gearbox.studies.cost import StudyCost
+from lineofaction.gearbox.studies.cost import CASES, StudyCost
 from lineofaction.gearbox.subjects import scene_of
 
 
@@ -45,7 +44,7 @@ def _result_cost(verb: str, source: Path, project: Path) -> StudyCost | None:
     if "shafts" in read_table(source):
         subject: Any = scene_of(source)[0]
     else:
-        subject = CheckedCase(read_model(Case, source))
+        subject = CASES.of(read_model(Case, source))
     inputs = inputs_of_study(study, subject, project, {})
     return study_cost(study, study.run.narrowed(subject, inputs), project, inputs)
 

@@ -19,7 +19,7 @@ from host.directories import cache_home
 from lineofaction.cli.guard import warn
 from lineofaction.cli.output import Report
 from lineofaction.gearbox.convert.case import CheckedCase, CheckedCases, case_at, case_json
-from lineofaction.gearbox.convert.live import plan_of
+from lineofaction.gearbox.convert.live import cost_of
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.input_file import InputFile
@@ -33,7 +33,7 @@ from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.reading import located
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.studied import OverSpeeds
-from lineofaction.gearbox.studies.cost import StudyCost, Work
+from lineofaction.gearbox.studies.cost import CASES, StudyCost, Work
 from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.subjects import MeshTables, finished, scene_of, with_own_cases
 from lineofaction.gearbox.tabled_scene import ComputedTables
@@ -105,7 +105,7 @@ def study_cost(
 
 def table_cost(case: Case) -> StudyCost:
     """Return the predicted cost of the table of a case."""
-    cost = plan_of(CheckedCase(case), None, cache_home() / "compliance").chosen.cost
+    cost = cost_of(CASES.of(case), cache_home() / "compliance")
     return StudyCost((Work("tables", cost.cpu_seconds),), cost.memory_bytes)
 
 

@@ -17,10 +17,12 @@ from fe_contact.analysis.flanks.deformed_pair import mesh_angles
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution, load_distribution, pressure_map
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.condensed_request import condensed_pair
+from fe_contact.analysis.request.model_choice import Decided, decide
 from fe_contact.analysis.run_plan import RunPlan, plan_run
 from fe_contact.geometry import ParallelAxes, Toothing, tooth_profile
 from fe_contact.microgeometry.linearized_design import CurveDerivatives, FlankDerivatives, curve_derivatives
 from fe_contact.microgeometry.tolerances import iso1328_tolerances
+from fe_contact.planning.cost_model import Prediction
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 from host import cpu_seconds
@@ -46,6 +48,20 @@ def plan_of(case: CheckedCase, time_budget_s: float | None, cache: Path | None) 
     checked = case.checked
     with boundary_errors():
         return plan_run(checked, time_budget=time_budget_s, cache=cache)
+
+
+def cost_of(case: CheckedCase, cache: Path | None) -> Prediction:
+    """Return the cost of the table of a case: that of its plan, whose other levels are not predicted.
+
+    Raises `BadInput`: no such pair, or a request that no plan can meet.
+    """
+    decided = case.request(_decided, cache)
+    with boundary_errors():
+        return decided.predicted(cache)
+
+
+def _decided(case: CheckedCase, cache: Path | None) -> Decided:
+    return decide(case.checked, cache, tried=True)
 
 
 def plan_json(plan: RunPlan) -> Json:

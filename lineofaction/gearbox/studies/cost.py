@@ -11,13 +11,15 @@ from dynamics.assembly.assemble import System, assemble
 from dynamics.mechanism.kinematics import at_steady_speeds
 from dynamics.scene import Scene
 from fe_contact.ste import PairFacts
-from lineofaction.gearbox.convert.case import CheckedCase
+from lineofaction.gearbox.convert.case import CheckedCases
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.scene import SceneInput
 
 _SMALL = 0.02
 """Share of the whole below which a part is not named."""
+CASES = CheckedCases(16)
+"""Cases whose costs were predicted last: those of a scene and of several verbs are checked once."""
 
 
 class Work(NamedTuple):
@@ -79,9 +81,7 @@ def _facts(scene: SceneInput) -> dict[str, PairFacts] | None:
     cases = {mesh.name: mesh.case for _, mesh in scene.with_database}
     if not all(isinstance(case, Case) for case in cases.values()):
         return None
-    return {
-        name: PairFacts.of(CheckedCase(case).feasible.request.pair) for name, case in cases.items() if case
-    }
+    return {name: PairFacts.of(CASES.of(case).feasible.request.pair) for name, case in cases.items() if case}
 
 
 def scene_before_tables(scene: SceneInput) -> Scene | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections import Counter, OrderedDict
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +12,16 @@ import pytest
 from command_line import loa
 from spur_case import spur_case
 
+from host.directories import cache_home
 from lineofaction.cli import run_study
-from lineofaction.cli.subjects import study_cost
+from lineofaction.cli.status import run_status
+from lineofaction.cli.subjects import study_cost, table_cost
+from lineofaction.gearbox.convert import live
 from lineofaction.gearbox.convert.case import CheckedCase
+from lineofaction.gearbox.convert.live import plan_of
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, read_model, validated
-from lineofaction.gearbox.studies.cost import StudyCost, Work
+from lineofaction.gearbox.studies.cost import CASES, StudyCost, Work
 from lineofaction.gearbox.subjects import scene_of
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
@@ -93,3 +98,32 @@ def test_the_status_sums_what_is_due(case: CheckedCase, tmp_path: Path) -> None:
     (tmp_path / "case.nc").write_bytes(b"")  # newer than the case
     less = json.loads(loa("status", tmp_path, "--json").stdout)
     assert less["due_cpu_seconds"] < facts["due_cpu_seconds"]
+
+
+def test_a_table_costs_what_its_plan_says(case: CheckedCase) -> None:
+    cost = table_cost(case.case)
+    planned = plan_of(case, None, cache_home() / "compliance").chosen.cost
+    assert cost.seconds == pytest.approx(planned.cpu_seconds)
+    assert cost.bytes == planned.memory_bytes
+
+
+def test_the_status_checks_each_case_of_a_unit_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    loa("open", EXAMPLES / "two_stage" / "two_stage.rexs", "-o", tmp_path / "unit")
+    checks: Counter[tuple[str, str]] = Counter()
+    decisions: list[str] = []
+    checked, decided = CheckedCase._checked, live._decided
+
+    def checked_and_counted(own: CheckedCase, **how: bool) -> Any:
+        checks[own.case.model_dump_json(), str(how)] += 1
+        return checked(own, **how)
+
+    def decided_and_counted(own: CheckedCase, cache: Path | None) -> Any:
+        decisions.append(own.case.model_dump_json())
+        return decided(own, cache)
+
+    monkeypatch.setattr(CheckedCase, "_checked", checked_and_counted)
+    monkeypatch.setattr(CASES, "_kept", OrderedDict())
+    monkeypatch.setattr(live, "_decided", decided_and_counted)
+    run_status(tmp_path / "unit", as_json=True)
+    assert set(checks.values()) == {1}
+    assert len(decisions) == len(set(decisions)) == 2

@@ -14,14 +14,14 @@ from dynamics.deflection import CaseDeflection, MeshAlignment, deflect
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution, pressure_map
 from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.types import FloatArray
-from lineofaction.gearbox.convert.case import PLANE, CheckedCase, across_face, boundary_errors
+from lineofaction.gearbox.convert.case import PLANE, across_face, boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.bodies import UNIT
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
-from lineofaction.gearbox.studies.cost import StudyCost, Work
+from lineofaction.gearbox.studies.cost import CASES, StudyCost, Work
 from lineofaction.gearbox.studies.deflect import DeflectFigures, Inputs
 from lineofaction.gearbox.studies.deflect.agreement import (
     Agreement,
@@ -55,9 +55,9 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
         cases = [case for mesh in scene.meshes if isinstance(case := mesh.case, Case)]
         for case in {case.model_dump_json(): case for case in cases}.values():
             with boundary_errors():
-                own = predicted = predicted_designs(CheckedCase(case).checked, cache)
+                own = predicted = predicted_designs(CASES.of(case).checked, cache)
                 if not own.across_face and case.accuracy.model not in PLANE:
-                    predicted = predicted_designs(across_face(CheckedCase(case)).checked, cache)
+                    predicted = predicted_designs(across_face(CASES.of(case)).checked, cache)
                     gears = Work("gears", predicted.bodies)  # otherwise those of its table
                     cost += StudyCost((gears,), predicted.bytes)
             knots = FIRST_KNOTS + count * USUAL_PASSES if predicted.across_face else 0
