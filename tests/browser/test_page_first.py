@@ -58,6 +58,27 @@ def test_no_figure_of_a_result_stands_under_the_title_of_another(
     page.close()
 
 
+@pytest.mark.law
+def test_a_design_that_is_opened_leaves_the_result_of_another_behind(browser: Browser, address: str) -> None:
+    page = opened(browser, f"{address}/#").page
+    figures, note = page.locator("#live-figures"), page.locator(".design-note")
+    expect(figures).to_contain_text("peak to peak")
+    control(page, "#f-pair-pinion-tip_relief_um").fill("12")
+    expect(note).to_contain_text("Edited since")
+    expect(figures).to_contain_text("peak to peak")
+    for open_another in (
+        lambda: page.locator("#example").select_option("empty"),
+        lambda: page.locator("#import-file").set_input_files(UNIT),
+    ):
+        open_another()
+        expect(figures).to_be_empty()
+        expect(note).to_have_count(0)
+        expect(page.locator("#results-none")).to_be_visible()
+        page.go_back()
+        expect(figures).to_contain_text("peak to peak")
+    page.close()
+
+
 @pytest.mark.nightly
 def test_the_result_that_came_with_the_program_is_that_of_a_service(address: str) -> None:
     known = json.loads((STATIC / "first.json").read_text(encoding="utf-8"))
@@ -65,6 +86,7 @@ def test_the_result_that_came_with_the_program_is_that_of_a_service(address: str
     assert first_result(address)["curve"] == pytest.approx(known["curve"], rel=1e-4, abs=1e-9)
 
 
+UNIT = Path(__file__).parents[2] / "examples" / "two_stage_gearbox.rexs"
 STATIC = Path(__file__).parents[2] / "service" / "page" / "static"
 BEYOND = """() => ["#live-figures", "#analyze", "#thing", "#live-ripple .plot"].filter((name) => {
   const { right, bottom } = document.querySelector(name).getBoundingClientRect();

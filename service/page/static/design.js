@@ -106,14 +106,16 @@ export class Design {
    *   same unit
    */
   goTo(content, note, { example = "", name } = {}) {
+    const another = name !== undefined; // of which the result is none
     this.address.push({});
-    this.address.view(name === undefined ? { see: null } : { see: null, unit: null, name });
-    if (name !== undefined) byId("name").value = name;
+    this.address.view(another ? { see: null, unit: null, live: null, name } : { see: null });
+    if (another) byId("name").value = name;
     this.left();
     const replaced = differences(this.fields, this.case, content).filter(({ field }) => field.path[0] !== "pair");
     this.show(content, { example, note, replaced: settingsReplaced(replaced) });
     this.settled();
     this.address.keep(this.address.typed());
+    if (another) document.dispatchEvent(new Event("another"));
     for (const { field } of replaced) field.entry.classList.add("replaced");
   }
 

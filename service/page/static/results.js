@@ -38,6 +38,7 @@ export class Results {
       const report = folded("As analyzed", make("div", { id: `report-${tab}`, class: "report" }));
       byId(tab).prepend(make("div", { class: "live", id: `live-${tab}` }), report);
     }
+    document.addEventListener("another", () => this.leave());
   }
 
   /**
@@ -50,6 +51,13 @@ export class Results {
     this.retype();
     document.dispatchEvent(new Event("opened"));
     await this.live.restored();
+  }
+
+  /** Another design was opened, not edited: unless the result is of it, it stays behind in the history. */
+  leave() {
+    if (this.key === null || !this.design.edits(this.note.content).length) return;
+    this.address.replace({ database: null }, {});
+    this.show(null);
   }
 
   /** Whether the result of the address is the one that is shown. */
@@ -125,9 +133,10 @@ export class Results {
   /** Show what the first example gave when the program was made: nothing is computed. */
   async still() {
     const { title, curve, case: content } = await patiently(() => get("/page/first.json"));
-    if (this.key) return;
+    if (this.key !== null || !this.address.empty) return;
     byId("results-none").hidden = true;
     byId("dock-words").textContent = `${title}. It came with the program; Analyze computes it here and frees the sliders.`;
+    this.key = ""; // it has none
     this.note.of(content);
     await this.live.still(content, curve);
   }
