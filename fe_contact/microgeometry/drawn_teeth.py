@@ -1,13 +1,15 @@
-"""Teeth of one gear within the tolerances of a class: run-out, pitches, slopes and forms of single flanks."""
+"""Teeth of one gear within the tolerances of a class: run-out, wobble, pitches, single flanks."""
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fe_contact.geometry import ParallelAxes, PitchDeviation, RunOut, ToothFlank, Toothing
 from fe_contact.geometry.flank_tolerances import run_out_tolerance, single_pitch_tolerance
@@ -22,7 +24,13 @@ from fe_contact.microgeometry.tolerances import (
 from fe_contact.microgeometry.variables import ACROSS_FACE
 from fe_contact.types import FloatArray
 
-RUN_OUT, PITCH, FLANK = "run_out", "pitch_deviation", "tooth_flanks."
+ComplexArray = NDArray[np.complex128]
+
+RUN_OUT, WOBBLE, PITCH, FLANK = "run_out", "wobble", "pitch_deviation", "tooth_flanks."
+OF_AXIS = (RUN_OUT, WOBBLE)
+"""What the axis of the teeth does, once per revolution."""
+WOBBLE_SHARE = 0.5
+"""Assumed: wobble makes half of the variance of helix slopes from tooth to tooth; it is not measured."""
 
 
 @dataclass(frozen=True)
@@ -34,10 +42,11 @@ class ToothTolerances:
     gear : {"pinion", "wheel"}
     teeth : int
     widths : mapping
-        Half widths in m: ``run_out``, the eccentricity; ``pitch_deviation``, the place of each tooth;
+        Half widths in m: ``run_out``, the eccentricity; ``wobble``, the largest helix slope of a revolution;
+        ``pitch_deviation``, the place of each tooth;
         ``tooth_flanks.profile_slope`` and the like, the part of a tolerance that teeth have not in common.
     distribution : {"normal", "uniform"}
-        As of `Tolerances`. A normal eccentricity is so in both directions.
+        As of `Tolerances`. Normal eccentricity and wobble are so in both directions.
     """
 
     gear: str
@@ -52,17 +61,23 @@ class ToothTolerances:
 
     def drawn(self, count: int, seed: int) -> DrawnTeeth:
         """Draw gears; a larger sample of the same seed begins with a smaller one."""
-        of_teeth = [name for name in self.widths if name != RUN_OUT]
-        uniform = np.random.default_rng(seed).random((count, 2 + len(of_teeth) * self.teeth))
-        each = uniform[:, 2:].reshape(count, len(of_teeth), self.teeth)
+        of_axis = [name for name in OF_AXIS if name in self.widths]
+        of_teeth = [name for name in self.widths if name not in OF_AXIS]
+        of_both = 2 * len(of_axis)
+        uniform = np.random.default_rng(seed).random((count, of_both + len(of_teeth) * self.teeth))
+        each = uniform[:, of_both:].reshape(count, len(of_teeth), self.teeth)
+        by_axis = {
+            name: self._amounts(name, uniform[:, 2 * k]) * np.exp(2j * math.pi * uniform[:, 2 * k + 1])
+            for k, name in enumerate(of_axis)
+        }
         by_tooth = {
             name: spread_within(self.widths[name], each[:, k], self.distribution)
             for k, name in enumerate(of_teeth)
         }
-        return DrawnTeeth(self._eccentricity(uniform[:, 0]), 2.0 * math.pi * uniform[:, 1], by_tooth)
+        return DrawnTeeth(by_axis, by_tooth)
 
-    def _eccentricity(self, uniform: FloatArray) -> FloatArray:
-        limit = self.widths[RUN_OUT]
+    def _amounts(self, name: str, uniform: FloatArray) -> FloatArray:
+        limit = self.widths[name]
         if self.distribution == "uniform":
             return np.asarray(limit * uniform)
         below = 1.0 - math.exp(-0.5 * PROCESS_SPREAD**2)
@@ -75,19 +90,20 @@ class DrawnTeeth:
 
     Attributes
     ----------
-    eccentricity, angle : ndarray, shape (N,)
-        m and rad, as of `RunOut`.
+    by_axis : mapping of str to ndarray, shape (N,)
+        Eccentricity and wobble in m, their angles as of `RunOut`: complex.
     by_tooth : mapping of str to ndarray, shape (N, z)
         Pitch deviations on the reference circle and deviations of single flanks, m; > 0 is material in
         excess.
     """
 
-    eccentricity: FloatArray
-    angle: FloatArray
+    by_axis: Mapping[str, ComplexArray]
     by_tooth: Mapping[str, FloatArray]
 
     def fields(self, index: int) -> dict[str, Any]:
         """Return the fields of one of the gears."""
+        turning = (complex(self.by_axis[name][index]) if name in self.by_axis else 0j for name in OF_AXIS)
+        axis = [figure for amount in turning for figure in cmath.polar(amount)]
         own = {name: values[index].tolist() for name, values in self.by_tooth.items()}
         pitch = own.pop(PITCH, ())
         figures = {name.removeprefix(FLANK): values for name, values in own.items()}
@@ -96,7 +112,7 @@ class DrawnTeeth:
             for tooth, amounts in enumerate(zip(*figures.values(), strict=True), start=1)
         )
         return {
-            "run_out": RunOut(float(self.eccentricity[index]), float(self.angle[index])),
+            "run_out": RunOut(*axis),
             "pitch_deviation": PitchDeviation(tuple(pitch)),
             "tooth_flanks": flanks,
         }
@@ -115,14 +131,18 @@ def iso1328_tooth_tolerances(
 
     The eccentricity is at most half the run-out F_rT. A tooth is at most half of f_pT out of its place, so
     that no pitch is out by more than f_pT. Of a slope or form of which all teeth have the part c in common,
-    the rest is the root of 1 - c^2 of the tolerance (`COMMON`).
+    the rest is the root of 1 - c^2 of the tolerance (`COMMON`). Wobble is a helix slope once per revolution:
+    of the square of this rest it has the part `WOBBLE_SHARE`, single flanks have the others.
     """
     own: Toothing = getattr(pair, gear)
-    widths = {
-        RUN_OUT: 0.5 * run_out_tolerance(own, tolerance_class),
-        PITCH: 0.5 * single_pitch_tolerance(own, tolerance_class),
+    flanks = {
+        FLANK + quantity: math.sqrt(1.0 - part**2) * tolerance(own, tolerance_class)
+        for (quantity, tolerance), part in zip(OF_A_CLASS.items(), COMMON[finishing], strict=True)
+        if part < 1.0 and (across_face or quantity not in ACROSS_FACE)
     }
-    for (quantity, tolerance), part in zip(OF_A_CLASS.items(), COMMON[finishing], strict=True):
-        if part < 1.0 and (across_face or quantity not in ACROSS_FACE):
-            widths[FLANK + quantity] = math.sqrt(1.0 - part**2) * tolerance(own, tolerance_class)
+    widths = {RUN_OUT: 0.5 * run_out_tolerance(own, tolerance_class)}
+    if (slope := FLANK + "helix_slope") in flanks:
+        widths[WOBBLE] = math.sqrt(WOBBLE_SHARE) * flanks[slope]
+        flanks[slope] *= math.sqrt(1.0 - WOBBLE_SHARE)
+    widths |= {PITCH: 0.5 * single_pitch_tolerance(own, tolerance_class), **flanks}
     return ToothTolerances(gear, own.teeth, widths, distribution)

@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import sobol_indices
 
 from fe_contact.contact import Candidates
@@ -24,7 +23,16 @@ from fe_contact.effects import EFFECTS
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.geometry.tooth_flank import tooth_shapes
-from fe_contact.microgeometry.drawn_teeth import FLANK, PITCH, RUN_OUT, DrawnTeeth, ToothTolerances
+from fe_contact.microgeometry.drawn_teeth import (
+    FLANK,
+    OF_AXIS,
+    PITCH,
+    RUN_OUT,
+    WOBBLE,
+    ComplexArray,
+    DrawnTeeth,
+    ToothTolerances,
+)
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.order_limit import (
     BASE_PAIRS,
@@ -37,8 +45,6 @@ from fe_contact.microgeometry.order_limit import (
 from fe_contact.microgeometry.scatter import ScatterNodes
 from fe_contact.options import Run
 from fe_contact.types import FloatArray
-
-ComplexArray = NDArray[np.complex128]
 
 IN_A_TASK = 4
 """Pairs of a task."""
@@ -54,12 +60,18 @@ class ToothPassing:
     ----------
     line : int
         The order, per revolution of the gear.
+    turns : int
+        By how many turns of the gear it is beside the mesh.
     by_tooth : mapping of str to ndarray, shape (L,)
         Complex amplitude by the Fourier sum of a deviation over the teeth, m/m.
+    by_wobble : ndarray, shape (L,)
+        By the amount of wobble at the angle 0, m/m: where the load is off mid-face as a pitch passes.
     """
 
     line: int
+    turns: int
     by_tooth: Mapping[str, ComplexArray]
+    by_wobble: ComplexArray
 
     @classmethod
     def of(cls, evaluator: Evaluator, limit: OrderLimit, names: Sequence[str]) -> ToothPassing:
@@ -68,20 +80,26 @@ class ToothPassing:
         c, teeth = problem.candidates, limit.teeth(pair)
         weight, _ = load_weights(problem, solution, np.empty((0, *c.gap.shape)))
         line = limit.line(pair)
-        at = c.position[:, None] + c.pair
-        passing = weight * (c.motion_arm * np.exp(-2j * math.pi * line / teeth * at))[:, None]
+        arm, turn = weight * c.motion_arm[:, None], -2j * math.pi / teeth
+        passing = arm * np.exp(turn * line * (c.position[:, None] + c.pair))[:, None]
+        wobbling = arm * np.exp(turn * (line - limit.turns) * c.position)[:, None, None]
         shapes = _shapes(pair, c, limit.gear)
-        rows = passing.shape[0]
-        return cls(
-            line,
-            {name: -2.0 / (teeth * rows) * np.einsum("plm,pm->l", passing, shapes[name]) for name in names},
-        )
+        rows, once = passing.shape[0], abs(limit.turns) == 1
+
+        def added(passing: ComplexArray, name: str) -> ComplexArray:
+            return np.asarray(np.einsum("plm,pm->l", passing, shapes[name]) / rows)
+
+        by_tooth = {name: -2.0 / teeth * added(passing, name) for name in names}
+        return cls(line, limit.turns, by_tooth, -once * added(wobbling, WOBBLE))
 
     def lines(self, drawn: DrawnTeeth) -> ComplexArray:
-        """Return what each deviation adds to the order of N gears, (d, N, L) in m: run-out first."""
-        loads = len(next(iter(self.by_tooth.values())))
-        turning = -drawn.eccentricity * np.exp(-1j * drawn.angle) * (self.line == 1)
-        parts = [np.repeat(turning[:, None], loads, axis=1)]
+        """Return what each deviation adds to the order of N gears, (d, N, L) in m: of the axis first."""
+        loads = len(self.by_wobble)
+        once = {RUN_OUT: np.full(loads, -1.0 * (self.line == 1)), WOBBLE: self.by_wobble}
+        parts = []
+        for name, amount in drawn.by_axis.items():
+            sense = amount if self.turns < 0 else amount.conj()
+            parts.append(np.outer(sense, once[name]))
         for name, values in drawn.by_tooth.items():
             teeth = values.shape[1]
             wave = np.exp(-2j * math.pi * self.line / teeth * np.arange(teeth))
@@ -97,6 +115,7 @@ def _shapes(pair: ParallelAxes, c: Candidates, gear: str) -> dict[str, FloatArra
     wheel = gear == "wheel"
     face = c.face_position - (pair.axial_offset if wheel else 0.0)
     shapes = {FLANK + name: shape for name, shape in tooth_shapes(own, rolls[int(wheel)], face).items()}
+    shapes[WOBBLE] = face / own.face_width + np.zeros(there.shape)
     shapes[PITCH] = np.full(there.shape, math.cos(own.transverse_pressure_angle))
     return {name: np.where(there, shape, 0.0) for name, shape in shapes.items()}
 
@@ -155,7 +174,7 @@ def sidebands_above(
     teeth : ToothTolerances
         By which those of the pairs were drawn.
     """
-    passing = ToothPassing.of(designed, limit, [name for name in teeth.widths if name != RUN_OUT])
+    passing = ToothPassing.of(designed, limit, [name for name in teeth.widths if name not in OF_AXIS])
     numbers = range(len(pairs.deviation))
     tasks = [(passing.line, numbers[k : k + IN_A_TASK]) for k in range(0, len(numbers), IN_A_TASK)]
     solved = []
