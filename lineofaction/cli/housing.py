@@ -105,16 +105,23 @@ def _vector(option: str, text: str) -> Any:
 
 
 def _write(file: InputFile, step: Path, output: Path, made: StepHousing) -> list[Path]:
-    """Write the scene with its housing, and the STEP file beside it."""
+    """Write the scene with its housing, and the STEP file beside it.
+
+    A file of another content under its name is replaced where the housing that is replaced is alone of it.
+    """
     target = output.parent / step.name
     beside_it = target.exists() and target.samefile(step)
-    if target.exists() and not beside_it and target.read_bytes() != step.read_bytes():
-        raise BadInput.of("output", str(target), "free for the STEP file", "Choose another folder or name.")
     base = read_table(file)
-    others = [part for part in base.get("housings", []) if part.get("name") not in made.replaced]
+    there = base.get("housings", [])
+    others = [part for part in there if part.get("name") not in made.replaced]
+    of_file = [part for part in there if part.get("step_file") == step.name]
+    revised = output == file.path and of_file and not any(part in others for part in of_file)
+    free = beside_it or revised or not target.exists()
+    if not free and target.read_bytes() != step.read_bytes():
+        raise BadInput.of("output", str(target), "free for the STEP file", "Choose another folder or name.")
     taken = {part.get("name") for part in others}
-    free = (own for own in ("housing", *(f"housing {k}" for k in range(2, 102))) if own not in taken)
-    housing = {"name": [*made.replaced, *free][0], "step_file": step.name, **made.fields}
+    unused = (own for own in ("housing", *(f"housing {k}" for k in range(2, 102))) if own not in taken)
+    housing = {"name": [*made.replaced, *unused][0], "step_file": step.name, **made.fields}
     table = base | {"housings": [*others, housing]}
     find = beside(output.parent)
     content = written_out(table, lambda own, field: step if own == step.name else find(own, field), READERS)

@@ -187,6 +187,19 @@ def test_the_scene_of_a_folder_is_written_in_place(block: Path, scene: Path, tmp
     assert (tmp_path / "block.step").read_bytes() == block.read_bytes()
 
 
+def test_a_revision_takes_the_place_of_the_file_of_the_folder(
+    block: Path, scene: Path, tmp_path: Path
+) -> None:
+    revised = tmp_path / "sent" / "block.step"
+    revised.parent.mkdir()
+    revised.write_text(block.read_text() + "\n")
+    for step in (block, revised):
+        ended = loa("housing", tmp_path, step, "--material", "gray_cast_iron")
+        assert ended.exit_code == 0, ended.output
+        assert (tmp_path / "block.step").read_bytes() == step.read_bytes()
+        assert [part["step_file"] for part in tomllib.loads(scene.read_text())["housings"]] == ["block.step"]
+
+
 def test_a_bearing_in_no_bore_is_the_first_line(block: Path, scene: Path, tmp_path: Path) -> None:
     table = tomllib.loads(scene.read_text())
     table["bushings"].append(table["bushings"][0] | {"name": "outboard", "position_mm": 150.0})
