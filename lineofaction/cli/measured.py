@@ -13,7 +13,8 @@ from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.inspection.as_made import Inspected, measured_case
 from lineofaction.gearbox.inspection.evaluation import Split
 from lineofaction.gearbox.inspection.measured_gear import MeasuredGear, inspected
-from lineofaction.gearbox.inspection.sheet import FIELD, Flank, sheet_text
+from lineofaction.gearbox.inspection.reading import FIELD
+from lineofaction.gearbox.inspection.sheet import Flank, sheet_text
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.gearbox.schemas.files import read_text

@@ -82,7 +82,7 @@ class InspectionInput(BoundaryModel):
     csv: str = Field(
         min_length=1,
         max_length=16_000_000,
-        description="The text of the sheet (docs/how-to/measured-gear.md)",
+        description="The sheet, CSV or the curve file of a machine (docs/how-to/measured-gear.md)",
         examples=["tooth,flank,trace,deviation_um\n1,right,pitch,0.0\n"],
     )
     gear: Literal["pinion", "wheel"] = Field(description="The gear that was inspected", examples=["pinion"])

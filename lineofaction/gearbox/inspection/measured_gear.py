@@ -12,11 +12,11 @@ import numpy as np
 from fe_contact.geometry import Toothing
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.inspection.evaluation import Split, split
-from lineofaction.gearbox.inspection.sheet import FIELD, PITCHES, Flank, Point, Sheet
+from lineofaction.gearbox.inspection.reading import ADVICE, FIELD
+from lineofaction.gearbox.inspection.sheet import LEFT_OUT, PITCHES, Flank, Point, Sheet
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.units import MM, UM
 
-LEFT_OUT = "left out: "
 OTHER_FLANK = f"{LEFT_OUT}not the loaded flank"
 _LISTED = 61
 """Points of a trace that is written."""
@@ -83,7 +83,7 @@ def measured_gear(sheet: Sheet, chart: Chart, name: str, cutoff: float | None = 
 
     Raises `BadInput`: pitches of some teeth alone or stated twice, a trace that cannot be evaluated.
     """
-    account = Counter({"heading": 1, "comment or blank": sheet.silent})
+    account = Counter(sheet.account)
     traces: dict[tuple[int, str], list[Point]] = defaultdict(list)
     over_flank = {point.tooth for point in sheet.points if _taken(point, chart) == "topography"}
     for point in sheet.points:
@@ -98,8 +98,7 @@ def measured_gear(sheet: Sheet, chart: Chart, name: str, cutoff: float | None = 
         splits = dict(_splits(traces, cutoff))
         surfaces = {tooth: _surface(traces[tooth, "topography"]) for tooth in over_flank}
     except ValueError as fault:
-        advice = "See docs/how-to/measured-gear.md."
-        raise BadInput.of(FIELD, name, str(fault), advice) from None
+        raise BadInput.of(FIELD, name, str(fault), ADVICE) from None
     flanks = [
         _flank(tooth, splits, surfaces, chart)
         for tooth in sorted({tooth for tooth, _ in splits} | over_flank)

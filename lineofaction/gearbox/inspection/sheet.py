@@ -6,24 +6,22 @@ import csv
 import io
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
 from fe_contact.geometry import Toothing
-from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.csv_rows import Cells, csv_rows, number_in
 from lineofaction.gearbox.units import DEGREE, MM, UM
 
 Flank = Literal["left", "right"]
-FIELD = "measured"
+LEFT_OUT = "left out: "
 PITCHES = ("pitch", "cumulative_pitch")
 TRACES = (*PITCHES, "profile", "helix", "topography")
 PROFILE = ("roll_length_mm", "roll_angle_deg", "diameter_mm")
 FACE = ("face_position_mm", "face_distance_mm")
-_HELP = "See docs/how-to/measured-gear.md."
 _TOOTH = re.compile(r"[0-9]{1,4}")
-_LARGEST = 1000.0
+LARGEST_UM = 1000.0
 """um; larger deviations are in another unit."""
 MOST_POINTS = 200_000
 
@@ -55,22 +53,23 @@ class Point:
 
 @dataclass(frozen=True)
 class Sheet:
-    """What a file holds; its lines are the points, the heading, and `silent` comments and blank ones."""
+    """What a file holds: points, and the number of its other lines or points by what became of them."""
 
     points: tuple[Point, ...]
-    lines: int
-    silent: int
+    account: Mapping[str, int]
 
 
-def read_sheet(text: str, gear: Toothing, name: str) -> Sheet:
+def csv_sheet(text: str, gear: Toothing) -> Sheet:
     """Return the points that the text of a CSV file holds, of a gear.
 
-    Raises `BadInput`: the first line that is none, by its number.
+    Raises `ValueError`: the first line that is none, by its number.
     """
-    try:
-        return _sheet(text, gear)
-    except ValueError as fault:
-        raise BadInput.of(FIELD, name, str(fault), _HELP) from None
+    file = csv_rows(text, MOST_POINTS)
+    _check_heading(file.heading)
+    points = tuple(_point(number, row, gear) for number, row in file.rows())
+    if not points:
+        raise ValueError("a file with a row per point; it has a heading alone")
+    return Sheet(points, {"heading": 1, "comment or blank": file.silent})
 
 
 def sheet_text(points: Iterable[Point]) -> str:
@@ -87,16 +86,6 @@ def sheet_text(points: Iterable[Point]) -> str:
 
 def _written(value: float | None, unit: float) -> str:
     return "" if value is None else f"{value / unit + 0.0:.9g}"
-
-
-def _sheet(text: str, gear: Toothing) -> Sheet:
-    file = csv_rows(text, MOST_POINTS)
-    _check_heading(file.heading)
-    points = tuple(_point(number, row, gear) for number, row in file.rows())
-    if not points:
-        raise ValueError("a file with a row per point; it has a heading alone")
-    _refuse_repeated(points)
-    return Sheet(points, file.lines, file.silent)
 
 
 def _check_heading(heading: list[str]) -> None:
@@ -124,8 +113,8 @@ def _point(line: int, row: Cells, gear: Toothing) -> Point:
     roll = _roll(row, gear, line) if trace in ("profile", "topography") else None
     face = _face(row, gear, line) if trace in ("helix", "topography") else None
     deviation = number_in(row, "deviation_um", line)
-    if abs(deviation) > _LARGEST:
-        raise ValueError(f"a file of deviations up to {_LARGEST:g} µm; line {line} has {deviation:g}")
+    if abs(deviation) > LARGEST_UM:
+        raise ValueError(f"a file of deviations up to {LARGEST_UM:g} µm; line {line} has {deviation:g}")
     side: Flank = "left" if flank == "left" else "right"
     return Point(line, int(tooth), side, trace, roll, face, deviation * UM)
 
@@ -155,14 +144,3 @@ def _face(row: Cells, gear: Toothing, line: int) -> float:
         raise ValueError(f"a file with one of the columns {', '.join(FACE)}: line {line} is along the face")
     value = number_in(row, column, line) * MM
     return value if column == "face_position_mm" else value - 0.5 * gear.face_width
-
-
-def _refuse_repeated(points: Iterable[Point]) -> None:
-    seen: dict[tuple[object, ...], int] = {}
-    for point in points:
-        place = (point.tooth, point.flank, point.trace, point.roll, point.face)
-        if place in seen:
-            raise ValueError(
-                f"a file that gives each point once; line {point.line} repeats line {seen[place]}"
-            )
-        seen[place] = point.line

@@ -17,7 +17,7 @@ const count = (id, label, value, most) => make(
 export function offerAsMade(design, careful) {
   const gear = choice("made-gear", "Measured gear", { pinion: "pinion", wheel: "wheel" });
   const loaded = choice("made-loaded", "Flanks that carry", { right: "right flanks carry", left: "left flanks carry" });
-  const file = make("input", { class: "hidden-file", id: "made-file", type: "file", accept: ".csv,.txt", "aria-label": "Open the sheet of an inspection, CSV" });
+  const file = make("input", { class: "hidden-file", id: "made-file", type: "file", accept: ".csv,.txt,.mka", "aria-label": "Open the sheet of an inspection, CSV or MKA" });
   const stated = (how, note) => careful(async () => {
     const { case: made, left_out: left } = await ask("as-made", { inputs: { case: design.case }, ...how });
     design.renew(made, [note, ...left.map((text) => `Left out: ${text}`)].join(". "));

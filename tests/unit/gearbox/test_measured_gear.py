@@ -5,7 +5,6 @@ from __future__ import annotations
 import builtins
 import json
 import math
-import random
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,13 +12,15 @@ from typing import Any
 import numpy as np
 import pytest
 from command_line import loa, printed
+from damaged_text import damaged
 from spur_case import spur_case
 
 from fe_contact.geometry import Gear, PitchDeviation, RingGear, ToothFlank, Toothing
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.inspection.evaluation import gaussian, split
 from lineofaction.gearbox.inspection.measured_gear import Chart, MeasuredGear, inspected, measured_gear
-from lineofaction.gearbox.inspection.sheet import Flank, read_sheet, sheet_text
+from lineofaction.gearbox.inspection.reading import read_sheet
+from lineofaction.gearbox.inspection.sheet import Flank, sheet_text
 from lineofaction.gearbox.problems import EXIT_WARNINGS, BadInput
 from lineofaction.gearbox.schemas import Case, read_model
 
@@ -168,35 +169,6 @@ PROFILE = [f"1,right,profile,{4 + 0.1 * k:.3f},,{k % 3}" for k in range(100)]
 )
 def test_a_sheet_is_refused_by_what_is_wrong(lines: list[str], said: str) -> None:
     assert said in refused("\n".join(lines))
-
-
-JUNK = ("\0", "\x1b[2J", "/etc/passwd", "=cmd()", "\u202e", "1e999", '"', ",,,,", "\ufffd", "-")
-
-
-def damaged(text: str, seed: int) -> str:
-    """Return a text with one kind of damage: bytes lost, turned or added, lines lost, mixed or doubled."""
-    draw = random.Random(seed)
-    lines = text.splitlines()
-    at, row = draw.randrange(len(text)), draw.randrange(len(lines))
-    junk = draw.choice(
-        ["\0", "\x1b[2J", "/etc/passwd", "=cmd()", "\u202e", "1e999", '"', ",,,,", "\ufffd", "-"]
-    )
-    match seed % 6:
-        case 0:
-            return text[:at]
-        case 1:
-            return text[:at] + junk + text[at:]
-        case 2:
-            return text[:at] + text[at + draw.randrange(1, 40) :]
-        case 3:
-            return "\n".join(lines[:row] + lines[row + 1 :])
-        case 4:
-            draw.shuffle(lines)
-            return "\n".join(lines)
-        case _:
-            cells = lines[row].split(",")
-            cells[draw.randrange(len(cells))] = junk
-            return "\n".join((*lines[:row], ",".join(cells), *lines[row + 1 :]))
 
 
 def test_a_hundred_damaged_sheets_are_refused_once_or_accounted_for(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,209 @@
+"""Curve files of measuring machines say the same of a gear as its sheet; every line has its fate."""
+
+from __future__ import annotations
+
+import builtins
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from command_line import printed
+from damaged_text import damaged
+from spur_case import spur_case
+
+from fe_contact.geometry import Gear, PitchDeviation, ToothFlank
+from lineofaction.gearbox.inspection.machine_file import OTHER_TRACE, UNKNOWN, UNMEASURED
+from lineofaction.gearbox.inspection.measured_gear import Chart, MeasuredGear, inspected, measured_gear
+from lineofaction.gearbox.inspection.reading import read_sheet
+from lineofaction.gearbox.inspection.sheet import Flank, sheet_text
+from lineofaction.gearbox.problems import BadInput
+
+TEETH = 20
+PITCHES = PitchDeviation(tuple(1e-6 * np.random.default_rng(5).normal(0.0, 4.0, TEETH)))
+FLANKS = (ToothFlank(3, 4e-6, -2e-6, 2, -3e-6), ToothFlank(20, -1e-6, helix_form=3e-6))
+GEAR = Gear(TEETH, 4e-3, 25e-3, 40e-3, pitch_deviation=PITCHES, tooth_flanks=FLANKS)
+SIDES = {"left": "links", "right": "rechts"}
+TABLES = {"left": "linke", "right": "rechte"}
+
+
+def diameter(roll: float) -> float:
+    return 2e3 * math.hypot(roll, GEAR.base_radius)
+
+
+def heading(separate: bool) -> Iterator[str]:
+    ends = sorted((GEAR.form_roll_length, GEAR.tip_roll_length))
+    yield from ("HEADER KS.MK.FILE", "TYPE STI ! of machine", "UNDEFINED -2147483.648 ! Undefined", "")
+    yield "  7 :ME/Seite/KS/LZ....: a gear"
+    yield f" 22 :Zähnezahl z.........: {TEETH}  Außenverzahnung"
+    yield " 23 :Normalmodul.....mn [mm]..:  4.000"
+    for code, symbol, value in (
+        (41, "Start Messbereich......da", diameter(ends[0])),
+        (44, "Ende der Messstrecke...de", diameter(ends[1])),
+        (51, "Messanfang.............ba", 0.0),
+        (54, "Messende...............be", 25.0),
+    ):
+        yield f" {code} :{symbol}  [mm]..:  {value:.9f}" + (f"  {value:.9f}" if separate else "")
+
+
+def rows(values: list[float]) -> list[str]:
+    return [" ".join(f"{value:.6f}" for value in values[k : k + 12]) for k in range(0, len(values), 12)]
+
+
+def machine_text(chart: Chart, separate: bool = True) -> str:
+    """Write what `inspected` measures as a machine does, titles above their traces or beside them."""
+    points = list(inspected(chart))
+    lines = list(heading(separate))
+    side = SIDES[chart.loaded]
+    for title, kind, place in (("Flankenlinie", "helix", "x= 8.742"), ("Profil", "profile", "z= 7.5")):
+        lines += [f"{title}:"] if separate else []
+        for tooth in sorted({point.tooth for point in points if point.trace == kind}):
+            values = [1e6 * p.deviation for p in points if (p.trace, p.tooth) == (kind, tooth)]
+            head = f"Zahn-Nr.: {tooth} {side} / {len(values)}"
+            lines.append(f"{head}  Werte  {place}" if separate else f"{title}:  {head} Werte / {place}")
+            lines += rows(values)
+    lines += [f"        {TABLES[chart.loaded]} Zahnflanke", "        Zahn-Nr.  fp  Fp  Fr", ""]
+    pitches = [p for p in points if p.trace == "cumulative_pitch"]
+    lines += [f"  {p.tooth}  0.1  {1e6 * p.deviation:.6f}  -.3" for p in pitches]
+    return "\n".join(lines) + "\n"
+
+
+def taken(text: str, chart: Chart) -> MeasuredGear:
+    return measured_gear(read_sheet(text, GEAR, "gear.mka"), chart, "gear.mka")
+
+
+CHART = Chart(GEAR, "right", True)
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("loaded", ["left", "right"])
+@pytest.mark.parametrize("separate", [True, False], ids=["titles above", "titles beside"])
+def test_a_machine_says_the_same_of_a_gear_as_its_sheet(loaded: Flank, separate: bool) -> None:
+    chart = Chart(GEAR, loaded, True)
+    of_sheet = taken(sheet_text(inspected(chart)), chart)
+    text = machine_text(chart, separate).replace("\n", "\r\n")
+    of_machine = taken(f"\ufeff{text}", chart)
+    assert of_machine.fields["pitch_deviation_um"] == pytest.approx(
+        of_sheet.fields["pitch_deviation_um"], abs=2e-5
+    )
+    assert of_machine.splits.keys() == of_sheet.splits.keys()
+    for key, one in of_sheet.splits.items():
+        other = of_machine.splits[key]
+        assert other.place == pytest.approx(one.place, abs=1e-8)
+        assert (other.slope, other.form) == pytest.approx((one.slope, one.form), abs=1e-10)
+    assert of_machine.left_out == []
+
+
+def test_what_else_a_machine_writes_is_accounted_for() -> None:
+    text = machine_text(CHART)
+    before = taken(text, CHART).account
+    text = text.replace(
+        "Zahn-Nr.: 19 rechts / 61  Werte  z= 7.5\n", "Zahn-Nr.: 19 rechts / 61  Werte  z= 7.5\n-2147483.648 "
+    )
+    first = text.index("-2147483.648 ", text.index("z= 7.5")) + len("-2147483.648 ")
+    text = text[:first] + text[text.index(" ", first) + 1 :]
+    text += (
+        "Verschränkung: Zahn-Nr.: 1k /Flankenlinie:3 links / 2  Werte  x= 10.263\n 1.0 2.0\n"
+        "Fußkreisdurchmesser / Höhe :     7.500\n   49.5 49.6\n"
+        "Teilung:\nZ-Nr. Seite PHI X Y Z\n  1   R  0.0000  .1198  25.5249  87.2302\n"
+        "ein Satz\n"
+    )
+    found = taken(text, CHART)
+    gained = {fate: count - before.get(fate, 0) for fate, count in found.account.items()}
+    gained = {fate: count for fate, count in gained.items() if count}
+    assert gained == {
+        OTHER_TRACE: 2,
+        UNMEASURED: 1,
+        UNKNOWN: 1,
+        "heading": 1,
+        "other table or heading": 4,
+        "profile": -1,
+    }
+    assert len(found.left_out) == 3
+
+
+@pytest.mark.parametrize(
+    ("of", "by", "said"),
+    [
+        (
+            "22 :Zähnezahl z.........: 20",
+            "22 :Zähnezahl z.........: 21",
+            "of a gear of 20 teeth; line 6 has 21",
+        ),
+        ("mn [mm]..:  4.000", "mn [mm]..:  3.000", "of module 4 mm; line 7 has 3"),
+        ("...da  [mm]", "...d1  [mm]", "whose heading has da [mm]"),
+        (
+            "Start Messbereich......da  [mm]..:  ",
+            "Start Messbereich......da  [mm]..:  1e-9  1e-9 ",
+            "of diameters from 75.1754 mm on",
+        ),
+        ("Zahn-Nr.: 19 rechts / 61  Werte  z", "Zahn-Nr.: 33 rechts / 61  Werte  z", "of teeth from 1 to 20"),
+        (
+            "Zahn-Nr.: 19 rechts / 61  Werte  z",
+            "Zahn-Nr.: 19 rechts / 62  Werte  z",
+            "of 62 values in the trace of line",
+        ),
+        (
+            "Zahn-Nr.: 19 rechts / 61  Werte  z",
+            "Zahn-Nr.: 19 rechts / 999999  Werte  z",
+            "values in the trace of line",
+        ),
+        ("  2  0.1  ", "  3  0.1  ", "the pitches of teeth 1 to 20 in turn"),
+        ("  20  0.1  ", "  21  0.1  ", "the pitches of teeth 1 to 20 in turn"),
+    ],
+)
+def test_a_file_is_refused_by_what_is_wrong(of: str, by: str, said: str) -> None:
+    text = machine_text(CHART)
+    assert of in text
+    with pytest.raises(BadInput) as caught:
+        taken(text.replace(of, by), CHART)
+    assert said in str(caught.value)
+
+
+def test_a_hundred_damaged_files_are_refused_once_or_accounted_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    text = machine_text(CHART)
+
+    def never(*_: object, **__: object) -> Any:
+        raise AssertionError("a file of a machine opens no other")
+
+    fates = {"refused": 0, "accounted for": 0}
+    taken(text, CHART)
+    monkeypatch.setattr(builtins, "open", never)
+    for seed in range(100):
+        try:
+            found = taken(damaged(text, seed), CHART)
+            assert sum(found.account.values()) > 0
+            fates["accounted for"] += 1
+        except BadInput as error:
+            assert len(error.faults) == 1
+            assert len(str(error)) < 2000
+            fates["refused"] += 1
+    assert min(fates.values()) >= 10, fates
+
+
+@pytest.mark.parametrize(
+    "attack",
+    [
+        "HEADER KS.MK.FILE\n" + "Profil:\n" * 100_000,
+        "HEADER KS.MK.FILE\n" + "Zahn-Nr.: 1 links / 999999 Werte z= 1\n" * 1000,
+        "HEADER KS.MK.FILE\n" + " " * 1_000_000 + "x",
+        "HEADER KS.MK.FILE\n" + " 1 :" + "a" * 1_000_000 + ":",
+        "HEADER KS.MK.FILE\n" + " 1 :da [mm]: " + "9" * 1_000_000,
+        "HEADER KS.MK.FILE\n" + "linke Zahnflanke\n" + "1 1 1 1\n" * 100_000,
+    ],
+    ids=["titles", "traces", "blanks", "label", "digits", "rows"],
+)
+def test_a_hostile_file_is_one_error(attack: str) -> None:
+    with pytest.raises(BadInput):
+        taken(attack, CHART)
+
+
+def test_the_verb_takes_the_file_of_a_machine(tmp_path: Path) -> None:
+    case, file = tmp_path / "case.toml", tmp_path / "gear.mka"
+    case.write_text(spur_case(torques=[100.0]), encoding="utf-8")
+    file.write_text(machine_text(CHART), encoding="utf-8")
+    done = printed("measured", case, file, "--gear", "pinion", "--loaded", "right")
+    assert {trace["tooth"] for trace in done["traces"]} == {2, 19}
+    assert len(done["fields"]["pitch_deviation_um"]) == TEETH
