@@ -162,12 +162,12 @@ def test_a_reload_and_a_second_browser_show_the_edited_scene_with_its_files(
         expect(files).to_contain_text("With block.step.")
         expect(text).to_have_value(written)
         length, known = page.locator("#scene-shafts-0-length_mm"), page.url
-        length.fill("31.5")
+        length.fill("231.5")
         length.press("Tab")
-        expect(text).to_have_value(re.compile("length_mm = 31.5"))
+        expect(text).to_have_value(re.compile("length_mm = 231.5"))
         expect(page).not_to_have_url(known)
         with other_browser(browser, page.url) as second:
-            expect(second.locator("#scene-shafts-0-length_mm")).to_have_value("31.5")
+            expect(second.locator("#scene-shafts-0-length_mm")).to_have_value("231.5")
             expect(second.locator("#scene-body")).to_contain_text("With block.step.")
             assert second.locator("#scene-text").input_value() == text.input_value()
 
