@@ -5,14 +5,19 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fe_contact.geometry import ParallelAxes, PitchDeviation, RunOut, ToothFlank, Toothing
-from fe_contact.geometry.flank_tolerances import run_out_tolerance, single_pitch_tolerance
+from fe_contact.geometry.flank_tolerances import (
+    cumulative_pitch_tolerance,
+    run_out_tolerance,
+    single_pitch_tolerance,
+)
 from fe_contact.microgeometry.tolerances import (
     COMMON,
     OF_A_CLASS,
@@ -34,6 +39,46 @@ WOBBLE_SHARE = 0.5
 
 
 @dataclass(frozen=True)
+class PitchBounds:
+    """What a class allows of pitches, those that the eccentricity makes among them.
+
+    Attributes
+    ----------
+    single, cumulative : float
+        f_pT and F_pT, m, on the reference circle.
+    eccentricity : float
+        The largest that keeps both and the run-out F_rT, m.
+    cosine : float
+        Of the transverse pressure angle: an eccentricity moves teeth by 1 / cosine of it.
+    """
+
+    single: float
+    cumulative: float
+    eccentricity: float
+    cosine: float
+
+    @classmethod
+    def of(cls, gear: Toothing, tolerance_class: int) -> PitchBounds:
+        """Return those of a gear in a class of ISO 1328-1:2013."""
+        single = single_pitch_tolerance(gear, tolerance_class)
+        cumulative = cumulative_pitch_tolerance(gear, tolerance_class)
+        cosine = math.cos(gear.transverse_pressure_angle)
+        by_pitches = 0.5 * cosine * min(single / math.sin(math.pi / gear.teeth), cumulative)
+        largest = min(0.5 * run_out_tolerance(gear, tolerance_class), by_pitches)
+        return cls(single, cumulative, largest, cosine)
+
+    def kept(self, eccentricity: float | FloatArray, place: FloatArray) -> FloatArray:
+        """Return places of teeth (..., z), m, scaled where they and the eccentricity pass a bound."""
+        arc = 2.0 * np.asarray(eccentricity)[..., None] / self.cosine
+        step = np.abs(place - np.roll(place, 1, axis=-1)).max(axis=-1, keepdims=True)
+        left = self.single - arc * math.sin(math.pi / place.shape[-1])
+        whole = np.ptp(place, axis=-1, keepdims=True)
+        tiny = np.finfo(float).tiny
+        share = np.minimum(left / np.maximum(step, tiny), (self.cumulative - arc) / np.maximum(whole, tiny))
+        return np.asarray(place * np.clip(share, 0.0, 1.0))
+
+
+@dataclass(frozen=True)
 class ToothTolerances:
     """By how much the teeth of one gear differ at most.
 
@@ -47,12 +92,15 @@ class ToothTolerances:
         ``tooth_flanks.profile_slope`` and the like, the part of a tolerance that teeth have not in common.
     distribution : {"normal", "uniform"}
         As of `Tolerances`. Normal eccentricity and wobble are so in both directions.
+    pitches : PitchBounds, optional
+        Within which the places of all teeth are scaled; None: nothing bounds them together.
     """
 
     gear: str
     teeth: int
     widths: Mapping[str, float]
     distribution: Distribution = "normal"
+    pitches: PitchBounds | None = None
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -74,7 +122,7 @@ class ToothTolerances:
             name: spread_within(self.widths[name], each[:, k], self.distribution)
             for k, name in enumerate(of_teeth)
         }
-        return DrawnTeeth(by_axis, by_tooth)
+        return DrawnTeeth(by_axis, by_tooth, self.pitches)
 
     def _amounts(self, name: str, uniform: FloatArray) -> FloatArray:
         limit = self.widths[name]
@@ -94,17 +142,43 @@ class DrawnTeeth:
         Eccentricity and wobble in m, their angles as of `RunOut`: complex.
     by_tooth : mapping of str to ndarray, shape (N, z)
         Pitch deviations on the reference circle and deviations of single flanks, m; > 0 is material in
-        excess.
+        excess. As drawn, of which `made` is what the class leaves.
+    pitches : PitchBounds, optional
+        As of `ToothTolerances`.
     """
 
     by_axis: Mapping[str, ComplexArray]
     by_tooth: Mapping[str, FloatArray]
+    pitches: PitchBounds | None = None
+
+    @cached_property
+    def made(self) -> Mapping[str, FloatArray]:
+        """`by_tooth` with the places of teeth scaled to what the class allows beside the eccentricity."""
+        if self.pitches is None:
+            return self.by_tooth
+        place = self.pitches.kept(np.abs(self.by_axis[RUN_OUT]), self.by_tooth[PITCH])
+        return {**self.by_tooth, PITCH: place}
+
+    def amount(self, name: str) -> Any:
+        """Return one deviation of all gears, as drawn."""
+        return (self.by_axis if name in OF_AXIS else self.by_tooth)[name]
+
+    def changed(self, name: str, amount: Any) -> DrawnTeeth:
+        """Return the gears with one deviation drawn otherwise."""
+        if name in OF_AXIS:
+            return replace(self, by_axis={**self.by_axis, name: amount})
+        return replace(self, by_tooth={**self.by_tooth, name: amount})
+
+    def some(self, rows: slice) -> DrawnTeeth:
+        """Return some of the gears."""
+        by_axis = {name: values[rows] for name, values in self.by_axis.items()}
+        return replace(self, by_axis=by_axis, by_tooth={n: v[rows] for n, v in self.by_tooth.items()})
 
     def fields(self, index: int) -> dict[str, Any]:
         """Return the fields of one of the gears."""
         turning = (complex(self.by_axis[name][index]) if name in self.by_axis else 0j for name in OF_AXIS)
         axis = [figure for amount in turning for figure in cmath.polar(amount)]
-        own = {name: values[index].tolist() for name, values in self.by_tooth.items()}
+        own = {name: values[index].tolist() for name, values in self.made.items()}
         pitch = own.pop(PITCH, ())
         figures = {name.removeprefix(FLANK): values for name, values in own.items()}
         flanks = tuple(
@@ -129,10 +203,11 @@ def iso1328_tooth_tolerances(
 ) -> ToothTolerances:
     """Return what of the teeth of one gear differs by ISO 1328-1:2013.
 
-    The eccentricity is at most half the run-out F_rT. A tooth is at most half of f_pT out of its place, so
-    that no pitch is out by more than f_pT. Of a slope or form of which all teeth have the part c in common,
-    the rest is the root of 1 - c^2 of the tolerance (`COMMON`). Wobble is a helix slope once per revolution:
-    of the square of this rest it has the part `WOBBLE_SHARE`, single flanks have the others.
+    The eccentricity is at most half the run-out F_rT, a tooth at most half of f_pT out of its place; all
+    places are scaled where the pitches of both together pass f_pT or F_pT (`PitchBounds`). Of a slope or
+    form of which all teeth have the part c in common, the rest is the root of 1 - c^2 of the tolerance
+    (`COMMON`). Wobble is a helix slope once per revolution: of the square of this rest it has the part
+    `WOBBLE_SHARE`, single flanks have the others.
     """
     own: Toothing = getattr(pair, gear)
     flanks = {
@@ -140,9 +215,10 @@ def iso1328_tooth_tolerances(
         for (quantity, tolerance), part in zip(OF_A_CLASS.items(), COMMON[finishing], strict=True)
         if part < 1.0 and (across_face or quantity not in ACROSS_FACE)
     }
-    widths = {RUN_OUT: 0.5 * run_out_tolerance(own, tolerance_class)}
+    pitches = PitchBounds.of(own, tolerance_class)
+    widths = {RUN_OUT: pitches.eccentricity}
     if (slope := FLANK + "helix_slope") in flanks:
         widths[WOBBLE] = math.sqrt(WOBBLE_SHARE) * flanks[slope]
         flanks[slope] *= math.sqrt(1.0 - WOBBLE_SHARE)
-    widths |= {PITCH: 0.5 * single_pitch_tolerance(own, tolerance_class), **flanks}
-    return ToothTolerances(gear, own.teeth, widths, distribution)
+    widths |= {PITCH: 0.5 * pitches.single, **flanks}
+    return ToothTolerances(gear, own.teeth, widths, distribution, pitches)

@@ -100,11 +100,15 @@ class ToothPassing:
         for name, amount in drawn.by_axis.items():
             sense = amount if self.turns < 0 else amount.conj()
             parts.append(np.outer(sense, once[name]))
-        for name, values in drawn.by_tooth.items():
+        for name, values in drawn.made.items():
             teeth = values.shape[1]
             wave = np.exp(-2j * math.pi * self.line / teeth * np.arange(teeth))
             parts.append(np.outer(values @ wave, self.by_tooth[name]))
         return np.stack(parts)
+
+    def amplitude(self, drawn: DrawnTeeth) -> FloatArray:
+        """Return the amplitude of the order of N gears, (N, L), m."""
+        return np.asarray(np.abs(self.lines(drawn).sum(axis=0)))
 
 
 def _shapes(pair: ParallelAxes, c: Candidates, gear: str) -> dict[str, FloatArray]:
@@ -181,13 +185,12 @@ def sidebands_above(
     for count, lines in enumerate(run.workers.run(lines_of_pairs, pairs, tasks)):
         solved.append(lines)
         run.progress("sidebands", (count + 1) / len(tasks))
-    parts = passing.lines(pairs.drawn)
-    modeled = np.abs(parts.sum(axis=0))
+    modeled = passing.amplitude(pairs.drawn)
 
     def causes(load: int) -> Causes:
         share = float(np.mean(modeled[:, load] > limit.amplitude))
         indices = _indices(limit, passing, teeth, load, seed)
-        return Causes(*indices, share, _tightened(limit, parts[..., load]))
+        return Causes(*indices, share, _tightened(limit, passing, teeth, pairs.drawn, load))
 
     alike = np.zeros(modeled.shape[1])  # teeth as designed make no sidebands
     made = ModeledPairs(teeth.names, alike, np.abs(np.concatenate(solved)), modeled)
@@ -198,28 +201,25 @@ def _indices(
     limit: OrderLimit, passing: ToothPassing, teeth: ToothTolerances, load: int, seed: int
 ) -> tuple[FloatArray, FloatArray]:
     """Return the first-order and total Sobol' indices of the level, (d,) each."""
-    drawn = passing.lines(teeth.drawn(2 * BASE_PAIRS, seed + 1))[..., load]
-    one, other = drawn[:, :BASE_PAIRS], drawn[:, BASE_PAIRS:]
+    drawn = teeth.drawn(2 * BASE_PAIRS, seed + 1)
+    one, other = drawn.some(slice(BASE_PAIRS)), drawn.some(slice(BASE_PAIRS, None))
 
-    def level(parts: ComplexArray) -> FloatArray:
-        amplitude = np.maximum(np.abs(parts.sum(axis=0)), _LEAST)
-        return np.asarray(20.0 * np.log10(amplitude / limit.amplitude))
+    def level(gears: DrawnTeeth) -> FloatArray:
+        amplitude = np.maximum(passing.amplitude(gears)[:, load], _LEAST)
+        return np.asarray(20.0 * np.log10(amplitude / limit.amplitude))[None]
 
-    mixed = []
-    for k in range(len(drawn)):
-        parts = one.copy()
-        parts[k] = other[k]
-        mixed.append(level(parts)[None])
+    mixed = np.stack([level(one.changed(name, other.amount(name))) for name in teeth.widths])
     values: Mapping[Literal["f_A", "f_B", "f_AB"], FloatArray]
-    values = {"f_A": level(one)[None], "f_B": level(other)[None], "f_AB": np.stack(mixed)}
+    values = {"f_A": level(one), "f_B": level(other), "f_AB": mixed}
     indices = sobol_indices(func=values, n=BASE_PAIRS)
     first, total = (np.ravel(getattr(indices, name)) for name in ("first_order", "total_order"))
-    acting = np.any(drawn != 0.0, axis=1)  # what adds nothing to the order has no part in it
+    acting = np.any(passing.lines(one)[..., load] != 0.0, axis=1)  # what adds nothing has no part in it
     return np.where(acting, first, 0.0), np.where(acting, total, 0.0)
 
 
-def _tightened(limit: OrderLimit, parts: ComplexArray) -> FloatArray:
+def _tightened(
+    limit: OrderLimit, passing: ToothPassing, teeth: ToothTolerances, drawn: DrawnTeeth, load: int
+) -> FloatArray:
     """Return the share above to first order with each tolerance tightened by a class, (d,)."""
-    whole = parts.sum(axis=0)
-    narrow = np.abs(whole - (1.0 - TIGHTENED) * parts)
-    return np.asarray(np.mean(narrow > limit.amplitude, axis=1))
+    narrow = (drawn.changed(name, TIGHTENED * drawn.amount(name)) for name in teeth.widths)
+    return np.array([np.mean(passing.amplitude(one)[:, load] > limit.amplitude) for one in narrow])

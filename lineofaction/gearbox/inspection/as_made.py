@@ -11,14 +11,12 @@ import numpy as np
 
 from fe_contact.geometry import Toothing
 from fe_contact.geometry.flank_tolerances import (
-    cumulative_pitch_tolerance,
     helix_form_tolerance,
     helix_slope_tolerance,
     profile_form_tolerance,
     profile_slope_tolerance,
-    run_out_tolerance,
-    single_pitch_tolerance,
 )
+from fe_contact.microgeometry.drawn_teeth import PitchBounds
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.case import boundary_errors, case_json, gear_pair
 from lineofaction.gearbox.inspection.measured_gear import Chart, MeasuredGear, measured_gear
@@ -91,11 +89,8 @@ def _drawn(gear: Toothing, tolerance_class: int, draw: np.random.Generator) -> d
     Figures are normal, three standard deviations in the tolerance. Run-out and pitches share what a class
     allows of pitches. Helix deviations are drawn of helical gears alone, so that a spur pair stays plane.
     """
-    step = 2.0 * math.sin(math.pi / gear.teeth)
-    eccentricity = draw.uniform(0.2, 0.8) * min(
-        0.5 * run_out_tolerance(gear, tolerance_class),
-        math.cos(gear.transverse_pressure_angle) * single_pitch_tolerance(gear, tolerance_class) / step,
-    )
+    pitches = PitchBounds.of(gear, tolerance_class)
+    eccentricity = draw.uniform(0.2, 0.8) * pitches.eccentricity
     across = {"helix_slope": helix_slope_tolerance, "helix_form": helix_form_tolerance}
     tolerances = {"profile_slope": profile_slope_tolerance, "profile_form": profile_form_tolerance}
     tolerances |= across if gear.helix_angle else {}
@@ -104,30 +99,18 @@ def _drawn(gear: Toothing, tolerance_class: int, draw: np.random.Generator) -> d
         for name, of_class in tolerances.items()
     }
     rows = zip(*figures.values(), strict=True)
+    steps = _within(pitches.single, gear.teeth, draw)
+    walk = pitches.kept(eccentricity, np.cumsum(steps - steps.mean()))
     return {
         "run_out": {
             "eccentricity_um": round(eccentricity / UM, 3),
             "eccentricity_angle_deg": round(draw.uniform(-math.pi, math.pi) / DEGREE, 1),
         },
-        "pitch_deviation_um": _um(_pitches(gear, tolerance_class, eccentricity, draw)),
+        "pitch_deviation_um": _um(walk),
         "tooth_flanks": [
             {"tooth": tooth, **dict(zip(figures, row, strict=True))} for tooth, row in enumerate(rows, 1)
         ],
     }
-
-
-def _pitches(
-    gear: Toothing, tolerance_class: int, eccentricity: float, draw: np.random.Generator
-) -> FloatArray:
-    """Return cumulative pitch deviations that with the eccentricity are within f_pT and F_pT, m."""
-    single = single_pitch_tolerance(gear, tolerance_class)
-    steps = _within(single, gear.teeth, draw)
-    steps -= steps.mean()
-    arc = eccentricity / math.cos(gear.transverse_pressure_angle)
-    left = single - 2.0 * arc * math.sin(math.pi / gear.teeth)
-    total = cumulative_pitch_tolerance(gear, tolerance_class) - 2.0 * arc
-    walk = np.cumsum(steps)
-    return np.asarray(walk * min(1.0, left / np.abs(steps).max(), total / np.ptp(walk)))
 
 
 def _within(limit: float, count: int, draw: np.random.Generator) -> FloatArray:

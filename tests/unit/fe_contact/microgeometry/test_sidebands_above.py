@@ -11,7 +11,11 @@ import pytest
 
 from fe_contact import Gear, GearPair, RunOut, analyze
 from fe_contact.errors import InputError
-from fe_contact.geometry.flank_tolerances import run_out_tolerance, single_pitch_tolerance
+from fe_contact.geometry.flank_tolerances import (
+    cumulative_pitch_tolerance,
+    run_out_tolerance,
+    single_pitch_tolerance,
+)
 from fe_contact.microgeometry.confirmation import design_study
 from fe_contact.microgeometry.drawn_teeth import (
     FLANK,
@@ -33,7 +37,7 @@ from fe_contact.microgeometry.tolerance_study import (
     sampled,
     scatter,
 )
-from fe_contact.microgeometry.tolerances import Tolerances, iso1328_tolerances
+from fe_contact.microgeometry.tolerances import Distribution, Tolerances, iso1328_tolerances
 from fe_contact.options import AnalysisOptions, Run
 from lineofaction.gearbox.studies.scatter.run import order_limit
 from model_studies.stage_clock import StageClock
@@ -123,6 +127,27 @@ def test_the_mate_changes_an_order_by_squares_alone(designed: Evaluator) -> None
     alone = solved(designed, "pinion", drawn, line)
     cycle = solved(both, "pinion", drawn, line * WHEEL.teeth)
     np.testing.assert_allclose(cycle, alone, atol=1e-2 * np.abs(alone).max(), rtol=0.0)
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("teeth", [12, 23, 67])
+@pytest.mark.parametrize("distribution", ["normal", "uniform"])
+def test_pitches_of_teeth_that_are_out_of_center_are_within_the_class(
+    teeth: int, distribution: Distribution
+) -> None:
+    gear = replace(PINION, teeth=teeth, profile_shift_coefficient=0.3, bore_diameter=5e-3)
+    tolerances = iso1328_tooth_tolerances(
+        replace(PAIR, pinion=gear, center_distance=None), "pinion", 6, distribution=distribution
+    )
+    drawn = tolerances.drawn(2000, seed=3)
+    turning = np.exp(2j * np.pi * np.arange(teeth) / teeth) / np.cos(gear.transverse_pressure_angle)
+    place = drawn.made[PITCH] + np.real(np.outer(drawn.by_axis[RUN_OUT], turning))
+    for tolerance, found in (
+        (single_pitch_tolerance, np.abs(place - np.roll(place, 1, axis=1)).max(axis=1)),
+        (cumulative_pitch_tolerance, np.ptp(place, axis=1)),
+        (run_out_tolerance, 2.0 * np.abs(drawn.by_axis[RUN_OUT])),
+    ):
+        assert 0.9 < found.max() / tolerance(gear, 6) <= 1.0 + 1e-12, tolerance.__name__
 
 
 def test_teeth_are_within_their_class() -> None:
