@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntEnum
 
-from bounds.types import BoolArray, FloatArray, IntArray, Json
+from bounds.types import BoolArray, ComplexArray, FloatArray, IntArray, Json
 
-__all__ = ["BoolArray", "Estimate", "FloatArray", "IntArray", "Json", "Status"]
+__all__ = ["BoolArray", "ComplexArray", "Estimate", "FloatArray", "IntArray", "Json", "Status"]
 
 
 class Status(IntEnum):

@@ -6,13 +6,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import blas, lapack
 
 from fe_contact.errors import SolveError
-from fe_contact.types import FloatArray
-
-ComplexArray = NDArray[np.complex128]
+from fe_contact.types import ComplexArray, FloatArray
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import blas, lapack
 
-from fe_contact.compliance.cyclic_harmonics import ComplexArray, TurningLoads, weights
-from fe_contact.types import FloatArray
+from fe_contact.compliance.cyclic_harmonics import TurningLoads, weights
+from fe_contact.types import ComplexArray, FloatArray
 from model_studies.progress import Report
 
 # Shares of the largest entry of A:

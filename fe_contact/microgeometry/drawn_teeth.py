@@ -10,7 +10,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fe_contact.geometry import ParallelAxes, PitchDeviation, RunOut, ToothFlank, Toothing
 from fe_contact.geometry.flank_tolerances import (
@@ -27,9 +26,7 @@ from fe_contact.microgeometry.tolerances import (
     spread_within,
 )
 from fe_contact.microgeometry.variables import ACROSS_FACE
-from fe_contact.types import FloatArray
-
-ComplexArray = NDArray[np.complex128]
+from fe_contact.types import ComplexArray, FloatArray
 
 RUN_OUT, WOBBLE, PITCH, FLANK = "run_out", "wobble", "pitch_deviation", "tooth_flanks."
 OF_AXIS = (RUN_OUT, WOBBLE)

@@ -29,7 +29,6 @@ from fe_contact.microgeometry.drawn_teeth import (
     PITCH,
     RUN_OUT,
     WOBBLE,
-    ComplexArray,
     DrawnTeeth,
     ToothTolerances,
 )
@@ -44,7 +43,7 @@ from fe_contact.microgeometry.order_limit import (
 )
 from fe_contact.microgeometry.scatter import ScatterNodes
 from fe_contact.options import Run
-from fe_contact.types import FloatArray
+from fe_contact.types import ComplexArray, FloatArray
 
 IN_A_TASK = 4
 """Pairs of a task."""

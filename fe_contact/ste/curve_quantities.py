@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bounds import order_name
 from fe_contact.ste.interpolation import Axis, interpolate
-from fe_contact.types import FloatArray
+from fe_contact.types import ComplexArray, FloatArray
 
 # Orders of a transmission-error curve: mesh harmonics, and what lies between them over a longer period.
 
@@ -104,7 +103,7 @@ class Quantities(NamedTuple):
     """Peak-to-peak (C,) of curves; mean and phasors (20 period + 1, C) of all orders, 1/period apart."""
 
     ripple: FloatArray
-    lines: NDArray[np.complex128]
+    lines: ComplexArray
     period: int
 
 

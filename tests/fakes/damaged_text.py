@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
+import builtins
 import random
+from collections import Counter
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from lineofaction.gearbox.problems import BadInput
 
 
 def damaged(text: str, seed: int) -> str:
@@ -29,3 +37,23 @@ def damaged(text: str, seed: int) -> str:
             cells = lines[row].split(",")
             cells[draw.randrange(len(cells))] = junk
             return "\n".join((*lines[:row], ",".join(cells), *lines[row + 1 :]))
+
+
+def fates_of_a_hundred(text: str, take: Callable[[str], object], patch: pytest.MonkeyPatch) -> Counter[str]:
+    """Count what became of damaged texts: taken, or refused with one short fault; none opens a file."""
+
+    def never(*_: object, **__: object) -> Any:
+        raise AssertionError("what is read as text opens no file")
+
+    take(text)  # what a first call loads
+    patch.setattr(builtins, "open", never)
+    fates: Counter[str] = Counter()
+    for seed in range(100):
+        try:
+            take(damaged(text, seed))
+            fates["taken"] += 1
+        except BadInput as error:
+            assert len(error.faults) == 1
+            assert len(str(error)) < 2000
+            fates["refused"] += 1
+    return fates

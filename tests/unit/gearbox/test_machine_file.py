@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import builtins
 import math
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from command_line import printed
-from damaged_text import damaged
+from damaged_text import fates_of_a_hundred
 from spur_case import spur_case
 
 from fe_contact.geometry import Gear, PitchDeviation, ToothFlank
@@ -163,24 +161,8 @@ def test_a_file_is_refused_by_what_is_wrong(of: str, by: str, said: str) -> None
 
 
 def test_a_hundred_damaged_files_are_refused_once_or_accounted_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    text = machine_text(CHART)
-
-    def never(*_: object, **__: object) -> Any:
-        raise AssertionError("a file of a machine opens no other")
-
-    fates = {"refused": 0, "accounted for": 0}
-    taken(text, CHART)
-    monkeypatch.setattr(builtins, "open", never)
-    for seed in range(100):
-        try:
-            found = taken(damaged(text, seed), CHART)
-            assert sum(found.account.values()) > 0
-            fates["accounted for"] += 1
-        except BadInput as error:
-            assert len(error.faults) == 1
-            assert len(str(error)) < 2000
-            fates["refused"] += 1
-    assert min(fates.values()) >= 10, fates
+    fates = fates_of_a_hundred(machine_text(CHART), lambda text: taken(text, CHART), monkeypatch)
+    assert min(fates["taken"], fates["refused"]) >= 10, fates
 
 
 @pytest.mark.parametrize(
