@@ -19,7 +19,7 @@ from fe_contact.contact import ContactModel, teeth_in_reach
 from fe_contact.contact.problem import POINTS
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
-from fe_contact.planning.cost_of_derivatives import CycleSeconds, expected_pitches
+from fe_contact.planning.cost_of_derivatives import CycleSeconds, solved_pitches
 from fe_contact.planning.plan import FaceDiscretization, Plan, PlaneDiscretization
 from fe_contact.sampled import ALIGNMENTS, LOADS, WIDE_INTERVALS, WIDE_PROBES, some_positions
 from fe_contact.types import Json
@@ -54,12 +54,8 @@ _PLANE_CHECK, _FACE_CHECK = 6e-3, 0.12
 """CPU seconds that the estimate of errors takes beside its solutions; over the face the table, too."""
 _TABLE_POINT = 2e-6
 """CPU seconds to interpolate one point of a table."""
-
-
 _HELD_POSITIONS, _HELD_PART = 320, 2.5
 """Positions whose compliance is held at once: of a search that begins with 64, and in parts of fixed ones."""
-
-
 _POINT_NUMBERS = 25
 """Numbers that are kept of a touching point."""
 
@@ -106,7 +102,7 @@ def contact_seconds(
     table = work.of(kept * distances, 0)
     table += points * (cycle.expected if derived else cycle.exact)
     table += _FACE_CHECK if plan.discretization.slices > 1 else 0.0
-    solved = expected_pitches(model.period) if derived else model.period
+    solved = 1 + solved_pitches(model.period, in_table=True)[1] if derived else model.period
     return search, table, _errors(pair, plan, model.period, alignments, solved) if with_errors else 0.0
 
 

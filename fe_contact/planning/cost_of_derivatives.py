@@ -8,10 +8,12 @@ from typing import NamedTuple, Protocol
 
 from fe_contact.geometry import ParallelAxes
 
-FEWEST_PITCHES = 24
-"""That are solved where derivatives stand for the others."""
-_EXPECTED_PART = 0.09
-"""Of the pitches of a cycle that are solved in the end: 137 of 1541, 41 of 391, of gears of class 6."""
+DRAWN = 16
+"""Pitches that are drawn and solved: they tell what the derivatives miss at all others."""
+BATCH = 8
+"""Further pitches that are solved before the errors are looked at."""
+_FURTHER = 1
+"""Batches that are expected beyond the first: 0 to 2 in tables of seven pairs of class 6, as counted."""
 LONG_CYCLE = 64
 """Base pitches: the errors of shorter cycles by derivatives would be told by too many of them."""
 TABLE_SAVES = 2.0
@@ -22,9 +24,14 @@ _ADDED = 4e-9
 """CPU seconds to add what one tooth of one pair does to one point."""
 
 
-def expected_pitches(period: int) -> int:
-    """Return how many pitches of a cycle by derivatives are expected to be solved."""
-    return max(min(FEWEST_PITCHES, period), math.ceil(_EXPECTED_PART * period))
+def solved_pitches(period: int, *, in_table: bool) -> tuple[int, int]:
+    """Return how many pitches are solved where derivatives give the others: at least, and as expected.
+
+    By the steps of `envelope.chosen`: those drawn, a batch, further ones until the errors are small enough.
+    Of a table the first pitch, too, and a batch of those in which the pressure is largest.
+    """
+    fewest = DRAWN + BATCH + (1 + BATCH if in_table else 0)
+    return min(fewest, period), min(fewest + _FURTHER * BATCH, period)
 
 
 class PitchWork(Protocol):
@@ -41,7 +48,7 @@ class PitchWork(Protocol):
 class CycleSeconds(NamedTuple):
     """CPU seconds that the contact of a cycle is predicted to take: all pitches solved, or by derivatives.
 
-    The latter with the fewest pitches that they are held against, by which it is decided, and as `expected`.
+    The latter with the fewest pitches that are solved, by which it is decided, and as `expected`.
     """
 
     exact: float
@@ -52,7 +59,7 @@ class CycleSeconds(NamedTuple):
     def of(
         cls, work: PitchWork, pair: ParallelAxes, period: int, rows: float, sets: Sequence[float]
     ) -> CycleSeconds:
-        """Predict them of rows of positions at sets of so many loads, on condensed bodies."""
+        """Predict them of rows of positions at sets of so many loads, of a table two, on condensed bodies."""
         teeth = 0.5 * (pair.pinion.teeth + pair.wheel.teeth) * rows * work.pitch
         meeting = 2 * (math.ceil(pair.transverse_contact_ratio + pair.overlap_ratio) + 1)
 
@@ -60,8 +67,8 @@ class CycleSeconds(NamedTuple):
             solved = (1.0 + _TANGENT) * work.in_pitches(rows, sets, states)
             return solved + teeth + _ADDED * meeting * states * period * rows * sum(sets)
 
-        fewest, expected = min(FEWEST_PITCHES, period), expected_pitches(period)
-        return cls(work.in_pitches(rows, sets, period), about(fewest), about(expected))
+        fewest, expected = solved_pitches(period, in_table=len(sets) > 1)
+        return cls(work.in_pitches(rows, sets, period), about(1 + fewest), about(1 + expected))
 
     def pays(self, pitches: int) -> bool:
         """Whether derivatives are tried over a cycle of so many base pitches."""

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fe_contact.analysis.cycle.envelope import BATCH, CycleContact, Envelope, LeastTangents, chosen, in_parts
+from fe_contact.analysis.cycle.envelope import CycleContact, Envelope, LeastTangents, chosen, in_parts
 from fe_contact.analysis.cycle.tangents import SolvedState, ToothGaps
 from fe_contact.analysis.pairs.contact_lines import curves_of_point
 from fe_contact.analysis.pairs.kept_contact import (
@@ -32,6 +32,7 @@ from fe_contact.contact.load_weights import load_sums
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions
+from fe_contact.planning.cost_of_derivatives import BATCH
 from fe_contact.types import FloatArray, IntArray, Json, Status
 
 PART_OF_TOLERANCE = 0.4

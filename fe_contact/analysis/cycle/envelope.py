@@ -23,20 +23,16 @@ from fe_contact.analysis.pairs.pair_contact import OperatingPoint
 from fe_contact.contact import Candidates, ContactProblem, ContactSolution
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
+from fe_contact.planning.cost_of_derivatives import BATCH, DRAWN
 from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
-DRAWN = 16
-"""Pitches that are drawn and solved: they tell what the derivatives miss at all others."""
 FEWEST = 8
-"""Of them that count at least."""
-BATCH = 8
-"""Further pitches that are solved before the errors are looked at."""
+"""Of the drawn pitches that count at least."""
 PART = 4
 """Pitches that are solved together: their touching points are held at once."""
 WHOLE = 4
 """Where one in so many pitches is to be solved, all are."""
-
 
 Rows = Callable[[ParallelAxes, Candidates], FloatArray]
 """Quantities (Q, P, m) of candidates of which the means over the load are followed."""

@@ -21,11 +21,13 @@ from fe_contact import (
     Wave,
     ste_database,
 )
+from fe_contact.analysis.cycle import envelope
 from fe_contact.analysis.cycle.envelope import CycleContact, Envelope
 from fe_contact.analysis.cycle.tangents import nominal_tangent, pitch_tangents
 from fe_contact.analysis.deviating_cycle import DeviatingCycle, cycle_contact, deviating_cycle
 from fe_contact.errors import InputError
 from fe_contact.planning import cost_of_derivatives
+from fe_contact.planning.cost_of_derivatives import BATCH, solved_pitches
 from fe_contact.ste.curve import DERIVATIVES, SOURCES, source_names
 from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, quantity_changes
 
@@ -205,6 +207,28 @@ def test_a_table_takes_pitches_by_derivatives_and_says_how_many(tables):
         assert own == pytest.approx(whole, rel=1e-6, abs=SOLVER)
     assert "cycle" not in solved.metadata.receipt
     assert len(solved.curve_error) == len(SOURCES)
+
+
+@pytest.mark.parametrize("in_table", [False, True])
+def test_the_prediction_counts_the_pitches_that_are_solved(in_table, monkeypatch):
+    """All but the batches beyond the first, which the errors decide: they are looked at after every batch."""
+    looked = []
+
+    def counted(*each):
+        looked.append(within(*each))
+        return looked[-1]
+
+    within = envelope._within
+    monkeypatch.setattr(envelope, "_within", counted)
+    monkeypatch.setattr(cost_of_derivatives, "TABLE_SAVES", 0.0)
+    if in_table:
+        (solved,) = ste_database(made(1.0), AXES, OPTIONS).metadata.receipt["cycle"]["solved"]
+    else:
+        solved = deviating_cycle(made(1.0), AXES, OPTIONS).solved.sum()
+    fewest, expected = solved_pitches(323, in_table=in_table)
+    assert looked.count(True) == 1
+    assert fewest + BATCH * looked.count(False) - solved in (0, 1)[: 1 + in_table]  # the first may be drawn
+    assert (expected - fewest) % BATCH == 0
 
 
 def test_errors_of_a_table_hold_what_derivatives_miss(tables):
