@@ -51,8 +51,8 @@ class DraftRoute(ScopedRoute):
 def _faults_of(refusal: ServiceError) -> Response:
     """Return the answer of faults; raises the refusal of what is no draft, or of a busy service."""
     problem = refusal.as_json()
-    of_fields = "body" not in (fault["field"] for fault in problem["errors"])
-    if problem["type"] != BadInput.type or not of_fields:  # the type: a live worker sends problem details
+    whole = "body" in (fault["field"] for fault in problem["errors"])
+    if whole or problem["type"] != BadInput.type:  # the type: a live worker sends problem details
         raise refusal
     return JSONResponse({"detail": problem["detail"], "faults": problem["errors"]})
 
@@ -65,6 +65,7 @@ DRAFTS = {
     "/databases/{key}/ste": ("{key}/ste", "Transmission error of drafted flanks"),
     "/scenes/to-files": ("scene", "Text of a drafted scene"),
     "/scenes/from-toml": ("scene-text", "Scene of a drafted text"),
+    "/scenes/housing-surface": ("housing-surface", "Surface of drafted housings"),
 }
 """Questions that may be asked of a draft, by their own path: the path below `/drafts`, and what they are."""
 
@@ -74,12 +75,11 @@ router = APIRouter(tags=["drafts"], route_class=DraftRoute)
 def _add(route: APIRoute) -> None:
     """Ask the question of a route of a draft as well."""
     path, summary = DRAFTS[route.path]
-    words = path.removeprefix("{key}/").replace("-", "_")
     router.add_api_route(
         f"/drafts/{path}",
         route.endpoint,
         methods=["POST"],
-        name=f"draft_{words}",
+        name="draft_" + path.removeprefix("{key}/").replace("-", "_"),
         summary=summary,
         description=f"Answer as `/v1{route.path}`, or with what is wrong.",
         response_model=route.response_model | FaultsBody,

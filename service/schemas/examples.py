@@ -152,10 +152,10 @@ BODIES: dict[str, Json] = {
 
 _DRAFTS = {
     **{f"/v1/drafts/{name}": f"/v1/cases/{name}" for name in ("outline", "to-toml", "as-made")},
-    "/v1/drafts/plan": "/v1/plans",
-    "/v1/drafts/{key}/ste": "/v1/databases/{key}/ste",
+    **{"/v1/drafts/plan": "/v1/plans", "/v1/drafts/{key}/ste": "/v1/databases/{key}/ste"},
     "/v1/drafts/scene": "/v1/scenes/to-files",
     "/v1/drafts/scene-text": "/v1/scenes/from-toml",
+    "/v1/drafts/housing-surface": "/v1/scenes/housing-surface",
 }
 """Questions about drafts, and whose bodies and answers they have."""
 BODIES |= {draft: BODIES[path] for draft, path in _DRAFTS.items()}

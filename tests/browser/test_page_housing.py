@@ -13,7 +13,7 @@ from page_picture import different, picture, stopped, vertices
 from page_visit import PATIENCE, Visit, opened, opened_scene, shown, tab
 from playwright.sync_api import Browser, Page, expect
 
-ROUTE = "**/v1/scenes/housing-surface"
+ROUTE = "**/v1/drafts/housing-surface"
 BARE = """async ({ scene, surface }) => {
   const { Gearbox } = await import("/page/view_unit.js");
   return Object.assign(new Gearbox(scene, [], () => {}), { given: surface });
@@ -59,7 +59,7 @@ def test_a_scene_that_is_opened_shows_its_housing_and_what_is_in_it(
     with page.expect_response(ROUTE, timeout=PATIENCE) as answered:
         opened_scene(page, tmp_path)
     assert answered.value.json()["surface"]["facets"]
-    expect(words).to_have_text("The unit of the scene: click a mesh to open its pair.")
+    expect(words).to_have_text("The unit of the scene, which has no mesh with a pair to draw.")
     housed = picture(page)
     assert different(pair, housed) > 0.05
     bare = drawn_anew(page, 'Object.defineProperty(Gearbox.prototype, "drawnHousing", { get: () => null });')
@@ -89,12 +89,8 @@ def test_a_file_that_is_no_housing_is_said_under_the_picture(
     page, words = seen.page, seen.page.locator("#view [role=status]")
     tab(page, "Sound")
     stopped(page)
-    problem = {
-        "title": "The input cannot be used",
-        "detail": "housings[0].step_file: no solid",
-        "status": 422,
-    }
-    page.route(ROUTE, lambda route: route.fulfill(status=422, json=problem))
+    problem = {"detail": "housings[0].step_file: no solid", "faults": []}
+    page.route(ROUTE, lambda route: route.fulfill(json=problem))
     opened_scene(page, tmp_path)
     expect(words).to_have_text("housings[0].step_file: no solid")
     page.close()

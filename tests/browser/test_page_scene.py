@@ -8,11 +8,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from faulty_units import LEFT_OUT, TWO_STAGE
 from housing_solid import STIFFNESS, housed_scene, write_block
-from page_visit import PATIENCE, Visit, other_browser, refused, shown, tab
-from playwright.sync_api import Browser, expect
+from page_picture import CANVAS, different, picture, stopped
+from page_visit import PATIENCE, Visit, found_inaccessible, opened, other_browser, refused, shown, tab
+from playwright.sync_api import Browser, Page, expect
 from running_service import until
 
 from lineofaction.gearbox.registry import STUDIES
@@ -196,9 +198,9 @@ def test_the_matrix_of_a_unit_is_a_file_beside_its_scene(visit: Visit) -> None:
     refused = {"status": 422, "json": {"title": "Not now", "status": 422}}  # others wait for the worker
     page.route("**/execution", lambda route: route.fulfill(**refused))
     tab(page, "TOML")
-    page.get_by_label("Scene, TOML").press("End")
-    page.keyboard.type(" ")
     with page.expect_request("**/v1/drafts/scene-text") as sent:
+        page.get_by_label("Scene, TOML").press("End")
+        page.keyboard.type(" ")
         page.get_by_role("button", name="Compute the scene").press("Enter")
     expect(page.locator("#scene-body [role=alert]")).to_contain_text("Not now")
     page.unroute("**/execution")
@@ -257,3 +259,158 @@ def test_a_deflection_shows_its_tables_of_bearings(visit: Visit) -> None:
     expect(table.locator("tbody tr")).to_have_count(2)
     expect(page.locator("#scene-body .lead")).to_have_text(re.compile(r"Nothing meshes\.$"))
     assert visit.complaints == []
+
+
+SHOWN = "#view [role=status]"
+HELD = "The unit of the scene, which has no mesh with a pair to draw."
+BARE = """[run]
+duration_s = 1.0
+
+[[shafts]]
+name = "bar"
+diameter_mm = 20.0
+length_mm = 300.0
+"""
+
+
+def errors(seen: Visit) -> list[str]:
+    """Return all that is logged as an error, refused requests too."""
+    return [line for line in seen.console if line.startswith("error")]
+
+
+def shows_scene(page: Page, words: str) -> np.ndarray:
+    expect(page.locator(SHOWN)).to_have_text(words)
+    return picture(page)
+
+
+@pytest.mark.law
+def test_the_picture_follows_the_scene_that_is_edited(
+    drawing_browser: Browser, address: str, analyzed: str
+) -> None:
+    seen = shown(drawing_browser, address, analyzed)
+    page, words = seen.page, "The unit of the scene: click a mesh to open its pair."
+    stopped(page)
+    pair = picture(page)
+    tab(page, "Sound")
+    page.get_by_role("button", name="Write the scene of the pair").press("Enter")
+    whole = shows_scene(page, words)
+    assert different(pair, whole) > 0.05
+    page.locator(CANVAS).press("ArrowUp")
+    turned = picture(page)
+    length, text = page.locator("#scene-shafts-1-length_mm"), page.get_by_label("Scene, TOML")
+    length.fill("290")
+    length.press("Tab")
+    expect(text).to_have_value(re.compile("length_mm = 290.0"))
+    longer = picture(page)
+    assert different(turned, longer) > 0.01
+    length.fill("-3")
+    length.press("Tab")
+    expect(length).to_have_attribute("aria-invalid", "true")
+    assert different(longer, picture(page)) < 0.002, "the last good picture stays"
+    length.fill("200")
+    length.press("Tab")
+    expect(length).to_have_attribute("aria-invalid", "false")
+    until(lambda: different(turned, picture(page)) < 0.002)  # seen from where it was seen
+    tab(page, "TOML")
+    with page.expect_response("**/v1/drafts/scene-text"):
+        text.fill(text.input_value().replace("length_mm = 200.0", "length_mm = 260.0"))
+    until(lambda: different(turned, picture(page)) > 0.01)
+    expect(text).to_be_focused()
+    page.get_by_role("button", name="See the pair", exact=True).press("Enter")
+    assert different(pair, picture(page)) < 0.002
+    expect(page).not_to_have_url(re.compile("see="))
+    page.get_by_role("button", name="Show in the picture").press("Enter")
+    expect(page).to_have_url(re.compile("see=scene"))
+    shows_scene(page, words)
+    assert found_inaccessible(page, "#view") == {}
+    page.reload()
+    stopped(page)
+    assert different(pair, shows_scene(page, words)) > 0.05
+    assert errors(seen) == []
+    page.close()
+
+
+@pytest.mark.law
+def test_a_scene_without_meshes_is_drawn_as_it_is_typed(drawing_browser: Browser, address: str) -> None:
+    """From nothing: a shaft, another one, then none, which is a fault, then a file with shafts alone."""
+    seen = opened(drawing_browser, f"{address}/#tab=sound")
+    page = seen.page
+    stopped(page)
+    tab(page, "TOML")
+    text, canvas = page.get_by_label("Scene, TOML"), page.locator(CANVAS)
+    text.fill(BARE)
+    bar = shows_scene(page, HELD)
+    expect(canvas).to_have_attribute("aria-label", re.compile("^Gear unit with 1 shaft and 0 meshes, in"))
+    other = BARE.partition("\n\n")[2].replace("bar", "other")
+    text.fill(f"{BARE}{other}origin_mm = [0.0, 90.0, 0.0]\n")
+    expect(canvas).to_have_attribute("aria-label", re.compile("^Gear unit with 2 shafts and 0 meshes, in"))
+    both = picture(page)
+    assert different(bar, both) > 0.01
+    text.fill("[run]\nduration_s = 1.0\n")
+    expect(page.locator("#scene-body")).to_contain_text("The scene has faults")
+    assert different(both, picture(page)) < 0.002
+    text.fill(EXAMPLE.with_name("jeffcott_scene.toml").read_text(encoding="utf-8"))
+    expect(canvas).to_have_attribute("aria-label", re.compile("^Gear unit with 1 shaft and 0 meshes, in"))
+    assert errors(seen) == []
+    page.close()
+
+
+@pytest.mark.law
+def test_a_pair_that_cannot_be_made_is_said_under_the_last_picture(
+    drawing_browser: Browser, address: str
+) -> None:
+    seen = opened(drawing_browser, f"{address}/#tab=sound")
+    page = seen.page
+    stopped(page)
+    scene, case = (EXAMPLE.with_name(f"{name}.toml") for name in ("palermo_scene", "palermo_spur_20_20"))
+    page.locator("#scene-file").set_input_files([case, scene])
+    shows_scene(page, "The unit of the scene: click a mesh to open its pair.")
+    page.locator(SHOWN).evaluate("(node) => { node.style.opacity = '0'; }")
+    whole = picture(page)
+    far = case.read_text(encoding="utf-8").replace("center_distance_mm = 80.0", "center_distance_mm = 800.0")
+    texts = {case.name: far, scene.name: scene.read_text(encoding="utf-8")}
+    files: Any = [
+        {"name": name, "mimeType": "text/plain", "buffer": text.encode()} for name, text in texts.items()
+    ]
+    page.locator("#scene-file").set_input_files(files)
+    expect(page.locator(SHOWN)).to_contain_text("the contact ratio is")
+    assert different(whole, picture(page)) < 0.002
+    assert errors(seen) == []
+    page.close()
+
+
+@pytest.mark.law
+def test_a_planet_stage_shows_its_first_planet_where_the_wheel_drives_too(
+    drawing_browser: Browser, address: str
+) -> None:
+    seen = opened(drawing_browser, f"{address}/#tab=sound")
+    names = (
+        "wind_turbine_scene",
+        *(f"wind_turbine_{pair}" for pair in ("planet_sun", "planet_ring", "high_speed")),
+    )
+    seen.page.locator("#scene-file").set_input_files([EXAMPLE.with_name(f"{name}.toml") for name in names])
+    expect(seen.page.locator(SHOWN)).to_have_text(
+        "The unit of the scene: click a mesh to open its pair. Of planets the first is drawn."
+    )
+    assert errors(seen) == []
+    seen.page.close()
+
+
+@pytest.mark.law
+def test_a_browser_without_webgl_follows_the_scene_by_still_pictures(browser: Browser, address: str) -> None:
+    seen = opened(browser, f"{address}/#tab=sound")
+    page, canvas = seen.page, seen.page.locator(CANVAS)
+    tab(page, "TOML")
+    text = page.get_by_label("Scene, TOML")
+    for words, content in (
+        ("1 shaft", BARE),
+        ("2 shafts", BARE + BARE.partition("\n\n")[2].replace("bar", "end")),
+    ):
+        text.fill(content)
+        expect(canvas).to_have_attribute("aria-label", f"Gear unit with {words} and 0 meshes")
+        expect(canvas).to_have_attribute("data-drawn", "yes")
+    expect(page.locator("#mesh-drawing")).to_be_hidden()
+    page.get_by_role("button", name="See the pair", exact=True).press("Enter")
+    expect(page.locator("#mesh-drawing path").first).to_be_visible()
+    assert errors(seen) == []
+    page.close()

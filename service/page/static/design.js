@@ -10,7 +10,7 @@ import { CaseForm } from "./form.js";
 import { noPlan, showPlan } from "./plan.js";
 import { View } from "./view.js";
 
-const SETTLED = 350; // milliseconds without an edit after which the case is planned and drawn
+export const SETTLED = 350; // milliseconds without an edit after which the case is planned and drawn
 const EMPTY = { name: "empty", title: "Empty fields, to type a pair", note: "", case: {} };
 const PLANE = /^plane/;
 const BESIDE = ["complaint", "report"]; // no curve depends on them
@@ -31,7 +31,10 @@ export class Design {
     this.left = () => {}; // called when another design is put into the form
     this.stands = false; // whether the form holds what the address says, or what was typed since
     this.drawing = new Drawing();
-    this.view = new View(byId("view"));
+    this.view = new View(byId("view"), () => {
+      address.look("see", null);
+      this.left();
+    });
     this.form = new CaseForm(schema, effects, () => this.edited());
     this.offer();
   }

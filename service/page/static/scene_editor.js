@@ -2,6 +2,7 @@
 
 import { ask, get, guarded, patiently } from "./api.js";
 import { card } from "./card.js";
+import { SETTLED } from "./design.js";
 import { button, byId, make } from "./elements.js";
 import { faultsOf } from "./job.js";
 import { sayMissing } from "./notice.js";
@@ -10,6 +11,7 @@ import { evenly, saveScene, sceneOf } from "./scene.js";
 import { changed } from "./schema.js";
 import { SceneTable } from "./scene_table.js";
 import { Tabs, reveal } from "./tabs.js";
+import { OWN, WHOLE } from "./unit.js";
 
 const RUN = { process: "simulate", title: "Run over time", subjects: ["case", "scene"] };
 /** By which the text of a scene is known. */
@@ -44,7 +46,11 @@ export class SceneEditor {
     /** The scene of a job, which is in the address by the job. */
     this.ofJob = null;
     this.text = make("textarea", {
-      id: "scene-text", rows: 16, spellcheck: "false", autocomplete: "off", wrap: "off", onchange: () => this.settle(() => this.read()),
+      id: "scene-text", rows: 16, spellcheck: "false", autocomplete: "off", wrap: "off", onchange: () => this.readTyped(),
+      oninput: () => {
+        clearTimeout(this.typing);
+        this.typing = setTimeout(() => this.readTyped(), SETTLED);
+      },
     });
     this.tables = make("div", { id: "scene-tables", "data-title": "Table" });
     this.none();
@@ -57,7 +63,10 @@ export class SceneEditor {
     this.run = undefined;
     /** Files that the scene names, as they go with its text. */
     this.files = [];
-    this.fromPair = button("Write the scene of the pair above", () => this.put(sceneOf(this.known)), { disabled: true });
+    this.fromPair = button("Write the scene of the pair above", () => {
+      this.put(sceneOf(this.known));
+      this.look();
+    }, { disabled: true });
     const ofScenes = [RUN, ...studies.filter(({ subjects }) => subjects.includes("scene"))];
     /** Of which a scene is all they take. */
     this.whole = new Set(ofScenes.filter(({ subjects }) => subjects.includes("case")).map(({ process }) => process));
@@ -87,7 +96,10 @@ export class SceneEditor {
     const row = make(
       "div", { class: "buttons" },
       chosen, make("label", { class: "button", for: "scene-file" }, "Open scene file…"), this.fromPair,
-      button("Save scene", () => saveScene({ toml: this.text.value, files: this.files })),
+      button("Save scene", () => saveScene({ toml: this.text.value, files: this.files })), button("Show in the picture", () => {
+        this.look();
+        this.draw();
+      }),
     );
     const toml = make("div", { id: "scene-toml", "data-title": "TOML" }, make("label", { for: "scene-text", class: "above" }, "Scene, TOML"), this.text);
     const [tabs, panels] = [make("div", { class: "tabs", role: "tablist", "aria-label": "Scene" }), make("div", {}, this.tables, toml)];
@@ -155,6 +167,7 @@ export class SceneEditor {
     const { inputs } = this.table ? {} : await patiently(() => get("/v1/processes/simulate"));
     this.table ??= new SceneTable(inputs.scene.schema, (edited) => {
       this.scene = edited;
+      this.look();
       this.settle(() => this.write());
     });
     this.table.show(this.scene);
@@ -189,9 +202,35 @@ export class SceneEditor {
     await this.carry();
   }
 
-  /** Let the address carry the scene with its files and load cases, and the unit that it is of show it. */
+  /** Read what is typed and was not read yet. */
+  readTyped() {
+    if (this.text.readOnly || (this.text.value === this.written && !this.problem)) return;
+    this.look();
+    this.settle(() => this.read());
+  }
+
+  /** Whether the scene is that of the unit that is open. */
+  get ofUnit() {
+    return Boolean(this.mark) && this.mark === this.unit.mark;
+  }
+
+  /** Let the scene be what the picture shows, or the unit that it is of. */
+  look() {
+    this.design.view.motions?.leave();
+    if (!this.ofUnit) this.design.address.look("see", OWN);
+    else if (!this.unit.part) this.unit.look(WHOLE);
+  }
+
+  /** Let the picture follow the scene. */
+  draw() {
+    const { scene, design: { address, view } } = this;
+    this.unit.take(this.mark, scene);
+    if (address.views.get("see") === OWN) view.see({ scene, open: (mesh) => this.design.goTo(mesh.case, mesh.name) });
+  }
+
+  /** Let the address carry the scene with its files and load cases, and the picture show it. */
   async carry() {
-    this.unit.take(this.mark, this.scene);
+    this.draw();
     const { scene, name, written: toml, files, cases, mark } = this;
     const word = scene && scene !== this.ofJob ? await packedFile(name, new TextEncoder().encode(JSON.stringify({ toml, files, cases, mark }))) : null;
     if (scene !== this.scene) return;
@@ -210,11 +249,8 @@ export class SceneEditor {
     } catch (fault) { // what a damaged address holds
       sayMissing(`The scene: ${fault.message}`);
     }
-    if (this.text.value === this.written) {
-      this.unit.take(this.mark, this.scene);
-      return;
-    }
-    await this.settle(() => (this.text.value ? this.read() : this.none()));
+    if (this.text.value === this.written) this.draw();
+    else await this.settle(() => (this.text.value ? this.read() : this.none()));
   }
 
   /** @param {string} word */
@@ -244,7 +280,7 @@ export class SceneEditor {
 
   /** The scene as it is edited. @throws {Problem} it has faults */
   async current() {
-    if (this.text.value !== this.written && !this.text.readOnly) this.settle(() => this.read());
+    if (this.text.value !== this.written) this.readTyped();
     await this.settling;
     if (this.problem) throw this.problem;
     return this.scene;
@@ -252,6 +288,7 @@ export class SceneEditor {
 
   /** Do what changes the scene; what is wrong with it then is said, at its cell where it has one. @param {() => Promise<void>} action */
   settle(action) {
+    clearTimeout(this.typing);
     const own = guarded(() => action().then(() => null), (problem) => problem).then((problem) => {
       if (this.settling === own) this.refuse(problem);
     });
@@ -263,7 +300,7 @@ export class SceneEditor {
   refuse(problem) {
     const ofText = this.text.value !== this.written;
     this.problem = problem;
-    if (this.mark && this.mark === this.unit.mark) this.unit.say(problem?.errors);
+    if (this.ofUnit) this.unit.say(problem?.errors);
     this.text.readOnly = Boolean(problem) && !ofText;
     this.tables.inert = Boolean(problem) && ofText;
     const marked = this.table?.refuse(ofText ? [] : problem?.errors ?? []);
@@ -302,8 +339,8 @@ export class SceneEditor {
       this.text.value = text;
       this.another("", [], null);
     }
+    this.look();
     await this.settle(() => this.read());
-    this.design.view.open(this.problem ? null : this.scene);
   }
 
   job({ from, to, count, microphone_mm: microphone }) {

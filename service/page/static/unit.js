@@ -13,6 +13,7 @@ const FATES = ["taken", "assumed", "derived", "defaulted", "ignored", "refused"]
 const ENDINGS = /\.(rexs|rexsj|rexsz|zip)$/i;
 const MARK = 8; // characters at the end of its word, a checksum
 export const WHOLE = "unit"; // what is seen of a unit that is opened
+export const OWN = "scene"; // what is seen where the scene that is edited is that of no such unit
 
 /** @param {string} name of a file */
 export const isUnit = (name) => ENDINGS.test(name);
@@ -64,7 +65,8 @@ export class OpenedUnit {
 
   /** The meshes of its scene, or else its stages: each with a name and a case. */
   get meshes() {
-    return this.unit.scene?.meshes.filter((mesh) => mesh.case) ?? this.unit.cases;
+    const { scene, cases } = this.unit;
+    return scene ? (scene.meshes ?? []).filter((mesh) => mesh.case) : cases;
   }
 
   /** By which its scene is known; null: none is shown. */
@@ -84,10 +86,12 @@ export class OpenedUnit {
 
   /** Mark what is seen, in the tree and in three dimensions; nothing: the pair is seen. @param {string | undefined} part */
   see(part) {
-    const scene = this.place.hidden ? null : this.unit.scene;
-    this.part = part;
+    this.part = part === OWN ? undefined : part;
     this.say();
-    this.design.view.see(part ? scene : null, part, (mesh) => this.openMesh(mesh), this.page.slide);
+    if (part === OWN) return; // the editor shows it
+    const scene = part && !this.place.hidden ? this.unit.scene : null;
+    this.design.view.motions?.leave();
+    this.design.view.see({ scene, part, open: (mesh) => this.openMesh(mesh), slid: this.page.slide });
   }
 
   /** Say in the tree and below it what is seen. @param {{field: string, bound: string}[]} [faults] of its scene */
@@ -160,14 +164,14 @@ function branch(title, items) {
 function branches(scene, part) {
   const bearings = [...(scene.rolling_bearings ?? []), ...(scene.bushings ?? [])];
   const at = (item) => `on ${item.shaft}, at ${number(item.position_mm)} mm`;
-  const shafts = scene.shafts.flatMap((shaft) => {
+  const shafts = (scene.shafts ?? []).flatMap((shaft) => {
     const on = (items) => items.filter((item) => item.shaft === shaft.name);
     const items = [
-      ...on(scene.gears).map((gear) => part(gear.name, `${gear.name}: gear ${at(gear)}.`)),
+      ...on(scene.gears ?? []).map((gear) => part(gear.name, `${gear.name}: gear ${at(gear)}.`)),
       ...on(bearings).map((bearing) => part(bearing.name, `${bearing.name}: bearing ${at(bearing)}${bearing.catalog ? `, outside diameter ${number(bearing.catalog.outside_diameter_mm)} mm` : ""}.`)),
     ];
     const sections = shaft.sections ? `, ${shaft.sections.length} sections` : "";
-    const row = part(shaft.name, `${shaft.name}: ${number(shaft.length_mm)} mm long, from ${vector(shaft.origin_mm)} mm${sections}.`);
+    const row = part(shaft.name, `${shaft.name}: ${number(shaft.length_mm)} mm long, from ${vector(shaft.origin_mm ?? [0, 0, 0])} mm${sections}.`);
     row.append(make("ul", {}, ...items));
     return [row];
   });

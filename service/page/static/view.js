@@ -8,7 +8,7 @@ import { MOVING, Motions } from "./view_motion.js";
 import { most, RollingPair } from "./view_pair.js";
 import { drawable, Stage } from "./view_stage.js";
 import { STILL, stillOf } from "./view_still.js";
-import { gearboxOf } from "./view_unit.js";
+import { Gearbox, gearboxOf } from "./view_unit.js";
 
 const BENT = 200; // times
 const READ = "The housing is read from its file.";
@@ -17,16 +17,22 @@ const READ = "The housing is read from its file.";
 
 /** The picture in a part of the page, with what it is steered by. */
 export class View {
-  /** @param {HTMLElement} target hidden where the browser has no WebGL2: a drawing stands for the pair, a still picture for a unit */
-  constructor(target) {
+  /**
+   * @param {HTMLElement} target hidden where the browser has no WebGL2: a drawing stands for the pair, a still picture for a unit
+   * @param {() => void} back leaves a unit for the pair
+   */
+  constructor(target, back) {
     this.target = target;
+    /** @type {Wanted} what is seen where no motion is shown */
+    this.base = { scene: null };
+    this.words = make("p", { class: "view-words", role: "status" });
+    this.ofUnit = button("See the pair", back, { class: "small", hidden: true });
     /** @type {string | null} the motion of the result, by its number, as a word of the address */
     this.motion = null;
     target.hidden = !drawable();
     if (target.hidden) return;
     this.pair = new RollingPair();
     this.stage = new Stage(target, this.pair);
-    this.words = make("p", { class: "view-words", role: "status" });
     this.scale = make("span", { class: "view-scale", hidden: true });
     this.pair.told = (words, map) => this.words.replaceChildren(...(map ? [map] : []), words);
     const roll = button("", () => this.stage.roll(!this.stage.rolls), { class: "small" });
@@ -51,7 +57,7 @@ export class View {
       choice("see through the wheel", true, (on) => { this.pair.through = on; }),
       this.scale);
     this.motions = new Motions(this);
-    target.append(make("div", { class: "view-controls" }, roll, this.ofPair, this.motions.block), this.words);
+    target.append(make("div", { class: "view-controls" }, roll, this.ofPair, this.ofUnit, this.motions.block), this.words);
   }
 
   /** Where it stands, in base pitches, as a word of the address; null: nobody stopped it. */
@@ -67,55 +73,62 @@ export class View {
     byId("roll").dispatchEvent(new Event("input"));
   }
 
-  /**
-   * Draw a gear unit with one of its parts marked, or the pair.
-   * @param {any} scene null: the pair @param {string} [part] @param {(mesh: any) => void} [open] a mesh that is clicked
-   * @param {((part: string, position: number) => void) | null} [slid] the part is moved along its shaft, mm
-   */
-  async see(scene, part = "", open = () => {}, slid = null) {
-    const wanted = (this.wanted = { scene, part, open, slid });
-    this.motions?.seen(scene);
-    const drawn = scene && (scene === this.gearbox?.scene || this.gearbox?.follow(scene));
-    const gearbox = scene && (drawn ? this.gearbox : await gearboxOf(scene, open));
-    if (this.wanted !== wanted) return;
-    this.gearbox = gearbox ?? this.gearbox;
-    gearbox?.mark(part);
-    if (gearbox) Object.assign(gearbox, { open, slid });
+  /** @typedef {{scene: any, part?: string, open?: (mesh: any) => void, slid?: ((part: string, position: number) => void) | null}} Wanted a
+   * unit by its scene, null: the pair; the part that is marked, what a click on a mesh does and what moves that part along its shaft, mm */
+
+  /** Draw a gear unit with one of its parts marked, or the pair; where a motion is shown, once it is left. @param {Wanted} wanted */
+  see(wanted) {
+    this.base = wanted;
+    return this.motions?.list.value ? undefined : this.present(wanted);
+  }
+
+  /** @param {Wanted} wanted */
+  async present(wanted) {
+    this.wanted = wanted;
+    const { scene, open = () => {} } = wanted;
+    await saidIn(this.words, async () => {
+      const drawn = scene && (scene === this.gearbox?.scene || this.gearbox?.follow(scene));
+      const unit = scene && (drawn ? this.gearbox : await gearboxOf(scene, open));
+      if (this.wanted !== wanted) return;
+      this.put(unit, wanted);
+      if (unit && this.stage && (unit.solid || isHoused(scene))) this.house(unit);
+    });
+  }
+
+  /** @param {Gearbox | null} unit @param {Wanted} wanted */
+  put(unit, { scene, part = "", open = () => {}, slid = null }) {
+    this.ofUnit.hidden = !unit;
+    this.gearbox = unit ?? this.gearbox;
+    unit?.mark(part);
+    if (unit) Object.assign(unit, { open, slid });
+    this.words.textContent = unit ? inWords(unit, part, this.stage) : "";
     if (!this.stage) {
-      this.target.hidden = !gearbox;
-      this.target.replaceChildren(...(gearbox ? [stillOf(gearbox, unitInWords(scene)), make("p", { class: "view-words", role: "status" }, STILL)] : []));
+      this.target.hidden = !unit;
+      this.target.replaceChildren(...(unit ? [stillOf(unit, unitInWords(scene)), this.ofUnit, this.words] : []));
       return;
     }
-    if (!this.stage.rolls && gearbox) gearbox.position = this.pair.position;
-    this.stage.put(gearbox ?? this.pair);
-    this.ofPair.hidden = Boolean(gearbox);
-    const slides = gearbox?.middle ? ` Drag ${part} along its shaft, or press ← and →: 1 mm, with Shift 10 mm.` : "";
-    const words = gearbox ? `The unit of the scene: click a mesh to open its pair.${slides}` : "";
-    this.words.textContent = words;
+    if (!this.stage.rolls && unit) unit.position = this.pair.position;
+    this.stage.put(unit ?? this.pair);
+    this.ofPair.hidden = Boolean(unit);
     this.label(scene);
-    if (gearbox && !gearbox.housing && isHoused(scene)) saidIn(this.words, () => this.house(gearbox, words));
   }
 
-  /** Draw the housing of a unit, once its file is read. @param {any} gearbox @param {string} words about the unit */
-  async house(gearbox, words) {
-    this.words.textContent = READ;
-    const surface = await surfaceOf(gearbox.scene);
-    if (this.stage.subject !== gearbox || gearbox.housing) return;
-    gearbox.house(surface);
-    this.stage.frame();
-    if (this.words.textContent === READ) this.words.textContent = words;
-  }
-
-  /** Show a scene whose housing is known by its file, as it is opened. @param {any} scene null: it has faults */
-  open(scene) {
-    if (this.stage && isHoused(scene)) saidIn(this.words, () => this.see(scene));
+  /** Draw the housing of a unit, once its file is read. @param {Gearbox} unit */
+  house(unit) {
+    const words = this.words.textContent;
+    return saidIn(this.words, async () => {
+      this.words.textContent = READ;
+      const surface = await surfaceOf(unit.scene);
+      if (this.words.textContent === READ) this.words.textContent = words;
+      if (this.stage.subject !== unit || surface === unit.solid) return;
+      unit.house(surface);
+      this.stage.frame(true);
+    });
   }
 
   /** Draw a scene in place of what it was before an edit. */
   replace(before, scene) {
-    const { wanted, motions } = this;
-    if (motions?.before?.scene === before) motions.before.scene = scene;
-    if (wanted?.scene === before) this.see(scene, wanted.part, wanted.open, wanted.slid);
+    if (this.base.scene === before) this.see({ ...this.base, scene });
   }
 
   /** Offer the motions of a result, if it has any, in the picture of its scene. @param {any} scene @param {any} result reference to it @param {AbortSignal} signal */
@@ -163,8 +176,16 @@ export class View {
   }
 }
 
+/** What may be done with the picture of a unit. @param {Gearbox} unit @param {string} part that is marked @param {Stage | undefined} stage on which it moves */
+function inWords({ stages, middle, scene }, part, stage) {
+  if (!stage) return STILL;
+  const pairs = stages.length ? "The unit of the scene: click a mesh to open its pair." : "The unit of the scene, which has no mesh with a pair to draw.";
+  const planets = scene.planets?.length ? " Of planets the first is drawn." : "";
+  return pairs + planets + (middle ? ` Drag ${part} along its shaft, or press ← and →: 1 mm, with Shift 10 mm.` : "");
+}
+
 /** @param {any} scene */
-const unitInWords = ({ shafts, meshes }) => `Gear unit with ${shafts.length} shafts and ${meshes?.length ?? 0} meshes`;
+const unitInWords = ({ shafts = [], meshes = [] }) => `Gear unit with ${shafts.length} shaft${shafts.length === 1 ? "" : "s"} and ${meshes.length} mesh${meshes.length === 1 ? "" : "es"}`;
 
 /** Whether two outlines are of the same gears. @param {any} outline */
 const outlined = (outline) => outline && JSON.stringify([outline.pinion, outline.wheel]);

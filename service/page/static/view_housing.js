@@ -1,7 +1,7 @@
 // @ts-check
 /** The surface of the housings of a scene where they stand, as their files have it: nothing need be computed. */
 
-import { patiently, post } from "./api.js";
+import { ask, patiently } from "./api.js";
 
 const SHAPE = ["step_file", "mesh_file", "mesh_unit", "origin_mm", "x_axis", "z_axis"];
 
@@ -22,7 +22,7 @@ export function surfaceOf(scene) {
   const housings = solidsOf(scene);
   const shape = JSON.stringify(housings.map((housing) => SHAPE.map((name) => housing[name] ?? null)));
   if (shape !== last.shape) {
-    const surface = housings.length ? patiently(() => post("/v1/scenes/housing-surface", { housings })).then((answer) => answer.surface) : Promise.resolve(null);
+    const surface = housings.length ? patiently(() => ask("housing-surface", { housings })).then((answer) => answer.surface) : Promise.resolve(null);
     last = { shape, surface };
     surface.catch(() => { last = { shape: "", surface }; }); // asked once more next time
   }

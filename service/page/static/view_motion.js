@@ -146,15 +146,14 @@ export class Motions {
     return saidIn(this.view.words, async () => {
       const { motion } = await get(`${this.href}/motion?number=${value}`);
       if (this.list.value !== value) return;
-      if (this.view.wanted?.scene !== this.scene) this.before = this.view.wanted;
-      await this.view.see(this.scene);
+      await this.view.present({ scene: this.scene });
       try {
         this.view.gearbox.move(motion);
       } catch (fault) { // what a damaged answer holds
         this.view.words.textContent = `The motion cannot be drawn: ${fault.message}`;
         return;
       }
-      if (motion.surface) this.view.stage.frame();
+      if (motion.surface) this.view.stage.frame(true);
       this.view.words.textContent = this.list.selectedOptions[0].textContent;
       this.scale();
     });
@@ -166,14 +165,13 @@ export class Motions {
     this.factor.textContent = "";
     this.levels.hidden = true;
     this.view.gearbox?.move(null);
-    const { scene = null, part, open, slid } = this.before ?? {};
-    return this.view.see(scene, part, open, slid);
+    return this.view.present(this.view.base);
   }
 
-  /** Another thing is shown. @param {any} scene */
-  seen(scene) {
-    if (scene === this.scene || !this.list.value) return;
-    this.list.value = "";
+  /** Another thing is looked at. */
+  leave() {
+    if (!this.list.value) return;
+    this.rest();
     this.unsaid();
   }
 

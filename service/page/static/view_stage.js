@@ -64,17 +64,20 @@ export class Stage {
   /** Draw a subject in place of another. @param {Subject} subject */
   put(subject) {
     if (subject !== this.subject) {
-      this.subject.end(this.gl);
+      const before = this.subject;
+      before.end(this.gl);
       this.subject = subject;
       subject.begin(this.gl, this.programs);
-      this.frame();
+      this.frame(before.constructor === subject.constructor);
     }
     this.wake();
   }
 
-  /** Look at the whole subject. */
-  frame() {
+  /** Look at the whole subject. @param {boolean} [kept] from where the last one was seen */
+  frame(kept = false) {
+    const { yaw, pitch, distance, home } = this.camera;
     this.subject.frame(this.camera);
+    if (kept) Object.assign(this.camera, { yaw, pitch, distance: this.camera.distance * (distance / home.distance) });
     this.wake();
   }
 

@@ -24,11 +24,11 @@ function* solidsOf(unit) {
   for (const { name, shaft, mesh, color } of unit.parts) {
     yield { ...mesh, color, marked: name === unit.marked, place: (point) => point.map((value, k) => value + shaft.origin_mm[k]) };
   }
-  for (const { mesh, pair, angle, to } of unit.stages) {
+  for (const { on, pair, angle, to } of unit.stages) {
     const turned = about(angle);
     for (const name of GEARS) {
       const gear = pair.outline[name];
-      const solid = { ...toothMesh(gear, pair.outline.internal && name === "wheel", true), color: (pair.colors ?? COLORS)[name], marked: mesh[name === "pinion" ? "driver" : "driven"] === unit.marked };
+      const solid = { ...toothMesh(gear, pair.outline.internal && name === "wheel", true), color: (pair.colors ?? COLORS)[name], marked: on[name].name === unit.marked };
       const middle = 0.5 * (gear.face_mm[0] + gear.face_mm[1]);
       for (let tooth = 0; tooth < gear.teeth; tooth += 1) {
         const at = (Math.PI / 180) * gear.angle_deg + (gear.turn * 2 * Math.PI * tooth) / gear.teeth;

@@ -1,7 +1,7 @@
 // @ts-check
 /** A gear unit as its scene has it: shafts and bearings as bodies of revolution, gears with their teeth, all in motion. */
 
-import { post } from "./api.js";
+import { ask, patiently } from "./api.js";
 import { caseOf } from "./orders.js";
 import { same } from "./schema.js";
 import { freed, held, Meshing } from "./view_gl.js";
@@ -62,6 +62,9 @@ function bearingMesh({ position_mm: place, catalog }, shaft) {
   return made.mesh;
 }
 
+/** The pinion and the wheel of a mesh. @param {any} mesh @param {Map<string, any>} gears by their names */
+const gearsOf = ({ driver, driven, wheel_drives: reversed }, gears) => ({ pinion: gears.get(reversed ? driven : driver), wheel: gears.get(reversed ? driver : driven) });
+
 /** @param {{face_mm: number[]}} gear */
 const middleOf = ({ face_mm: [low, high] }) => 0.5 * (low + high);
 
@@ -70,7 +73,7 @@ const mapped = (values, to) => Object.fromEntries(Object.entries(values).map(([n
 const bearingsOf = (scene) => [...(scene.rolling_bearings ?? []), ...(scene.bushings ?? [])];
 
 /** What is drawn of a scene but for the places on shafts. @param {any} scene */
-function unplaced({ shafts, gears, meshes, rolling_bearings: rolling = [], bushings = [] }) {
+function unplaced({ shafts, gears = [], meshes, rolling_bearings: rolling = [], bushings = [] }) {
   const parts = [gears, rolling, bushings].map((list) => list.map((part) => ({ ...part, position_mm: 0 })));
   return { shafts, meshes, parts };
 }
@@ -101,7 +104,9 @@ export class Gearbox {
     this.position = 0;
     /** @type {Motion | null} */
     this.motion = null;
-    /** @type {ReturnType<typeof hullOf> | null} its housing where it stands */
+    /** @type {import("./view_motion.js").Surface | null} that of its housing where it stands */
+    this.solid = null;
+    /** @type {ReturnType<typeof hullOf> | null} */
     this.housing = null;
     this.stand(scene, stages.map((stage) => ({ ...stage, pair: new RollingPair() })));
   }
@@ -109,11 +114,12 @@ export class Gearbox {
   /** Let parts stand where a scene has them. */
   stand(scene, stages) {
     this.scene = scene;
-    this.shafts = new Map(scene.shafts.map((shaft) => [shaft.name, shaft]));
-    const gears = new Map(scene.gears.map((gear) => [gear.name, gear]));
+    this.shafts = new Map((scene.shafts ?? []).map((shaft) => [shaft.name, { ...shaft, origin_mm: shaft.origin_mm ?? [0, 0, 0] }]));
+    const gears = new Map((scene.gears ?? []).filter(({ shaft }) => this.shafts.has(shaft)).map((gear) => [gear.name, gear]));
+    const whole = stages.map((stage) => ({ ...stage, on: gearsOf(stage.mesh, gears) })).filter(({ on }) => GEARS.every((name) => on[name]));
     /** @type {Map<string, number>} turns of shafts in rad a base pitch of the first mesh, counter-clockwise */
     this.turns = new Map();
-    this.stages = stages.map(({ mesh, outline, pair }) => this.stage(mesh, outline, pair, gears.get(mesh.driver), gears.get(mesh.driven)));
+    this.stages = whole.map((stage) => this.stage(stage));
   }
 
   /** Follow a scene whose parts stand elsewhere on their shafts and are the same otherwise. @returns {boolean} whether it is one */
@@ -126,12 +132,12 @@ export class Gearbox {
     return true;
   }
 
-  stage(mesh, outline, pair, driver, driven) {
-    const [one, other] = [driver, driven].map(({ shaft }) => this.shafts.get(shaft));
+  stage({ mesh, outline, pair, on }) {
+    const [one, other] = GEARS.map((name) => this.shafts.get(on[name].shaft));
     const [x, y] = [0, 1].map((k) => other.origin_mm[k] - one.origin_mm[k]);
     const angle = Math.atan2(y, x) + (outline.internal ? 1 : -1) * (Math.PI / 2);
     const { pinion, wheel } = outline;
-    const height = { pinion: one.origin_mm[2] + driver.position_mm, wheel: other.origin_mm[2] + driven.position_mm - middleOf(wheel) };
+    const height = { pinion: one.origin_mm[2] + on.pinion.position_mm, wheel: other.origin_mm[2] + on.wheel.position_mm - middleOf(wheel) };
     const to = mapped(height, (z) => [one.origin_mm[0], one.origin_mm[1], z]);
     const lead = wheel.twist_deg_per_mm * (height.wheel - height.pinion); // teeth fit wherever the wheel stands
     const step = (-2 * Math.PI) / pinion.teeth; // of the pinion, a base pitch
@@ -139,7 +145,6 @@ export class Gearbox {
     this.turns.set(one.name, turned);
     this.turns.set(other.name, (turned / step) * wheel.turn * ((2 * Math.PI) / wheel.teeth));
     pair.outline = { ...outline, wheel: { ...wheel, angle_deg: wheel.angle_deg + lead } };
-    const on = { pinion: driver, wheel: driven };
     return { mesh, outline, pair, place: mapped(to, (place) => placement(angle, place)), ratio: turned / step, on, angle, to };
   }
 
@@ -155,10 +160,10 @@ export class Gearbox {
     this.motion = motion && new Motion(motion, this.reach, reachAt);
   }
 
-  /** Let its housing stand about it. @param {import("./view_motion.js").Surface} surface */
+  /** Let its housing stand about it. @param {import("./view_motion.js").Surface | null} surface null: it has none */
   house(surface) {
     this.letHullGo();
-    this.housing = hullOf(surface);
+    Object.assign(this, { solid: surface, housing: surface && hullOf(surface) });
   }
 
   /** The housing as it is drawn: that of the motion, or where it stands. */
@@ -178,7 +183,7 @@ export class Gearbox {
 
   /** Shafts and bearings, each with its mesh about the axis of its shaft. */
   get parts() {
-    const shafts = this.scene.shafts.map((shaft) => ({ name: shaft.name, shaft, mesh: shaftMesh(shaft), color: COLORS.shaft }));
+    const shafts = [...this.shafts.values()].map((shaft) => ({ name: shaft.name, shaft, mesh: shaftMesh(shaft), color: COLORS.shaft }));
     const bearings = bearingsOf(this.scene).filter(({ shaft }) => this.shafts.has(shaft));
     const own = bearings.map((bearing) => ({ bearing, shaft: this.shafts.get(bearing.shaft) }));
     return [...shafts, ...own.map(({ bearing, shaft }) => ({ name: bearing.name, shaft, mesh: bearingMesh(bearing, shaft), color: COLORS.bearing }))];
@@ -200,15 +205,12 @@ export class Gearbox {
   /** Color a shaft, bearing or gear. @param {string} name of none: all as they are */
   mark(name) {
     this.marked = name;
-    for (const { mesh, pair } of this.stages) {
-      const color = (gear, own) => (gear === name ? MARKED : own);
-      pair.colors = { pinion: color(mesh.driver, OF_PAIR.pinion), wheel: color(mesh.driven, OF_PAIR.wheel) };
-    }
+    for (const { on, pair } of this.stages) pair.colors = mapped(on, (gear) => (gear.name === name ? MARKED : OF_PAIR[gear === on.pinion ? "pinion" : "wheel"]));
   }
 
   /** The gear or bearing that is marked. */
   get sliding() {
-    return [...this.scene.gears, ...bearingsOf(this.scene)].find(({ name, shaft }) => name === this.marked && this.shafts.has(shaft));
+    return [...(this.scene.gears ?? []), ...bearingsOf(this.scene)].find(({ name, shaft }) => name === this.marked && this.shafts.has(shaft));
   }
 
   get middle() {
@@ -225,15 +227,16 @@ export class Gearbox {
 
   /** Both corners of a box about the axes and the housing. */
   get box() {
-    const corners = this.scene.shafts.flatMap(({ origin_mm: [x, y, z], length_mm: length }) => [[x, y, z], [x, y, z + length]]);
-    return [Math.min, Math.max].map((end) => [0, 1, 2].map((k) => end(...[...corners, ...(this.drawnHousing?.ends ?? [])].map((corner) => corner[k]))));
+    const ends = [...this.shafts.values()].flatMap(({ origin_mm: [x, y, z], length_mm: length }) => [[x, y, z], [x, y, z + length]]);
+    const corners = [...ends, ...(this.drawnHousing?.ends ?? [])];
+    return [Math.min, Math.max].map((end) => [0, 1, 2].map((k) => (corners.length ? end(...corners.map((corner) => corner[k])) : 0)));
   }
 
   /** Half of its size in mm. */
   get reach() {
     const [low, high] = this.box;
     const tips = this.stages.map(({ pair }) => pair.outline.wheel.radius_mm.tip);
-    return Math.hypot(...high.map((value, k) => (value - low[k]) / 2)) + 0.5 * Math.max(0, ...tips);
+    return (Math.hypot(...high.map((value, k) => (value - low[k]) / 2)) + 0.5 * Math.max(0, ...tips)) || 1;
   }
 
   frame(camera) {
@@ -310,11 +313,11 @@ export class Gearbox {
   }
 }
 
-/** The unit of a scene, with the outlines of its meshes. @param {any} scene @param {(mesh: any) => void} open */
+/** The unit of a scene, with the outlines of its meshes. @param {any} scene @param {(mesh: any) => void} open @throws {import("./api.js").Problem} a case has faults */
 export async function gearboxOf(scene, open) {
   const written = (mesh) => mesh.case ?? (mesh.database_hash ? caseOf(mesh.database_hash) : null);
   const meshes = await Promise.all((scene.meshes ?? []).map(async (mesh) => ({ ...mesh, case: await written(mesh) })));
   const drawn = meshes.filter((mesh) => mesh.case);
-  const outlines = await Promise.all(drawn.map((mesh) => post("/v1/cases/outline", { inputs: { case: mesh.case } })));
+  const outlines = await Promise.all(drawn.map((mesh) => patiently(() => ask("outline", { inputs: { case: mesh.case } }))));
   return new Gearbox(scene, drawn.map((mesh, k) => ({ mesh, outline: outlines[k] })), open);
 }
