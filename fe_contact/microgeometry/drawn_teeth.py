@@ -18,6 +18,7 @@ from fe_contact.geometry.flank_tolerances import (
     single_pitch_tolerance,
 )
 from fe_contact.microgeometry.tolerances import (
+    ACCUMULATED,
     COMMON,
     OF_A_CLASS,
     PROCESS_SPREAD,
@@ -47,22 +48,40 @@ class PitchBounds:
         The largest that keeps both and the run-out F_rT, m.
     cosine : float
         Of the transverse pressure angle: an eccentricity moves teeth by 1 / cosine of it.
+    accumulated : float
+        Part of the square of a single pitch that the teeth behind keep: 0, each tooth is out of its place by
+        itself; 1, pitches are.
     """
 
     single: float
     cumulative: float
     eccentricity: float
     cosine: float
+    accumulated: float = 0.0
 
     @classmethod
-    def of(cls, gear: Toothing, tolerance_class: int) -> PitchBounds:
+    def of(cls, gear: Toothing, tolerance_class: int, accumulated: float = 0.0) -> PitchBounds:
         """Return those of a gear in a class of ISO 1328-1:2013."""
         single = single_pitch_tolerance(gear, tolerance_class)
         cumulative = cumulative_pitch_tolerance(gear, tolerance_class)
         cosine = math.cos(gear.transverse_pressure_angle)
         by_pitches = 0.5 * cosine * min(single / math.sin(math.pi / gear.teeth), cumulative)
         largest = min(0.5 * run_out_tolerance(gear, tolerance_class), by_pitches)
-        return cls(single, cumulative, largest, cosine)
+        return cls(single, cumulative, largest, cosine, accumulated)
+
+    def places(self, own: FloatArray) -> FloatArray:
+        """Return places of teeth (..., z), m, of what each of them is out of its place by itself.
+
+        Harmonic j of the teeth grows by the root of 1 - a + a / (2 sin^2(pi j / z)), a the part accumulated:
+        the mean square of a single pitch stays, and that of neighbors' difference is the same at every tooth.
+        """
+        if not self.accumulated:
+            return own
+        teeth = own.shape[-1]
+        pitch = 2.0 * np.sin(math.pi * np.arange(1, teeth // 2 + 1) / teeth) ** 2
+        gain = np.sqrt(1.0 - self.accumulated + self.accumulated / pitch)
+        lines = np.fft.rfft(own, axis=-1) * np.concatenate([[1.0], gain])
+        return np.asarray(np.fft.irfft(lines, teeth, axis=-1))
 
     def kept(self, eccentricity: float | FloatArray, place: FloatArray) -> FloatArray:
         """Return places of teeth (..., z), m, scaled where they and the eccentricity pass a bound."""
@@ -104,12 +123,24 @@ class ToothTolerances:
         """``gear.what`` in the order of the widths."""
         return tuple(f"{self.gear}.{name}" for name in self.widths)
 
-    def drawn(self, count: int, seed: int) -> DrawnTeeth:
-        """Draw gears; a larger sample of the same seed begins with a smaller one."""
+    @property
+    def dimensions(self) -> int:
+        """How many numbers a gear takes."""
+        of_axis = sum(name in self.widths for name in OF_AXIS)
+        return 2 * of_axis + (len(self.widths) - of_axis) * self.teeth
+
+    def drawn(self, count: int, seed: int, after: int = 0) -> DrawnTeeth:
+        """Draw gears from a scrambled Sobol' sequence, of which `after` dimensions are others'.
+
+        A larger sample of the same seed begins with a smaller one.
+        """
+        from scipy.stats import qmc  # noqa: PLC0415 (start-up time)
+
         of_axis = [name for name in OF_AXIS if name in self.widths]
         of_teeth = [name for name in self.widths if name not in OF_AXIS]
         of_both = 2 * len(of_axis)
-        uniform = np.random.default_rng(seed).random((count, of_both + len(of_teeth) * self.teeth))
+        sequence = qmc.Sobol(after + self.dimensions, rng=seed)
+        uniform = sequence.random_base2(max(count - 1, 1).bit_length())[:count, after:]
         each = uniform[:, of_both:].reshape(count, len(of_teeth), self.teeth)
         by_axis = {
             name: self._amounts(name, uniform[:, 2 * k]) * np.exp(2j * math.pi * uniform[:, 2 * k + 1])
@@ -150,10 +181,10 @@ class DrawnTeeth:
 
     @cached_property
     def made(self) -> Mapping[str, FloatArray]:
-        """`by_tooth` with the places of teeth scaled to what the class allows beside the eccentricity."""
+        """`by_tooth` with pitches accumulated, scaled to what the class allows beside the eccentricity."""
         if self.pitches is None:
             return self.by_tooth
-        place = self.pitches.kept(np.abs(self.by_axis[RUN_OUT]), self.by_tooth[PITCH])
+        place = self.pitches.kept(np.abs(self.by_axis[RUN_OUT]), self.pitches.places(self.by_tooth[PITCH]))
         return {**self.by_tooth, PITCH: place}
 
     def amount(self, name: str) -> Any:
@@ -200,8 +231,9 @@ def iso1328_tooth_tolerances(
 ) -> ToothTolerances:
     """Return what of the teeth of one gear differs by ISO 1328-1:2013.
 
-    The eccentricity is at most half the run-out F_rT, a tooth at most half of f_pT out of its place; all
-    places are scaled where the pitches of both together pass f_pT or F_pT (`PitchBounds`). Of a slope or
+    The eccentricity is at most half the run-out F_rT, a tooth by itself at most half of f_pT out of its
+    place. Of the square of a single pitch the teeth behind keep the part `ACCUMULATED`; all places are scaled
+    where pitches and eccentricity together pass f_pT or F_pT (`PitchBounds`). Of a slope or
     form of which all teeth have the part c in common, the rest is the root of 1 - c^2 of the tolerance
     (`COMMON`). Wobble is a helix slope once per revolution: of the square of this rest it has the part
     `WOBBLE_SHARE`, single flanks have the others.
@@ -212,7 +244,7 @@ def iso1328_tooth_tolerances(
         for (quantity, tolerance), part in zip(OF_A_CLASS.items(), COMMON[finishing], strict=True)
         if part < 1.0 and (across_face or quantity not in ACROSS_FACE)
     }
-    pitches = PitchBounds.of(own, tolerance_class)
+    pitches = PitchBounds.of(own, tolerance_class, ACCUMULATED[finishing])
     widths = {RUN_OUT: pitches.eccentricity}
     if (slope := FLANK + "helix_slope") in flanks:
         widths[WOBBLE] = math.sqrt(WOBBLE_SHARE) * flanks[slope]

@@ -200,8 +200,8 @@ def _indices(
     limit: OrderLimit, passing: ToothPassing, teeth: ToothTolerances, load: int, seed: int
 ) -> tuple[FloatArray, FloatArray]:
     """Return the first-order and total Sobol' indices of the level, (d,) each."""
-    drawn = teeth.drawn(2 * BASE_PAIRS, seed + 1)
-    one, other = drawn.some(slice(BASE_PAIRS)), drawn.some(slice(BASE_PAIRS, None))
+    one = teeth.drawn(BASE_PAIRS, seed + 1)
+    other = teeth.drawn(BASE_PAIRS, seed + 1, after=teeth.dimensions)
 
     def level(gears: DrawnTeeth) -> FloatArray:
         amplitude = np.maximum(passing.amplitude(gears)[:, load], _LEAST)

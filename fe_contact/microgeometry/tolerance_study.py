@@ -289,7 +289,7 @@ def sampled(request: ToleranceRequest, run: Run) -> ToleranceStudy:
     above = None
     if request.teeth is not None and request.limit is not None:
         with clock.stage("sidebands"):
-            drawn = request.teeth.drawn(sampling.samples, sampling.seed)
+            drawn = request.teeth.drawn(sampling.samples, sampling.seed, after=deviation.shape[1])
             some = deviation[: sampling.solved]
             made = MadePairs(study.evaluator, names, some, request.teeth.gear, drawn)
             seed, confidence = sampling.seed, sampling.confidence

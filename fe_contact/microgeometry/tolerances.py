@@ -125,6 +125,19 @@ With the part c two teeth of a gear correlate by c^2. The rest, from tooth to to
 and sidebands, not in mesh orders. A dressed wheel or worm makes the profile, so teeth are alike; run-out of
 the blank changes the helix slope once a revolution; a hob cuts each flank anew. They are not measured.
 """
+ACCUMULATED: Mapping[Finishing, float] = {
+    "any": 0.0,
+    "generating_grinding": 0.3,
+    "form_grinding": 0.1,
+    "honing": 0.4,
+    "shaving": 0.4,
+    "hobbing": 0.3,
+}
+"""Assumed: part of the square of a single pitch deviation that the teeth behind keep.
+
+Where tool and gear roll, errors of the table and of the blank are slow over the teeth, and what smooths
+neighbors leaves them; where each gap is ground by itself, indexing places each tooth anew. Not measured.
+"""
 
 
 def iso1328_tolerances(
