@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import base64
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from page_picture import different, picture, stopped, vertices
+from page_picture import CANVAS, different, picture, pixels, stopped, vertices
 from page_visit import PATIENCE, Visit, opened, opened_scene, shown, tab
 from playwright.sync_api import Browser, Page, expect
 
@@ -94,3 +95,31 @@ def test_a_file_that_is_no_housing_is_said_under_the_picture(
     opened_scene(page, tmp_path)
     expect(words).to_have_text("housings[0].step_file: no solid")
     page.close()
+
+
+@pytest.mark.law
+def test_a_browser_without_webgl_sees_the_unit_through_its_housing(
+    drawing_browser: Browser, browser: Browser, address: str, tmp_path: Path
+) -> None:
+    """Its still picture has as much of it, as pale, as the moving picture."""
+    shares = []
+    for own in (drawing_browser, browser):
+        seen = opened(own, f"{address}/#tab=sound")
+        page, canvas = seen.page, seen.page.locator(CANVAS)
+        with page.expect_response(ROUTE, timeout=PATIENCE):
+            opened_scene(page, tmp_path)
+        stopped(page)
+        expect(page.locator("#view [role=status]")).to_have_text(re.compile("^(The unit of|A still picture)"))
+        page.locator("#view [role=status]").evaluate("(node) => { node.style.opacity = '0'; }")
+        if own is browser:
+            page.locator(f"{CANVAS}[data-drawn]").wait_for()
+            shot = pixels(canvas.screenshot())
+        else:
+            shot = picture(page)
+        light = shot.mean(axis=-1)
+        shares.append([np.mean((light > 150) & (light < 235)), np.mean(light < 150)])
+        assert seen.complaints == []
+        page.close()
+    moving, still = shares
+    assert moving[0] > 0.005
+    assert still == pytest.approx(moving, rel=0.25)

@@ -288,7 +288,7 @@ def test_a_unit_in_its_housing_moves_in_a_mode_and_stands_deflected(
     size = page.locator("#view output")
     _, first, *_ = computed_motions(page, "modes")
     motion.select_option(first)
-    expect(page.locator("#view [role=status]")).to_have_text(first)
+    expect(page.locator("#view [role=status]")).to_have_text(f"{first}. The housing is drawn at rest.")
     mode = picture(page)
     amplitude.fill("0")
     assert different(mode, picture(page)) > 0.002

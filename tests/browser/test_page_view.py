@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import re
-from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from page_picture import CANVAS, different, frames, picture, rest, stopped
+from page_picture import CANVAS, different, frames, picture, pixels, rest, stopped
 from page_visit import PATIENCE, Visit, control, found_inaccessible, moved, opened_scene, shown, tab
-from PIL import Image
 from playwright.sync_api import Browser, Page, expect
 from running_service import until
 
@@ -255,7 +253,7 @@ def outlined(shot: np.ndarray) -> np.ndarray:
 
 def still_picture(page: Page) -> np.ndarray:
     page.locator(f"{CANVAS}[data-drawn]").wait_for()
-    return np.asarray(Image.open(BytesIO(page.locator(CANVAS).screenshot())).convert("RGB")).astype(int)
+    return pixels(page.locator(CANVAS).screenshot())
 
 
 def test_nothing_rolls_by_itself_for_who_wants_less_motion(

@@ -80,7 +80,11 @@ def _places(text: str) -> np.ndarray:
 def picture(page: Page) -> np.ndarray:
     """Return what the canvas shows when nothing moves (height, width, 3)."""
     rest(page)
-    content = page.locator(CANVAS).screenshot()
+    return pixels(page.locator(CANVAS).screenshot())
+
+
+def pixels(content: bytes) -> np.ndarray:
+    """Return the points of an image file (height, width, 3)."""
     return np.asarray(Image.open(BytesIO(content)).convert("RGB")).astype(int)
 
 

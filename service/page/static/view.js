@@ -91,7 +91,7 @@ export class View {
       const unit = scene && (drawn ? this.gearbox : await gearboxOf(scene, open));
       if (this.wanted !== wanted) return;
       this.put(unit, wanted);
-      if (unit && this.stage && (unit.solid || isHoused(scene))) this.house(unit);
+      if (unit && (unit.solid || isHoused(scene))) this.house(unit, wanted);
     });
   }
 
@@ -113,16 +113,17 @@ export class View {
     this.label(scene);
   }
 
-  /** Draw the housing of a unit, once its file is read. @param {Gearbox} unit */
-  house(unit) {
+  /** Draw the housing of a unit, once its file is read. @param {Gearbox} unit @param {Wanted} wanted */
+  house(unit, wanted) {
     const words = this.words.textContent;
     return saidIn(this.words, async () => {
       this.words.textContent = READ;
       const surface = await surfaceOf(unit.scene);
       if (this.words.textContent === READ) this.words.textContent = words;
-      if (this.stage.subject !== unit || surface === unit.solid) return;
+      if (this.wanted !== wanted || surface === unit.solid) return;
       unit.house(surface);
-      this.stage.frame(true);
+      if (this.stage) this.stage.frame(true);
+      else this.put(unit, wanted);
     });
   }
 

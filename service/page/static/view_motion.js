@@ -4,8 +4,10 @@
 import { get, patiently, saidIn } from "./api.js";
 import { make, number } from "./elements.js";
 import { bytesOf } from "./packed.js";
+import { isHoused } from "./view_housing.js";
 
 export const STATIONS = 33; // along a shaft
+const AT_REST = ". The housing is drawn at rest.";
 const RANGE = 30; // dB of the scale of levels
 const SHARE = 0.08; // of the size of the unit that the largest motion is drawn with
 export const MOVING = new Set(["modes", "deflection", "vibration"]); // kinds of results that have motions
@@ -154,7 +156,7 @@ export class Motions {
         return;
       }
       if (motion.surface) this.view.stage.frame(true);
-      this.view.words.textContent = this.list.selectedOptions[0].textContent;
+      this.view.words.textContent = this.list.selectedOptions[0].textContent + (isHoused(this.scene) && !motion.surface ? AT_REST : "");
       this.scale();
     });
   }

@@ -6,9 +6,11 @@ import { Camera } from "./view_camera.js";
 import { COLORS, GEARS } from "./view_pair.js";
 import { toothMesh } from "./view_teeth.js";
 
-/** @typedef {{values: Float32Array, indices: Uint32Array, color: number[], marked: boolean, place: (point: number[]) => number[]}} Solid */
+/** @typedef {{values: Float32Array, indices: Uint32Array, color: number[], marked?: boolean, place: (point: number[]) => number[], width?: number}} Solid */
+/** @typedef {{data: Uint8ClampedArray, depth: Float32Array}} Layer what is in front at each point: its color and how far away it is */
 
-const WIDTH = 7; // numbers of a vertex
+const WIDTH = 7; // numbers of a vertex, but for those of a housing
+const HULL = { width: 13, color: [0.5, 0.55, 0.6], opacity: 0.3 };
 const LIGHT = [0.1, 0.6, 0.1]; // added to the direction of the eye
 const BEFORE = 4; // depth by which what is marked is seen through all else
 export const STILL = "A still picture of the unit: this browser has no WebGL2, in which it moves.";
@@ -54,9 +56,28 @@ class Picture {
     this.light = light.map((value) => value / Math.hypot(...light));
     this.context = canvas.getContext("2d");
     this.image = this.context.createImageData(canvas.width, canvas.height);
-    this.depth = new Float32Array(canvas.width * canvas.height).fill(Infinity);
-    for (const solid of solidsOf(unit)) this.solid(solid);
+    const front = this.layer(this.image);
+    for (const solid of solidsOf(unit)) this.solid(solid, front);
+    if (unit.housing) this.through({ ...unit.housing.mesh, ...HULL, place: (point) => point }, front);
     this.context.putImageData(this.image, 0, 0);
+  }
+
+  /** @returns {Layer} */
+  layer({ data, width, height }) {
+    return { data, depth: new Float32Array(width * height).fill(Infinity) };
+  }
+
+  /** Draw what the rest is seen through. @param {Solid & {opacity: number}} solid @param {Layer} front */
+  through(solid, front) {
+    const over = this.layer(this.context.createImageData(this.image));
+    this.solid(solid, over);
+    over.depth.forEach((depth, at) => {
+      if (depth >= front.depth[at]) return;
+      const [below, own] = [front.data.subarray(4 * at, 4 * at + 4), over.data.subarray(4 * at, 4 * at + 3)];
+      const part = solid.opacity / (below[3] ? 1 : solid.opacity); // on nothing its own color, seen through
+      own.forEach((value, k) => { below[k] += part * (value - below[k]); });
+      below[3] ||= 255 * solid.opacity;
+    });
   }
 
   /** @param {number[]} point @returns {number[]} across and down in pixels, depth */
@@ -65,9 +86,9 @@ class Picture {
     return [0.5 * (1 + across / w) * this.image.width, 0.5 * (1 - up / w) * this.image.height, depth / w];
   }
 
-  /** @param {Solid} solid */
-  solid({ values, indices, color, marked, place }) {
-    const points = Array.from({ length: values.length / WIDTH }, (_, k) => place([...values.subarray(WIDTH * k, WIDTH * k + 3)]));
+  /** @param {Solid} solid @param {Layer} layer */
+  solid({ values, indices, color, marked, place, width = WIDTH }, layer) {
+    const points = Array.from({ length: values.length / width }, (_, k) => place([...values.subarray(width * k, width * k + 3)]));
     const pixels = points.map((point) => this.seen(point));
     for (let k = 0; k < indices.length; k += 3) {
       const corners = indices.subarray(k, k + 3);
@@ -75,7 +96,7 @@ class Picture {
       const area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
       if (!(area < 0)) continue; // turned away: rows run down
       const lit = this.lit(...[...corners].map((corner) => points[corner]));
-      this.facet([a, b, c], area, color.map((value) => Math.min(255 * value * lit, 255)), marked ? BEFORE : 0);
+      this.facet([a, b, c], area, color.map((value) => Math.min(255 * value * lit, 255)), marked ? BEFORE : 0, layer);
     }
   }
 
@@ -87,9 +108,9 @@ class Picture {
     return 0.34 + 0.66 * Math.max(facing, 0);
   }
 
-  /** @param {number[][]} corners @param {number} area twice that of the facet @param {number[]} color @param {number} before */
-  facet([a, b, c], area, color, before) {
-    const { image: { width, height, data }, depth } = this;
+  /** @param {number[][]} corners @param {number} area twice that of the facet @param {number[]} color @param {number} before @param {Layer} layer */
+  facet([a, b, c], area, color, before, { data, depth }) {
+    const { width, height } = this.image;
     const [low, high] = [0, 1].map((k) => [Math.max(Math.ceil(Math.min(a[k], b[k], c[k]) - 0.5), 0), Math.min(Math.floor(Math.max(a[k], b[k], c[k]) - 0.5), (k ? height : width) - 1)]);
     for (let row = high[0]; row <= high[1]; row += 1) {
       for (let column = low[0]; column <= low[1]; column += 1) {
