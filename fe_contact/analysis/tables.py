@@ -167,44 +167,52 @@ def _table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreporte
     """
     if plan.positions is not None:
         return unmeasured_nodes(plan.positions, len(points.assessed) * plan.load.size)
-    windows = _assessed_windows(points.nominal.pair, points.places[0].model, plan.nodes.assessed_pitches)
+    pitches = _assessed_pitches(points.nominal.pair, points.places[0].model, plan.nodes.assessed_pitches)
     times = points.period * len(points.places)
     tried, expected = 0, expected_tries(plan, times)
 
     def solve(position: FloatArray) -> FloatArray:
-        """STE (W, P, windows x places x L) in m."""
+        """STE (W, P, pitches x places x L) in m; beside the pitches NaN where interpolants do not reach."""
         nonlocal tried
-        curves = _curves(points, plan.load, position, np.concatenate(windows))
+        own = _curves(points, plan.load, position, pitches)
         tried += position.size
         report(min(tried / expected, 1.0))
-        return np.concatenate(np.split(curves, len(windows)), axis=2)
+        if points.period == 1:
+            return own
+        near = plan.nodes.reached_beside(position)
+        values = np.full((3, *own.shape[1:]), np.nan)
+        values[1] = own[0]
+        for way in (-1, 1) if near.any() else ():
+            values[1 + way, near] = _curves(points, plan.load, position[near], pitches + way)[0]
+        return values
 
     return _adaptive_nodes(replace(plan.nodes, most=most_positions(plan, times)), solve)
 
 
-def _assessed_windows(pair: ParallelAxes, model: ContactModel, most: int) -> tuple[IntArray, ...]:
-    """Return base pitches to assess, each with its neighbors.
+def _assessed_pitches(pair: ParallelAxes, model: ContactModel, most: int) -> IntArray:
+    """Return base pitches to assess.
 
-    Where all teeth are alike, the one pitch there is: ``([0],)``. Else ``[m - 1, m, m + 1]`` of pitches m, at
-    most `most`, evenly taken from all in the order of how much the gaps of their three pairs differ, both
-    ends among them: these differences move and steepen the handovers.
+    Where all teeth are alike, the one pitch there is. Else pitches m, at most `most`, evenly taken from all
+    in the order of how much the gaps of the pairs at m - 1, m, m + 1 differ, both ends among them: these
+    differences move and steepen the handovers.
     """
     if model.period == 1:
-        return (np.zeros(1, dtype=np.int64),)
+        return np.zeros(1, dtype=np.int64)
     meeting = np.arange(model.period)[:, None] + np.arange(-1, 2)
     spread = np.ptp(model.gap_of_teeth(MeetingTeeth.at_pitch_point(pair, meeting)), axis=1)
     order = np.argsort(spread, kind="stable")
-    chosen = np.unique(np.linspace(0, order.size - 1, min(most, order.size)).astype(int))
-    return tuple(order[k] + np.arange(-1, 2) for k in chosen)
+    chosen = np.linspace(0, order.size - 1, min(most, order.size)).astype(np.int64)
+    return np.asarray(order[np.unique(chosen)])
 
 
 def _curves(points: OperatingPoints, load: FloatArray, position: FloatArray, pitches: IntArray) -> FloatArray:
-    """STE (T, P, places x L) in m of the assessed operating points in the given pitches."""
+    """STE (1, P, pitches x places x L) in m of the assessed operating points in pitches (T,)."""
     curves = deflected_operating_points(
         points.assessed, [position] * len(points.assessed), load, pitches, points.workers
     )
     shape = (pitches.size, position.size, -1)
-    return np.concatenate([curve[..., 0].reshape(shape) for curve in curves], axis=2)
+    by_pitch = np.concatenate([curve[..., 0].reshape(shape) for curve in curves], axis=2)
+    return np.concatenate(np.split(by_pitch, pitches.size), axis=2)
 
 
 @dataclass(frozen=True)

@@ -76,7 +76,7 @@ class _Work(NamedTuple):
         """Return the CPU seconds of so many positions and points."""
         return positions * self.position + points * self.point
 
-    def in_pitches(self, rows: float, sets: Sequence[float], pitches: int) -> float:
+    def in_pitches(self, rows: float, sets: Sequence[float], pitches: float) -> float:
         """Return the CPU seconds of rows of positions in so many pitches, at sets of so many loads."""
         beside = self.pitch + len(sets) * self.begun if pitches > 1 else 0.0
         return rows * pitches * (sum(sets) * self.point + beside)
@@ -94,7 +94,7 @@ def contact_seconds(
     points, distances = alignments[0] * alignments[1], alignments[1]
     times, loads = points * model.period, plan.load.size
     kept, assessed = expected_positions(plan, times), min(points, _JUDGED)
-    tried, window = expected_tries(plan, times), _searched_pitches(plan, model.period)
+    tried, window = expected_tries(plan, times), plan.nodes.searched(model.period)
     work = unit_work(pair, plan, plan.discretization.slices)
     search = work.of(tried * distances, 0) + work.in_pitches(tried * assessed, (loads,), window)
     cycle = CycleSeconds.of(work, pair, model.period, kept, (loads, plan.support.size))
@@ -104,11 +104,6 @@ def contact_seconds(
     table += _FACE_CHECK if plan.discretization.slices > 1 else 0.0
     solved = 1 + solved_pitches(model.period, in_table=True)[1] if derived else model.period
     return search, table, _errors(pair, plan, model.period, alignments, solved) if with_errors else 0.0
-
-
-def _searched_pitches(plan: Plan, period: int) -> int:
-    """Return in how many base pitches the search solves a position: each assessed one has two beside it."""
-    return 1 if period == 1 else 3 * min(plan.nodes.assessed_pitches, period)
 
 
 def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, int], solved: int) -> float:

@@ -41,7 +41,7 @@ class PitchWork(Protocol):
     def pitch(self) -> float:
         """Of the gaps of teeth at a position."""
 
-    def in_pitches(self, rows: float, sets: Sequence[float], pitches: int) -> float:
+    def in_pitches(self, rows: float, sets: Sequence[float], pitches: float) -> float:
         """Of rows of positions in so many pitches, at sets of so many loads."""
 
 

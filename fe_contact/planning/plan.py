@@ -17,7 +17,7 @@ from fe_contact.hertz import contact_modulus, half_width, relative_radius
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.mesh.recipe import HELICAL_BODY_LAYERS
 from fe_contact.options import AnalysisOptions
-from fe_contact.types import FloatArray, Json
+from fe_contact.types import BoolArray, FloatArray, Json
 
 # Meshes and slices of a run, in the plane or over the face width.
 
@@ -232,6 +232,15 @@ class NodeRule:
     assessed_pitches: int = 3
     least_ripple: float = 0.0
 
+    def reached_beside(self, position: FloatArray) -> BoolArray:
+        """Whether positions (P,) of a base pitch are nodes of interpolants in the pitches beside it."""
+        return np.minimum(position, 1.0 - position) * self.start < _REACH
+
+    def searched(self, period: int) -> float:
+        """Return in how many base pitches the search solves a position: beside those assessed at the ends."""
+        beside = 4.0 * _REACH / self.start
+        return 1.0 if period == 1 else (1.0 + beside) * min(self.assessed_pitches, period)
+
     def for_tolerance(self, allowed: AllowedError) -> NodeRule:
         """Return the rule by which positions take their share of a tolerance, and no more than usual."""
         closer = min(max(POSITION_SHARE * allowed.relative / self.tolerance, CLOSEST), 1.0)
@@ -245,6 +254,8 @@ class NodeRule:
         return np.asarray(np.maximum(np.ptp(curves, axis=0), least))
 
 
+_REACH = 2.5
+"""Spacings of the first nodes: interpolants take two nodes of the pitch before and three of the next one."""
 POSITION_SHARE = 0.5
 """Part of a tolerance that the search of positions allows between them: 0.2 to 0.8 of it is left."""
 CLOSEST = 1.0 / 16.0

@@ -7,16 +7,18 @@ import pytest
 from analysis_requests import point_request, table_request
 
 from fe_contact import Gear, GearPair, PitchDeviation, analyze, flank_results
+from fe_contact.analysis import tables
 from fe_contact.analysis.estimates.position_errors import _measured_nodes
 from fe_contact.analysis.pairs import kept_contact
 from fe_contact.analysis.request.request_check import check_request
-from fe_contact.analysis.tables import _adaptive_nodes, _assessed_windows
+from fe_contact.analysis.tables import _adaptive_nodes, _assessed_pitches, solve_table
 from fe_contact.contact.sweep import solve_sets
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.errors import InputError
 from fe_contact.geometry import RunOut, Wave
 from fe_contact.options import Run, TableAxes
 from fe_contact.planning.plan import NodeRule
+from model_studies.stage_clock import StageClock
 
 TORQUES = (30.0, 100.0)
 RNG = np.random.default_rng(21)
@@ -150,20 +152,61 @@ def test_a_misalignment_axis_shortens_the_longest_period():
 def test_the_assessed_pitches_span_the_differences_between_neighbors():
     error = np.where(np.arange(20) == 7, 9e-6, 0.0) + np.where(np.arange(20) > 12, 1e-6, 0.0)
     scene = ContactScene(GearPair(gear(20, error), gear(23)), np.array([100.0]), EFFECTS)
-    windows = _assessed_windows(scene.pair, compose(scene, {})[0], 3)
-    assert all(np.array_equal(np.diff(window), [1, 1]) for window in windows)
-    smooth, _, rough = (int(window[1]) for window in windows)
+    smooth, _, rough = _assessed_pitches(scene.pair, compose(scene, {})[0], 3)
     assert smooth not in (0, 6, 7, 8, 12, 13, 19)
     assert rough in (6, 7, 8)
-    assert len(_assessed_windows(scene.pair, compose(scene, {})[0], 100)) == 20
+    assert len(_assessed_pitches(scene.pair, compose(scene, {})[0], 100)) == 20
     plain = replace(scene, pair=GearPair(gear(20), gear(23)))
-    assert [window.tolist() for window in _assessed_windows(plain.pair, compose(plain, {})[0], 3)] == [[0]]
+    assert _assessed_pitches(plain.pair, compose(plain, {})[0], 3).tolist() == [0]
 
 
 def steps(position):
     """Three pitches of a curve that rises by 1 over the middle one, kinked at no grid's place."""
     pitches = np.arange(-1, 2)[:, None] + position
     return np.interp(pitches, [-1.0, 0.213, 0.741, 2.0], [0.0, 0.0, 1.0, 1.0])[..., None]
+
+
+@pytest.mark.parametrize("kinks", [(0.213, 0.741), (0.013, 0.994), (0.031, 0.9995)])
+def test_pitches_beside_count_where_interpolants_reach(kinks):
+    """Without any other of their values nodes and errors are the same to the bit."""
+
+    def whole(position):
+        pitches = np.arange(-1, 2)[:, None] + position
+        return np.interp(pitches, [-1.0, -0.99, *kinks, 1.007, 2.0], [0.0, 0.3, 0.0, 1.0, 0.7, 1.0])[
+            ..., None
+        ]
+
+    def near(position):
+        values = whole(position)
+        values[::2, ~rule.reached_beside(position)] = np.nan
+        return values
+
+    rule = NodeRule(16, 0.002, 768)
+    own, nodes = (_adaptive_nodes(rule, solve) for solve in (near, whole))
+    assert np.array_equal(own.position, nodes.position)
+    assert np.array_equal(own.interval_error, nodes.interval_error)
+    assert np.array_equal(own.middle, nodes.middle)
+
+
+def test_the_prediction_counts_the_pitches_that_the_search_solves(pair, monkeypatch):
+    """The assessed ones at all positions that are tried, those beside at the ends."""
+    tried, solved = [], []
+    place, curves = tables._adaptive_nodes, tables._curves
+
+    def placed(rule, solve):
+        return place(rule, lambda position: tried.append(position.size) or solve(position))
+
+    def solved_curves(points, load, position, pitches):
+        solved.append(position.size * pitches.size)
+        return curves(points, load, position, pitches)
+
+    monkeypatch.setattr(tables, "_adaptive_nodes", placed)
+    monkeypatch.setattr(tables, "_curves", solved_curves)
+    checked = check_request(pair, *table_request(torques=[100.0], level="draft", model="plane_strain"))
+    solve_table(checked, StageClock(), Run())
+    plan = checked.plan("draft")
+    assert plan.nodes.searched(1) == 1.0
+    assert sum(solved) == pytest.approx(sum(tried) * plan.nodes.searched(20), rel=0.15)
 
 
 def test_nodes_of_one_pitch_among_others_join_its_neighbors():
