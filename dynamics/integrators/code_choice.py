@@ -41,12 +41,20 @@ def _store() -> CodeStore:
 class StructureCode:
     """What moves a run on: the ordinary loops, or code for the structure of the run."""
 
-    def __init__(self, implicit: bool, tuples: Mapping[Any, Known]) -> None:
-        """Look for the code of the structure of `tuples`, the arguments of `advance` by address."""
-        self._tuples, self._code, self._seen = tuples, None, False
+    def __init__(self, implicit: bool, tuples: Mapping[Any, Known], *, makes: bool = True) -> None:
+        """Look for the code of the structure of `tuples`, the arguments of `advance` by address.
+
+        Without `makes` it takes code that is there, and counts nothing: a probe that no run follows.
+        """
+        self._tuples, self._code, self._seen, self._makes = tuples, None, False, makes
         self._key = None if implicit else structure_key(tuples)
         if self._key is not None:
             self._code, self._seen = _store().get(self._key), _store().seen(self._key)
+
+    @property
+    def may_follow(self) -> bool:
+        """Whether a run that takes long enough is moved on by code that is not there yet."""
+        return self._key is not None and self._code is None
 
     def advance(self, passed: Any, stop: float, out: Any) -> int:
         """Do what `advance` does, and count the time that ordinary loops take."""
@@ -54,7 +62,7 @@ class StructureCode:
             return self._code.call("advance", *passed, stop, out)
         ordinary, began = cast(Any, advance), cpu_seconds()
         status = int(ordinary(*passed, stop, out))
-        if self._key is not None:
+        if self._key is not None and self._makes:
             _spent[self._key] = _spent.get(self._key, 0.0) + cpu_seconds() - began
             self._code = self._worthwhile(self._key)
         return status

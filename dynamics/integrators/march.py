@@ -328,7 +328,7 @@ def march_on(
     code = StructureCode(march.control.implicit, march.structure)
     while True:
         stop = min(float(march.work.time[0]) + block, duration)
-        status = _advance_to(march, code, stop, sink)
+        status = advance_to(march, code, stop, sink)
         if progress is not None:
             progress(min(float(march.work.time[0]) / max(duration, 1e-300), 1.0), "time integration")
         if not status.usable or march.work.time[0] >= duration:
@@ -339,7 +339,7 @@ def march_on(
             after_block()
 
 
-def _advance_to(march: March, code: StructureCode, stop: float, sink: StateSink) -> RunStatus:
+def advance_to(march: March, code: StructureCode, stop: float, sink: StateSink) -> RunStatus:
     """Step until the time passes `stop`; the last step may pass it by the largest one."""
     rate, counts = march.system.sampling.rate, march.work.counts
     first = int(counts[Count.OUTPUT])

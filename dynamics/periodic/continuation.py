@@ -24,6 +24,7 @@ from dynamics.types import FloatArray
 ITERATION_LIMIT = 8
 EASY = 4  # iterations: with fewer the step along the branch grows
 SMALLEST_STEP = 1e-5  # of the largest
+LARGEST_STEP = 0.02  # between neighboring motions, of the larger speed or of the size of the state
 FOLD_LIMIT = 1e-5  # of the tangent: where its part along the speed counts as zero
 FOLD_ITERATIONS = 20
 FOLD_SHARE = 0.3  # of a bracket that each iteration takes off at least
@@ -94,7 +95,7 @@ def follow_branch(
     problem: PeriodicProblem,
     first: float,
     last: float,
-    largest_step: float = 0.02,
+    largest_step: float = LARGEST_STEP,
     guess: FloatArray | None = None,
     points: int = 500,
     progress: Callable[[float], None] | None = None,

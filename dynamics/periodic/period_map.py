@@ -420,7 +420,11 @@ class PeriodMap:
         finer = replace(self.problem, grid=self.problem.grid.halved)
         return PeriodMap(finer, self.speed)(y) - self(y)
 
-    def _one_period(self, y: FloatArray, path: FloatArray) -> FloatArray:
+    def begun(self, y: FloatArray, steps: int) -> None:
+        """March from `y` over the first `steps` steps of a period alone: a probe of what they cost."""
+        self._one_period(y, np.empty((3, 0, 0)), steps)
+
+    def _one_period(self, y: FloatArray, path: FloatArray, steps: int | None = None) -> FloatArray:
         """March from `y` over one common period; fill `path` (3, N + 1, n) if it has room."""
         work, n, problem = self._work, y.size // 2, self.problem
         state = y / problem.scale
@@ -432,7 +436,7 @@ class PeriodMap:
             problem.system.scene.integration.method != "explicit",
             problem.force_tolerance,
             self.times,
-            problem.grid.level,
+            problem.grid.level[:steps],
             np.empty(work.force.size, dtype=np.bool_),
             path.size > 0,
             path,

@@ -17,6 +17,7 @@ from dynamics.motion.observation import observe, static_deflections
 from dynamics.periodic.continuation import Branch, follow_branch
 from dynamics.periodic.period_map import PeriodicProblem, PeriodMap, periodic_problem
 from dynamics.periodic.shooting import Instability, Orbit, find_orbit
+from dynamics.periodic.steady_cost import motion_periods, period_seconds
 from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.run_checks import checked_ledger
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
@@ -349,7 +350,7 @@ def _sweeps(
     swept: list[tuple[Orbit, ...]] = []
     reports = [stage(CURVES[curve]) for curve in (UP, DOWN)]
     others = len(courses) > 1 and not isinstance(workers, InProcess)
-    if others and pays(workers, _settling_seconds(problem, courses, periods)):
+    if others and pays(workers, _sweep_seconds(problem, courses, periods)):
         for orbits in workers.run(_swept, (problem, periods), courses):
             reports[len(swept)](1.0)
             swept.append(orbits)
@@ -376,14 +377,9 @@ def _swept(shared: tuple[PeriodicProblem, int], speeds: FloatArray) -> tuple[Orb
     return sweep(problem, speeds, periods)
 
 
-def _settling_seconds(problem: PeriodicProblem, courses: Sequence[FloatArray], periods: int) -> float:
-    """Return the CPU seconds in which all speeds settle, by two periods: the first loads code."""
-    over_period, seconds = PeriodMap(problem, float(courses[0][0])), 0.0
-    for _ in range(2):
-        began = cpu_seconds()
-        over_period(problem.rest)
-        seconds = cpu_seconds() - began
-    return seconds * (periods + 1) * sum(map(len, courses))
+def _sweep_seconds(problem: PeriodicProblem, courses: Sequence[FloatArray], periods: int) -> float:
+    each = period_seconds(problem, float(courses[0][0]))
+    return each * motion_periods(problem.rest.size // 2, periods) * sum(map(len, courses))
 
 
 def _study(

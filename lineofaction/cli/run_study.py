@@ -29,6 +29,7 @@ from lineofaction.cli.output import (
     progress_bar,
 )
 from lineofaction.cli.subjects import (
+    announce_cost,
     assessed_scene,
     inputs_of_study,
     study_cost,
@@ -49,7 +50,6 @@ from lineofaction.gearbox.schemas.reading import located
 from lineofaction.gearbox.schemas.report import ReportInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means
-from lineofaction.gearbox.studies.cost import StudyCost
 from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.tabled_scene import open_executor
 from lineofaction.report.document import read_run, write_whole
@@ -57,7 +57,6 @@ from lineofaction.report.document import write as write_result
 from lineofaction.report.drawing.marks import marked_page_of_case
 from lineofaction.report.presentation import presentation_of
 from lineofaction.report.title_block import titled
-from model_studies.progress import ANNOUNCED
 from model_studies.workers import Remembering, Workers
 from model_studies.workers.remembering import content_digest
 from service.version import solver_version
@@ -139,9 +138,7 @@ def _announce_cost(study: Study, subjects: Sequence[Any], inputs: Any, service: 
     costs = [study_cost(study, subject, folder, inputs) for subject, folder in subjects]
     if study.run.tables and service is None:
         costs += [tables_cost(*each) for each in subjects if isinstance(each[0], SceneInput)]
-    whole = sum(filter(None, costs), StudyCost(()))
-    if None not in costs and whole.seconds > ANNOUNCED:
-        sys.stderr.write(f"loa {study.name}: {whole.words}\n")
+    announce_cost(study.name, costs)
 
 
 def _tell(

@@ -21,7 +21,13 @@ from lineofaction.cli.output import (
     print_written,
     progress_bar,
 )
-from lineofaction.cli.subjects import assessed_scene, tabled_scene
+from lineofaction.cli.subjects import (
+    announce_cost,
+    assessed_scene,
+    simulation_cost,
+    tabled_scene,
+    tables_cost,
+)
 from lineofaction.gearbox.convert.effects import run_lines
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput, JobFailed
@@ -73,6 +79,9 @@ def run_simulate(
     if resume and not interrupted_run(output).is_dir():
         advice = "There is none. Omit --resume to start a run."
         raise BadInput.of("--resume", str(output), "the file of a run that was interrupted", advice)
+    if not as_json:
+        costs = [simulation_cost(scene, folder)]
+        announce_cost("simulate", costs if service else [*costs, tables_cost(scene, folder)])
     with open_executor(*executor) as workers, progress_bar() as report:
         tabled = tabled_scene(scene, folder, service, report, workers)
         _run(tabled.scene, output, report, resume=resume)

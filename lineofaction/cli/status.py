@@ -9,7 +9,13 @@ from typing import Any
 
 from bounds import engineering
 from lineofaction.cli.output import console, print_json, table
-from lineofaction.cli.subjects import inputs_of_study, study_cost, table_cost, tables_cost
+from lineofaction.cli.subjects import (
+    inputs_of_study,
+    simulation_cost,
+    study_cost,
+    table_cost,
+    tables_cost,
+)
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import ResultState, file_of, status_of
@@ -39,6 +45,8 @@ def _result_cost(verb: str, source: Path, project: Path) -> StudyCost | None:
     study = STUDIES.get(verb)
     if verb == "analyze":
         return table_cost(read_model(Case, source))
+    if verb == "simulate":
+        return simulation_cost(*scene_of(source))
     if study is None:
         return None
     if "shafts" in read_table(source):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -33,12 +34,13 @@ from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.reading import located
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.studied import OverSpeeds
-from lineofaction.gearbox.studies.cost import CASES, StudyCost, Work
+from lineofaction.gearbox.studies.cost import CASES, StudyCost, Work, run_cost
 from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.subjects import MeshTables, finished, scene_of, with_own_cases
 from lineofaction.gearbox.tabled_scene import ComputedTables
 from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
 from model_studies.kept_file import kept_in
+from model_studies.progress import ANNOUNCED
 from model_studies.workers import InProcess, Workers
 from service.version import program_tag
 
@@ -114,6 +116,18 @@ def tables_cost(scene: SceneInput, folder: Path) -> StudyCost:
     written = (mesh.case for mesh in with_own_cases(scene, folder).meshes if isinstance(mesh.case, Case))
     cases = {case.model_dump_json(): case for case in written}
     return sum((table_cost(case) for case in cases.values() if not is_kept(case)), StudyCost(()))
+
+
+def simulation_cost(scene: SceneInput, folder: Path) -> StudyCost | None:
+    """Return the predicted cost of a run, without the tables of its scene; None: not predicted."""
+    return run_cost(with_own_cases(scene, folder))
+
+
+def announce_cost(verb: str, costs: Sequence[StudyCost | None]) -> None:
+    """Say on standard error what a verb will take, if that is more than a moment and can be predicted."""
+    whole = sum(filter(None, costs), StudyCost(()))
+    if None not in costs and whole.seconds > ANNOUNCED:
+        sys.stderr.write(f"loa {verb}: {whole.words}\n")
 
 
 # Tables of cases are kept in the cache, under the name of all that decides them: this very program included.

@@ -12,17 +12,17 @@ ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
     ("fe_contact",): (44_450, 832),
-    ("dynamics",): (45_335, 895),
-    ("lineofaction.gearbox",): (28_481, 582),
+    ("dynamics",): (45_531, 903),
+    ("lineofaction.gearbox",): (28_557, 584),
     ("lineofaction.report",): (12_894, 244),
     ("service",): (15_236, 361),
     ("lineofaction.client",): (2_944, 55),
-    ("lineofaction.cli",): (5_779, 83),
+    ("lineofaction.cli",): (5_807, 85),
     ("lineofaction.hardcases",): (3_841, 35),
     ("bounds", "host", "model_studies"): (4_537, 157),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
-MOST_FILES = 880
+MOST_FILES = 882
 LONGEST = 500
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""

@@ -214,13 +214,15 @@ def dynamic_scene(
     return _moving(scene, facts, tables, housings, bent)
 
 
-def check_scene(scene: SceneInput, facts: Mapping[str, PairFacts]) -> Scene:
+def check_scene(
+    scene: SceneInput, facts: Mapping[str, PairFacts], tables: Mapping[str, MeshTable] | None = None
+) -> Scene:
     """Return the scene on placeholders for its tables and for the matrices of solids.
 
-    `facts`: by name of the mesh. Raises `BadInput`: no such system exists or moves, or nothing of it passes
-    where it is complained of.
+    `facts`, and `tables` that are closer than placeholders: by name of the mesh. Raises `BadInput`: no such
+    system exists or moves, or nothing of it passes where it is complained of.
     """
-    tables = dict.fromkeys(facts, straight_table(ANY_STIFFNESS))
+    tables = tables or dict.fromkeys(facts, straight_table(ANY_STIFFNESS))
     housings = [placeholder(i, part) for i, part in enumerate(scene.housings)]
     moving = _moving(scene, facts, tables, housings)
     if scene.complaint is not None:

@@ -6,12 +6,18 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
+import numpy as np
+
 from bounds import engineering
 from dynamics.assembly.assemble import System, assemble
+from dynamics.errors import InputError, SolveError
 from dynamics.mechanism.kinematics import at_steady_speeds
+from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table
+from dynamics.meshes.technique import PlainTable
 from dynamics.scene import Scene
+from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import PairFacts
-from lineofaction.gearbox.convert.case import CheckedCases
+from lineofaction.gearbox.convert.case import CheckedCases, boundary_errors
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -77,19 +83,63 @@ class StudyCost:
 # Scenes before their tables are computed: what they have of freedoms follows without.
 
 
-def _facts(scene: SceneInput) -> dict[str, PairFacts] | None:
+def _pairs(scene: SceneInput) -> dict[str, ParallelAxes] | None:
     cases = {mesh.name: mesh.case for _, mesh in scene.with_database}
     if not all(isinstance(case, Case) for case in cases.values()):
         return None
-    return {name: PairFacts.of(CASES.of(case).feasible.request.pair) for name, case in cases.items() if case}
+    return {name: CASES.of(case).feasible.request.pair for name, case in cases.items() if case}
 
 
 def scene_before_tables(scene: SceneInput) -> Scene | None:
-    """Return a scene at steady speeds on placeholders for tables and solids; None: a mesh names its table."""
-    facts = _facts(scene)
-    return None if facts is None else at_steady_speeds(check_scene(scene, facts))
+    """Return a scene at steady speeds on usual tables and placeholders for solids; None: it names tables."""
+    before = moving_before_tables(scene)
+    return None if before is None else at_steady_speeds(before)
+
+
+def moving_before_tables(scene: SceneInput) -> Scene | None:
+    """Return a scene as `scene_before_tables` does, in the motion of its run."""
+    pairs = _pairs(scene)
+    if pairs is None:
+        return None
+    facts = {name: PairFacts.of(pair) for name, pair in pairs.items()}
+    return check_scene(scene, facts, {name: _usual_table(pair) for name, pair in pairs.items()})
+
+
+_SINGLE_STIFFNESS = 14e9
+"""Of a pair of teeth per unit width, N/m^2: the usual value of ISO 6336-1:2019, 9.3."""
+_POSITIONS = 48
+"""Of a table in a base pitch, about as many as a computed one has."""
+
+
+def _usual_table(pair: ParallelAxes) -> PlainTable:
+    """Return a table by the usual stiffness of the pairs of teeth that the contact ratio says.
+
+    Those of a helical pair come in over its overlap. Measured on three units, a run on such tables takes 0.4
+    to 1.3 of the steps of one on computed tables; on tables of constant stiffness 0.35.
+    """
+    position = np.arange(_POSITIONS) / _POSITIONS
+    across = np.linspace(0.0, pair.overlap_ratio, _POSITIONS, endpoint=False)
+    entered = (position[:, None] - across) % 1.0
+    pairs = np.mean(np.ceil(pair.transverse_contact_ratio - entered), axis=1)
+    stiffness = pair.face_width * _SINGLE_STIFFNESS * (0.75 * pairs + 0.25)
+    return stiffness_table(PeriodicCurve.tabulated(position.tolist(), stiffness.tolist()))
 
 
 def sized(scene: Scene, highest_hz: float | None = None) -> System:
     """Return the system of a scene, shafts that bend resolved to a frequency if one is named."""
     return assemble(scene if highest_hz is None else replace(scene, highest_frequency=highest_hz))
+
+
+def run_cost(scene: SceneInput) -> StudyCost | None:
+    """Return the cost of a run of a scene, by some steps of it; None: nothing predicts it.
+
+    Modes that a solid housing keeps are not known before and do not count. Raises `BadInput`: no such scene.
+    """
+    from dynamics.simulation.run_cost import run_seconds  # noqa: PLC0415 (start-up time)
+
+    with boundary_errors():
+        before = moving_before_tables(scene)
+    try:
+        return None if before is None else StudyCost((Work("run", run_seconds(before)),))
+    except (InputError, SolveError):
+        return None  # it will be said by the run, on its own tables

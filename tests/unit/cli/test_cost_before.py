@@ -13,9 +13,9 @@ from command_line import loa
 from spur_case import spur_case
 
 from host.directories import cache_home
-from lineofaction.cli import run_study
+from lineofaction.cli import run_study, simulate
 from lineofaction.cli.status import run_status
-from lineofaction.cli.subjects import study_cost, table_cost
+from lineofaction.cli.subjects import simulation_cost, study_cost, table_cost
 from lineofaction.gearbox.convert import live
 from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.convert.live import plan_of
@@ -35,7 +35,9 @@ GROWING: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "sweep": ({"over": ["torque=50:100:50"]}, {"over": ["pinion.profile_crowning=0:16:2"]}),
     "scatter": ({"samples": 64}, {"samples": 4096}),
     "modes": ({"speed_rpm": SPEEDS[:6]}, {"speed_rpm": SPEEDS}),
+    "steady": ({"speed_rpm": SPEEDS[:6]}, {"speed_rpm": SPEEDS}),
 }
+OF_SCENES = ("modes", "steady")
 
 
 @pytest.fixture
@@ -47,7 +49,7 @@ def case(tmp_path: Path) -> CheckedCase:
 
 def predicted(verb: str, inputs: dict[str, Any], case: CheckedCase) -> StudyCost:
     study = STUDIES[verb]
-    subject, folder = scene_of(EXAMPLES / "jeffcott_scene.toml") if verb == "modes" else (case, Path())
+    subject, folder = scene_of(EXAMPLES / "jeffcott_scene.toml") if verb in OF_SCENES else (case, Path())
     checked = validated(study.inputs, inputs)
     cost = study_cost(study, study.run.narrowed(subject, checked), folder, checked)
     assert cost is not None
@@ -85,6 +87,36 @@ def test_the_verb_says_more_than_a_moment_on_standard_error(
     assert printed.out == ""
     said = "loa sensitivity: about 40 CPU s: 8 values at 5 s\n"
     assert printed.err == (said if seconds == 40.0 else "")
+
+
+def test_a_run_says_its_cost_and_that_of_its_tables(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    for name, work in (("simulation_cost", Work("run", 30.0)), ("tables_cost", Work("tables", 10.0))):
+        monkeypatch.setattr(simulate, name, lambda *_, work=work: StudyCost((work,)))
+    scene = tmp_path / "scene.toml"
+    scene.write_text((EXAMPLES / "jeffcott_scene.toml").read_text())
+    said = "loa simulate: about 40 CPU s: run 30 s, tables 10 s\n"
+    assert loa("simulate", scene, "-o", tmp_path / "run.nc", "--set", "run.duration_s=0.01").stderr == said
+
+
+def test_a_scene_that_a_study_refuses_is_left_out(tmp_path: Path) -> None:
+    scene = tmp_path / "scene.toml"
+    scene.write_text((EXAMPLES / "lin_parker_planetary_scene.toml").read_text())
+    inputs = validated(STUDIES["steady"].inputs, {"speed_rpm": [100.0, 200.0]})
+    assert study_cost(STUDIES["steady"], *scene_of(scene), inputs) is None
+    facts = json.loads(loa("status", tmp_path, "--json").stdout)
+    seconds = {row["verb"]: row["cpu_seconds"] for row in facts["results"]}
+    assert seconds["steady"] is None
+    assert seconds["simulate"] > 0.0
+
+
+def test_the_cost_of_a_run_grows_with_its_duration() -> None:
+    scene, _ = scene_of(EXAMPLES / "lin_parker_planetary_scene.toml")
+    longer = scene.model_copy(
+        update={"run": scene.run.model_copy(update={"duration_s": 100.0 * scene.run.duration_s})}
+    )
+    costs = [simulation_cost(own, EXAMPLES) for own in (scene, longer)]
+    assert None not in costs
+    assert costs[1].seconds > 20.0 * costs[0].seconds  # code of its own may be made for the longer
 
 
 def test_the_status_sums_what_is_due(case: CheckedCase, tmp_path: Path) -> None:

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from bounds.types import Json
 from dynamics.assembly.assemble import assemble
+from dynamics.errors import InputError, SolveError
 from dynamics.periodic import OrbitStatus, SteadyStates, steady_states
+from dynamics.periodic.steady_cost import steady_cost
 from dynamics.periodic.steady_states import BRANCH, CURVES, UP
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
+from lineofaction.gearbox.studies.cost import StudyCost, Work, scene_before_tables, sized
 from lineofaction.gearbox.studies.excitations import with_facts_of_scene
 from lineofaction.gearbox.studies.figures import Row, rows
 from lineofaction.gearbox.studies.steady import Inputs, SteadyFigures
@@ -23,6 +28,25 @@ KINDS = ("stable", "fold", "period doubling", "Neimark-Sacker")
 
 class _SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
     inputs, answer, file = Inputs, SteadyFigures, array_file(SteadyStates)
+
+    def predicted(self, scene: SceneInput, inputs: Inputs, _cache: Path | None) -> StudyCost | None:
+        """Return what the motions of both sweeps and the points of a branch without folds take.
+
+        A few steps of the scene say what a period takes. Modes that a solid housing keeps are not known
+        before and do not count. Of a scene whose motion does not repeat nothing predicts it.
+        """
+        with boundary_errors():
+            before = scene_before_tables(scene)
+        if before is None:
+            return None
+        speeds = np.array(inputs.speed_rpm) * RPM
+        how: Json = {"branch": inputs.branch, "repeat": inputs.repeat, "periods": inputs.settling_periods}
+        try:
+            cost = steady_cost(sized(before), speeds, **how)
+        except (InputError, SolveError):
+            return None  # the study says it, on its own tables
+        motions = Work("motions", cost.motion, cost.motions)
+        return StudyCost((motions, Work("points of the branch", cost.point, cost.points)))
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> SteadyStates:
         with boundary_errors():

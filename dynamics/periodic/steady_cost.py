@@ -1,0 +1,81 @@
+"""What steady states over speed will cost: the periods that are integrated, counted, times steps measured."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.assembly.assemble import System
+from dynamics.linearize.operating_speeds import leading_law
+from dynamics.periodic.continuation import LARGEST_STEP
+from dynamics.periodic.period_map import PeriodicProblem, PeriodMap, periodic_problem
+from dynamics.types import FloatArray
+from host import cpu_seconds
+
+ENOUGH, LEAST_STEPS = 0.02, 16
+"""CPU s and steps of a probe that tells; all stretches of one take at most four times as long."""
+SWEEP_ITERATIONS, BRANCH_ITERATIONS = 0, 2
+"""Newton iterations behind settling, and of a point of a branch: on average 0 to 0.5 and 1 to 2.7."""
+
+
+@dataclass(frozen=True)
+class SteadyCost:
+    """Motions of both sweeps and points of the branch: how many, and CPU seconds of each."""
+
+    motions: int
+    motion: float
+    points: int
+    point: float
+
+
+def motion_periods(freedoms: int, settling: int, iterations: int = SWEEP_ITERATIONS) -> int:
+    """Return the periods that are integrated for a motion of a sweep, in units of that of the motion.
+
+    Settling, the residual, the derivatives by central differences in 2 n states, and the error of the steps,
+    whose run on half the steps counts twice.
+    """
+    return settling + 4 + 4 * freedoms + iterations * (4 * freedoms + 1)
+
+
+def point_periods(freedoms: int, iterations: int = BRANCH_ITERATIONS) -> int:
+    """Return the periods that are integrated for a point of a branch, derived in the speed too."""
+    return 4 * freedoms + 6 + iterations * (4 * freedoms + 3)
+
+
+def branch_points(speed: FloatArray) -> int:
+    """Return how many points a branch has over speeds without a fold: its steps are shares of the highest."""
+    return int(np.ceil((1.0 - float(speed[0] / speed[-1])) / LARGEST_STEP)) + 1
+
+
+def steady_cost(
+    system: System, speed: FloatArray, *, branch: bool = True, repeat: int = 1, periods: int
+) -> SteadyCost:
+    """Return what `steady_states` of the same will cost; some hundredths of a second of it are integrated.
+
+    Raises `InputError`, `SolveError` as `steady_states`.
+    """
+    sense = float(np.sign(system.scene.references[leading_law(system)].speed.extreme))
+    problem = periodic_problem(system, sense * float(speed[0]), repeat)
+    each = float(np.mean([period_seconds(problem, sense * float(at)) for at in (speed[0], speed[-1])]))
+    freedoms, several = problem.rest.size // 2, speed.size > 1
+    return SteadyCost(
+        speed.size * (2 if several else 1),
+        motion_periods(freedoms, periods) * each,
+        branch_points(speed) if branch and several else 0,
+        point_periods(freedoms) * each,
+    )
+
+
+def period_seconds(problem: PeriodicProblem, speed: float) -> float:
+    """Return the CPU seconds of a period of the motions at a speed, by the first steps from rest."""
+    over_period, steps, whole = PeriodMap(problem, speed), LEAST_STEPS, problem.grid.level.size
+    over_period.begun(problem.rest, 1)  # reads the code
+    while True:
+        steps = min(steps, whole)
+        began = cpu_seconds()
+        over_period.begun(problem.rest, steps)
+        seconds = cpu_seconds() - began
+        if seconds >= ENOUGH or steps == whole:
+            return problem.repeat * whole * seconds / steps
+        steps *= 2

@@ -1,0 +1,106 @@
+"""What a run will cost: some steps of it at several times, measured, and counted over its duration."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dynamics.assembly.assemble import System, assemble
+from dynamics.assembly.varied import starting_at, with_static_reference
+from dynamics.errors import SolveError
+from dynamics.integrators import static_equilibrium
+from dynamics.integrators.code_choice import StructureCode
+from dynamics.integrators.march import March, advance_to, start_march
+from dynamics.integrators.method_choice import choose_method
+from dynamics.integrators.workspace import Count
+from dynamics.motion.sampled_states import States, Widths
+from dynamics.scene import Scene
+from dynamics.simulation.error_by_source import SHARE
+from host import cpu_seconds
+
+PARTS = (0.05, 0.5, 0.95)
+"""Of the duration: where a run is probed."""
+ENOUGH = 0.02
+"""CPU s of the stretch of a probe that counts; all of them take twice that, and up to twice that again."""
+LEAST_STEPS = 32
+"""Of a stretch that counts, however long a step takes."""
+FINER = 1.0 + 10.0**0.2
+"""Steps in the windows of an error estimate over those of the run: by half the positions, and by a tenth
+of the tolerance."""
+FASTER, MAKING = 2.3, 2.0
+"""Ordinary loops over code of a structure's own, measured 2.0 to 2.8; CPU s of making it, 1.1 to 4.6."""
+
+
+def run_seconds(scene: Scene) -> float:
+    """Return about how many CPU seconds the steps of a scene take, with those of its error estimate.
+
+    Some tenths of a second of it are run. Raises `InputError`: its parts do not fit each other; `SolveError`:
+    nothing holds it at rest, or no steps can be taken.
+    """
+    system = assemble(scene)
+    probes = [_probe(system, part * scene.duration) for part in PARTS]
+    seconds = scene.duration * float(np.mean([probe.seconds for probe in probes]))
+    if scene.outputs.receipt == "full" and scene.meshes:
+        seconds *= 1.0 + FINER * SHARE
+    if probes[0].code_may_follow:
+        seconds = min(seconds, MAKING + seconds / FASTER)
+    return seconds
+
+
+class _Probe(NamedTuple):
+    """CPU seconds and steps per second of a run about some time of it."""
+
+    seconds: float
+    steps: float
+    code_may_follow: bool
+
+
+class _Discarded:
+    """Takes samples, and keeps none."""
+
+    def __init__(self, widths: Widths) -> None:
+        self._widths = widths
+
+    def room(self, first: int, count: int) -> States:
+        """Return rows that nobody reads."""
+        return self._widths.states(count)
+
+    def keep(self, first: int, count: int) -> None:
+        """Do nothing."""
+
+    def states(self, first: int, stop: int) -> States:
+        """Refuse: nothing is kept."""
+        raise NotImplementedError
+
+
+def _probe(system: System, time: float) -> _Probe:
+    """March on from the equilibrium at a time by stretches that grow, until one of them tells."""
+    later = starting_at(system, time, np.zeros(len(system.scene.references), dtype=np.int64))
+    rest = static_equilibrium(later)
+    if not rest.status.usable:
+        raise SolveError(f"no static equilibrium at {time:.6g} s: {rest.status.name.lower()}")
+    choice = choose_method(later, rest.displacement, later.scene.integration)
+    march = start_march(
+        choice.of(with_static_reference(later, rest.displacement)), rest, later.scene.integration
+    )
+    code = StructureCode(march.control.implicit, march.structure, makes=False)
+    stretch, sink, first = choice.step / 16.0, _Discarded(march.widths), True
+    while True:
+        stretch = min(stretch, system.scene.duration)
+        began, before, since = cpu_seconds(), _steps(march), float(march.work.time[0])
+        status = advance_to(march, code, since + stretch, sink)
+        seconds, steps, passed = (
+            cpu_seconds() - began,
+            _steps(march) - before,
+            float(march.work.time[0]) - since,
+        )
+        if not status.usable:
+            raise SolveError(f"no steps at {time:.6g} s: {status.name.lower()}")
+        if not first and steps >= LEAST_STEPS and (seconds > ENOUGH or passed >= system.scene.duration):
+            return _Probe(seconds / passed, steps / passed, code.may_follow)
+        stretch, first = 2.0 * stretch, False
+
+
+def _steps(march: March) -> int:
+    return int(march.work.counts[Count.ACCEPTED] + march.work.counts[Count.REJECTED])

@@ -1,0 +1,87 @@
+"""What steady states cost before they are looked for: the periods counted are those that are integrated."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+from backlash_oscillator import oscillator
+from geared_scenes import RPM, gear_pair_scene, spring_table, with_bushings
+
+from dynamics.assembly.assemble import assemble
+from dynamics.periodic import find_orbit, follow_branch, periodic_problem, steady_states
+from dynamics.periodic.period_map import PeriodMap
+from dynamics.periodic.steady_cost import (
+    branch_points,
+    motion_periods,
+    period_seconds,
+    point_periods,
+    steady_cost,
+)
+
+SPEEDS = np.array([600.0, 750.0, 900.0]) * RPM
+SETTLING = 5
+
+
+@pytest.fixture
+def pair():
+    return assemble(with_bushings(gear_pair_scene(spring_table(4e8, 1e-7))))
+
+
+@pytest.fixture
+def marched(monkeypatch):
+    """Steps marched over whole periods, by the speed."""
+    steps, whole = Counter(), PeriodMap._one_period
+
+    def counted(self, y, path, part=None):
+        if part is None:
+            steps[float(self.speed)] += self.problem.grid.level.size
+        return whole(self, y, path, part)
+
+    monkeypatch.setattr(PeriodMap, "_one_period", counted)
+    return steps
+
+
+@pytest.mark.parametrize("repeat", [1, 2])
+def test_the_periods_of_sweeps_are_those_counted(pair, marched, repeat):
+    states = steady_states(pair, SPEEDS, branch=False, repeat=repeat, periods=SETTLING)
+    problem = periodic_problem(pair, SPEEDS[0], repeat)
+    n = problem.rest.size // 2
+    series = 1  # of a motion that was found its figures are taken from one more
+    counted = sum(motion_periods(n, SETTLING, int(own)) + series for own in states.iterations)
+    assert np.all(states.status == 0)
+    assert marched.total() == repeat * counted * problem.grid.level.size
+
+
+def test_the_periods_of_a_branch_are_those_counted(pair, marched):
+    problem = periodic_problem(pair, SPEEDS[0])
+    n, steps = problem.rest.size // 2, problem.grid.level.size
+    start = find_orbit(problem, SPEEDS[0])
+    marched.clear()
+    branch = follow_branch(problem, SPEEDS[0], SPEEDS[-1], guess=start.state)
+    first, *others = (orbit.iterations for orbit in branch.orbits)
+    by_speed = 2
+    counted = motion_periods(n, 0, first) + by_speed + sum(point_periods(n, own) for own in others)
+    assert marched.total() == counted * steps
+    assert len(branch.orbits) == pytest.approx(branch_points(SPEEDS), abs=2)
+
+
+def test_a_prediction_is_linear_in_speeds_settling_and_repetitions(pair, monkeypatch):
+    monkeypatch.setattr("dynamics.periodic.steady_cost.period_seconds", lambda problem, _: problem.repeat)
+    n = periodic_problem(pair, SPEEDS[0]).rest.size // 2
+    few = steady_cost(pair, SPEEDS, periods=SETTLING)
+    assert few.motions == 2 * SPEEDS.size
+    assert few.motion == motion_periods(n, SETTLING)
+    assert (few.points, few.point) == (branch_points(SPEEDS), point_periods(n))
+    many = steady_cost(pair, np.linspace(SPEEDS[0], SPEEDS[-1], 30), periods=SETTLING + 7, repeat=3)
+    assert many.motions == 60
+    assert many.points == few.points
+    assert many.motion == 3 * (few.motion + 7)
+    assert steady_cost(pair, SPEEDS[:1], periods=SETTLING).motions == 1
+    assert steady_cost(pair, SPEEDS, branch=False, periods=SETTLING).points == 0
+
+
+def test_a_probe_marches_no_whole_period_where_a_part_tells(marched, monkeypatch):
+    problem = periodic_problem(oscillator(1.0), 0.05)
+    monkeypatch.setattr("dynamics.periodic.steady_cost.ENOUGH", 0.0)
+    assert period_seconds(problem, 0.05) > 0.0
+    assert marched.total() == 0
