@@ -35,6 +35,15 @@ class DrawnSurface:
     points: FloatArray
     facets: IntArray
 
+    def of_at_most(self, most: int) -> DrawnSurface:
+        """Return it with at most so many triangles: points near each other are put together."""
+        points, facets = self.points, self.facets
+        extent, cells = float(np.ptp(points, axis=0).max()), _FINEST_GRID
+        while len(facets) > most:
+            points, facets = _together(points, facets, extent / cells)
+            cells *= _COARSER
+        return DrawnSurface(points, facets)
+
 
 def drawn_step(file: Path, most: int = MOST_TRIANGLES) -> DrawnSurface:
     """Return the surface of the one solid in a STEP file.
@@ -100,20 +109,18 @@ def _drawn(points: FloatArray, facets: IntArray, most: int, field: str) -> Drawn
         raise InputError(f"{field}.place", farthest, _FARTHEST, "Move the solid to its origin.")
     if not SIZE.holds(extent):
         raise InputError(f"{field}.size", extent, SIZE, "Check its unit.")
-    cells = _FINEST_GRID
-    while len(facets) > most:
-        points, facets = _together(points, facets, extent / cells)
-        cells *= _COARSER
-    return DrawnSurface(points, facets)
+    return DrawnSurface(points, facets).of_at_most(most)
 
 
 def _together(points: FloatArray, facets: IntArray, size: float) -> tuple[FloatArray, IntArray]:
-    """Put the points in each cell of a grid together in their mean; facets that have no area then go."""
-    cells = np.floor((points - points.min(axis=0)) / size).astype(np.int64)
+    """Put points in a cell of a grid together in the outermost, so edges stay; facets without area go."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    cells = np.floor((points - low) / size).astype(np.int64)
     _, cell, count = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
     cell = cell.ravel()
-    means = np.stack([np.bincount(cell, column) / count for column in points.T], axis=1)
+    outwards = np.lexsort((np.linalg.norm(points - 0.5 * (low + high), axis=1), cell))
+    outermost = points[outwards[np.cumsum(count) - 1]]
     moved = np.sort(cell[facets], axis=1)
     whole = np.all(np.diff(moved, axis=1) > 0, axis=1)
     _, first = np.unique(moved[whole], axis=0, return_index=True)
-    return means, cell[facets][whole][np.sort(first)]
+    return outermost, cell[facets][whole][np.sort(first)]

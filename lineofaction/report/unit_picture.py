@@ -15,7 +15,7 @@ from matplotlib.figure import Figure as Sheet
 from matplotlib.lines import Line2D
 
 from bounds.types import Json
-from lineofaction.gearbox.studies.bodies import BEARING, PINION, SHAFT, WHEEL, Body
+from lineofaction.gearbox.studies.bodies import BEARING, HOUSING, PINION, SHAFT, WHEEL, Body, Hull
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.bodies import Camera, Rendered, rendered
 from lineofaction.report.drawing.figure import Figure
@@ -31,6 +31,7 @@ COLORS = {
     BEARING: (0.42, 0.46, 0.52),
     PINION: (0.58, 0.70, 0.82),
     WHEEL: (0.82, 0.66, 0.52),
+    HOUSING: (0.50, 0.55, 0.60),
 }
 """As the page has them."""
 DPI, TYPE = 100, 8.5
@@ -42,8 +43,10 @@ TITLE = "The gear unit"
 CAPTION = (
     "To scale: shafts by their sections, gears as discs of their face width and tip diameter, bearings as "
     "rings; what drives is blue, what is driven brown. Diameters of shafts without sections, and of bearings "
-    "without a line of a catalog, are assumed. The housing is not drawn."
+    "without a line of a catalog, are assumed. "
 )
+HOUSED = "The rest is seen through the housing, which is coarse."
+UNHOUSED = "The housing is not drawn."
 
 
 def with_picture(page: Page, unit: Sequence[Json] | None) -> Page:
@@ -53,16 +56,18 @@ def with_picture(page: Page, unit: Sequence[Json] | None) -> Page:
 
 def picture_sections(unit: Sequence[Json] | None) -> tuple[Section, ...]:
     """Return the section with the picture of bodies as a result has them; nothing without any."""
-    bodies = tuple(body for body in map(Body.of, unit or ()) if body.rings)
+    written = [part for part in unit or () if part["kind"] != HOUSING]
+    bodies = tuple(body for body in map(Body.of, written) if body.rings)
     if not bodies:
         return ()
+    surfaces = [part for part in unit or () if part["kind"] == HOUSING]
     figure = Figure(
-        key=f"unit_{sha256(repr(bodies).encode()).hexdigest()[:8]}",
+        key=f"unit_{sha256(repr((bodies, surfaces)).encode()).hexdigest()[:8]}",
         title=TITLE,
-        caption=CAPTION,
+        caption=CAPTION + (HOUSED if surfaces else UNHOUSED),
         alternative=_words(bodies),
         content=(),
-        picture=partial(unit_png, bodies),
+        picture=partial(unit_png, bodies, tuple(map(Hull.of, surfaces))),
     )
     return (Section("Unit", figures=(figure,)),)
 
@@ -91,15 +96,15 @@ def _words(bodies: Sequence[Body]) -> str:
     return f"{said}. Shafts: {shafts}." + (f" Gears: {gears}." if gears else "")
 
 
-def unit_png(bodies: tuple[Body, ...]) -> bytes:
-    """Draw bodies of revolution with the names of shafts and gears, and return the PNG file's bytes."""
+def unit_png(bodies: tuple[Body, ...], hulls: tuple[Hull, ...] = ()) -> bytes:
+    """Draw bodies and the surfaces about them with names of shafts and gears; return the PNG file's bytes."""
     longest = max(len(_short(body.name)) for body in bodies if body.kind != BEARING)
     across = CHARACTER * longest + AWAY + EDGE
-    seen = rendered(bodies, Camera.on(bodies, SIZE, (across, ABOVE)), COLORS)
+    seen = rendered(bodies, Camera.on(bodies, SIZE, (across, ABOVE), hulls), COLORS, hulls)
     sheet = Sheet(figsize=(SIZE[0] / DPI, SIZE[1] / DPI), dpi=DPI)
     FigureCanvasAgg(sheet)
     sheet.figimage(seen.color)
-    columns = np.flatnonzero(np.any(seen.body >= 0, axis=0))
+    columns = np.flatnonzero(np.any(seen.color < 1.0, axis=(0, 2)))
     _write(sheet, _points(bodies, seen, (SHAFT,), 0.0), float(columns[0]) - AWAY, "right")
     _write(sheet, _points(bodies, seen, (PINION, WHEEL), 1.0), float(columns[-1]) + AWAY, "left")
     buffer = BytesIO()

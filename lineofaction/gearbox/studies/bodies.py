@@ -1,15 +1,20 @@
-"""What a gear unit is drawn as: bodies of revolution about axes along z."""
+"""What a gear unit is drawn as: bodies of revolution about axes along z, and the surfaces of its housings."""
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
+from bounds.types import FloatArray, IntArray, Json
+
 UNIT = "unit"
 """Among the facts of a result: the bodies of its scene."""
-SHAFT, PINION, WHEEL, BEARING = "shaft", "pinion", "wheel", "bearing"
-"""What a body is: of gears, the one that drives its first mesh and the one that is driven."""
+SHAFT, PINION, WHEEL, BEARING, HOUSING = "shaft", "pinion", "wheel", "bearing", "housing"
+"""What a part is: of gears, the one that drives its first mesh and the one that is driven."""
 
 
 @dataclass(frozen=True)
@@ -37,3 +42,29 @@ class Body:
         """Return the body that a result has among its facts."""
         x, y = written["axis"]
         return cls(written["kind"], written["name"], (x, y), tuple(Ring(**ring) for ring in written["rings"]))
+
+
+@dataclass(frozen=True, eq=False)
+class Hull:
+    """The surface of a housing: name, points (n, 3), m, and facets (t, 3), counter-clockwise from outside."""
+
+    name: str
+    points: FloatArray
+    facets: IntArray
+
+    @property
+    def written(self) -> Json:
+        """What a result has of it among its facts: 32-bit floats and 16-bit indices, in Base64."""
+        packed = {"points": self.points.astype("<f4"), "facets": self.facets.astype("<u2")}
+        texts = {name: base64.b64encode(values.tobytes()).decode() for name, values in packed.items()}
+        return {"kind": HOUSING, "name": self.name} | texts
+
+    @classmethod
+    def of(cls, written: Mapping[str, Any]) -> Hull:
+        """Return the surface that a result has among its facts."""
+        kinds = (("points", "<f4", float), ("facets", "<u2", np.int64))
+        points, facets = (
+            np.frombuffer(base64.b64decode(written[name]), kind).reshape(-1, 3).astype(own)
+            for name, kind, own in kinds
+        )
+        return cls(written["name"], points, facets)

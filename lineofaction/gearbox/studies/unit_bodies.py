@@ -1,4 +1,4 @@
-"""The bodies that a scene is drawn as: shafts by their sections, gears, bearings."""
+"""The bodies that a scene is drawn as: shafts by their sections, gears, bearings, housings."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.reading import validated
-from lineofaction.gearbox.studies.bodies import BEARING, PINION, SHAFT, WHEEL, Body, Ring
+from lineofaction.gearbox.studies.bodies import BEARING, PINION, SHAFT, WHEEL, Body, Hull, Ring
 
 SLENDER = 8.0
 """Length over diameter of a shaft without sections."""
@@ -30,11 +30,29 @@ ADDENDUM, DEDENDUM = 1.0, 1.25
 """Over the module, of gears that no case has."""
 
 
+MOST_FACETS = 2_000
+"""Of a housing in a picture: 32 kB of the result."""
+
+
 def bodies_of(subject: TabledScene) -> list[Json]:
     """Return the bodies of a scene, planets that it copies too, as a result has them among its facts."""
     scene = subject.scene
     parts = (*_shafts(scene), *_gears(subject), *_bearings(subject))
-    return [{**asdict(part), "axis": list(part.axis), "rings": [*map(asdict, part.rings)]} for part in parts]
+    bodies: list[Json] = [
+        {**asdict(part), "axis": list(part.axis), "rings": [*map(asdict, part.rings)]} for part in parts
+    ]
+    return bodies + [hull.written for hull in _hulls(subject)]
+
+
+def _hulls(subject: TabledScene) -> Iterator[Hull]:
+    """Yield the surfaces of the housings that are reduced from their solids."""
+    from dynamics.housings.drawn_surface import DrawnSurface  # noqa: PLC0415 (start-up time)
+
+    for name, housing in subject.housings.items():
+        if (surface := housing.surface) is not None:
+            used, corners = np.unique(surface.triangles[:, :3], return_inverse=True)
+            drawn = DrawnSurface(surface.points[used], corners.reshape(-1, 3)).of_at_most(MOST_FACETS)
+            yield Hull(name, drawn.points, drawn.facets)
 
 
 def _body(kind: str, name: str, shaft: Shaft, *rings: Ring) -> Body:

@@ -1,4 +1,4 @@
-"""Bodies of revolution about axes along z as they are seen: rays, what is in front, its light."""
+"""Bodies of revolution and surfaces about them as they are seen: rays, what is in front, its light."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bounds.types import BoolArray, FloatArray, IntArray
-from lineofaction.gearbox.studies.bodies import Body, Ring
+from lineofaction.gearbox.studies.bodies import HOUSING, Body, Hull, Ring
 
 YAW, PITCH = 0.8, 0.35
 """rad; from where a unit is seen first, on the page too."""
@@ -25,6 +25,8 @@ FINER = 2
 """Rays per pixel, across and down."""
 SIDES = 48
 """Of the polygon about a circle that says how far a body reaches."""
+THROUGH = 0.3
+"""Opacity of a surface, through which the rest is seen."""
 BEHIND = 1e-6
 """Part of its distance by which a surface must be nearer than another to hide it."""
 
@@ -44,13 +46,20 @@ class Camera:
     size: tuple[int, int]
 
     @classmethod
-    def on(cls, bodies: Sequence[Body], size: tuple[int, int], margins: tuple[float, float]) -> Camera:
-        """Return the camera that sees all bodies, as large as margins in pixels allow."""
+    def on(
+        cls,
+        bodies: Sequence[Body],
+        size: tuple[int, int],
+        margins: tuple[float, float],
+        hulls: Sequence[Hull] = (),
+    ) -> Camera:
+        """Return the camera that sees all bodies and surfaces, as large as margins in pixels allow."""
         flat = math.cos(PITCH)
         back = np.array([math.sin(YAW) * flat, math.sin(PITCH), math.cos(YAW) * flat])
         right = np.array([math.cos(YAW), 0.0, -math.sin(YAW)])
         axes = np.array([right, np.cross(back, right), back])
-        points = np.vstack([rims(body, ring) for body in bodies for ring in body.rings])
+        reached = [rims(body, ring) for body in bodies for ring in body.rings]
+        points = np.vstack([*reached, *(hull.points for hull in hulls)])
         low, high = points.min(axis=0), points.max(axis=0)
         eye = 0.5 * (low + high) + 1.1 * FIELD * 0.5 * float(np.linalg.norm(high - low)) * back
         camera = cls(eye, axes, 1.0, np.zeros(2), size)
@@ -59,6 +68,12 @@ class Camera:
         within = np.array(size) - 2.0 * np.array(margins)
         scale = float(np.min(within / np.maximum(most - least, 1e-12)))
         return cls(eye, axes, scale, 0.5 * np.array(size) - 0.5 * scale * (least + most), size)
+
+    @property
+    def light(self) -> FloatArray:
+        """The direction of the light (3,), of length 1."""
+        light = self.axes[2] + LIGHT
+        return np.asarray(light / np.linalg.norm(light))
 
     def pixels(self, points: FloatArray) -> FloatArray:
         """Return where points (n, 3) are seen, across and down (n, 2)."""
@@ -191,16 +206,32 @@ class _Picture:
 
     def add(self, body: Body, ring: Ring, color: Sequence[float]) -> None:
         window = _Window.about(self.camera, rims(body, ring))
-        light = self.camera.axes[2] + LIGHT
-        light /= np.linalg.norm(light)
         own = (window.rows, window.columns)
-        for met in _surfaces(ring, self.camera.eye - [*body.axis, 0.0], window.ray, light):
+        for met in _surfaces(ring, self.camera.eye - [*body.axis, 0.0], window.ray, self.camera.light):
             before = met.distance < self.distance[own] * (1.0 - BEHIND)
             self.distance[own][before] = met.distance[before]
             self.count += 1
             self.surface[own][before] = self.count
             lit = SHADE + (1.0 - SHADE) * met.light[before]
             self.color[own][before] = np.outer(lit, color)
+
+    def cover(self, hull: Hull, color: Sequence[float]) -> None:
+        """Draw what the eye sees of a surface from outside over all that is behind it."""
+        nearest, lit = np.full(self.distance.shape, np.inf), np.zeros(self.distance.shape)
+        for corners in hull.points[hull.facets]:
+            across = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+            if (height := float(across @ (self.camera.eye - corners[0]))) <= 0.0:
+                continue
+            window = _Window.about(self.camera, corners)
+            own = (window.rows, window.columns)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                distance = -height / np.tensordot(across, window.ray, 1)
+            met = _within(corners - self.camera.eye, window.ray) & (distance < nearest[own])
+            nearest[own][met] = distance[met]
+            lit[own][met] = max(float(self.camera.light @ across) / float(np.linalg.norm(across)), 0.0)
+        front = nearest < self.distance
+        over = np.outer(SHADE + (1.0 - SHADE) * lit[front], color)
+        self.color[front] += THROUGH * (over - self.color[front])
 
     def contours(self) -> BoolArray:
         """Return where a surface ends."""
@@ -214,6 +245,12 @@ class _Picture:
         return edge
 
 
+def _within(corners: FloatArray, ray: FloatArray) -> BoolArray:
+    """Whether rays (3, r, c) from the origin pass a triangle (3, 3), counter-clockwise as they see it."""
+    sides = (np.cross(corners[k], corners[(k + 1) % 3]) for k in range(3))
+    return np.asarray(np.all([np.tensordot(side, ray, 1) <= 0.0 for side in sides], axis=0))
+
+
 @dataclass(frozen=True)
 class Rendered:
     """A picture: its color (height, width, 3), 0 to 1, and the body (height, width) by index; -1: none."""
@@ -222,8 +259,13 @@ class Rendered:
     body: IntArray
 
 
-def rendered(bodies: Sequence[Body], camera: Camera, colors: Mapping[str, Sequence[float]]) -> Rendered:
-    """Return the picture of bodies on white; colors by what a body is."""
+def rendered(
+    bodies: Sequence[Body],
+    camera: Camera,
+    colors: Mapping[str, Sequence[float]],
+    hulls: Sequence[Hull] = (),
+) -> Rendered:
+    """Return the picture of bodies on white, seen through surfaces; colors by what a body is."""
     picture = _Picture.blank(camera.finer())
     owner = [-1]
     for index, body in enumerate(bodies):
@@ -231,6 +273,8 @@ def rendered(bodies: Sequence[Body], camera: Camera, colors: Mapping[str, Sequen
             picture.add(body, ring, colors[body.kind])
         owner += [index] * (picture.count + 1 - len(owner))
     picture.color[picture.contours() & (picture.surface > 0)] *= CONTOUR
+    for hull in hulls:
+        picture.cover(hull, colors[HOUSING])
     width, height = camera.size
     color = picture.color.reshape(height, FINER, width, FINER, 3).mean(axis=(1, 3))
     return Rendered(color, np.array(owner)[picture.surface[::FINER, ::FINER]])

@@ -8,18 +8,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line import loa
+from hulls import sphere
+from sounding_housings import rigid_housing
 
 from bounds.types import Json
 from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
 from lineofaction.gearbox.schemas.reading import read_model
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.studies.bodies import BEARING, PINION, SHAFT, WHEEL, Body, Ring
+from lineofaction.gearbox.studies.bodies import BEARING, HOUSING, PINION, SHAFT, WHEEL, Body, Hull, Ring
 from lineofaction.gearbox.studies.unit_bodies import bodies_of
 from lineofaction.report.document import page_json, page_of, read_inputs, write_whole
-from lineofaction.report.drawing.bodies import Camera, rendered
+from lineofaction.report.drawing.bodies import LIGHT, SHADE, THROUGH, Camera, rendered
 from lineofaction.report.drawing.image import still
 from lineofaction.report.drawing.page import Page
-from lineofaction.report.unit_picture import COLORS, is_picture, unit_png, with_picture
+from lineofaction.report.unit_picture import COLORS, HOUSED, UNHOUSED, is_picture, unit_png, with_picture
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 ROTOR, PLANETARY = EXAMPLES / "jeffcott_scene.toml", EXAMPLES / "lin_parker_planetary_scene.toml"
@@ -90,6 +92,59 @@ def test_through_a_bore_one_sees_what_is_behind() -> None:
     seen = rendered(parts, along_z(1.0), COLORS).body
     assert seen[SIZE[1] // 2, SIZE[0] // 2] == 0
     assert np.count_nonzero(seen == 0) == pytest.approx(np.pi * (30.0 / 1.02) ** 2, rel=0.01)
+
+
+def plate(z: float, *, away: bool = False) -> Hull:
+    """Return a square of 0.6 mm across the axis, which faces +z or away."""
+    points = np.array([[x, y, z] for x, y in ((-3e-4, -3e-4), (3e-4, -3e-4), (3e-4, 3e-4), (-3e-4, 3e-4))])
+    facets = np.array([[0, 1, 2], [0, 2, 3]])
+    return Hull("plate", points, facets[:, ::-1] if away else facets)
+
+
+@pytest.mark.law
+def test_the_rest_is_seen_through_a_surface_that_is_before_it() -> None:
+    disc, camera = [body(SHAFT, -0.02, 0.0, 0.7e-3)], along_z(1.0)
+    bare = rendered(disc, camera, COLORS).color
+    through = rendered(disc, camera, COLORS, [plate(0.01)]).color
+    light = 1.0 + LIGHT[2]
+    lit = SHADE + (1.0 - SHADE) * light / np.hypot(np.hypot(LIGHT[0], LIGHT[1]), light)
+    changed = np.any(through != bare, axis=-1)
+    inside = changed & np.roll(changed, 2, axis=(0, 1)) & np.roll(changed, -2, axis=(0, 1))
+    expected = bare[inside] + THROUGH * (lit * np.array(COLORS[HOUSING]) - bare[inside])
+    np.testing.assert_allclose(through[inside], expected, atol=1e-12)
+    change = (through - bare)[..., 0]
+    assert change.sum() / change[inside][0] == pytest.approx((60.0 / 0.99) ** 2, rel=0.02)
+
+
+@pytest.mark.parametrize("hull", [plate(-0.01), plate(0.01, away=True)], ids=["behind", "turned away"])
+def test_a_surface_that_is_hidden_or_turned_away_is_not_seen(hull: Hull) -> None:
+    disc, camera = [body(SHAFT, -0.005, 0.0, 0.7e-3)], along_z(1.0)
+    assert np.array_equal(rendered(disc, camera, COLORS).color, rendered(disc, camera, COLORS, [hull]).color)
+
+
+def test_the_housing_of_a_scene_is_in_its_picture_and_stays_small() -> None:
+    scene, radius = read_model(SceneInput, ROTOR), 0.3
+    hull = sphere(24, radius)
+    housing = rigid_housing(10.0, 1e8, 0.01, hull)
+    parts = bodies_of(TabledScene(scene, {}, dynamic_scene(scene, {}), housings={"case": housing}))
+    (written,) = (part for part in parts if part["kind"] == HOUSING)
+    drawn = Hull.of(written)
+    assert len(hull.triangles) > 2_000 >= len(drawn.facets) > 500
+    assert len(repr(written)) < 40_000
+    reach = np.linalg.norm(hull.nodes[0])
+    np.testing.assert_allclose(np.linalg.norm(drawn.points, axis=1), reach, rtol=1e-6)
+    corners = np.moveaxis(drawn.points[drawn.facets], 1, 0)
+    enclosed = np.sum(np.cross(corners[0], corners[1]) * corners[2]) / 6.0
+    assert enclosed == pytest.approx(4.0 / 3.0 * np.pi * radius**3, rel=0.05), "closed, and faces outwards"
+    captions = []
+    for unit_parts in (parts, bodies(ROTOR)):
+        (section, *_) = with_picture(Page("Title", "", (), ()), unit_parts).sections
+        (figure,) = section.figures
+        assert figure.picture is not None
+        captions.append((figure.caption, figure.picture()))
+    (housed, first), (unhoused, second) = captions
+    assert housed.endswith(HOUSED) and unhoused.endswith(UNHOUSED)
+    assert first != second and len(still(first)) < 60_000
 
 
 def test_its_camera_shows_all_of_a_unit_and_fills_the_picture() -> None:

@@ -34,6 +34,7 @@ from dynamics.housings import (
     write_surface,
 )
 from dynamics.housings.assembled_housing import _mass_and_stiffness
+from dynamics.housings.drawn_surface import DrawnSurface
 from dynamics.housings.mesh_files import _element_shape
 from dynamics.housings.reduction import reduce_housing
 from dynamics.solid_housing import check_mesh_content
@@ -396,3 +397,16 @@ def test_what_cannot_be_written_leaves_no_file(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="len"):
         write_surface(tmp_path / "mode.vtu", mesh.points, mesh.surface, {"motion": np.zeros((2, 3))})
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_coarse_surface_of_a_box_keeps_its_edges_and_its_volume() -> None:
+    sides = (0.2, 0.1, 0.06)
+    mesh = box(sides, (20, 12, 7))
+    fine = DrawnSurface(mesh.points, mesh.surface[:, :3])
+    drawn = fine.of_at_most(1000)
+    assert len(fine.facets) > 1500
+    assert 200 < len(drawn.facets) <= 1000
+    np.testing.assert_allclose(np.ptp(drawn.points, axis=0), sides, rtol=1e-12)
+    corners = np.moveaxis(drawn.points[drawn.facets], 1, 0)
+    volume = np.sum(np.cross(corners[0], corners[1]) * corners[2]) / 6.0
+    assert volume == pytest.approx(np.prod(sides), rel=1e-9)
