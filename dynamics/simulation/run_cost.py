@@ -32,25 +32,30 @@ FASTER, MAKING = 2.3, 2.0
 """Ordinary loops over code of a structure's own, measured 2.0 to 2.8; CPU s of making it, 1.1 to 4.6."""
 
 
-def run_seconds(scene: Scene) -> float:
-    """Return about how many CPU seconds the steps of a scene take, with those of its error estimate.
+def run_seconds(scene: Scene, runs: int = 1) -> float:
+    """Return about how many CPU seconds so many runs of a scene take, with their error estimates.
 
     Some tenths of a second of it are run. Raises `InputError`: its parts do not fit each other; `SolveError`:
     nothing holds it at rest, or no steps can be taken.
     """
+    assemble(scene)  # loads what it needs
+    began = cpu_seconds()
     system = assemble(scene)
+    assembling = cpu_seconds() - began
     probes = [_probe(system, part * scene.duration) for part in PARTS]
     seconds = scene.duration * float(np.mean([probe.seconds for probe in probes]))
     if scene.outputs.receipt == "full" and scene.meshes:
         seconds *= 1.0 + FINER * SHARE
+    starting = runs * (assembling + min(probe.start for probe in probes))
     if probes[0].code_may_follow:
-        seconds = min(seconds, MAKING + seconds / FASTER)
-    return seconds
+        return starting + min(runs * seconds, MAKING + runs * seconds / FASTER)
+    return starting + runs * seconds
 
 
 class _Probe(NamedTuple):
-    """CPU seconds and steps per second of a run about some time of it."""
+    """CPU seconds of starting; CPU seconds and steps per second of a run about some time of it."""
 
+    start: float
     seconds: float
     steps: float
     code_may_follow: bool
@@ -76,6 +81,7 @@ class _Discarded:
 
 def _probe(system: System, time: float) -> _Probe:
     """March on from the equilibrium at a time by stretches that grow, until one of them tells."""
+    began = cpu_seconds()
     later = starting_at(system, time, np.zeros(len(system.scene.references), dtype=np.int64))
     rest = static_equilibrium(later)
     if not rest.status.usable:
@@ -85,6 +91,7 @@ def _probe(system: System, time: float) -> _Probe:
         choice.of(with_static_reference(later, rest.displacement)), rest, later.scene.integration
     )
     code = StructureCode(march.control.implicit, march.structure, makes=False)
+    start = cpu_seconds() - began
     stretch, sink, first = choice.step / 16.0, _Discarded(march.widths), True
     while True:
         stretch = min(stretch, system.scene.duration)
@@ -98,7 +105,7 @@ def _probe(system: System, time: float) -> _Probe:
         if not status.usable:
             raise SolveError(f"no steps at {time:.6g} s: {status.name.lower()}")
         if not first and steps >= LEAST_STEPS and (seconds > ENOUGH or passed >= system.scene.duration):
-            return _Probe(seconds / passed, steps / passed, code.may_follow)
+            return _Probe(start, seconds / passed, steps / passed, code.may_follow)
         stretch, first = 2.0 * stretch, False
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -130,16 +130,23 @@ def sized(scene: Scene, highest_hz: float | None = None) -> System:
     return assemble(scene if highest_hz is None else replace(scene, highest_frequency=highest_hz))
 
 
-def run_cost(scene: SceneInput) -> StudyCost | None:
-    """Return the cost of a run of a scene, by some steps of it; None: nothing predicts it.
+def run_cost(
+    scene: SceneInput, runs: int = 1, receipt: Literal["minimal", "full"] | None = None
+) -> StudyCost | None:
+    """Return the cost of so many runs of a scene, by some steps of it; None: nothing predicts it.
 
-    Modes that a solid housing keeps are not known before and do not count. Raises `BadInput`: no such scene.
+    `receipt`: of the runs; None: as the scene says. Modes that a solid housing keeps are not known before
+    and do not count. Raises `BadInput`: no such scene.
     """
     from dynamics.simulation.run_cost import run_seconds  # noqa: PLC0415 (start-up time)
 
     with boundary_errors():
         before = moving_before_tables(scene)
+    if before is None:
+        return None
+    if receipt is not None:
+        before = replace(before, outputs=replace(before.outputs, receipt=receipt))
     try:
-        return None if before is None else StudyCost((Work("run", run_seconds(before)),))
+        return StudyCost((Work("run" if runs == 1 else "runs", run_seconds(before, runs) / runs, runs),))
     except (InputError, SolveError):
         return None  # it will be said by the run, on its own tables

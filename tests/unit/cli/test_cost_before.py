@@ -22,6 +22,7 @@ from lineofaction.gearbox.convert.live import plan_of
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.studies.cost import CASES, StudyCost, Work
+from lineofaction.gearbox.studies.study import run
 from lineofaction.gearbox.subjects import scene_of
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
@@ -115,8 +116,39 @@ def test_the_cost_of_a_run_grows_with_its_duration() -> None:
         update={"run": scene.run.model_copy(update={"duration_s": 100.0 * scene.run.duration_s})}
     )
     costs = [simulation_cost(own, EXAMPLES) for own in (scene, longer)]
-    assert None not in costs
-    assert costs[1].seconds > 20.0 * costs[0].seconds  # code of its own may be made for the longer
+    less, more = (cost.seconds for cost in costs if cost is not None)
+    assert more > 20.0 * less  # code of its own may be made for the longer
+
+
+def study_inputs(levels: int, path: str, samples: int = 1) -> dict[str, Any]:
+    factors: list[dict[str, Any]] = [{"path": path, "levels": [1.0 + k for k in range(levels)]}]
+    if samples > 1:
+        factors.append({"path": "meshes.mesh.damping_ratio", "uniform": {"low": 0.04, "high": 0.1}})
+    return {"factors": factors, "responses": [{"quantity": "dte_rms"}], "samples": samples}
+
+
+@pytest.mark.parametrize("samples", [1, 5])
+def test_a_study_costs_its_runs_and_the_contact_of_other_flanks(
+    samples: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every point is a run; samples of what is no flank need no other table."""
+    study, (scene, folder) = STUDIES["study"], scene_of(EXAMPLES / "palermo_scene.toml")
+    monkeypatch.setattr(run, "run_cost", lambda _, runs, __: StudyCost((Work("runs", 2.0, runs),)))
+    for path, contacts in (("loads.brake.torque_n_m", 0), ("meshes.mesh.case.pair.pinion.tip_relief_um", 4)):
+        inputs = validated(study.inputs, study_inputs(4, path, samples))
+        cost = study_cost(study, scene, folder, inputs)
+        assert cost is not None
+        pieces = {part.name: part.pieces for part in cost.parts}
+        assert pieces["runs"] == 4 * samples
+        assert pieces.get("contacts", 0) == contacts
+
+
+def test_a_study_whose_runs_nobody_predicts_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    study, (scene, folder) = STUDIES["study"], scene_of(EXAMPLES / "palermo_scene.toml")
+    costs = iter((StudyCost((Work("runs", 2.0),)), None, None))  # of one point it is known
+    monkeypatch.setattr(run, "run_cost", lambda *_: next(costs))
+    inputs = validated(study.inputs, study_inputs(4, "loads.brake.torque_n_m"))
+    assert study_cost(study, scene, folder, inputs) is None
 
 
 def test_the_status_sums_what_is_due(case: CheckedCase, tmp_path: Path) -> None:

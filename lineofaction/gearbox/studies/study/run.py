@@ -27,6 +27,7 @@ from dynamics.study import (
     keep_runs,
     study,
 )
+from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.microgeometry.tolerances import PROCESS_SPREAD, iso1328_tolerances
 from lineofaction.gearbox.convert.case import boundary_errors, gear_pair, table_axes
 from lineofaction.gearbox.convert.errors import named
@@ -34,6 +35,7 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
+from lineofaction.gearbox.studies.cost import CASES, StudyCost, Work, run_cost
 from lineofaction.gearbox.studies.study import MOST_POINTS, FactorInput, Inputs, StudyFigures
 from lineofaction.gearbox.studies.study.scenes import (
     Place,
@@ -59,6 +61,27 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
         """
         _factor_places(scene, inputs)
         _check_parts(scene, _responses(inputs))
+
+    def predicted(self, scene: SceneInput, inputs: Inputs, cache: Path | None) -> StudyCost | None:
+        """Return what its runs take, by some steps of a few of them, and the tables of other flanks.
+
+        None: nothing predicts one of these runs.
+        """
+        places = _factor_places(scene, inputs)
+        with boundary_errors():
+            points = (design := _design_of(scene, inputs, places)).points
+        varied, count = VariedScene(scene.model_dump_json(), {}, places, ""), len(points)
+        cost, probed = _flank_tables(scene, design, places, cache), list[float]()
+        for values in points[np.unique(np.linspace(0, count - 1, PROBED).astype(int))]:
+            try:
+                own = varied.inputs(dict(zip(design.names, map(float, values), strict=True)))
+                runs = run_cost(own, count, inputs.receipt)
+            except BadInput:  # a point without a scene is left out
+                continue
+            if runs is None:
+                return None
+            probed.append(runs.seconds / count)
+        return cost + StudyCost((Work("runs", float(np.mean(probed)), count),)) if probed else None
 
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> Study:
         places = _factor_places(tabled.inputs, inputs)
@@ -104,6 +127,29 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
 
     def failure(self, result: Study) -> str:
         return "" if result.usable else f"No run has figures. The first: {result.reason[0]}"
+
+
+PROBED = 3
+"""Points of a study whose runs are probed before it begins."""
+
+
+def _flank_tables(
+    scene: SceneInput, design: Design, places: Mapping[str, tuple[Place, ...]], cache: Path | None
+) -> StudyCost:
+    """Return what the tables of all different flanks of the points take."""
+    meshes = {name: {mesh_of_case(place) for place in at} - {None} for name, at in places.items()}
+    columns = [k for k, name in enumerate(design.names) if meshes[name]]
+    if not columns:
+        return StudyCost(())
+    different = len(np.unique(design.points[:, columns], axis=0))
+    cost = StudyCost(())
+    for index in sorted({index for own in meshes.values() for index in own if index is not None}):
+        case = scene.meshes[index].case
+        if case is not None:
+            with boundary_errors():
+                own = predicted_designs(CASES.of(case).checked, cache)
+            cost += StudyCost((Work("gears", own.bodies), Work("contacts", own.design, different)), own.bytes)
+    return cost
 
 
 def in_boundary_units(result: Study, response: int) -> tuple[str, float]:

@@ -28,8 +28,18 @@ def test_a_probe_takes_the_steps_of_the_run(scene):
 
 
 def test_a_prediction_is_linear_in_the_duration(scene, monkeypatch):
-    monkeypatch.setattr(run_cost, "_probe", lambda *_: run_cost._Probe(3.0, 1e5, False))
-    assert run_seconds(replace(scene, duration=0.4)) == pytest.approx(2.0 * run_seconds(scene))
+    monkeypatch.setattr(run_cost, "_probe", lambda *_: run_cost._Probe(0.0, 3.0, 1e5, False))
+    monkeypatch.setattr(run_cost, "cpu_seconds", lambda: 0.0)
+    once = run_seconds(scene)
+    assert run_seconds(replace(scene, duration=0.4)) == pytest.approx(2.0 * once)
+    assert run_seconds(scene, 7) == pytest.approx(7.0 * once)
+
+
+def test_code_of_their_own_serves_all_runs(scene, monkeypatch):
+    monkeypatch.setattr(run_cost, "_probe", lambda *_: run_cost._Probe(0.0, 3.0, 1e5, True))
+    monkeypatch.setattr(run_cost, "cpu_seconds", lambda: 0.0)
+    once, many = run_seconds(scene), run_seconds(scene, 1000)
+    assert many == pytest.approx(1000.0 * once / run_cost.FASTER, rel=0.02)
 
 
 def test_a_prediction_follows_the_speed_over_the_run(scene, monkeypatch):
