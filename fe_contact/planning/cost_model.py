@@ -35,14 +35,14 @@ _PLANE_POSITION, _PLANE_POINT, _PLANE_CANDIDATE = 4e-5, 3e-6, 0.55e-6
 _FACE_POSITION, _FACE_SLICE = 0.4e-6, 2.2e-5
 """Per slice of a tooth pair and square of the elements of a module along the profile, and per slice."""
 _FACE_CANDIDATE = 4.6e-6
-_TOOTH_POINT = 0.25e-6
-"""Gaps of teeth at a touching point."""
-_PLANE_BEGUN, _FACE_BEGUN = 8e-6, 4e-6
-"""First load of a set, beside the others, in the plane and per slice of a tooth pair."""
+_TOOTH_POINT, _BEGUN = 0.45e-6, 20e-6
+"""In pitches that differ: gaps of a touching point; first load of a set per carrying slice, beside others."""
 _FACE_TILT = 2.7
 """Assembly with the change of the compliance along sloping flanks, over that without."""
 _PLANE_EXPECTED, _FACE_EXPECTED = 118, 76
 """Positions that the search ends with; of 10 helical pairs 64 to 145, with a tolerance 64 to 66."""
+_UNLIKE = 1.5
+"""Of them where pitches differ, each with handovers of its own: 97 to 248 of seven pairs of class 6."""
 _TRIED_PER_NODE, _TRIED_PER_START = 9, 4
 """Positions looked at for each node that the search adds, and for each that it begins with."""
 _JUDGED = 3
@@ -91,10 +91,9 @@ def contact_seconds(
     with_errors: bool = True,
 ) -> tuple[float, float, float]:
     """CPU seconds of the search of positions, of the table, and of the solutions that measure its errors."""
-    points, distances = alignments[0] * alignments[1], alignments[1]
-    times, loads = points * model.period, plan.load.size
-    kept, assessed = expected_positions(plan, times), min(points, _JUDGED)
-    tried, window = expected_tries(plan, times), plan.nodes.searched(model.period)
+    points, distances, loads = alignments[0] * alignments[1], alignments[1], plan.load.size
+    kept, assessed = expected_positions(plan, model.period, points), min(points, _JUDGED)
+    tried, window = expected_tries(plan, model.period, points), plan.nodes.searched(model.period)
     work = unit_work(pair, plan, plan.discretization.slices)
     search = work.of(tried * distances, 0) + work.in_pitches(tried * assessed, (loads,), window)
     cycle = CycleSeconds.of(work, pair, model.period, kept, (loads, plan.support.size))
@@ -112,7 +111,7 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
     In as many base pitches as are `solved` of its period.
     """
     made, loads = plan.discretization, plan.load.size
-    kept = expected_positions(plan, period * alignments[0] * alignments[1])
+    kept = expected_positions(plan, period, alignments[0] * alignments[1])
     work = unit_work(pair, plan, made.slices)
     rougher = [work, *([work] if made.corrected else [])]
     if made.slices > 1:
@@ -154,7 +153,7 @@ def memory_of_contact(pair: ParallelAxes, plan: Plan, period: int, alignments: t
     blocks = 2 if _with_tilt(pair, plan) else 1
     numbers = held * (blocks * count**2 + _POINT_NUMBERS * points)
     if period > 1:
-        rows = expected_positions(plan, period * alignments[0] * alignments[1]) * period
+        rows = expected_positions(plan, period, alignments[0] * alignments[1]) * period
         numbers += _PART_NUMBERS * min(rows * points, POINTS_AT_ONCE)
         loads = plan.load.size + plan.support.size
         numbers += rows * alignments[0] * alignments[1] * (_ROW_NUMBERS + _LOAD_NUMBERS * loads)
@@ -175,33 +174,31 @@ def _candidates(pair: ParallelAxes, slices: int) -> float:
 def unit_work(pair: ParallelAxes, plan: Plan, slices: int) -> _Work:
     """Return what one position and one point of it cost in so many slices."""
     made = plan.discretization
-    count = _candidates(pair, slices)
+    count, begun = _candidates(pair, slices), _BEGUN * pair.transverse_contact_ratio * slices
     if not isinstance(made, FaceDiscretization):
         point = _PLANE_POINT + _PLANE_CANDIDATE * count
-        return _Work(_PLANE_POSITION, point, _TOOTH_POINT * count, _PLANE_BEGUN)
+        return _Work(_PLANE_POSITION, point, _TOOTH_POINT * count, begun)
     elements = max(pair.pinion.normal_module / recipe.flank_size for recipe in made.recipes)
     position = (_FACE_POSITION * elements**2 + _FACE_SLICE) * count
     tilted = _FACE_TILT * position if _with_tilt(pair, plan) else position
-    return _Work(tilted, _FACE_CANDIDATE * count, _TOOTH_POINT * POINTS * count, _FACE_BEGUN * count)
+    return _Work(tilted, _FACE_CANDIDATE * count, _TOOTH_POINT * POINTS * count, begun)
 
 
-def expected_tries(plan: Plan, times: int = 1) -> int:
+def expected_tries(plan: Plan, period: int, alignments: int) -> int:
     """Return the positions at which the search usually solves; none if they are requested."""
     if plan.positions is not None:
         return 0
-    begun = plan.nodes.start
-    return _TRIED_PER_START * begun + _TRIED_PER_NODE * max(expected_positions(plan, times) - begun, 0)
+    added = max(expected_positions(plan, period, alignments) - plan.nodes.start, 0)
+    return _TRIED_PER_START * plan.nodes.start + _TRIED_PER_NODE * added
 
 
-def expected_positions(plan: Plan, times: int = 1) -> int:
-    """Return the positions in a base pitch: requested, or those that the search usually ends with.
-
-    `times` is the number of base pitches and alignments that a table repeats them in (`most_positions`).
-    """
+def expected_positions(plan: Plan, period: int = 1, alignments: int = 1) -> int:
+    """Return the positions in one of many base pitches: requested, or with which the search usually ends."""
     if plan.positions is not None:
         return plan.positions
     over_face = isinstance(plan.discretization, FaceDiscretization)
-    return min(_FACE_EXPECTED if over_face else _PLANE_EXPECTED, most_positions(plan, times))
+    expected = (_UNLIKE if period > 1 else 1.0) * (_FACE_EXPECTED if over_face else _PLANE_EXPECTED)
+    return min(round(expected), most_positions(plan, period * alignments))
 
 
 def most_positions(plan: Plan, times: int) -> int:
@@ -341,7 +338,7 @@ def predict_run(
     }
     known = corrections(cache)
     correction = {stage: known.get(log_name(kind, stage), 1.0) for stage in STAGES}
-    positions = expected_positions(plan, model.period * alignments[0] * alignments[1])
+    positions = expected_positions(plan, model.period, alignments[0] * alignments[1])
     memory = PROCESS_BYTES + memory_of_contact(pair, plan, model.period, alignments) + fine.held + coarse.held
     memory += max(fine.working, coarse.working)
     return Prediction(parts, correction, int(memory), positions, kind)

@@ -20,7 +20,7 @@ TABLE_SAVES = 2.0
 """CPU seconds that derivatives save at least where a table takes them: a cheaper one is solved whole."""
 _TANGENT = 0.4
 """CPU time of the tangents about a pitch over that of its solution."""
-_ADDED = 4e-9
+_ADDED = 6e-9
 """CPU seconds to add what one tooth of one pair does to one point."""
 
 

@@ -236,3 +236,14 @@ def test_pitches_solved_by_derivatives_do_not_grow_with_the_period():
 def test_no_more_pitches_are_expected_than_there_are():
     for period in (1, 10, 24, 40):
         assert max(solved_pitches(period, in_table=True)) <= period
+
+
+def test_more_positions_are_expected_where_pitches_differ():
+    """As many as rows allow: their handovers are apart. None where they are requested."""
+    few, requested = (
+        check_request(pair(), *table_request(torques=[40.0], level="draft", positions=count)).plan("draft")
+        for count in (None, 20)
+    )
+    alike, differing, longest = (expected_positions(few, period) for period in (1, 391, 2300))
+    assert differing > alike > longest == few.nodes.start + 1
+    assert {expected_positions(requested, period) for period in (1, 391)} == {20}
