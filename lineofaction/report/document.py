@@ -275,9 +275,13 @@ def _title(read: Inputs) -> str:
 
 
 def stored_figures(inputs: Json) -> Json:
-    """Return the report on a stored result: ``{"file": ...}``; work of the live worker."""
+    """Return the report on a stored result: ``{"file": ..., "printed": bool}``; work of the live worker."""
     with of_the_store():
-        return page_json(page_of(read_inputs([Path(inputs["file"])])))
+        return page_json(page_of(read_inputs([Path(inputs["file"])])), printed=inputs.get("printed", False))
+
+
+def _figures(page: Page) -> list[Figure]:
+    return [figure for section in page.sections for figure in section.figures]
 
 
 @contextmanager
@@ -292,8 +296,14 @@ def of_the_store() -> Iterator[None]:
         raise DamagedFile(f"The stored file is not {words}") from None
 
 
-def page_json(page: Page) -> Json:
-    """Return a report as plain JSON, without the picture of a unit: programs have its bodies."""
+def page_json(page: Page, *, printed: bool = False) -> Json:
+    """Return a report as plain JSON, without the picture of a unit: programs have its bodies.
+
+    `printed`: its page in place of its parts, of pictures alone: ``{"page": HTML}``.
+    """
+    if printed:
+        stills = {figure.key: still(png(figure, across=_ACROSS)) for figure in _figures(page)}
+        return {"page": html(page, stills, still=True)}
     return {
         "title": page.title,
         "lead": page.lead,
@@ -361,7 +371,7 @@ def write_whole(
     `still_only`: its plots are pictures alone.
     """
     page = replace(page, alarms=(*(f"Warning: {text}" for text in warnings), *page.alarms))
-    figures = [figure for section in page.sections for figure in section.figures]
+    figures = _figures(page)
     printed = output.suffix == ".pdf"
     drawn = {figure.key: png(figure, across=_ACROSS) for figure in figures}
     stills = {key: still(image) for key, image in drawn.items()}

@@ -20,6 +20,7 @@ from service.store.results import Mark
 
 JSON, CBOR, RAW = "application/json", "application/cbor", "application/octet-stream"
 WAV = "audio/wav"
+HTML = "text/html"
 EVENT_STREAM = "text/event-stream"
 PROBLEM = "application/problem+json"
 OPENAPI = "application/vnd.oai.openapi+json;version=3.1"

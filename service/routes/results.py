@@ -21,6 +21,7 @@ from service.access.keyring import Scope
 from service.live.order import LiveOrder
 from service.routes.context import Context, Ctx
 from service.routes.media_types import (
+    HTML,
     JSON,
     OF_VERSIONS,
     WAV,
@@ -200,6 +201,8 @@ def _known(request: Request, tag: str) -> bool:
 
 FIGURES = "lineofaction.report.document:stored_figures"
 COMPARISON = "lineofaction.report.comparison.compare:stored_comparison"
+_INERT = {"Content-Security-Policy": "sandbox; default-src 'none'; style-src 'unsafe-inline'; img-src data:"}
+"""Of a page that a browser opens at its address: nothing in it runs."""
 
 
 @router.get(
@@ -207,7 +210,12 @@ COMPARISON = "lineofaction.report.comparison.compare:stored_comparison"
     summary="Figures of a result",
     response_class=Response,
     responses={
-        200: answer("The report", *_VERSION, model=ReportBody),
+        200: answer(
+            "The report",
+            *(*_VERSION, "Vary"),
+            model=ReportBody,
+            content={JSON: {}, HTML: {"schema": {"type": "string"}}},
+        ),
         304: _UNMODIFIED_ANSWER,
         **documented(NotFound, QueueFull, LiveUnavailable, DamagedFile),
     },
@@ -217,6 +225,7 @@ async def result_figures(
     key: Key,
     request: Request,
     context: Ctx,
+    accept: Annotated[str, Header(description=f"{HTML} for a page to print, pictures in it")] = JSON,
     against: Annotated[
         str | None,
         Query(
@@ -225,14 +234,24 @@ async def result_figures(
         ),
     ] = None,
 ) -> Response:
-    """Every plot as data and layout for plotly.js, with its words and numbers."""
+    """Every plot as data and layout for plotly.js, with its words and numbers; or a page to print."""
+    printed = negotiated(accept, (JSON, HTML)) == HTML
     stored = await run_in_threadpool(known_result, context, key)
-    tag, order = stored.sha256, LiveOrder(FIGURES, {"file": str(stored.path)})
+    named: dict[str, Any] = {"file": str(stored.path)}
+    tag, work = stored.sha256, FIGURES
     if against is not None:
         other = await run_in_threadpool(known_result, context, against)
-        tag, order = tag + other.sha256, LiveOrder(COMPARISON, {"files": [str(stored.path), str(other.path)]})
-    tag = f'"{tag}-figures-{program_tag()}"'
-    return await _kept_answer(request, context, tag, order, "application/json")
+        tag, work, named = tag + other.sha256, COMPARISON, {"files": [str(stored.path), str(other.path)]}
+    order = LiveOrder(work, {**named, "printed": printed})
+    form, kind, body_of = ("page", HTML, _page) if printed else ("figures", JSON, bytes)
+    response = await _kept_answer(request, context, f'"{tag}-{form}-{program_tag()}"', order, kind, body_of)
+    response.headers.update({"Vary": "Accept"} | (_INERT if printed else {}))
+    return response
+
+
+def _page(made: bytes) -> bytes:
+    text: str = json.loads(made)["page"]
+    return text.encode("utf-8")
 
 
 MOTION = "lineofaction.report.unit_motion:stored_motion"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 from collections.abc import Iterator
 from pathlib import Path
@@ -98,6 +99,27 @@ def test_two_results_are_compared_as_figures(client: TestClient, key: str) -> No
     assert ["pair.pinion.tip_relief_um", "0", "3"] in fields["rows"]
     assert client.get(where, params={"against": "0" * 64}).status_code == 404
     assert client.get(where, params={"against": "nonsense"}).status_code == 422
+
+
+def test_a_report_to_print_is_a_page_in_which_nothing_runs(client: TestClient, key: str) -> None:
+    """As a browser's address bar sends it; program and page of one result have tags of their own."""
+    where, typed = f"/v1/results/{key}/figures", "text/html,application/xhtml+xml,*/*;q=0.8"
+    for query in ({}, {"against": key}):
+        page = client.get(where, params=query, headers={"Accept": typed})
+        assert page.headers["Content-Type"] == "text/html; charset=utf-8"
+        figures = client.get(where, params=query)
+        assert figures.headers["Content-Type"] == "application/json"
+        titles = [figure["title"] for section in figures.json()["sections"] for figure in section["figures"]]
+        assert titles and all(html.escape(title) in page.text for title in titles)
+        assert page.text.count('src="data:image/png;base64,') == len(titles) and "<script" not in page.text
+        policy = page.headers["Content-Security-Policy"]
+        assert policy.startswith("sandbox;") and "default-src 'none'" in policy and "script" not in policy
+        for answer in (page, figures):
+            assert answer.headers["Vary"] == "Accept"
+            tag = {"If-None-Match": answer.headers["ETag"]}
+            same, other = ({"Accept": kind} | tag for kind in (typed, "application/json"))
+            own = client.get(where, params=query, headers=same).status_code
+            assert {own, client.get(where, params=query, headers=other).status_code} == {200, 304}
 
 
 def test_a_preview_states_no_errors_and_has_every_other_position(client: TestClient, key: str) -> None:

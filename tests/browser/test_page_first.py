@@ -9,7 +9,17 @@ from typing import Any
 
 import pytest
 from first_result import first_result
-from page_visit import CASE, Visit, answers, computed, control, found_inaccessible, opened, tab, unfold
+from page_visit import (
+    CASE,
+    Visit,
+    answers,
+    computed,
+    control,
+    found_inaccessible,
+    opened,
+    tab,
+    unfold,
+)
 from playwright.sync_api import Browser, CDPSession, Page, Route, expect
 
 

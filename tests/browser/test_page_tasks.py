@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from page_visit import Visit, answered, answers, found_inaccessible, opened
+from page_visit import Visit, answered, answers, found_inaccessible, opened, to_print
 from playwright.sync_api import Browser, Locator, Page, expect
 from running_service import until
 
@@ -191,4 +191,7 @@ def test_a_search_brings_three_decibels_that_are_heard(seen: Visit) -> None:
     hand.on(page.get_by_role("tab", name="Sound", exact=True)).click()
     for letter in "AB":
         hand.press(f"Play {letter}")
+    hand.show("Errors and cost")
+    printed = to_print(page, lambda: hand.press("Report to print"))
+    assert 1 < len(printed.pages) <= 12 and sum(printed.pictures) > 2
     hand.did("What brings 3 dB?")

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from page_visit import opened, tab, to_print
 from playwright.sync_api import Browser
 from printed_pages import Printed
 from small_inputs import small_inputs
@@ -147,3 +148,13 @@ def test_orders_have_whole_ticks_in_every_picture(report: Report) -> None:
         sheet.draw_without_rendering()
         ticks = sheet.axes[0].get_xticks()
         assert np.array_equal(ticks, np.round(ticks)), panel.x.label
+
+
+def test_a_report_is_saved_to_print(browser: Browser, address: str, analyzed: str) -> None:
+    """One file: a browser prints it without the service, and nothing in it runs."""
+    page = opened(browser, f"{address}/#database={analyzed}").page
+    tab(page, "Errors and cost")
+    printed = to_print(page, page.get_by_role("button", name="Report to print").first.click)
+    assert 1 < len(printed.pages) <= 12 and sum(printed.pictures) > 2
+    assert "20/20" in printed.words(printed.document)
+    page.close()

@@ -7,7 +7,7 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,6 +16,7 @@ from typing import Any
 from axe_playwright_python.sync_playwright import Axe
 from housing_solid import STIFFNESS, housed_scene, write_block
 from playwright.sync_api import Browser, Locator, Page, Route, expect
+from printed_pages import Printed
 from running_service import PATIENCE_S, until
 
 from lineofaction.client import LineOfActionClient
@@ -216,3 +217,14 @@ def refused(page: Page, process: str) -> Iterator[list[Any]]:
     page.route(address, refuse)
     yield sent
     page.unroute(address)
+
+
+def to_print(page: Page, save: Callable[[], None]) -> Printed:
+    """Return the report that `save` downloads, as a browser without the service prints it."""
+    with page.expect_download() as saved:
+        save()
+    report = page.context.browser.new_page(java_script_enabled=False)  # type: ignore[union-attr]
+    report.set_content(saved.value.path().read_text(encoding="utf-8"))
+    printed = Printed(report.pdf(prefer_css_page_size=True, tagged=True))
+    report.close()
+    return printed

@@ -304,7 +304,7 @@ NAMES = ("first", "second")
 
 
 def stored_comparison(inputs: Json) -> Json:
-    """Compare ``{"files": [...]}``, two tables or two runs; work of the live worker."""
+    """Compare ``{"files": [...], "printed": bool}``, two tables or two runs; work of the live worker."""
     named = dict(zip(NAMES, map(Path, inputs["files"]), strict=True))
     with of_the_store():
-        return page_json(_compare_results(named, RunView()))
+        return page_json(_compare_results(named, RunView()), printed=inputs.get("printed", False))

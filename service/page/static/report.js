@@ -64,6 +64,7 @@ function files(result, figuresAt) {
   const offer = (text, action) => row.append(button(text, () => saidIn(line, action)));
   if (!result.against) offer("netCDF", async () => save(await file(result.href, result.type), `${name}.nc`));
   if (!result.against) offer("JSON", async () => save(await file(result.href, "application/json"), `${name}.json`));
+  offer("Report to print", async () => save(await file(figuresAt, "text/html"), `${name}.html`));
   offer("Figures as JSON", async () => save(await file(figuresAt, "application/json"), `${name}_figures.json`));
   row.append(line);
   return row;
