@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
@@ -14,7 +15,7 @@ from fe_contact.analysis.request.request_check import as_checked
 from fe_contact.errors import positive
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import LEVELS, AnalysisOptions, TableAxes
-from fe_contact.planning.cost_model import Prediction, predict_run
+from fe_contact.planning.cost_model import Prediction, predict_run, unit_work
 from fe_contact.planning.plan import Plan
 from fe_contact.planning.planned import ExpectedCurves, ExpectedError, MeshChoice, expected_error
 from fe_contact.types import Json
@@ -145,6 +146,8 @@ class PredictedDesigns(NamedTuple):
         Whether the gears are those of three dimensions.
     bytes : float
         Largest resident memory of the process.
+    in_pitches : callable
+        Those of so many rows of positions at sets of so many loads in so many base pitches that differ.
     """
 
     bodies: float
@@ -152,6 +155,7 @@ class PredictedDesigns(NamedTuple):
     errors: float
     across_face: bool
     bytes: float
+    in_pitches: Callable[[float, Sequence[float], int], float]
 
 
 def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
@@ -171,7 +175,9 @@ def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
     bodies = parts["compliance"]["bodies"] + parts["error estimate"]["bodies"]
     design = _DESIGN * parts["contact"]["table"]
     errors = parts["error estimate"]["solutions"]
-    return PredictedDesigns(bodies, design, errors, model.across_face, float(whole.memory_bytes))
+    work = unit_work(pair, decided.plan, decided.plan.discretization.slices)
+    memory = float(whole.memory_bytes)
+    return PredictedDesigns(bodies, design, errors, model.across_face, memory, work.in_pitches)
 
 
 def _decided(decided: Decided, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:

@@ -72,6 +72,21 @@ def test_of_a_usual_search_a_scatter_costs_by_its_nodes(case: CheckedCase) -> No
     assert designs[1].seconds == pytest.approx(5.0 * designs[0].seconds, rel=0.3)
 
 
+def test_drawn_teeth_cost_each_solved_pair_a_revolution_of_their_gear() -> None:
+    """As many base pitches as it has teeth, whatever the sample; none where no order is beside the mesh."""
+    case = CheckedCase(read_model(Case, EXAMPLES / "industrial_spur_21_59.toml"))
+
+    def revolutions(limit: str, samples: int = 64) -> list[Work]:
+        inputs = {"samples": samples, "exact": 12, "finishing": "hobbing", "limit": limit}
+        return [part for part in predicted("scatter", inputs, case).parts if part.name == "revolutions"]
+
+    assert revolutions("1=1um") == []
+    by_gear = {gear: revolutions(f"1-{gear}=60nm")[0] for gear in ("pinion", "wheel")}
+    assert {work.pieces for work in by_gear.values()} == {12}
+    assert by_gear["wheel"].each / by_gear["pinion"].each == pytest.approx(59 / 21)
+    assert revolutions("1-pinion=60nm", 4096) == [by_gear["pinion"]]
+
+
 def test_the_cost_is_said_as_parts_of_a_whole() -> None:
     gears, values = Work("gears", 1.6), Work("values", 1.6, 24)
     whole = StudyCost((gears,), 2.0**30) + StudyCost((values, Work("values", 0.8, 24), Work("beside", 0.01)))
