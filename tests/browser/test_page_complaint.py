@@ -250,6 +250,23 @@ def test_the_order_is_marked_in_the_plots_of_the_pair_as_it_is_typed(
 
 
 @pytest.mark.law
+def test_a_complaint_of_a_design_without_a_result_is_typed_after_one_with(
+    browser: Browser, address: str, analyzed: str
+) -> None:
+    """The parts of the page that belong to the result are gone, and nothing looks for them."""
+    visit = opened(browser, f"{address}/#database={analyzed}")
+    page = visit.page
+    expect(page.locator("#sound-from")).to_have_count(1)
+    control(page, "#example").select_option("empty")
+    expect(page.locator("#sound-from")).to_have_count(0)
+    page.locator("#bar-frequency_hz").fill("933")
+    page.locator("#bar-speed_rpm").fill("2800")
+    control(page, "#f-pair-pinion-teeth").fill("20")
+    page.wait_for_timeout(RESTED)
+    assert visit.complaints == []
+    page.close()
+
+
 def test_an_order_map_is_marked_on_both_axes_and_what_came_with_marks_keeps_them(visit: Visit) -> None:
     axes = {"mesh order": 2.0, "speed of the driving gear, rpm": 1500.0}
     speed, order = ({"title": {"text": text}} for text in reversed(axes))

@@ -54,7 +54,7 @@ export class Live {
    */
   show(known) {
     clearTimeout(this.resting);
-    Object.assign(this, { before: null, waiting: null, shown: null, rested: null });
+    Object.assign(this, { before: null, waiting: null, shown: null, rested: null, sound: null });
     byId("live-none").hidden = known !== null;
     byId("live-body").hidden = byId("quick").hidden = !known || known.long;
     this.known = known && { ...known, highest: known.torques.at(-1) };
