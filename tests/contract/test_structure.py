@@ -22,8 +22,11 @@ BUDGETS = {
     ("bounds", "host", "model_studies"): (4_537, 157),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
+PAGE = 8_280
+"""Lines of scripts, style and markup of the page at most: docs/decisions/0011-page-without-framework.md."""
 MOST_FILES = 882
 LONGEST = 500
+WRITTEN = (".js", ".css", ".html")
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
 
@@ -35,6 +38,13 @@ def test_a_house_keeps_its_budget(houses: tuple[str, ...]) -> None:
     names = sum(public_names(text) for text in texts)
     most_lines, most_names = BUDGETS[houses]
     assert (lines <= most_lines, names <= most_names) == (True, True), (lines, names)
+
+
+def test_the_page_keeps_its_budget() -> None:
+    written = [file for file in (ROOT / "service" / "page" / "static").iterdir() if file.suffix in WRITTEN]
+    sizes = {file.name: file.read_text("utf-8").count("\n") for file in written}
+    assert len(sizes) > 50 and sum(sizes.values()) <= PAGE, sum(sizes.values())
+    assert {name for name, size in sizes.items() if size > LONGEST} == set()
 
 
 def test_files_are_few_and_none_is_long() -> None:
