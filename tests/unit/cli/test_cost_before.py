@@ -125,6 +125,18 @@ def test_a_scene_that_a_study_refuses_is_left_out(tmp_path: Path) -> None:
     assert seconds["simulate"] > 0.0
 
 
+@pytest.mark.parametrize("bearing", ["output left", "none"])
+def test_a_search_by_sound_that_is_refused_leaves_the_status_whole(bearing: str, tmp_path: Path) -> None:
+    for name in ("palermo_scene.toml", "palermo_spur_20_20.toml"):
+        (tmp_path / name).write_text((EXAMPLES / name).read_text())
+    heard = f'[heard]\nspeed_rpm = [500, 900]\norders = 2\nbearing = "{bearing}"\n'
+    (tmp_path / "search.toml").write_text(f"[variables.pinion]\nprofile_crowning_um = [0, 20]\n{heard}")
+    facts = json.loads(loa("status", tmp_path, "--json").stdout)
+    seconds = {row["verb"]: row["cpu_seconds"] for row in facts["results"]}
+    assert (seconds["optimize"] is None) == (bearing == "none")
+    assert seconds["modes"] > 0.0
+
+
 def test_the_cost_of_a_run_grows_with_its_duration() -> None:
     scene, _ = scene_of(EXAMPLES / "lin_parker_planetary_scene.toml")
     longer = scene.model_copy(

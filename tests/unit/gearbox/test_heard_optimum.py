@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from collections import Counter
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -19,12 +20,16 @@ from fe_contact.types import FloatArray
 from host.directories import cache_home
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import change, optimize
+from lineofaction.gearbox.schemas import validated
+from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.change.heard_flanks import system_with
 from lineofaction.gearbox.studies.change.question import heard_mesh
 from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.cost import Work
 from lineofaction.gearbox.studies.optimize import Inputs
+from lineofaction.gearbox.studies.optimize import heard_problem as heard_problem_module
 from lineofaction.gearbox.studies.optimize.heard_problem import HeardMerit, HeardProblem, Powers
-from lineofaction.gearbox.studies.optimize.heard_search import heard_problem, misalignments
+from lineofaction.gearbox.studies.optimize.heard_search import LINEARIZED, heard_problem, misalignments
 from lineofaction.gearbox.studies.optimize.result import HeardOptimization
 from lineofaction.gearbox.studies.optimize.run import RUN, request_of
 from lineofaction.gearbox.workbench import tabled
@@ -158,6 +163,47 @@ def test_start_and_optimum_are_as_loud_as_a_comparison_of_their_flanks_says() ->
         np.testing.assert_allclose(design.level[loud], side.nominal[loud], atol=0.2)
 
 
+def predicted(**heard: Any) -> dict[str, list[Work]]:
+    """Return the parts of the predicted cost by name."""
+    question = inputs(**heard)
+    subject = SceneInput.model_validate(scene())
+    cost = RUN.predicted(subject, Inputs.model_validate(question), None)
+    assert cost is not None
+    return {part.name: [own for own in cost.parts if own.name == part.name] for part in cost.parts}
+
+
+@pytest.mark.law
+def test_a_usual_search_takes_the_contacts_that_are_predicted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Counted at few positions and at all, a design with its slopes as often as it costs; within 2."""
+    solved: Counter[int] = Counter()
+
+    def counted(evaluator: Any, values: Any, nodes: Any, *slopes: Any) -> Any:
+        solved[evaluator.position.size] += LINEARIZED if slopes else 1.0
+        return tabled_loads(evaluator, values, nodes, *slopes)
+
+    monkeypatch.setattr(heard_problem_module, "tabled_loads", counted)
+    searched(inputs())
+    few, full = predicted()["designs"]
+    (pairs,) = predicted()["pairs"]
+    assert solved[16] / 2.0 < few.pieces + pairs.pieces < 2.0 * solved[16]
+    assert solved[FEW["positions"]] / 2.0 < full.pieces < 2.0 * solved[FEW["positions"]]
+
+
+def test_a_prediction_grows_with_speeds_orders_loads_and_pairs() -> None:
+    own = predicted()
+    speeds = list(np.linspace(300.0, 9000.0, 30))
+    (few,), (many,), (high,) = (
+        predicted(**heard)["transfer functions"] for heard in ({}, {"speed_rpm": speeds}, {"orders": 9})
+    )
+    assert many.seconds == pytest.approx(10.0 * few.seconds)
+    assert high.seconds == pytest.approx(3.0 * few.seconds)
+    one_load = predicted(load_cases=[HALF])
+    assert one_load["designs"][1].seconds == pytest.approx(0.5 * own["designs"][1].seconds)
+    spread = predicted(quantile=0.75, tolerances={"samples": 8})
+    assert spread["designs"][1].pieces == 8 * own["designs"][1].pieces
+    assert spread["pairs"][0].pieces == 16
+
+
 def test_limits_are_held_or_said_to_be_exceeded() -> None:
     before = found().start.pressure.max() / 1e6
     asked = inputs() | {"limits": {"max_pressure_mpa": 1.002 * before, "edge_load_share": 0.05}}
@@ -266,9 +312,13 @@ def test_what_gets_worse_is_said_first() -> None:
     ],
 )
 def test_a_scene_without_what_is_heard_is_refused_by_its_field(question: Json, field: str) -> None:
-    with pytest.raises(BadInput) as caught:
-        optimize(scene(), question)
-    assert any(field in fault.field for fault in caught.value.faults)
+    def predicted() -> object:
+        return RUN.predicted(SceneInput.model_validate(scene()), validated(Inputs, question), None)
+
+    for refused in (lambda: optimize(scene(), question), predicted):
+        with pytest.raises(BadInput) as caught:
+            refused()
+        assert any(field in fault.field for fault in caught.value.faults)
 
 
 def bowl(sizes: tuple[int, int], seed: int) -> HeardMerit:

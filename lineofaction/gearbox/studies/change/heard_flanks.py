@@ -189,10 +189,7 @@ def heard_loads(
     index = mesh_index(subject.scene, mesh)
     speed, transfers = np.array(question.speed_rpm) * RPM, []
     for done, system in enumerate(systems):
-        period = common_period(system)
-        if not period.pitches[index]:
-            raise InputError("mesh", mesh, "one that turns")
-        orders = math.ceil(question.orders * abs(period.pitches[index]) / period.counted)
+        orders = orders_heard(system, mesh, question.orders)
         transfers.append(flank_transfer(system, speed, orders, cache=means.home / FOLDER))
         means.report("transfer functions", (done + 1) / len(systems))
     quantity = quantity_of(subject, question.heard)
@@ -205,6 +202,14 @@ def heard_loads(
         form = _form(subject, transfer, model, question.heard)
         cases.append(HeardLoad(load, OtherFlanks.of(system, index, transfer), transfer, form, lines))
     return tuple(cases)
+
+
+def orders_heard(system: System, mesh: str, orders: int) -> int:
+    """Return how many orders of the first mesh that turns orders of a mesh reach to."""
+    period, index = common_period(system), mesh_index(system.scene, mesh)
+    if not period.pitches[index]:
+        raise InputError("mesh", mesh, "one that turns")
+    return math.ceil(orders * abs(period.pitches[index]) / period.counted)
 
 
 def mesh_index(scene: Scene, mesh: str) -> int:

@@ -53,7 +53,7 @@ from lineofaction.gearbox.studies.optimize import (
     ScatterInput,
     SearchInput,
 )
-from lineofaction.gearbox.studies.optimize.heard_search import heard_optimum
+from lineofaction.gearbox.studies.optimize.heard_search import heard_cost, heard_optimum
 from lineofaction.gearbox.studies.optimize.result import HeardOptimization
 from lineofaction.gearbox.units import UM, factor, in_um
 
@@ -106,13 +106,13 @@ class _OptimizeStudy(
     def predicted(
         self, subject: CheckedCase | SceneInput, study: Inputs, cache: Path | None
     ) -> StudyCost | None:
-        """Return what the gears, the designs of a usual search and both analyses at the end take.
-
-        Of a scene nothing predicts it: what a design costs depends on its transfer functions, and is measured
-        and announced when the search begins.
-        """
+        """Return what the gears, the designs of a usual search and both analyses at the end take."""
         if isinstance(subject, SceneInput):
-            return None
+            heard, mesh = _heard_of(subject, study)
+            check_heard(subject, heard)
+            assert mesh.case is not None  # cases are written out
+            with boundary_errors():
+                return heard_cost(subject, mesh, heard, request_of(mesh.case, study), cache)
         with boundary_errors():
             request = subject.request(_library_request, study)
             decided = decide(request.checked, cache, tried=True)

@@ -13,7 +13,7 @@ from two_stage_scenes import two_stages
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.linearize import harmonic_response
-from dynamics.linearize.transfer import FlankTransfer, flank_transfer
+from dynamics.linearize.transfer import FlankTransfer, flank_transfer, transfer_seconds
 
 ORDERS = 4
 
@@ -110,3 +110,14 @@ def test_they_are_kept_by_their_content(tmp_path, monkeypatch) -> None:
 def test_another_scene_is_refused() -> None:
     with pytest.raises(InputError, match="the scene of the transfer"):
         transfer().excitation(assemble(two_stages(table())))
+
+
+@pytest.mark.law
+def test_what_is_predicted_goes_with_the_lines_that_are_solved() -> None:
+    """Of two stages whose pitches share a long period, over all speeds."""
+    system, counts, seconds = assemble(unit()), [], []
+    for orders, speeds in ((1, SPEEDS[:1]), (ORDERS, SPEEDS)):
+        counts.append(flank_transfer(system, speeds, orders).motion[0, ..., 0].size)
+        seconds.append(transfer_seconds(system, speeds, orders))
+    assert counts[1] > 4 * counts[0]
+    assert seconds[1] / seconds[0] == pytest.approx(counts[1] / counts[0])
