@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from dynamics.errors import InputError, SolveError
 from dynamics.influence.level_change import ROUNDING, BearingForces, LevelChange, level_change
 from dynamics.influence.linear_figures import (
     COMPARED,
+    FEWER,
+    SPEEDS,
     LinearFigures,
     OperatingCondition,
     conditions_at,
@@ -22,6 +25,8 @@ from dynamics.influence.linear_figures import (
 )
 from dynamics.kernels.by_address import by_value
 from dynamics.linearize.operating_speeds import leading_law
+from dynamics.linearize.steady_vibration import excited
+from dynamics.linearize.transfer import possible_lines
 from dynamics.motion.sampled_states import States
 from dynamics.results.checks import Check, SeriesBlock
 from dynamics.scene import Scene
@@ -152,6 +157,32 @@ def response_influences(scene: Scene, speed: FloatArray, time: float = 0.0) -> d
     At up to 32 of the speeds, alike with and without an effect.
     """
     return _influences(scene, assemble(scene), conditions_at(speed, time))
+
+
+_SOLVED, _BEGUN = 3e-8, 0.01
+"""CPU seconds of a line at a speed by freedoms squared, and of an effect beside its lines.
+
+5 to 170 freedoms, 2 to 30 lines: within a factor of 2.
+"""
+
+
+class ResponseCost(NamedTuple):
+    """CPU seconds of a linear response at a speed, and of a system with or without an effect; of how many."""
+
+    speed: float
+    system: float
+    systems: int
+
+
+def response_cost(system: System, speed: FloatArray, orders: int) -> ResponseCost:
+    """Return what a forced response at speeds (S,), rad/s, and its `response_influences` take.
+
+    Raises `InputError`, `SolveError` as the response.
+    """
+    freedoms, switched = system.freedoms.column.size, len(_switchable(system))
+    at = excited(system, 0.0, max(orders, FEWER))
+    each, fewer = (_SOLVED * freedoms**2 * possible_lines(at, count, speed).size for count in (orders, FEWER))
+    return ResponseCost(each, _BEGUN + fewer * min(speed.size, SPEEDS), 1 + switched)
 
 
 def _influences(

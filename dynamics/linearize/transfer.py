@@ -293,7 +293,7 @@ def flank_transfer(
         raise InputError("speed", [], "at least one speed")
     integer("orders", orders, 1, SAMPLES // 4)
     at = excited(system, time, orders)
-    harmonics = _lines(at, orders, speed)
+    harmonics = possible_lines(at, orders, speed)
     _require_memory(at, speed.size, harmonics.size)
     file = None if cache is None else cache / f"transfer-{_content_key(at, speed, harmonics, orders)}.nc"
     return kept_in(
@@ -314,11 +314,12 @@ def transfer_seconds(system: System, speed: FloatArray, orders: int) -> float:
 
     Raises `InputError`, `SolveError` as it.
     """
-    lines = _lines(excited(system, 0.0, orders), orders, speed)
+    lines = possible_lines(excited(system, 0.0, orders), orders, speed)
     return _SOLVED * speed.size * lines.size * system.freedoms.column.size**2
 
 
-def _lines(at: Excited, orders: int, speed: FloatArray) -> IntArray:
+def possible_lines(at: Excited, orders: int, speed: FloatArray) -> IntArray:
+    """Return the `strongest_lines` of those that tables or loads may excite, in multiples of the period's."""
     return strongest_lines(at, _harmonics(at, orders, float(speed[-1])), speed).harmonics
 
 

@@ -11,8 +11,10 @@ import numpy as np
 from bounds.types import Json
 from dynamics.acoustics import PanelModel
 from dynamics.assembly.assemble import System, assemble
+from dynamics.errors import InputError, SolveError
 from dynamics.housings import ReducedHousing
 from dynamics.influence import decide_effects, response_influences, sized_ledger
+from dynamics.influence.neglected_check import response_cost
 from dynamics.joints import Housing
 from dynamics.linearize import ForcedResponse, forced_response
 from dynamics.noise import HousingRadiation, kept_radiation
@@ -31,6 +33,7 @@ from lineofaction.gearbox.schemas.figures import LINEAR
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.studied import OverOrders
 from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.cost import StudyCost, Work, scene_before_tables, sized
 from lineofaction.gearbox.studies.excitations import excitations_of
 from lineofaction.gearbox.units import RPM
 
@@ -119,6 +122,24 @@ def sized_response(scene: Scene, inputs: OverOrders, means: Means) -> tuple[Forc
     ledger = sized_ledger(facts["effect_ledger"], decided.automatic, influences)
     known = {"effect_ledger": ledger, "seconds": {**facts["seconds"], "influence_estimates": seconds}}
     return replace(response, facts=facts | known), system
+
+
+def predicted_response(scene: SceneInput, inputs: OverOrders) -> StudyCost | None:
+    """Return what the `sized_response` of a scene takes, before its tables; None: nothing predicts it.
+
+    Modes that a solid housing keeps are not known before and do not count. Raises `BadInput`: no such scene.
+    """
+    with boundary_errors():
+        before = scene_before_tables(scene)
+    if before is None:
+        return None
+    speed = np.array(inputs.speed_rpm) * RPM
+    try:
+        cost = response_cost(sized(before), speed, inputs.orders)
+    except (InputError, SolveError):
+        return None  # the study says it, on its own tables
+    systems = Work("systems with or without an effect", cost.system, cost.systems)
+    return StudyCost((Work("speeds", cost.speed, speed.size), systems))
 
 
 def no_surface(housings: list[str]) -> BadInput:

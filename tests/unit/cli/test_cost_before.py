@@ -37,8 +37,9 @@ GROWING: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "scatter": ({"samples": 64}, {"samples": 4096}),
     "modes": ({"speed_rpm": SPEEDS[:6]}, {"speed_rpm": SPEEDS}),
     "steady": ({"speed_rpm": SPEEDS[:6]}, {"speed_rpm": SPEEDS}),
+    "response": ({"speed_rpm": SPEEDS[:6]}, {"speed_rpm": SPEEDS}),
 }
-OF_SCENES = ("modes", "steady")
+OF_SCENES = ("modes", "steady", "response")
 
 
 @pytest.fixture
@@ -117,11 +118,12 @@ def test_a_run_says_its_cost_and_that_of_its_tables(monkeypatch: pytest.MonkeyPa
 def test_a_scene_that_a_study_refuses_is_left_out(tmp_path: Path) -> None:
     scene = tmp_path / "scene.toml"
     scene.write_text((EXAMPLES / "lin_parker_planetary_scene.toml").read_text())
-    inputs = validated(STUDIES["steady"].inputs, {"speed_rpm": [100.0, 200.0]})
-    assert study_cost(STUDIES["steady"], *scene_of(scene), inputs) is None
+    for study in (STUDIES["steady"], STUDIES["response"]):
+        inputs = validated(study.inputs, {"speed_rpm": [100.0, 200.0]})
+        assert study_cost(study, *scene_of(scene), inputs) is None
     facts = json.loads(loa("status", tmp_path, "--json").stdout)
     seconds = {row["verb"]: row["cpu_seconds"] for row in facts["results"]}
-    assert seconds["steady"] is None
+    assert seconds["steady"] is seconds["response"] is None
     assert seconds["simulate"] > 0.0
 
 

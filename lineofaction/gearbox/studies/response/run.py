@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,15 +10,20 @@ import numpy as np
 from bounds.types import Json
 from dynamics.linearize import ForcedResponse, peaks
 from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
+from lineofaction.gearbox.studies.cost import StudyCost
 from lineofaction.gearbox.studies.excitations import order_names, with_facts_of_scene
 from lineofaction.gearbox.studies.figures import Row, rows
-from lineofaction.gearbox.studies.housings import response_of
+from lineofaction.gearbox.studies.housings import predicted_response, response_of
 from lineofaction.gearbox.studies.response import Inputs, ResponseFigures
 
 
 class _ResponseStudy(SceneStudy[Inputs, ResponseFigures, ForcedResponse]):
     inputs, answer, file = Inputs, ResponseFigures, array_file(ForcedResponse)
+
+    def predicted(self, scene: SceneInput, inputs: Inputs, _cache: Path | None) -> StudyCost | None:
+        return predicted_response(scene, inputs)
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> ForcedResponse:
         steady = subject.steady

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,9 +12,16 @@ from geared_scenes import RPM, gear_pair_scene, with_gear
 
 from dynamics.ablation import ablate
 from dynamics.acoustics import a_weighting
-from dynamics.influence import decide_effects, estimate_influences, response_influences
+from dynamics.assembly.assemble import System, assemble
+from dynamics.influence import decide_effects, estimate_influences, neglected_check, response_influences
 from dynamics.influence.level_change import MOST, BearingForces, level_change
-from dynamics.influence.linear_figures import conditions_at
+from dynamics.influence.linear_figures import (
+    LinearFigures,
+    OperatingCondition,
+    conditions_at,
+    linear_figures,
+)
+from dynamics.linearize import forced_response
 from dynamics.loads import TimeLaw
 from dynamics.scene import Outputs, Scene
 
@@ -103,6 +111,30 @@ def test_a_response_is_sized_at_its_speeds() -> None:
     (condition,) = conditions_at(np.linspace(10.0, 500.0, 200), 0.0)
     assert condition.speed.size == 32
     assert (condition.speed[0], condition.speed[-1]) == (10.0, 500.0)
+
+
+@pytest.mark.law
+def test_a_response_costs_its_lines_and_the_systems_without_an_effect(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Each system at 32 speeds at most; those that an effect leaves as they are are not solved."""
+    system, speed = assemble(helical()), np.linspace(10.0, 500.0, 200)
+    solved: list[int] = []
+
+    def counted(own: System, conditions: Sequence[OperatingCondition]) -> LinearFigures:
+        solved.append(sum(condition.speed.size for condition in conditions))
+        return linear_figures(own, conditions)
+
+    monkeypatch.setattr(neglected_check, "linear_figures", counted)
+    response_influences(helical(), speed)
+    cost = neglected_check.response_cost(system, speed, 6)
+    assert len(solved) <= cost.systems < 2 * len(solved)
+    fewer = neglected_check.response_cost(system, speed[: solved[0]], 3)
+    assert fewer.system == cost.system
+    assert neglected_check.response_cost(system, speed[:5], 3).system < cost.system
+    many, few = (forced_response(system, speed, orders).order.size for orders in (6, 3))
+    assert many > few
+    assert cost.speed / fewer.speed == pytest.approx(many / few)
 
 
 def test_the_quantity_of_a_scene_decides_its_effects() -> None:
