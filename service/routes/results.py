@@ -214,7 +214,7 @@ _INERT = {"Content-Security-Policy": "sandbox; default-src 'none'; style-src 'un
             "The report",
             *(*_VERSION, "Vary"),
             model=ReportBody,
-            content={JSON: {}, HTML: {"schema": {"type": "string"}}},
+            content={JSON: {}, HTML: {"schema": {"type": "string"}, "example": "<!DOCTYPE html>..."}},
         ),
         304: _UNMODIFIED_ANSWER,
         **documented(NotFound, QueueFull, LiveUnavailable, DamagedFile),
