@@ -158,3 +158,15 @@ def test_a_report_is_saved_to_print(browser: Browser, address: str, analyzed: st
     assert 1 < len(printed.pages) <= 12 and sum(printed.pictures) > 2
     assert "20/20" in printed.words(printed.document)
     page.close()
+
+
+def test_a_picture_with_its_title_has_no_second_one_on_the_screen(
+    browser: Browser, closed_forms: ModuleType, tmp_path: Path
+) -> None:
+    write_whole(of_pair(closed_forms, tmp_path), tmp_path / "still.html", still_only=True)
+    page = browser.new_page()
+    page.goto((tmp_path / "still.html").as_uri())
+    figures = page.locator("figure:has(.still)")
+    assert figures.count() > 2 and figures.locator("h3:visible").count() == 0
+    assert page.locator(".still:visible").count() == figures.count()
+    page.close()

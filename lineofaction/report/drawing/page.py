@@ -141,7 +141,7 @@ def html(page: Page, images: dict[str, bytes], *, still: bool = False) -> str:
     style = _margins(page) + _text("page.css") + (_text(STYLE_SHEET) if heard else "")
     library = "" if still else f'<script type="text/plain" id="library">{_library()}</script>\n'
     drawn = "" if still else f"<script>\n{_text('page.js')}</script>"
-    shown = "<style>.still { display: block; }</style>"
+    shown = "<style>.still { display: block; } figure:has(.still) h3 { display: none; }</style>"
     seen = shown if still else f"<noscript>{shown}<style>.plot {{ display: none; }}</style></noscript>"
     return "\n".join(
         [
