@@ -5,7 +5,7 @@ The only package of dynamics that uses scikit-fem, meshlane and, in a child proc
 
 import host.analysis  # noqa: F401 (says what to install)
 from dynamics.housings.mesh_files import read_mesh, write_surface
-from dynamics.housings.reduced_housing import ReducedHousing, receptance, scene_housing
+from dynamics.housings.reduced_housing import ReducedHousing, receptance, scene_axes, scene_housing
 from dynamics.housings.reduced_matrices import (
     MaterialDamping,
     MeshedHousing,
@@ -53,6 +53,7 @@ __all__ = [
     "receptance",
     "reduced_housing",
     "reduction_cost",
+    "scene_axes",
     "scene_housing",
     "step_solid",
     "write_surface",

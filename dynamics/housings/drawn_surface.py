@@ -35,14 +35,18 @@ class DrawnSurface:
     points: FloatArray
     facets: IntArray
 
-    def of_at_most(self, most: int) -> DrawnSurface:
-        """Return it with at most so many triangles: points near each other are put together."""
-        points, facets = self.points, self.facets
-        extent, cells = float(np.ptp(points, axis=0).max()), _FINEST_GRID
+    def of_at_most(self, most: int) -> tuple[DrawnSurface, IntArray]:
+        """Return it with at most so many triangles, and which of its points that one has.
+
+        Points near each other are put together.
+        """
+        kept, facets = np.arange(len(self.points)), self.facets
+        extent, cells = float(np.ptp(self.points, axis=0).max()), _FINEST_GRID
         while len(facets) > most:
-            points, facets = _together(points, facets, extent / cells)
+            outermost, facets = _together(self.points[kept], facets, extent / cells)
+            kept = kept[outermost]
             cells *= _COARSER
-        return DrawnSurface(points, facets)
+        return DrawnSurface(self.points[kept], facets), kept
 
 
 def drawn_step(file: Path, most: int = MOST_TRIANGLES) -> DrawnSurface:
@@ -109,17 +113,20 @@ def _drawn(points: FloatArray, facets: IntArray, most: int, field: str) -> Drawn
         raise InputError(f"{field}.place", farthest, _FARTHEST, "Move the solid to its origin.")
     if not SIZE.holds(extent):
         raise InputError(f"{field}.size", extent, SIZE, "Check its unit.")
-    return DrawnSurface(points, facets).of_at_most(most)
+    return DrawnSurface(points, facets).of_at_most(most)[0]
 
 
-def _together(points: FloatArray, facets: IntArray, size: float) -> tuple[FloatArray, IntArray]:
-    """Put points in a cell of a grid together in the outermost, so edges stay; facets without area go."""
+def _together(points: FloatArray, facets: IntArray, size: float) -> tuple[IntArray, IntArray]:
+    """Put points in a cell of a grid together in the outermost, so edges stay; facets without area go.
+
+    Returns the outermost of each cell and the facets between them.
+    """
     low, high = points.min(axis=0), points.max(axis=0)
     cells = np.floor((points - low) / size).astype(np.int64)
     _, cell, count = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
     cell = cell.ravel()
     outwards = np.lexsort((np.linalg.norm(points - 0.5 * (low + high), axis=1), cell))
-    outermost = points[outwards[np.cumsum(count) - 1]]
+    outermost = outwards[np.cumsum(count) - 1]
     moved = np.sort(cell[facets], axis=1)
     whole = np.all(np.diff(moved, axis=1) > 0, axis=1)
     _, first = np.unique(moved[whole], axis=0, return_index=True)

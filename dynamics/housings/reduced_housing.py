@@ -289,8 +289,7 @@ def scene_housing(housing: ReducedHousing, name: str, bushings: tuple[str, ...] 
     if len(counts) > 1:
         bound = "of as many motions each: 3, 5 or 6"
         raise InputError("seats", sorted(counts), bound, "Reduce the housing with the same motions for all.")
-    coordinates = len(housing.stiffness) - housing.motions
-    turn = block_diag(*(_turn(seat) for seat in housing.seats), np.eye(coordinates))
+    turn = scene_axes(housing)
     massive, positions = bool(np.any(housing.mass)), (seat.position for seat in housing.seats)
     return Housing(
         name,
@@ -298,9 +297,15 @@ def scene_housing(housing: ReducedHousing, name: str, bushings: tuple[str, ...] 
         _turned(housing.stiffness, turn),
         _turned(housing.damping, turn) if massive or np.any(housing.damping) else None,
         _turned(housing.mass, turn) if massive else None,
-        modal_coordinates=coordinates,
+        modal_coordinates=len(housing.stiffness) - housing.motions,
         seat_positions=tuple((float(x), float(y), float(z)) for x, y, z in positions),
     )
+
+
+def scene_axes(housing: ReducedHousing) -> FloatArray:
+    """Return the reduced coordinates per row of the matrices of its `scene_housing`, (r, r)."""
+    coordinates = len(housing.stiffness) - housing.motions
+    return np.asarray(block_diag(*(_turn(seat) for seat in housing.seats), np.eye(coordinates)))
 
 
 def _turn(seat: SeatFrame) -> FloatArray:

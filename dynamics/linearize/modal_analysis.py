@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from dynamics.assembly.assemble import System, assemble
 from dynamics.checks import integer, positive
@@ -59,7 +60,7 @@ class ModalAnalysis(ArrayFile):
     n freedoms, p springs, m meshes, S speeds, A whirl modes, C crossings; S = A = C = 0 without speeds. What
     modes at rest are: `Modes`; over speed: `WhirlBranches`, NaN where one does not oscillate; where they
     cross orders: `CriticalSpeeds`. Points of the axes of shafts (`ShaftAxes`): none in files of versions that
-    did not keep them.
+    did not keep them. Points of the surfaces of housings: none where no surface moves.
 
     Attributes
     ----------
@@ -135,6 +136,10 @@ class ModalAnalysis(ArrayFile):
         metadata=stored(
             "m or rad", "x, y, z, tilts and rotation there per freedom", "axis_point", "direction", "freedom"
         ),
+    )
+    surface_motion: NDArray[np.float32] = field(
+        default_factory=lambda: np.empty((0, 3, 0), dtype=np.float32),
+        metadata=stored("m", "x, y, z of a point per freedom", "surface_point", "axis", "freedom"),
     )
 
     def held_by(self, strain_energy: FloatArray) -> dict[str, float]:

@@ -197,6 +197,8 @@ class _ModalHousing:
         1/s.
     shape : (s, 5, m) array
         x, y, z (m), tilt_x, tilt_y (rad) of each seat per amplitude, of unit modal mass.
+    rows : (r, m) array
+        The same of every row of the housing's matrices, modal coordinates among them.
     """
 
     name: str
@@ -204,6 +206,7 @@ class _ModalHousing:
     stiffness: FloatArray
     damping: FloatArray
     shape: FloatArray
+    rows: FloatArray
 
     @property
     def kinds(self) -> tuple[str, ...]:
@@ -237,9 +240,10 @@ def modal_housing(housing: Housing) -> _ModalHousing:
         damping = shape.T @ _symmetric(housing.damping) @ shape
         own = np.sqrt(np.maximum(np.diag(damping), 0.0))
         damping = np.where(np.abs(damping) > ROUNDING * np.outer(own, own), damping, 0.0)
-    rows = np.zeros((SEAT * len(housing.bushings), square.size))
-    rows[list(housing.columns)] = shape[list(housing.own_columns)]
-    return _ModalHousing(housing.name, housing.bushings, square, damping, rows.reshape(-1, SEAT, square.size))
+    seats = np.zeros((SEAT * len(housing.bushings), square.size))
+    seats[list(housing.columns)] = shape[list(housing.own_columns)]
+    of_seats = seats.reshape(-1, SEAT, square.size)
+    return _ModalHousing(housing.name, housing.bushings, square, damping, of_seats, shape)
 
 
 def _symmetric(matrix: object) -> FloatArray:

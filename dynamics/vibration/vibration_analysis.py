@@ -159,8 +159,8 @@ class SurfaceShape:
     ----------
     points : (p, 3) array
         m.
-    triangles : (t, 6) int array
-        Corners, counter-clockwise from outside, then mid-side nodes.
+    triangles : (t, 6) or (t, 3) int array
+        Corners, counter-clockwise from outside, then mid-side nodes, if it has them.
     motion : (p, 3) complex array
         m, m/s or m/s^2; of a mode, real, with the largest motion 1.
     """
@@ -172,7 +172,8 @@ class SurfaceShape:
     @property
     def facets(self) -> IntArray:
         """Return plane triangles, four for each of six nodes, (4 t, 3)."""
-        return np.asarray(self.triangles[:, QUARTERS].reshape(-1, 3))
+        corners = self.triangles.shape[1] == 3
+        return self.triangles if corners else np.asarray(self.triangles[:, QUARTERS].reshape(-1, 3))
 
     @property
     def normal_motion(self) -> ComplexArray:

@@ -76,7 +76,7 @@ def motion_json(motion: UnitMotion) -> Json:
 
 def _surface_json(surface: SurfaceShape, is_velocity: bool) -> Json:
     """Return nodes and facets of a surface with its motion; a large one by its corners alone."""
-    facets = surface.facets if 4 * len(surface.triangles) <= MOST_FACETS else surface.triangles[:, :3]
+    facets = surface.facets if len(surface.facets) <= MOST_FACETS else surface.triangles[:, :3]
     used, facets = np.unique(facets, return_inverse=True)
     points, motion, facets = surface.points[used], surface.motion[used], facets.reshape(-1, 3)
     if not (np.all(np.isfinite(points)) and np.all(np.isfinite(motion))):

@@ -61,6 +61,8 @@ def test_modes_on_a_solid_are_those_of_the_command_line(served: Served, monkeypa
     expected = RUN.compute(here, Inputs(), Means(folder, lambda _stage, _fraction: None))
     found = ModalAnalysis.from_netcdf(file)
     np.testing.assert_array_equal(found.natural_frequency, expected.natural_frequency)
+    np.testing.assert_array_equal(found.surface_motion, expected.surface_motion)
+    assert found.surface_motion.any(), "walls move"
     assert "housing" in [state.stage for state in seen if state.stage]
     assert sorted(state.progress for state in seen) == [state.progress for state in seen]
     kept = sorted((folder / "data" / "housings").glob("*.nc"))

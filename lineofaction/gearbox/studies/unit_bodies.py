@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 
 import numpy as np
+from numpy.typing import NDArray
 
-from bounds.types import Json
+from bounds.types import IntArray, Json
 from dynamics.bearings import CatalogLine
 from dynamics.effects.ledger import mechanism_of
+from dynamics.mechanism.bodies import modal_housing
 from dynamics.scene import Scene
 from dynamics.shafts import Shaft
 from lineofaction.gearbox.convert.case import gear_pair
@@ -41,18 +43,40 @@ def bodies_of(subject: TabledScene) -> list[Json]:
     bodies: list[Json] = [
         {**asdict(part), "axis": list(part.axis), "rings": [*map(asdict, part.rings)]} for part in parts
     ]
-    return bodies + [hull.written for hull in _hulls(subject)]
+    return bodies + [hull.written for hull, _ in _hulls(subject)]
 
 
-def _hulls(subject: TabledScene) -> Iterator[Hull]:
-    """Yield the surfaces of the housings that are reduced from their solids."""
+def _hulls(subject: TabledScene) -> Iterator[tuple[Hull, IntArray]]:
+    """Yield the surfaces of the housings that are reduced from their solids, and which points each has."""
     from dynamics.housings.drawn_surface import DrawnSurface  # noqa: PLC0415 (start-up time)
 
     for name, housing in subject.housings.items():
         if (surface := housing.surface) is not None:
             used, corners = np.unique(surface.triangles[:, :3], return_inverse=True)
-            drawn = DrawnSurface(surface.points[used], corners.reshape(-1, 3)).of_at_most(MOST_FACETS)
-            yield Hull(name, drawn.points, drawn.facets)
+            fine = DrawnSurface(surface.points[used], corners.reshape(-1, 3))
+            drawn, kept = fine.of_at_most(MOST_FACETS)
+            yield Hull(name, drawn.points, drawn.facets), used[kept]
+
+
+def surface_motion(subject: TabledScene, freedom: Sequence[str]) -> NDArray[np.float32]:
+    """Return how the points of all surfaces among the bodies of a scene move per freedom, (p, 3, n), 32 bits.
+
+    `freedom` are the names of a system's freedoms. No points: none of these moves a housing.
+    """
+    from dynamics.housings import scene_axes  # noqa: PLC0415 (start-up time)
+
+    number = {name: column for column, name in enumerate(freedom)}
+    parts = {part.name: part for part in subject.scene.housings}
+    moved = [np.zeros((0, 3, len(freedom)), dtype=np.float32)]
+    for hull, nodes in _hulls(subject):
+        body, motion = subject.housings[hull.name], np.zeros((len(nodes), 3, len(freedom)), dtype=np.float32)
+        if f"{hull.name}.mode_1" in number and body.surface is not None:
+            modal = modal_housing(parts[hull.name])
+            columns = [number[f"{hull.name}.{kind}"] for kind in modal.kinds]
+            motion[..., columns] = body.surface.motion[nodes] @ (scene_axes(body) @ modal.rows)
+        moved.append(motion)
+    every = np.concatenate(moved)
+    return every if np.any(every) else np.empty((0, 3, 0), dtype=np.float32)
 
 
 def _body(kind: str, name: str, shaft: Shaft, *rings: Ring) -> Body:

@@ -7,9 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from bounds.types import FloatArray, IntArray
+from dynamics.vibration import SurfaceShape
+from lineofaction.gearbox.units import MM
 from lineofaction.report.drawing import palette
-from lineofaction.report.drawing.figure import Axis, HeatMap, Line, Panel
+from lineofaction.report.drawing.figure import Axis, Figure, HeatMap, Line, Panel, number
 
+DRAWN = 0.06
+"""Largest motion as it is drawn, over the size of the surface."""
 ACROSS = 360
 """Pixels along the longer side."""
 FOLD = 30.0
@@ -140,6 +144,24 @@ def surface_panels(
         shade = HeatMap(x, y, image, label, largest, least)
         panels.append(Panel(across, up, (outline,), title=f"{side}: {words}", shade=shade, equal=True))
     return tuple(panels)
+
+
+def shape_figure(key: str, title: str, shape: SurfaceShape, one: float, unit: str) -> Figure:
+    """Draw a surface as it moves, from two sides; `one` of its motion is 1 of the unit."""
+    fastest = float(np.linalg.norm(shape.motion, axis=1).max())
+    drawn = DRAWN * float(np.ptp(shape.points, axis=0).max())
+    turned = shape.motion * np.exp(-0.5j * np.angle(np.sum(shape.motion**2)))  # as much as can be is real
+    offset = drawn / max(fastest, 1e-300) * turned.real
+    scale = f"{number(fastest / one, 3)} {unit} drawn as {number(drawn / MM, 3)} mm"
+    label, value = f"normal to the surface, {unit}", np.abs(shape.normal_motion) / one
+    return Figure(
+        key=key,
+        title=title,
+        caption="Colors: peak amplitude normal to the surface. Drawn: the motion at the instant at which it "
+        "is largest. Lines: edges at rest.",
+        alternative=f"{title}: the largest motion is {number(fastest / one, 3)} {unit}.",
+        content=surface_panels(shape.points, shape.facets, offset, value, label, scale),
+    )
 
 
 def _in_sight(view: _View, ends: FloatArray, depth: FloatArray) -> FloatArray:

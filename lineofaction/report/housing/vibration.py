@@ -11,7 +11,7 @@ from bounds.types import FloatArray, IntArray
 from dynamics.vibration import VibrationAnalysis, vibration_level
 from dynamics.vibration.vibration_analysis import Shares
 from lineofaction.gearbox.studies.vibration.run import MM_PER_S, HousingVibrationResult
-from lineofaction.gearbox.units import MM, RPM
+from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
     Axis,
@@ -27,7 +27,7 @@ from lineofaction.report.drawing.figure import (
 )
 from lineofaction.report.drawing.marks import order_words, shown_orders
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
-from lineofaction.report.drawing.surface_view import surface_panels
+from lineofaction.report.drawing.surface_view import shape_figure
 from lineofaction.report.housing.forces import force_words, row_axis
 from lineofaction.report.presentation import Presentation, dynamics_page, model_text
 from lineofaction.report.response.excitations import excitation_figures, excitation_table
@@ -109,8 +109,6 @@ def _series(result: HousingVibrationResult) -> Table:
 
 
 SHOWN_ORDERS, SHOWN_POINTS, SHOWN_SEATS, SHOWN_MODES = 6, 3, 4, 8
-DRAWN = 0.06
-"""Largest motion as it is drawn, over the size of the housing."""
 
 
 def _velocity_figure(result: HousingVibrationResult) -> Figure:
@@ -240,20 +238,7 @@ def _shape_figure(result: HousingVibrationResult) -> Figure | None:
     else:
         what = f"Operating deflection at {_where(result.analysis)}"
         one, unit = MM_PER_S, "mm/s"
-    fastest = float(np.linalg.norm(shape.motion, axis=1).max())
-    drawn = DRAWN * float(np.ptp(shape.points, axis=0).max())
-    turned = shape.motion * np.exp(-0.5j * np.angle(np.sum(shape.motion**2)))  # as much as can be is real
-    offset = drawn / max(fastest, 1e-300) * turned.real
-    scale = f"{number(fastest / one, 3)} {unit} drawn as {number(drawn / MM, 3)} mm"
-    label, value = f"normal to the surface, {unit}", np.abs(shape.normal_motion) / one
-    return Figure(
-        key="housing_shape",
-        title=what,
-        caption="Colors: peak amplitude normal to the surface. Drawn: the motion at the instant at which it "
-        "is largest. Lines: edges at rest.",
-        alternative=f"{what}: the largest motion is {number(fastest / one, 3)} {unit}.",
-        content=surface_panels(shape.points, shape.facets, offset, value, label, scale),
-    )
+    return shape_figure("housing_shape", what, shape, one, unit)
 
 
 def _words(result: HousingVibrationResult) -> str:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from bounds import leftover
 from dynamics.linearize import ModalAnalysis
+from dynamics.linearize.linear_system import freedom_parts
+from dynamics.linearize.modal_analysis import LARGE
 from dynamics.results import RunResult
+from lineofaction.gearbox.studies.modes.run import moved_surface
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
@@ -26,6 +29,7 @@ from lineofaction.report.drawing.figure import (
     number,
 )
 from lineofaction.report.drawing.page import Headline
+from lineofaction.report.drawing.surface_view import shape_figure
 from lineofaction.report.presentation import dynamics_presentation
 
 MOST_MODES, LEAST_DISTANCE, _CIRCULAR = 8, 0.01, 0.1
@@ -196,7 +200,27 @@ WHIRLS: dict[str, tuple[str, Dash]] = {
 
 
 def _modal_figures(modes: ModalAnalysis) -> tuple[Figure, ...]:
-    return (_campbell(modes), *_energies(modes)) if modes.speed.size > 1 else _energies(modes)
+    over_speed = (_campbell(modes),) if modes.speed.size > 1 else ()
+    return (*over_speed, *_energies(modes), *_housing(modes))
+
+
+def _housing(modes: ModalAnalysis) -> tuple[Figure, ...]:
+    """Draw the housing in the lowest mode at rest in which it moves much; nothing without its surface."""
+    its_own = [move == "housing" for _, move in freedom_parts(modes.freedom)]
+    share = modes.natural_kinetic_energy[:, its_own].sum(axis=1)
+    lowest = np.flatnonzero((modes.natural_frequency > 0.0) & (share > LARGE))[:1]
+    shapes = [moved_surface(modes, modes.natural_shape[mode]) for mode in lowest]
+    return tuple(
+        shape_figure(
+            "modal_housing",
+            f"The housing in mode {mode + 1} at rest, {number(modes.natural_frequency[mode], 4)} Hz",
+            replace(shape, motion=shape.motion / np.linalg.norm(shape.motion, axis=1).max()),
+            1.0,
+            "1",
+        )
+        for mode, shape in zip(lowest, shapes, strict=True)
+        if shape is not None
+    )
 
 
 def _campbell(modes: ModalAnalysis) -> Figure:

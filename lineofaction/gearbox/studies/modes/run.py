@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,12 +16,17 @@ from dynamics.linearize.modal_analysis import resolved_to
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.studies.bodies import HOUSING, UNIT, Hull
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
 from lineofaction.gearbox.studies.cost import StudyCost, Work, scene_before_tables, sized
 from lineofaction.gearbox.studies.excitations import with_facts_of_scene
 from lineofaction.gearbox.studies.modes import Inputs, ModesFigures
 from lineofaction.gearbox.studies.motion import OfferedMotion, UnitMotion, chosen_rows
+from lineofaction.gearbox.studies.unit_bodies import surface_motion
 from lineofaction.gearbox.units import RPM
+
+if TYPE_CHECKING:
+    from dynamics.vibration import SurfaceShape
 
 LEAST_SHARE = 1e-3
 _AT_REST, _LINEAR, _CUBIC = 3.5e-5, 1.2e-4, 1.9e-8
@@ -56,6 +62,7 @@ class _ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
                 progress=lambda fraction: means.report("modes", fraction),
                 highest_frequency=inputs.highest_frequency_hz,
             )
+        modes = replace(modes, surface_motion=surface_motion(subject, modes.freedom))
         return with_facts_of_scene(modes, subject)
 
     def _derived(self, modes: ModalAnalysis) -> Json:
@@ -97,9 +104,23 @@ def _offered(modes: ModalAnalysis, group: str, row: Any, shape: Any) -> OfferedM
 
     def made() -> UnitMotion:
         motion = np.asarray(modes.axis_motion @ shape, dtype=complex)
-        return UnitMotion(modes.shaft, modes.axis_shaft, modes.axis_position, motion, oscillates=True)
+        axes = modes.shaft, modes.axis_shaft, modes.axis_position
+        return UnitMotion(*axes, motion, oscillates=True, surface=moved_surface(modes, shape))
 
     return OfferedMotion(group, name, made)
+
+
+def moved_surface(modes: ModalAnalysis, shape: Any) -> SurfaceShape | None:
+    """Return the surfaces of all housings in a mode by its freedoms, (n,); None: none of them moves."""
+    from dynamics.vibration import SurfaceShape  # noqa: PLC0415 (start-up time)
+
+    if not modes.surface_motion.size:
+        return None
+    hulls = [Hull.of(part) for part in modes.facts[UNIT] if part["kind"] == HOUSING]
+    first = np.cumsum([0] + [len(hull.points) for hull in hulls])
+    facets = [hull.facets + start for hull, start in zip(hulls, first[:-1], strict=True)]
+    motion = np.asarray(modes.surface_motion @ shape, dtype=complex)
+    return SurfaceShape(np.concatenate([hull.points for hull in hulls]), np.concatenate(facets), motion)
 
 
 def _energies(modes: ModalAnalysis, strain: Any, kinetic: Any) -> Json:

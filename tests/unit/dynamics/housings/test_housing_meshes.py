@@ -403,9 +403,10 @@ def test_a_coarse_surface_of_a_box_keeps_its_edges_and_its_volume() -> None:
     sides = (0.2, 0.1, 0.06)
     mesh = box(sides, (20, 12, 7))
     fine = DrawnSurface(mesh.points, mesh.surface[:, :3])
-    drawn = fine.of_at_most(1000)
+    drawn, kept = fine.of_at_most(1000)
     assert len(fine.facets) > 1500
     assert 200 < len(drawn.facets) <= 1000
+    np.testing.assert_array_equal(drawn.points, fine.points[kept])
     np.testing.assert_allclose(np.ptp(drawn.points, axis=0), sides, rtol=1e-12)
     corners = np.moveaxis(drawn.points[drawn.facets], 1, 0)
     volume = np.sum(np.cross(corners[0], corners[1]) * corners[2]) / 6.0
