@@ -211,6 +211,32 @@ def ablate(
     return Ablation(nominal, tuple(effects.values()), left_out, result.mesh, result.bearing)
 
 
+_FIGURE = 2e-6
+"""CPU seconds of the figures of a run by sample, and by mesh or bearing."""
+
+
+def runs_of_ablation(scene: Scene, only: Sequence[str] | None = None) -> tuple[list[float], float]:
+    """Return the steps of all runs over those of the scene's own, and the CPU seconds of the figures of each.
+
+    Of the scene and of every effect that it can have; one that is off brings its freedoms, in proportion.
+    """
+    names = chosen("only", only, [effect.name for effect in EFFECTS])
+    scene.require_meshes()
+    system = assemble(scene)
+    able = {name: [part for part in system.ledger.of(name) if part.possible] for name in names}
+    scenes = [
+        replace(scene, effects={**scene.effects, name: "on"})
+        for name, parts in able.items()
+        if parts and not any(part.on for part in parts)
+    ]
+    freedoms = max(system.freedoms.column.size, 1)
+    more = [assemble(other).freedoms.column.size / freedoms for other in scenes]
+    less = sum(any(part.on for part in parts) for parts in able.values())
+    parts = len(scene.meshes) + len(system.supports.name)
+    figures = _FIGURE * parts * scene.duration * system.sampling.rate
+    return [(1.0 + WARM_UP) * times for times in (1.0, *less * [1.0], *more)], figures
+
+
 def _toggled(
     scene: Scene,
     parts: Mapping[str, Sequence[Json]],

@@ -32,24 +32,33 @@ FASTER, MAKING = 2.3, 2.0
 """Ordinary loops over code of a structure's own, measured 2.0 to 2.8; CPU s of making it, 1.1 to 4.6."""
 
 
-def run_seconds(scene: Scene, runs: int = 1) -> float:
-    """Return about how many CPU seconds so many runs of a scene take, with their error estimates.
+class ProbedRun(NamedTuple):
+    """CPU seconds of the start and the steps of a run, and whether code of its own may follow."""
 
-    Some tenths of a second of it are run. Raises `InputError`: its parts do not fit each other; `SolveError`:
-    nothing holds it at rest, or no steps can be taken.
+    start: float
+    steps: float
+    code_may_follow: bool
+
+    def seconds(self, runs: int, *, with_errors: bool) -> float:
+        """Return the CPU seconds of so many runs, with or without their error estimates."""
+        steps = runs * self.steps * (1.0 + FINER * SHARE if with_errors else 1.0)
+        code = MAKING + steps / FASTER if self.code_may_follow else steps
+        return runs * self.start + min(steps, code)
+
+
+def probe_run(scene: Scene) -> ProbedRun:
+    """Return about what a run of a scene takes; some tenths of a second of it are run.
+
+    Raises `InputError`: its parts do not fit each other; `SolveError`: nothing holds it at rest, or no steps
+    can be taken.
     """
     assemble(scene)  # loads what it needs
     began = cpu_seconds()
     system = assemble(scene)
     assembling = cpu_seconds() - began
     probes = [_probe(system, part * scene.duration) for part in PARTS]
-    seconds = scene.duration * float(np.mean([probe.seconds for probe in probes]))
-    if scene.outputs.receipt == "full" and scene.meshes:
-        seconds *= 1.0 + FINER * SHARE
-    starting = runs * (assembling + min(probe.start for probe in probes))
-    if probes[0].code_may_follow:
-        return starting + min(runs * seconds, MAKING + runs * seconds / FASTER)
-    return starting + runs * seconds
+    steps = scene.duration * float(np.mean([probe.seconds for probe in probes]))
+    return ProbedRun(assembling + min(probe.start for probe in probes), steps, probes[0].code_may_follow)
 
 
 class _Probe(NamedTuple):

@@ -13,6 +13,7 @@ from fe_contact.compliance.plane_elasticity import PlaneHypothesis
 from fe_contact.compliance.remote_condensation import free_ends_kept, section_kept, solid_kept
 from fe_contact.compliance.root_stress import UnitRootStress
 from fe_contact.compliance.unit_root_stress import (
+    stress_kept,
     unit_root_stress,
     unit_root_stress_3d,
     unit_root_stresses,
@@ -37,6 +38,7 @@ __all__ = [
     "predict_cost",
     "section_kept",
     "solid_kept",
+    "stress_kept",
     "unit_root_stress",
     "unit_root_stress_3d",
     "unit_root_stresses",

@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 import scipy.sparse as sp
 
-from fe_contact.compliance.cache import content_hash, kept_or_computed, once_each
+from fe_contact.compliance.cache import content_hash, kept_or_computed, kept_size, once_each
 from fe_contact.compliance.cyclic_compliance import compliance_key_3d, usual_reach
 from fe_contact.compliance.flank_compliance_2d import (
     compliance_key,
@@ -141,9 +141,24 @@ def unit_root_stresses_3d(
     )
 
 
+def stress_kept(
+    gear: Toothing, recipe: MeshRecipe | SectorRecipe, hypothesis: PlaneHypothesis, cache: Path | None
+) -> bool:
+    """Whether the unit-load root stress of a gear is in the cache; solids have no use of the hypothesis."""
+    if isinstance(recipe, SectorRecipe):
+        right = gear.right_handed()
+        key = compliance_key_3d(right, recipe, usual_reach(right), bore_support(right))
+    else:
+        key = compliance_key(gear, recipe, hypothesis, condensed_teeth(gear, recipe, None))
+    return bool(kept_size(cache, _stress_key(key)))
+
+
+def _stress_key(compliance: str) -> str:
+    return content_hash({"root stress": MODEL_VERSION, "compliance": compliance})
+
+
 def _kept(compliance: str, compute: Callable[[], UnitRootStress], cache: Path | None) -> UnitRootStress:
-    key = content_hash({"root stress": MODEL_VERSION, "compliance": compliance})
-    return kept_or_computed(cache, key, UnitRootStress, compute)
+    return kept_or_computed(cache, _stress_key(compliance), UnitRootStress, compute)
 
 
 def _compute_in_plane(

@@ -394,6 +394,13 @@ def _section(
     return _Cost(*_section_cost(gear, recipe), 0.0)
 
 
+def body_seconds(gear: Toothing, recipe: MeshRecipe | SectorRecipe, cache: Path | None) -> float:
+    """Return the CPU seconds of the compliance of a gear that is not kept."""
+    if isinstance(recipe, SectorRecipe):
+        return predict_cost(gear.right_handed(), recipe, cache=cache).seconds
+    return host_slowness(cache) * _section_cost(gear, recipe)[0]
+
+
 def _section_cost(gear: Toothing, recipe: MeshRecipe) -> tuple[float, float]:
     """CPU seconds and bytes of one gear in the plane on the reference host."""
     fineness = 0.05 * gear.normal_module / recipe.flank_size

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -159,6 +161,33 @@ def ablate(
     request = checked.request
     misalignment = request.whole_scene.largest_misalignment
     return Ablation(nominal, tuple(effects.values()), left_out, request.torque, request.load, misalignment)
+
+
+class PredictedTables(NamedTuple):
+    """CPU seconds to condense the gears, and of the contact of each table; largest resident memory."""
+
+    bodies: float
+    contacts: tuple[float, ...]
+    bytes: int
+
+
+def predicted_ablation(checked: Checked, only: Sequence[str] | None, cache: Path | None) -> PredictedTables:
+    """Predict the table of a request and one with each of the effects toggled; gears are condensed once."""
+    names = chosen("only", only, [effect.name for effect in EFFECTS])
+    checked = _on_one_mesh(checked, cache)
+    bodies, contacts, memory = dict[Any, float](), list[float](), 0
+    for entry in (None, *checked.ledger):
+        if entry is not None and (entry.name not in names or entry.verdict.neutral):
+            continue
+        with suppress(*FAILURES):
+            own = checked if entry is None else toggled(checked, entry.name, "off" if entry.on else "on")
+            plan = own.planned(cache)
+            whole = own.predicted(plan, cache, with_errors=False)
+            made = plan.discretization
+            bodies[plan.bodies(own.request.pair), made.recipes, made.corrected] = whole.stages["compliance"]
+            contacts.append(whole.stages["contact"])
+            memory = max(memory, whole.memory_bytes)
+    return PredictedTables(sum(bodies.values()), tuple(contacts), memory)
 
 
 def _toggled(

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache, partial
 from itertools import product
+from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
@@ -21,7 +22,7 @@ from fe_contact.analysis.pairs.slice_springs import (
     mean_stiffness,
     parabolic_stiffness,
 )
-from fe_contact.analysis.request.model_choice import decide
+from fe_contact.analysis.request.model_choice import Decided, decide
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import as_checked, checked_request
 from fe_contact.analysis.studies.measured_full_contact import (
@@ -31,11 +32,13 @@ from fe_contact.analysis.studies.measured_full_contact import (
     full_contact_refusal,
     known_full_contact,
     measure_full_contact,
+    position_seconds,
 )
 from fe_contact.analysis.tables import table_fields, table_support
 from fe_contact.errors import InputError, MeshError, SolveError, chosen, integer
 from fe_contact.geometry import Gear, GearPair, ParallelAxes
 from fe_contact.options import AnalysisOptions, Run, TableAxes
+from fe_contact.planning.cost_model import effort
 from fe_contact.planning.plan import PLANE_REFINEMENT, Plan
 from fe_contact.solver_version import SOLVER_VERSION, software_versions
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
@@ -51,6 +54,7 @@ from model_studies import (
     silent,
 )
 from model_studies.frontier import Errors
+from model_studies.host_speed import host_slowness
 from model_studies.stage_clock import StageClock
 
 # The accuracy study: ways to the transmission error from a closed form to fine finite elements.
@@ -228,10 +232,12 @@ class _FiniteElementFidelity:
     def run(self, checked: Checked) -> SteDatabase:
         """Compute the table."""
         computed = self.as_computed(checked)
+        return compute_database(computed, computed.request.to_json(), Run(), self.decided(computed))
+
+    def decided(self, computed: Checked) -> Decided:
+        """Return the request as it is computed with its plan."""
         decided = decide(computed)
-        if self.slices is not None:
-            decided = decided.in_slices(self.slices)
-        return compute_database(computed, computed.request.to_json(), Run(), decided)
+        return decided if self.slices is None else decided.in_slices(self.slices)
 
 
 FIDELITIES: tuple[_Fidelity, ...] = (
@@ -419,6 +425,27 @@ def frontier(
     )
     tables = {outcome.fidelity.name: outcome.result for outcome in outcomes}
     return study if full_contact is None else _beside(study, checked, full_contact, tables, progress)
+
+
+def predicted_frontier(
+    checked: Checked, fidelities: Sequence[str], full_contact: int | None, cache: Path | None
+) -> dict[str, float]:
+    """Predict the CPU seconds of the valid fidelities of finite elements, and of full contact, by name.
+
+    By the quick model of the work that a mesh is chosen by; closed forms count for nothing.
+    """
+    seconds = {}
+    for fidelity in FIDELITIES:
+        if not isinstance(fidelity, _FiniteElementFidelity) or fidelity.name not in fidelities:
+            continue
+        if fidelity.refusal(checked) is None:
+            own = fidelity.decided(fidelity.as_computed(checked))
+            request, model = own.checked.request, own.checked.model
+            work = effort(request.pair, own.plan, model, request.alignments)
+            seconds[fidelity.name] = host_slowness(cache) * work
+    if full_contact is not None and full_contact_refusal(checked) is None:
+        seconds[NAME] = full_contact * position_seconds(checked)
+    return seconds
 
 
 def _warm_up(fidelities: Sequence[_Fidelity]) -> None:

@@ -246,7 +246,7 @@ def measure_full_contact(
     torques = [float(torque) for torque in request.torque]
     misalignments = tuple(float(misalignment) for misalignment in request.misalignment)
     inclined = _over_face(checked)
-    predicted = _predicted(len(torques) * len(misalignments), inclined=inclined)
+    predicted = position_seconds(checked)
     stage = f"full contact ({positions} x {predicted:.0f} CPU s)"
 
     def reported(fraction: float) -> None:
@@ -264,9 +264,10 @@ def measure_full_contact(
     return measured
 
 
-def _predicted(solves: int, *, inclined: bool) -> float:
-    """Return the CPU seconds of a position with so many loads x misalignments."""
-    if inclined:
+def position_seconds(checked: Checked) -> float:
+    """Return the predicted CPU seconds of full contact at one position, under all loads and misalignments."""
+    solves = checked.request.torque.size * checked.request.misalignment.size
+    if _over_face(checked):
         return FACE_SECONDS + FACE_LOAD_SECONDS * solves
     return POSITION_SECONDS + LOAD_SECONDS * solves
 

@@ -21,7 +21,7 @@ from lineofaction.gearbox.schemas.figures import Figures
 from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.studies.cost import StudyCost
+from lineofaction.gearbox.studies.cost import CASES, StudyCost
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.motion import OfferedMotion
 from model_studies.record_file import read_record, write_record
@@ -213,7 +213,7 @@ class PointStudy(CaseStudy[FlankPoint, Answer, Result]):
 
     def narrowed(self, case: CheckedCase, inputs: FlankPoint) -> CheckedCase:
         """Return the case at one load and one alignment."""
-        return CheckedCase(case_at(case.case, inputs))
+        return CASES.of(case_at(case.case, inputs))
 
     def check(self, case: CheckedCase, _inputs: FlankPoint) -> None:
         """Refuse a case that cannot be."""

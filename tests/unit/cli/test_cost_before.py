@@ -35,6 +35,8 @@ GROWING: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "optimize": ({"search": {"trials": 0}}, {"search": {"trials": 6}}),
     "sweep": ({"over": ["torque=50:100:50"]}, {"over": ["pinion.profile_crowning=0:16:2"]}),
     "scatter": ({"samples": 64}, {"samples": 4096}),
+    "ablate": ({"only": ["tooth_coupling"]}, {}),
+    "frontier": ({"up_to": "corrected_fine"}, {}),
     "modes": ({"speed_rpm": SPEEDS[:6]}, {"speed_rpm": SPEEDS}),
     "steady": ({"speed_rpm": SPEEDS[:6]}, {"speed_rpm": SPEEDS}),
     "response": ({"speed_rpm": SPEEDS[:6]}, {"speed_rpm": SPEEDS}),
@@ -191,6 +193,19 @@ def test_the_status_sums_what_is_due(case: CheckedCase, tmp_path: Path) -> None:
     (tmp_path / "case.nc").write_bytes(b"")  # newer than the case
     less = json.loads(loa("status", tmp_path, "--json").stdout)
     assert less["due_cpu_seconds"] < facts["due_cpu_seconds"]
+
+
+@pytest.mark.parametrize("subject", ["case", "scene"])
+def test_the_status_has_the_cost_of_each_of_these_verbs(
+    subject: str, case: CheckedCase, tmp_path: Path
+) -> None:
+    verbs = {"ablate", "frontier", "root-stress"}
+    if subject == "scene":
+        for name in ("palermo_scene.toml", "palermo_spur_20_20.toml"):
+            (tmp_path / name).write_text((EXAMPLES / name).read_text())
+        (tmp_path / "case.toml").unlink()
+    facts = json.loads(loa("status", tmp_path, "--json").stdout)
+    assert verbs <= {row["verb"] for row in facts["results"] if (row["cpu_seconds"] or 0.0) > 0.0}
 
 
 def test_a_table_costs_what_its_plan_says(case: CheckedCase) -> None:

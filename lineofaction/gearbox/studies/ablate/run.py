@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
 
 from bounds.types import Json
 from dynamics.ablation import Ablation as SceneAblation
 from dynamics.ablation import ablate as ablate_scene
+from dynamics.ablation import runs_of_ablation
 from dynamics.effects import EFFECTS as SCENE_EFFECTS
 from fe_contact.analysis.request.request import Checked
-from fe_contact.analysis.studies.ablation import Ablation, ablate
+from fe_contact.analysis.studies.ablation import Ablation, ablate, predicted_ablation
 from fe_contact.effects import EFFECTS
 from fe_contact.errors import chosen
 from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
@@ -17,6 +21,7 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.ablate import AblateFigures, Inputs
 from lineofaction.gearbox.studies.computation import Computation, Means, record_file
+from lineofaction.gearbox.studies.cost import StudyCost, Work, runs_cost
 
 
 class _AblateStudy(
@@ -35,6 +40,17 @@ class _AblateStudy(
 
     def normalized(self, subject: CheckedCase | SceneInput, inputs: Inputs) -> Json:
         return {"only": _requested(inputs.only, of_scene=not isinstance(subject, CheckedCase))}
+
+    def predicted(
+        self, subject: CheckedCase | SceneInput, inputs: Inputs, cache: Path | None
+    ) -> StudyCost | None:
+        """Return what the tables of a case take, or the runs of a scene: as it is, and an effect each."""
+        if isinstance(subject, SceneInput):
+            return runs_cost(subject, lambda scene: runs_of_ablation(scene, inputs.only))
+        with boundary_errors():
+            tables = predicted_ablation(subject.request(_table, inputs), inputs.only, cache)
+        contacts = Work("contacts", float(np.mean(tables.contacts)), len(tables.contacts))
+        return StudyCost((Work("gears", tables.bodies), contacts), tables.bytes)
 
     def compute(
         self, subject: CheckedCase | TabledScene, inputs: Inputs, means: Means

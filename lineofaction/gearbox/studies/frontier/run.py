@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 from bounds.types import Json
 from dynamics.accuracy import FIDELITIES as SCENE_FIDELITIES
 from dynamics.accuracy import Frontier as SceneFrontier
 from dynamics.accuracy import frontier as frontier_of_scene
+from dynamics.accuracy import runs_of_frontier
 from fe_contact.analysis.request.request import Checked
-from fe_contact.analysis.studies.frontier import FIDELITIES, Frontier, frontier
+from fe_contact.analysis.studies.frontier import FIDELITIES, Frontier, frontier, predicted_frontier
 from fe_contact.analysis.studies.measured_full_contact import ORIGIN
 from fe_contact.errors import chosen
 from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, study_options
@@ -17,6 +19,7 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Computation, Means, record_file
+from lineofaction.gearbox.studies.cost import StudyCost, Work, runs_cost
 from lineofaction.gearbox.studies.frontier import FrontierFigures, Inputs
 from lineofaction.gearbox.units import in_um
 
@@ -44,6 +47,17 @@ class _FrontierStudy(
     def normalized(self, subject: CheckedCase | SceneInput, inputs: Inputs) -> Json:
         beside = {} if inputs.full_contact is None else {"full_contact": inputs.full_contact}
         return {"rungs": _requested(inputs, of_scene=not isinstance(subject, CheckedCase)), **beside}
+
+    def predicted(
+        self, subject: CheckedCase | SceneInput, inputs: Inputs, cache: Path | None
+    ) -> StudyCost | None:
+        """Return what the valid fidelities take; of a scene its runs, by the steps of their tolerances."""
+        names = _requested(inputs, of_scene=not isinstance(subject, CheckedCase))
+        if isinstance(subject, SceneInput):
+            return runs_cost(subject, lambda scene: runs_of_frontier(scene, names), "minimal")
+        with boundary_errors():
+            seconds = predicted_frontier(subject.request(_table, inputs), names, inputs.full_contact, cache)
+        return StudyCost(tuple(Work(name, own) for name, own in seconds.items()))
 
     def compute(
         self, subject: CheckedCase | TabledScene, inputs: Inputs, means: Means

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from bounds.types import Json
 from fe_contact.analysis.flanks.root_stress import (
@@ -11,12 +12,14 @@ from fe_contact.analysis.flanks.root_stress import (
     RootPeak,
     RootStressHistory,
     root_stress,
+    stress_seconds,
 )
 from fe_contact.plausibility.pair_checks import nominal_root_stresses
 from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
 from lineofaction.gearbox.convert.plausibility import phrased_for
 from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.studies.computation import Means, PointStudy, record_file
+from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.root_stress import Inputs, RootStressFigures
 from model_studies import in_unit
 
@@ -63,6 +66,16 @@ class Roots:
 
 class _RootStressStudy(PointStudy[RootStressFigures, Roots]):
     inputs, answer, file = Inputs, RootStressFigures, record_file(("tooth-root stress", Roots))
+
+    def predicted(self, case: CheckedCase, _inputs: FlankPoint, cache: Path | None) -> StudyCost:
+        """Return what the gears, one solution, and the stresses of both on two meshes take."""
+        with boundary_errors():
+            checked = case.at_point
+            plan = checked.planned(cache)
+            whole = checked.predicted(plan, cache, with_errors=False)
+            stresses = Work("stresses", stress_seconds(case.pair, plan, cache))
+        parts = Work("gears", whole.stages["compliance"]), Work("contact", whole.parts["contact"]["table"])
+        return StudyCost((*parts, stresses), whole.memory_bytes)
 
     def compute(self, case: CheckedCase, _inputs: FlankPoint, means: Means) -> Roots:
         """Return the peaks over a mesh cycle, the passage of a tooth of each gear, receipt and warnings."""

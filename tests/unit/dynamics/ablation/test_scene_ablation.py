@@ -3,23 +3,34 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene
 
-from dynamics.ablation import Ablation, ablate
+from dynamics.ablation import WARM_UP, Ablation, ablate, runs_of_ablation
 from dynamics.errors import InputError
 from dynamics.scene import Outputs
 from dynamics.simulation import simulate
 from lineofaction.gearbox.studies.ablate.run import RUN
 
 SCENE = gear_pair_scene(duration=0.06)
+ONLY = ["lateral", "axial", "tilt", "friction"]
 
 
 @pytest.fixture(scope="module")
 def made() -> Ablation:
-    return ablate(SCENE, only=["lateral", "axial", "tilt", "friction"])
+    return ablate(SCENE, only=ONLY)
+
+
+def test_a_prediction_has_every_run_and_the_freedoms_of_what_is_off(made: Ablation) -> None:
+    times, figures = runs_of_ablation(SCENE, ONLY)
+    assert len(times) == 1 + len(made.effects)
+    assert times[0] == min(times) == 1.0 + WARM_UP
+    held = replace(SCENE, effects={"lateral": "off"})
+    assert max(runs_of_ablation(held, ["lateral"])[0]) > 1.5
+    assert runs_of_ablation(replace(SCENE, duration=0.12), ONLY)[1] == pytest.approx(2.0 * figures)
 
 
 def test_a_change_is_that_of_two_runs(made: Ablation) -> None:

@@ -8,19 +8,38 @@ import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table, with_mesh
 
 from dynamics.ablation import ablate
-from dynamics.accuracy import FIDELITIES, FIGURES, _Blocks, _knee_of_results, _TimeIntegration, frontier
+from dynamics.accuracy import (
+    FIDELITIES,
+    FIGURES,
+    _Blocks,
+    _knee_of_results,
+    _TimeIntegration,
+    frontier,
+    runs_of_frontier,
+)
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.loads import TimeLaw
 from dynamics.scene import Integration
+from dynamics.simulation.to_file import run_scene
 from lineofaction.gearbox.studies.frontier.run import RUN
 
+LINEAR = "harmonic_response"
 RUN_UP = gear_pair_scene(speed=TimeLaw.ramp(100.0 * RPM, 900.0 * RPM, 0.4), duration=0.4)
 
 
 @pytest.fixture(scope="module")
 def found():
     return frontier(RUN_UP)
+
+
+def test_a_prediction_has_every_run_and_the_steps_of_its_tolerance(found):
+    integrated = [result for result in found.results if result.name not in ("quasi_static", LINEAR)]
+    steps, beside = runs_of_frontier(RUN_UP, [fidelity.name for fidelity in FIDELITIES])
+    assert (len(steps), beside) == (len(integrated), 0.0)
+    runs = (replace(RUN_UP, integration=Integration(tolerance=value)) for value in (1e-9, 1e-11))
+    finer, finest = (run_scene(run).statistics.accepted for run in runs)
+    assert steps[-1] / steps[-3] == pytest.approx(finest / finer, rel=0.3)
 
 
 def by_name(found):

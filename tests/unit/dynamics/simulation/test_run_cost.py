@@ -9,7 +9,7 @@ from dynamics.assembly.assemble import assemble
 from dynamics.integrators import code_choice
 from dynamics.loads import TimeLaw
 from dynamics.simulation import run_cost, run_scene
-from dynamics.simulation.run_cost import PARTS, _probe, run_seconds
+from dynamics.simulation.run_cost import FINER, PARTS, SHARE, _probe, probe_run
 from dynamics.structure_code.machine_code import CodeStore
 
 
@@ -30,15 +30,17 @@ def test_a_probe_takes_the_steps_of_the_run(scene):
 def test_a_prediction_is_linear_in_the_duration(scene, monkeypatch):
     monkeypatch.setattr(run_cost, "_probe", lambda *_: run_cost._Probe(0.0, 3.0, 1e5, False))
     monkeypatch.setattr(run_cost, "cpu_seconds", lambda: 0.0)
-    once = run_seconds(scene)
-    assert run_seconds(replace(scene, duration=0.4)) == pytest.approx(2.0 * once)
-    assert run_seconds(scene, 7) == pytest.approx(7.0 * once)
+    probed, longer = probe_run(scene), probe_run(replace(scene, duration=0.4))
+    once = probed.seconds(1, with_errors=True)
+    assert longer.seconds(1, with_errors=True) == pytest.approx(2.0 * once)
+    assert probed.seconds(7, with_errors=True) == pytest.approx(7.0 * once)
+    assert probed.seconds(1, with_errors=False) == pytest.approx(once / (1.0 + FINER * SHARE))
 
 
 def test_code_of_their_own_serves_all_runs(scene, monkeypatch):
     monkeypatch.setattr(run_cost, "_probe", lambda *_: run_cost._Probe(0.0, 3.0, 1e5, True))
     monkeypatch.setattr(run_cost, "cpu_seconds", lambda: 0.0)
-    once, many = run_seconds(scene), run_seconds(scene, 1000)
+    once, many = (probe_run(scene).seconds(runs, with_errors=True) for runs in (1, 1000))
     assert many == pytest.approx(1000.0 * once / run_cost.FASTER, rel=0.02)
 
 
@@ -60,5 +62,5 @@ def test_a_probe_neither_makes_code_nor_counts_as_a_run(scene, monkeypatch, tmp_
     monkeypatch.setattr(code_choice, "SEEN", 0.0)
     monkeypatch.setattr(code_choice, "_module", lambda _: pytest.fail("it makes code"))
     before = dict(code_choice._spent)
-    run_seconds(replace(scene, integration=replace(scene.integration, method="explicit")))
+    probe_run(replace(scene, integration=replace(scene.integration, method="explicit")))
     assert code_choice._spent == before

@@ -13,10 +13,12 @@ from numpy.typing import ArrayLike
 from spur_gears import GEAR
 
 from fe_contact import Gear, GearPair, RootStress, root_stress
+from fe_contact.analysis.flanks import root_stress as root_module
 from fe_contact.analysis.flanks.root_stress import (
     _crest_values,
     _finer_root,
     _pair_histories,
+    stress_seconds,
     unit_stresses,
 )
 from fe_contact.analysis.flanks.solved_operating_point import solve_operating_point
@@ -51,6 +53,19 @@ def solved(
 def place(pair: GearPair, cache: Path, model: str) -> SolvedOperatingPoint:
     checked = check_request(pair, *table_request(normal_forces=[FORCE], level="draft", model=model))
     return solve_operating_point(checked, np.array([0.1, 0.45, 0.8]), StageClock(), Run(cache=cache))
+
+
+@pytest.mark.parametrize(("pair", "different"), [(SPUR, 1), (HELICAL, 2)])
+def test_a_prediction_has_each_stress_on_both_meshes_until_it_is_kept(
+    pair: GearPair, different: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(root_module, "body_seconds", lambda *_: 1.0)
+    contact = place(pair, tmp_path, "auto" if pair is SPUR else "3d").contact
+    each = stress_seconds(pair, contact.plan, None) / (2 * different)
+    assert each in (1.0, root_module._STRESSES)
+    for left in (1, 0):
+        unit_stresses(contact, bool(left), tmp_path)
+        assert stress_seconds(pair, contact.plan, tmp_path) == pytest.approx(left * different * each)
 
 
 def with_forces(found: SolvedOperatingPoint, keep: np.ndarray, factor: float = 1.0) -> SolvedOperatingPoint:

@@ -16,7 +16,7 @@ from fe_contact.analysis.database.compute_database import compute_database
 from fe_contact.analysis.pairs import contact_lines
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.studies import ablation
-from fe_contact.analysis.studies.ablation import Ablation
+from fe_contact.analysis.studies.ablation import Ablation, predicted_ablation
 from fe_contact.analysis.studies.sensitivity import RippleCurve
 from fe_contact.errors import InputError
 from fe_contact.options import Run, TableAxes
@@ -26,13 +26,20 @@ from model_studies.workers import RunCost, executor
 
 RELIEVED = replace(GEAR, modification=FlankModification(tip_relief=15e-6, tip_relief_length=1.2e-3))
 PAIR = GearPair(RELIEVED, GEAR)
+ONLY = ["tooth_coupling", "corner_contact", "profile_modification", "finite_width", "misalignment"]
 ASKED = {"normal_forces": [800.0, 2500.0], "level": "draft", "positions": 64}
 
 
 @pytest.fixture(scope="module")
 def made() -> Ablation:
-    only = ["tooth_coupling", "corner_contact", "profile_modification", "finite_width", "misalignment"]
-    return ablate(PAIR, *table_request(**ASKED), only=only)  # type: ignore[arg-type]
+    return ablate(PAIR, *table_request(**ASKED), only=ONLY)  # type: ignore[arg-type]
+
+
+def test_a_prediction_has_the_contact_of_every_table_and_condenses_gears_once(made: Ablation) -> None:
+    checked = Ablation.request(PAIR, *table_request(**ASKED))  # type: ignore[arg-type]
+    whole, alone = (predicted_ablation(checked, only, None) for only in (ONLY, ["tooth_coupling"]))
+    assert (len(whole.contacts), len(alone.contacts)) == (1 + len(made.effects), 2)
+    assert whole.bodies > alone.bodies == predicted_ablation(checked, ["corner_contact"], None).bodies
 
 
 def test_a_change_is_that_of_two_tables(made: Ablation) -> None:

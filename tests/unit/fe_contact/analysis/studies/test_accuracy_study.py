@@ -17,8 +17,17 @@ from fe_contact.analysis.pairs.slice_springs import SpringContact, _slice_stiffn
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.studies import measured_full_contact as measuring
-from fe_contact.analysis.studies.frontier import FIDELITIES, ISO6336, THIN_SLICES, _chosen_fidelity, frontier
+from fe_contact.analysis.studies.frontier import (
+    FIDELITIES,
+    ISO6336,
+    THIN_SLICES,
+    Frontier,
+    _chosen_fidelity,
+    frontier,
+    predicted_frontier,
+)
 from fe_contact.analysis.studies.measured_full_contact import (
+    NAME,
     _over_face,
     full_contact_refusal,
     measure_full_contact,
@@ -115,12 +124,20 @@ def test_thin_slices_have_the_mean_stiffness_of_the_standard_without_its_correct
     assert stiffness == pytest.approx(iso6336_stiffness(pair).mesh_stiffness / 0.8, rel=0.02)
 
 
+SPUR = ["iso6336", "thin_slices", "plane_strain", "corrected_draft", "3d_draft", "3d_standard"]
+
+
 @pytest.fixture(scope="module")
 def spur():
-    names = ["iso6336", "thin_slices", "plane_strain", "corrected_draft", "3d_draft", "3d_standard"]
-    return frontier(
-        pair_of(width=4e-3), *table_request(normal_forces=[500.0], positions=32), fidelities=names
-    )
+    return frontier(pair_of(width=4e-3), *table_request(normal_forces=[500.0], positions=32), fidelities=SPUR)
+
+
+def test_a_prediction_has_the_fidelities_of_finite_elements_and_full_contact_by_position(spur):
+    checked = Frontier.request(pair_of(width=4e-3), *table_request(normal_forces=[500.0], positions=32))
+    told = predicted_frontier(checked, SPUR, 8, None)
+    assert [*told] == [*(result.name for result in spur.results if result.stages.get("compliance")), NAME]
+    assert min(told.values()) > 0.0
+    assert told[NAME] == pytest.approx(8.0 * predicted_frontier(checked, SPUR, 1, None)[NAME])
 
 
 def test_errors_of_a_spur_pair_fall_from_fidelity_to_fidelity(spur):
