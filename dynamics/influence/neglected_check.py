@@ -159,7 +159,7 @@ def response_influences(scene: Scene, speed: FloatArray, time: float = 0.0) -> d
     return _influences(scene, assemble(scene), conditions_at(speed, time))
 
 
-_SOLVED, _BEGUN = 3e-8, 0.01
+_SOLVED, _BEGUN = 4.5e-8, 0.01
 """CPU seconds of a line at a speed by freedoms squared, and of an effect beside its lines.
 
 5 to 170 freedoms, 2 to 30 lines: within a factor of 2.

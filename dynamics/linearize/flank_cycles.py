@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -32,25 +33,27 @@ class FlankCycle:
     coordinate, force : (T, p) arrays
         Local coordinates in m: the transmission error that carries the static mesh force, and the others as
         the bodies rest; local forces, N. The first force is the static one everywhere.
-    tangent : (p, p) array
-        Derivatives of the forces in the coordinates, mean over the positions, N/m.
+    tangents : (T, p, p) array
+        Derivatives of the forces in the coordinates, N/m.
     blocked : (T, p) array
         Forces while the transmission error is held at its mean, N.
-    stiffness : (T,) array
-        Derivative of the mesh force in the transmission error, N/m.
     """
 
     rows: slice
     coordinate: FloatArray
     force: FloatArray
-    tangent: FloatArray
+    tangents: FloatArray
     blocked: FloatArray
-    stiffness: FloatArray
 
     @property
     def static_error(self) -> FloatArray:
         """Static transmission error at the static mesh force, (T,) m."""
         return np.asarray(self.coordinate[:, 0])
+
+    @cached_property
+    def tangent(self) -> FloatArray:
+        """Mean of the tangents over the positions, (p, p) N/m."""
+        return np.asarray(np.mean(self.tangents, axis=0))
 
 
 def resting(system: System, linear: LinearSystem, time: float = 0.0) -> LocalState:
@@ -103,7 +106,7 @@ def _cycle(system: System, local: LocalState, index: int, force: float, position
     tangent = np.empty((position.size, size, size))
     _hold(elements, local, index, force, position, guess, coordinate, held, tangent)
     _block(elements, local, index, float(np.mean(coordinate[:, 0])), position, blocked)
-    return FlankCycle(rows, coordinate, held, np.mean(tangent, axis=0), blocked, tangent[:, 0, 0].copy())
+    return FlankCycle(rows, coordinate, held, tangent, blocked)
 
 
 @compiled

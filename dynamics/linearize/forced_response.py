@@ -15,8 +15,12 @@ from dynamics.bearings.seat import SEAT
 from dynamics.errors import InputError
 from dynamics.forces.laws import Law
 from dynamics.linearize.flank_cycles import FlankCycle
-from dynamics.linearize.harmonic_response import HarmonicResponse, excited_lines, floor_of, response_of
-from dynamics.linearize.line_floor import LineFloor
+from dynamics.linearize.harmonic_response import (
+    HarmonicResponse,
+    excited_lines,
+    response_of,
+    varied_floor,
+)
 from dynamics.linearize.linear_system import HELD_BY, LinearSystem, natural_modes
 from dynamics.linearize.load_harmonics import load_cycles, load_harmonics
 from dynamics.linearize.operating_speeds import checked_speeds, leading_law
@@ -24,10 +28,11 @@ from dynamics.linearize.steady_vibration import (
     Excited,
     Steady,
     gyroscopic_terms,
+    heard_harmonics,
     speed_blocks,
-    with_blocked,
 )
 from dynamics.linearize.strongest_lines import require_memory
+from dynamics.linearize.varying_stiffness import varied_vibration
 from dynamics.mechanism.columns import elastic_columns, elastic_terms, housing_columns
 from dynamics.mechanism.connections import frame_couplings
 from dynamics.motion.force_balance import swept_by_frames
@@ -198,7 +203,8 @@ def _power_balance(at: Excited, speed: FloatArray, steady: Steady) -> _PowerBala
         rate = 1j * steady.omega[part, :, None] * u
         for name, cycle in zip(gained, at.cycles, strict=False):
             along = rate @ at.system.arrays.direction[cycle.rows].T
-            gained[name].append(_power(steady.force[cycle.rows].T, along))
+            force = steady.force if len(steady.force) == 1 else steady.force[part]
+            gained[name].append(_power(np.swapaxes(force[:, cycle.rows], 1, 2), along))
         loads = load_harmonics(at.system, at.period, speed[part], steady.harmonics, at.time)
         loaded = loaded or bool(np.any(loads))
         gained.setdefault(LOADS, []).append(_power(loads, rate))
@@ -357,16 +363,17 @@ def forced_response(
     frequency = natural_modes(at.linear).frequency
     seconds = {"equilibrium_and_modes": cpu_seconds() - began}
     began = cpu_seconds()
-    steady, blocked = with_blocked(at, speeds, lines.harmonics, progress)
-    if not steady.harmonics.size:
+    harmonics = heard_harmonics(at, speeds, lines.harmonics)
+    if not harmonics.size:
         raise InputError("orders", orders, NOTHING_EXCITES, "Give a mesh a table, or let a load vary.")
+    steady, *largest = varied_vibration(at, speeds, harmonics, progress)
     response, power = response_of(at, speeds, steady), _power_balance(at, speeds, steady)
-    response = replace(response, floor=floor_of(at, speeds, lines))
-    floor, floor_error = _bearing_floor(response.floor)
+    response = replace(response, floor=varied_floor(at, speeds, lines, response))
+    floor, floor_error = (np.empty((0, 0)),) * 2 if response.floor is None else response.floor.of_bearings()
     seconds["response"] = cpu_seconds() - began
     return ForcedResponse(
         **vars(response),
-        excitation_difference=_difference(response, blocked),
+        excitation_difference=_difference(*largest),
         natural_frequency=frequency,
         **power.fields,
         bearing_floor=floor,
@@ -376,14 +383,6 @@ def forced_response(
         | {"effect_ledger": ledger}
         | system.corrections,
     )
-
-
-def _bearing_floor(floor: LineFloor | None) -> tuple[FloatArray, FloatArray]:
-    """Return mean squares of bearing forces in orders left out, (b, S), N^2, and their errors."""
-    square = [] if floor is None else [floor.of_bearing(index) for index in range(len(floor.bearing))]
-    shape = (len(square), 0 if floor is None else floor.pace.size)
-    power = np.reshape([np.sum(each.power, axis=1) for each in square], shape)
-    return power, np.reshape([np.sum(each.missed, axis=1) for each in square], shape)
 
 
 def _require_memory(at: Excited, speeds: int, harmonics: int) -> None:
@@ -405,10 +404,9 @@ def _facts(at: Excited, time: float, seconds: Json) -> Json:
     }
 
 
-def _difference(response: HarmonicResponse, blocked: FloatArray) -> FloatArray:
-    """Return how unlike the largest transmission errors are those (m, H) of blocked forces, (m, H)."""
-    first = np.max(np.abs(response.dynamic_transmission_error), axis=1)
-    return np.asarray(np.abs(blocked - first) / np.max(first, initial=1e-300))
+def _difference(static: FloatArray, blocked: FloatArray) -> FloatArray:
+    """Return how unlike the largest transmission errors (m, H) by static errors and blocked forces are."""
+    return np.asarray(np.abs(blocked - static) / np.max(static, initial=1e-300))
 
 
 @dataclass(frozen=True)

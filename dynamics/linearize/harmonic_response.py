@@ -1,4 +1,4 @@
-"""Forced response with a mesh stiffness that varies along the pitch: harmonic balance of Hill's equation."""
+"""Harmonic response to the transmission errors, with mean stiffnesses and with those that vary."""
 
 from __future__ import annotations
 
@@ -13,27 +13,24 @@ from scipy.fft import next_fast_len
 
 from dynamics.assembly.assemble import System
 from dynamics.checks import integer, one_of, positive
-from dynamics.errors import SolveError
 from dynamics.forces.laws import Law
 from dynamics.linearize.flank_cycles import SAMPLES
 from dynamics.linearize.line_floor import LineFloor, floor_frequencies, floor_inputs
-from dynamics.linearize.linear_system import unbounded
 from dynamics.linearize.load_harmonics import load_multiples
 from dynamics.linearize.operating_speeds import LARGEST_DENOMINATOR
 from dynamics.linearize.steady_vibration import (
     EXCITATIONS,
-    ROUNDED,
     Excited,
     Steady,
     excited,
     harmonics_of,
     receptances,
-    solved,
     speed_blocks,
     steady_vibration,
     swept_vibration,
 )
 from dynamics.linearize.strongest_lines import Lines, strongest_lines
+from dynamics.linearize.varying_stiffness import varied
 from dynamics.motion.force_balance import block_diagonal
 from dynamics.results.array_file import stored
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
@@ -192,7 +189,31 @@ def floor_of(at: Excited, speed: FloatArray, lines: Lines) -> LineFloor | None:
         inputs=inputs.size,
         frequency=hertz,
         bearing_force=np.concatenate(force, axis=2),
+        changed=np.zeros((len(at.system.supports.name), speed.size)),
     )
+
+
+def varied_floor(
+    at: Excited, speed: FloatArray, lines: Lines, response: HarmonicResponse
+) -> LineFloor | None:
+    """Return `floor_of`, and what a stiffness that varies may change of it, by bearing and speed.
+
+    The lines left out take no part in what it makes of those kept. Where it changes forces by a part r, that
+    of those kept, powers P of those left out and Q of those kept change by 2 r (P + sqrt(P Q)) + r^2 P.
+    """
+    floor = floor_of(at, speed, lines)
+    if floor is None:
+        return None
+    harmonics = np.rint(response.order * at.period.counted).astype(np.int64)
+    mean = steady_vibration(at, speed, harmonics)
+    shared = response.bearing_force[..., np.isin(harmonics, mean.harmonics)]
+    changed = shared - bearing_forces(at, mean.omega, mean.displacement)
+    squares = floor.of_bearings()[0]
+    listed = 0.5 * np.sum(np.abs(shared[:, :3]) ** 2, axis=(1, 3))
+    change = 0.5 * np.sum(np.abs(changed[:, :3]) ** 2, axis=(1, 3))
+    part = np.sqrt(change / np.maximum(listed, 1e-300))
+    beside = 1.0 + np.sqrt(listed / np.maximum(squares, 1e-300))
+    return replace(floor, changed=2.0 * part * beside + part**2)
 
 
 def response_of(at: Excited, speed: FloatArray, steady: Steady) -> HarmonicResponse:
@@ -247,7 +268,9 @@ def _mesh_force(at: Excited, steady: Steady) -> ComplexArray:
     for f, cycle in enumerate(at.cycles):
         first, p = cycle.rows.start, cycle.tangent.shape[0]
         local = np.moveaxis(along_rows(u, system.arrays.direction[cycle.rows]), 0, 2)
-        force[f] = local @ cycle.tangent[0] + 1j * omega * (local @ viscous[first, :p]) - steady.force[first]
+        force[f] = (
+            local @ cycle.tangent[0] + 1j * omega * (local @ viscous[first, :p]) - steady.force[:, first]
+        )
     return force
 
 
@@ -317,70 +340,27 @@ def _harmonics(order: tuple[float, ...]) -> IntArray:
 
 
 MOST_SAMPLES, MOST_PER_LINE, MOST_PARTED = 16_384, 1_000, 300
-MOST_UNKNOWNS = 150
-LEAST_ORDERS = 8
-
-
-@dataclass(frozen=True)
-class _Family:
-    """Meshes (f,) that pass equally many base pitches in the common period, on tables of one pitch.
-
-    `harmonic` (H,) are the harmonics 1 to H of their frequency among those of the vibration, `stiffness`
-    (f, 4 H + 1) the Fourier coefficients -2 H to 2 H of the tangent stiffness less its mean, N/m.
-    """
-
-    meshes: IntArray
-    harmonic: IntArray
-    stiffness: ComplexArray
 
 
 def parametric_response(
     at: Excited, speed: FloatArray, rate: FloatArray, orders: int = 10, gyroscopic: bool = False
 ) -> tuple[HarmonicResponse, FloatArray]:
-    """Return the response of a system to its errors and loads, the stiffness varying with position.
+    """Return the response of a system to its errors and loads, the stiffness varying with position: `varied`.
 
     And by how much the mean transmission errors differ from the mean static ones, (m, S), m.
-
-    M u'' + C u' + (K + sum k(t) g^T g) u = sum k(t) g STE(t). With k = k_0 + dk(t) and the receptances A of
-    the system of mean stiffness, what makes force, w = g u - STE, is sought in the harmonics -H to H of the
-    mesh frequency:
-
-        w_i + A_i sum_j dk_(i-j) w_j = (response of the mean stiffness)_i - STE_i.
-
-    Left out: what the varying stiffness of one mesh makes of vibration at another one's frequency, flanks
-    that part, how stiffness varies with load. Tables of several pitches keep their mean stiffness.
 
     Parameters
     ----------
     speed, rate : (S,) arrays
         Of the leading law, rad/s, and how fast it changes, rad/s^2.
     orders : int
-        H; fewer where many meshes share a frequency.
+        Harmonics of each mesh.
     gyroscopic : bool
         With gyroscopic and frame terms.
     """
-    harmonics, meshes = _all_harmonics(at, orders, speed), len(at.cycles)
-    steady = swept_vibration(at, speed, rate, harmonics, gyroscopic)
-    u, extra = steady.displacement.copy(), np.zeros((meshes, *steady.omega.shape), dtype=complex)
-    shift = np.zeros((meshes, speed.size))
-    row = at.system.arrays.direction[at.system.driving_rows]
-    still = _at_rest(at, row)
-    for family in _families(at, harmonics, orders):
-        first = np.broadcast_to(still, (speed.size, 1, *still.shape))
-        moved = np.concatenate([first, steady.receptance[:, family.harmonic]], axis=1)[..., family.meshes]
-        answer = steady.displacement[:, family.harmonic] @ row[family.meshes].T
-        made = np.asarray(0.5 * (answer - steady.static[family.meshes][:, family.harmonic].T))
-        push = _push(family, row[family.meshes] @ moved, made)
-        if push is None:
-            raise unbounded(at.linear, steady.omega)
-        u[:, family.harmonic] -= 2.0 * np.einsum("shnf,shf->shn", moved[:, 1:], push[:, 1:])
-        own = np.ix_(family.meshes, np.arange(speed.size), family.harmonic)
-        extra[own] += 2.0 * np.moveaxis(push[:, 1:], 2, 0)
-        shift -= row @ np.real(np.einsum("snf,sf->ns", moved[:, 0], push[:, 0]))
-    response = response_of(at, speed, replace(steady, displacement=u))
-    force = response.mesh_force + extra
-    least = response.mean_force[:, None] + extremes(force, response.order)[0]
-    return replace(response, mesh_force=force, least_mesh_force=least), shift
+    harmonics = _all_harmonics(at, orders, speed)
+    steady, shift = varied(at, swept_vibration(at, speed, rate, harmonics, gyroscopic))
+    return response_of(at, speed, steady), shift
 
 
 def _all_harmonics(at: Excited, orders: int, speed: FloatArray) -> IntArray:
@@ -391,88 +371,3 @@ def _all_harmonics(at: Excited, orders: int, speed: FloatArray) -> IntArray:
         step = abs(pitches) // period
         multiples |= {step * k for k in range(1, orders * period + 1)} if step else set()
     return strongest_lines(at, np.array(sorted(multiples), dtype=np.int64), speed).harmonics
-
-
-def _families(at: Excited, harmonics: IntArray, orders: int) -> list[_Family]:
-    """Gather the meshes whose stiffness varies, by their frequency."""
-    by_pitches: dict[int, list[int]] = {}
-    for index, (pitches, mesh) in enumerate(zip(at.period.pitches, at.system.scene.meshes, strict=True)):
-        if pitches and mesh.table.period == 1:
-            by_pitches.setdefault(abs(pitches), []).append(index)
-    families = []
-    for pitches, meshes in by_pitches.items():
-        count = min(orders, max(LEAST_ORDERS, MOST_UNKNOWNS // (2 * len(meshes))))
-        harmonic = np.searchsorted(harmonics, pitches * np.arange(1, count + 1))
-        stiffness = np.array([_coefficients(at, mesh, 2 * count) for mesh in meshes])
-        families.append(_Family(np.array(meshes), harmonic, stiffness))
-    return families
-
-
-def _coefficients(at: Excited, mesh: int, highest: int) -> ComplexArray:
-    """Fourier coefficients (2 highest + 1,) over time of a mesh's tangent stiffness, its mean left out."""
-    values = at.cycles[mesh].stiffness
-    lines = np.fft.rfft(values) / values.size
-    count = min(highest, lines.size - 2)
-    coefficients = np.zeros(2 * highest + 1, dtype=complex)
-    order = np.arange(1, count + 1)
-    turned = lines[order] * np.exp(2j * np.pi * order * at.system.scene.meshes[mesh].position_offset)
-    turned = turned if at.period.pitches[mesh] > 0 else turned.conj()
-    coefficients[highest + order], coefficients[highest - order] = turned, turned.conj()
-    return coefficients
-
-
-def _push(family: _Family, receptance: ComplexArray, made: ComplexArray) -> ComplexArray | None:
-    """Solve the balance at S speeds; None where nothing bounds the motion.
-
-    Parameters
-    ----------
-    receptance : (S, H + 1, f, f) complex array
-        Of the meshes, harmonics 0 to H, m/N.
-    made : (S, H, f) complex array
-        Fourier coefficients 1 to H of what makes force with the mean stiffness, m.
-
-    Returns
-    -------
-    (S, H + 1, f) complex array
-        Fourier coefficients 0 to H of the force by which the varying part of the stiffness presses, N.
-    """
-    speeds, count, meshes = made.shape
-    pressed = _presses(family.stiffness, count)
-    size = (2 * count + 1) * meshes
-    matrix = _real_rows(np.einsum("siab,bij->siajb", receptance, pressed)).reshape(speeds, size, size)
-    matrix += np.eye(size)
-    forcing = np.concatenate([np.zeros((speeds, 1, meshes)), made], axis=1)
-    right = _real_rows(forcing).reshape(speeds, size, 1)
-    w = solved(matrix, right)
-    rounded = np.finfo(float).eps * np.max(np.abs(matrix) @ np.abs(w), axis=(1, 2))
-    if not np.all(rounded <= ROUNDED * np.max(np.abs(right), axis=(1, 2), initial=1e-300)):
-        return None
-    return np.asarray(np.einsum("bij,sjb->sib", pressed, w.reshape(speeds, -1, meshes)))
-
-
-def _presses(stiffness: ComplexArray, count: int) -> ComplexArray:
-    """Return the force harmonics 0 to H (f, H + 1, 2 H + 1) by the real unknowns of what makes force.
-
-    They are Re w_0 to Re w_H and Im w_1 to Im w_H: w_-j is the conjugate of w_j.
-    """
-    row, column = np.arange(count + 1)[:, None], np.arange(count + 1)
-    less, more = (stiffness[:, row + way * column + 2 * count] for way in (-1, 1))
-    real = less + more
-    real[:, :, 0] = less[:, :, 0]
-    return np.concatenate([real, 1j * (less - more)[:, :, 1:]], axis=2)
-
-
-def _real_rows(harmonics: ComplexArray) -> FloatArray:
-    """Return the real parts 0 to H, then the imaginary parts 1 to H, of (S, H + 1, ...)."""
-    return np.concatenate([np.real(harmonics), np.imag(harmonics[:, 1:])], axis=1)
-
-
-def _at_rest(at: Excited, row: FloatArray) -> ComplexArray:
-    """Displacements (n, f) per static force along rows (f, n); `SolveError` where a motion is free."""
-    per_meter = 1.0 / at.linear.scale
-    held = per_meter[:, None] * at.linear.stiffness * per_meter
-    try:
-        moved = np.linalg.solve(held, (row * per_meter).T)
-    except np.linalg.LinAlgError as error:
-        raise SolveError("nothing holds the system at its static equilibrium") from error
-    return np.asarray(moved * per_meter[:, None], dtype=complex)

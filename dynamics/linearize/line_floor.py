@@ -39,7 +39,8 @@ class FloorPower(NamedTuple):
     frequency : (S, K) array
         Mean of those lines in a bin that have power, Hz.
     power, missed : (S, K) arrays
-        And by how much it may be off, of its unit: what straight lines between the frequencies miss at most.
+        And by how much it may be off, of its unit: what straight lines between the frequencies miss at most,
+        and what a stiffness that varies may change.
     """
 
     frequency: FloatArray
@@ -72,6 +73,8 @@ class LineFloor:
         Hz, rising; those of the lines at all speeds lie among them.
     bearing_force : (b, 3 or 6, G, e) complex array
         Forces of bearings per input.
+    changed : (b, S) array
+        What a stiffness that varies may change of the mean squares of forces, relative.
     """
 
     bearing: tuple[str, ...]
@@ -80,9 +83,14 @@ class LineFloor:
     inputs: ComplexArray
     frequency: FloatArray
     bearing_force: ComplexArray
+    changed: FloatArray
 
-    def power(self, matrix: ComplexArray) -> FloorPower:
-        """Return a power or mean square of all lines: y^H M y of their inputs y, by `matrix` M (G, e, e)."""
+    def power(self, matrix: ComplexArray, changed: FloatArray | None = None) -> FloorPower:
+        """Return a power or mean square of all lines: y^H M y of their inputs y, by `matrix` M (G, e, e).
+
+        What a stiffness that varies may change of it is `changed` (S,), that of the worst bearing if None.
+        """
+        changed = np.max(self.changed, axis=0, initial=0.0) if changed is None else changed
         form, products = _real_terms(matrix), _products(self.inputs)
         bent, sizes = [_of_three(np.abs(term)) for term in _real_terms(self._bent(matrix))], np.abs(products)
         first, last = self._bin(self.frequency[[0, -1]])
@@ -90,7 +98,7 @@ class LineFloor:
         for row, pace in enumerate(self.pace):
             hertz = self.harmonic * pace
             power = np.maximum(self._along(hertz, products, form), 0.0)
-            off = self._along(hertz, sizes, bent)
+            off = self._along(hertz, sizes, bent) + changed[row] * power
             for part, values in zip(made, (power * hertz, power, off), strict=True):
                 part[row] = np.bincount(self._bin(hertz) - first, values, part.shape[1])
         middle = 10.0 ** (((np.arange(first, last + 1) + 0.5) / BINS - 0.5) / 10.0)
@@ -100,7 +108,14 @@ class LineFloor:
     def of_bearing(self, index: int) -> FloorPower:
         """Return the mean square of the force on a bearing, all directions together, N^2."""
         force = np.moveaxis(self.bearing_force[index, :3], 0, 2)
-        return self.power(0.5 * force.conj() @ np.swapaxes(force, 1, 2))
+        return self.power(0.5 * force.conj() @ np.swapaxes(force, 1, 2), self.changed[index])
+
+    def of_bearings(self) -> tuple[FloatArray, FloatArray]:
+        """Return the mean squares of the forces on bearings, (b, S) N^2, and their errors."""
+        squares = [self.of_bearing(index) for index in range(len(self.bearing))]
+        shape = len(squares), self.pace.size
+        power = np.reshape([np.sum(each.power, axis=1) for each in squares], shape)
+        return power, np.reshape([np.sum(each.missed, axis=1) for each in squares], shape)
 
     def _along(self, hertz: FloatArray, products: Iterable[FloatArray], form: list[FloatArray]) -> FloatArray:
         terms = zip(products, form, strict=True)

@@ -197,15 +197,15 @@ class Steady:
         rad/s.
     static : (m, H) complex array
         Static transmission errors, m.
-    force : (R', H) complex array
+    force : (1 or S, R', H) complex array
         What excites the driving flanks' rows, N.
     displacement : (S, H, n) complex array
         m and rad.
     residual : float
         Largest force left by the linear solves, of the largest exciting force.
     receptance : (S, H, n, f) complex array
-        Displacements per force on f rows, those of `swept_vibration` along each mesh's line of action; empty
-        where not requested.
+        Displacements per force on f rows, those of `swept_vibration` of the driving flanks; empty where not
+        requested.
     """
 
     harmonics: IntArray
@@ -244,38 +244,34 @@ def steady_vibration(
     progress: Callable[[float], None] | None = None,
 ) -> Steady:
     """Return the vibration at `speed` (S,), of `harmonics` (H,) those that are excited."""
-    return _vibration(at, speed, harmonics, excitation, progress)[0]
+    harmonics = heard_harmonics(at, speed, harmonics, (excitation,))
+    static, force = flank_forces(at, harmonics, excitation)
+    loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
+    omega = _omega(at, speed, harmonics)
+    terms = gyroscopic_terms(at.system, speed) if at.turning else []
+    u, residual, _ = _solve(at, _pushed(at, force) + loads, omega, terms, progress=progress)
+    return Steady(harmonics, omega, static, force[None], u[..., 0], residual, u[..., 1:])
+
+
+def heard_harmonics(
+    at: Excited, speed: FloatArray, harmonics: IntArray, excitations: Sequence[str] = EXCITATIONS
+) -> IntArray:
+    """Return those of `harmonics` (H,) that flanks, by any of `excitations`, or loads excite."""
+    loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
+    heard = _heard(np.moveaxis(loads / at.linear.scale, 1, 2))
+    for excitation in excitations:
+        heard = heard | _heard(flank_forces(at, harmonics, excitation)[1])
+    return harmonics[heard]
 
 
 def with_blocked(
-    at: Excited, speed: FloatArray, harmonics: IntArray, progress: Callable[[float], None] | None = None
+    at: Excited, speed: FloatArray, harmonics: IntArray, rows: FloatArray
 ) -> tuple[Steady, FloatArray]:
-    """Return `steady_vibration`, and the largest transmission errors over the speeds by blocked forces.
+    """Return `with_receptances`, and the largest transmission errors over the speeds by blocked forces.
 
-    (m, H), m, in the harmonics that static errors or loads excite.
+    (m, H), m.
     """
-    return _vibration(at, speed, harmonics, EXCITATIONS[0], progress, beside=EXCITATIONS[1])
-
-
-def _vibration(
-    at: Excited,
-    speed: FloatArray,
-    harmonics: IntArray,
-    excitation: str,
-    progress: Callable[[float], None] | None,
-    beside: str = "",
-) -> tuple[Steady, FloatArray]:
-    """Return `steady_vibration`, and what `_solve` returns of the excitation `beside` it, "": of none."""
-    static, force = flank_forces(at, harmonics, excitation)
-    loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
-    kept = np.flatnonzero(_heard(force) | _heard(np.moveaxis(loads / at.linear.scale, 1, 2)))
-    harmonics, static, force, loads = harmonics[kept], static[:, kept], force[:, kept], loads[:, kept]
-    omega = _omega(at, speed, harmonics)
-    terms = gyroscopic_terms(at.system, speed) if at.turning else []
-    other = _pushed(at, flank_forces(at, harmonics, beside)[1]) + loads if beside else None
-    exciting = _pushed(at, force) + loads
-    u, residual, largest = _solve(at, exciting, omega, terms, beside=other, progress=progress)
-    return Steady(harmonics, omega, static, force, u[..., 0], residual, u[..., 1:]), largest
+    return _with_receptances(at, speed, harmonics, rows, beside=EXCITATIONS[1])
 
 
 def _heard(force: ComplexArray) -> BoolArray:
@@ -302,20 +298,28 @@ def swept_vibration(
     pushed = _pushed(at, force) + loads if np.any(loads) else _pushed(at, force)
     omega = _omega(at, speed, harmonics)
     decay = SWEPT * np.sqrt(omega * (np.abs(rate) / np.abs(speed))[:, None])
-    rows = at.system.arrays.direction[at.system.driving_rows]
+    rows = at.system.arrays.direction[: len(force)]
     terms = gyroscopic_terms(at.system, speed) if gyroscopic else []
     u, residual, _ = _solve(at, pushed, omega - 1j * decay, terms, rows)
-    return Steady(harmonics, omega, static, force, u[..., 0], residual, u[..., 1:])
+    return Steady(harmonics, omega, static, force[None], u[..., 0], residual, u[..., 1:])
 
 
 def with_receptances(at: Excited, speed: FloatArray, harmonics: IntArray, rows: FloatArray) -> Steady:
     """Return the vibration at `speed` (S,) in all `harmonics` (H,), with the receptances of `rows` (f, n)."""
+    return _with_receptances(at, speed, harmonics, rows)[0]
+
+
+def _with_receptances(
+    at: Excited, speed: FloatArray, harmonics: IntArray, rows: FloatArray, beside: str = ""
+) -> tuple[Steady, FloatArray]:
+    """Return `with_receptances`, and what `_solve` returns of the excitation `beside` it, "": of none."""
     static, force = flank_forces(at, harmonics)
     loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
+    other = _pushed(at, flank_forces(at, harmonics, beside)[1]) + loads if beside else None
     omega = _omega(at, speed, harmonics)
     terms = gyroscopic_terms(at.system, speed) if at.turning else []
-    u, residual, _ = _solve(at, _pushed(at, force) + loads, omega, terms, rows)
-    return Steady(harmonics, omega, static, force, u[..., 0], residual, u[..., 1:])
+    u, residual, largest = _solve(at, _pushed(at, force) + loads, omega, terms, rows, beside=other)
+    return Steady(harmonics, omega, static, force[None], u[..., 0], residual, u[..., 1:]), largest
 
 
 def receptances(at: Excited, omega: FloatArray, rows: FloatArray) -> ComplexArray:

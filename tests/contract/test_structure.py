@@ -12,7 +12,7 @@ ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
     ("fe_contact",): (44_562, 839),
-    ("dynamics",): (45_669, 911),
+    ("dynamics",): (45_816, 915),
     ("lineofaction.gearbox",): (28_882, 592),
     ("lineofaction.report",): (12_984, 245),
     ("service",): (15_259, 361),
@@ -24,7 +24,7 @@ BUDGETS = {
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 PAGE = 8_280
 """Lines of scripts, style and markup of the page at most: docs/decisions/0011-page-without-framework.md."""
-MOST_FILES = 882
+MOST_FILES = 883
 LONGEST = 500
 WRITTEN = (".js", ".css", ".html")
 MOST_PRIVATE = 225

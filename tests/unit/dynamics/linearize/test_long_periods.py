@@ -111,7 +111,7 @@ def test_a_hunting_cycle_of_1541_pitches_takes_no_more_memory_than_its_lines():
 
 def test_what_cannot_be_held_is_refused_before_it_is_solved(monkeypatch):
     module = sys.modules["dynamics.linearize.forced_response"]  # a function of the package has its name
-    monkeypatch.setattr(module, "with_blocked", lambda *_: pytest.fail("solved"))
+    monkeypatch.setattr(module, "varied_vibration", lambda *_: pytest.fail("solved"))
     table = repeated(ripple(), LONG, 1e-6 * np.random.default_rng(1).normal(size=LONG))
     with pytest.raises(InputError, match=r"speed.*at most \d+ values in \d+ orders.*8 GB.*wider steps"):
         response(table, speed=np.linspace(1.0, 200.0, 100_000))

@@ -1,0 +1,232 @@
+"""Vibration with a mesh stiffness that varies with position: harmonic balance of Hill's equation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.fft import next_fast_len
+from scipy.sparse.linalg import LinearOperator, gmres
+
+from dynamics.errors import SolveError
+from dynamics.linearize.flank_cycles import FlankCycle
+from dynamics.linearize.linear_system import unbounded
+from dynamics.linearize.steady_vibration import (
+    ROUNDED,
+    ROUNDING,
+    Excited,
+    Steady,
+    harmonics_of,
+    speed_blocks,
+    with_blocked,
+)
+from dynamics.types import ComplexArray, FloatArray, IntArray
+
+CONVERGED = 1e-9
+"""Residual of the balance, of what makes force with the mean stiffness."""
+RESTART, CYCLES = 60, 10
+"""Iterations of GMRES before it starts anew, and how often it may."""
+
+
+def varied(at: Excited, steady: Steady) -> tuple[Steady, FloatArray]:
+    """Return a vibration with the tangents of its flanks varying with position, and the mean's shift.
+
+    M u'' + C u' + (K + sum G^T K(t) G) u = sum G^T (K(t) x_s(t) - f), K(t) = K_0 + K_1(t), f the other forces
+    of a flank. With the receptances A of the system of mean tangents, what makes force, w = G u - x_s, is
+    sought in the harmonics H of the vibration and their mean:
+
+        w + A K_1 w = w_0,   w_0 that of the mean tangents.
+
+    Left out: what the varying stiffness of one mesh makes of vibration between its own lines, flanks that
+    part, how stiffness varies with load.
+
+    Parameters
+    ----------
+    steady : Steady
+        With mean tangents; its receptances are those of all rows of the driving flanks.
+
+    Returns
+    -------
+    Steady
+        Its `force` has what the varying tangents take; bit-equal where none vary.
+    (m, S) array
+        By how much the mean transmission errors differ from the mean static ones, m.
+
+    Raises
+    ------
+    SolveError
+        If nothing bounds the motion, or nothing holds the system at rest.
+    """
+    speeds, count, rows = len(steady.omega), steady.harmonics.size, steady.force.shape[1]
+    shift = np.zeros((len(at.cycles), speeds))
+    parts = [part for index in range(len(at.cycles)) for part in _varying(at, index, steady.harmonics)]
+    direction = at.system.arrays.direction[:rows]
+    still = direction @ _at_rest(at, direction)
+    if not parts:
+        return steady, shift
+    first = [cycle.rows.start for cycle in at.cycles]
+    u, force = steady.displacement.copy(), np.repeat(steady.force, speeds // len(steady.force), axis=0)
+    residual = steady.residual
+    for s in range(speeds):
+        moved = direction @ steady.receptance[s]
+        made = np.zeros((count + 1, rows), dtype=complex)
+        made[1:] = 0.5 * (u[s] @ direction.T)
+        made[1:, first] -= 0.5 * steady.static.T
+        push, left = _push(parts, np.concatenate([still[None], moved]), made)
+        if not left <= ROUNDED:
+            raise unbounded(at.linear, steady.omega[s : s + 1])
+        u[s] -= 2.0 * np.einsum("hnf,hf->hn", steady.receptance[s], push[1:])
+        force[s] -= 2.0 * push[1:].T
+        shift[:, s] = -(still @ push[0].real)[first]
+        residual = max(residual, left)
+    return replace(steady, displacement=u, force=force, residual=residual), shift
+
+
+def varied_vibration(
+    at: Excited, speed: FloatArray, harmonics: IntArray, progress: Callable[[float], None] | None = None
+) -> tuple[Steady, FloatArray, FloatArray]:
+    """Return the vibration at `speed` (S,) in `harmonics` (H,) with tangents that vary.
+
+    And the largest transmission errors over the speeds with mean tangents, excited by static errors and by
+    blocked forces, (m, H) each, m.
+    """
+    rows = at.system.arrays.direction[: at.cycles[-1].rows.stop]
+    watched = at.system.arrays.direction[at.system.driving_rows]
+    largest = np.zeros((2, len(watched), harmonics.size))
+    blocks: list[Steady] = []
+    for part in speed_blocks((speed.size, harmonics.size), (1 + len(rows)) * rows.shape[1]):
+        mean, blocked = with_blocked(at, speed[part], harmonics, rows)
+        static = np.max(np.abs(mean.displacement @ watched.T), axis=0, initial=0.0).T
+        largest = np.maximum(largest, np.stack([static, blocked]))
+        blocks.append(replace(varied(at, mean)[0], receptance=mean.receptance[:0]))
+        if progress is not None:
+            progress(min(part.stop, speed.size) / speed.size)
+    forces = [block.force for block in blocks]
+    steady = replace(
+        blocks[0],
+        omega=np.concatenate([block.omega for block in blocks]),
+        force=np.concatenate(forces) if sum(map(len, forces)) == speed.size else forces[0],
+        displacement=np.concatenate([block.displacement for block in blocks]),
+        residual=max(block.residual for block in blocks),
+    )
+    return steady, largest[0], largest[1]
+
+
+@dataclass(frozen=True)
+class _Varying:
+    """A flank of p rows whose tangents vary, in the Q lines of its table among those of the vibration.
+
+    Attributes
+    ----------
+    rows : slice
+    own : (Q + 1,) int array
+        Where its lines are among the mean and the harmonics of the vibration.
+    line : (Q + 1,) int array
+        Multiples of the table's own frequency, 0 first.
+    tangent : (N, p, p) array
+        Less its mean, over the table's period in time, N/m.
+    """
+
+    rows: slice
+    own: IntArray
+    line: IntArray
+    tangent: FloatArray
+
+    def pressed(self, made: ComplexArray) -> ComplexArray:
+        """Return the Fourier coefficients (Q + 1, p) of the forces by those of what makes them."""
+        samples = len(self.tangent)
+        spectrum = np.zeros((samples // 2 + 1, made.shape[1]), dtype=complex)
+        spectrum[self.line] = made
+        wave = np.fft.irfft(spectrum, samples, axis=0)
+        force = np.einsum("tij,tj->ti", self.tangent, wave)
+        return np.asarray(np.fft.rfft(force, axis=0)[self.line])
+
+
+def _varying(at: Excited, index: int, harmonics: IntArray) -> list[_Varying]:
+    """Return the flank of a mesh; nothing where its tangents do not vary or it does not turn."""
+    cycle, period = at.cycles[index], at.system.scene.meshes[index].table.period
+    turns = abs(at.period.pitches[index]) // period
+    if not turns or _alike(cycle):
+        return []
+    own = np.flatnonzero(harmonics % turns == 0)
+    if not own.size:
+        return []
+    line = harmonics[own] // turns
+    highest = 2 * int(line[-1])
+    samples = next_fast_len(2 * highest + 2, real=True)
+    p = cycle.tangent.shape[0]
+    spectrum = np.zeros((samples // 2 + 1, p, p), dtype=complex)
+    for i, j in np.ndindex(p, p):
+        values = cycle.tangents[:, i, j]
+        spectrum[1 : highest + 1, i, j] = 0.5 * harmonics_of(at, index, values, turns * _to(highest))
+    tangent = np.fft.irfft(spectrum, samples, axis=0) * samples
+    return [_Varying(cycle.rows, np.append(0, own + 1), np.append(0, line), tangent)]
+
+
+def _to(highest: int) -> IntArray:
+    return np.arange(1, highest + 1, dtype=np.int64)
+
+
+def _alike(cycle: FlankCycle) -> bool:
+    """Return whether the tangents are the same at all positions."""
+    most = np.max(np.abs(cycle.tangents - cycle.tangent))
+    return bool(most <= ROUNDING * np.max(np.abs(cycle.tangent)))
+
+
+def _push(parts: list[_Varying], moved: ComplexArray, made: ComplexArray) -> tuple[ComplexArray, float]:
+    """Solve the balance at a speed, and return the residual that is left, relative.
+
+    Parameters
+    ----------
+    moved : (H + 1, R', R') complex array
+        Receptances of the rows, of the mean and the harmonics, m/N.
+    made : (H + 1, R') complex array
+        Fourier coefficients of what makes force with the mean tangents, m.
+
+    Returns
+    -------
+    (H + 1, R') complex array
+        Fourier coefficients of the forces by which the varying part of the tangents presses, N.
+    """
+    harmonics, rows = made.shape
+
+    def pressed(w: ComplexArray) -> ComplexArray:
+        force = np.zeros_like(w)
+        for part in parts:
+            force[part.own, part.rows] = part.pressed(w[part.own, part.rows])
+        return force
+
+    def balance(real: FloatArray) -> FloatArray:
+        w = _complex(real, harmonics, rows)
+        return real + _real(np.matmul(moved, pressed(w)[..., None])[..., 0])
+
+    right = _real(made)
+    size = float(np.linalg.norm(right))
+    operator = LinearOperator((right.size, right.size), matvec=balance, dtype=float)
+    found, _ = gmres(operator, right, x0=right, rtol=CONVERGED, restart=RESTART, maxiter=CYCLES)
+    left = float(np.linalg.norm(right - balance(found)))
+    return pressed(_complex(found, harmonics, rows)), left / max(size, 1e-300)
+
+
+def _real(harmonics: ComplexArray) -> FloatArray:
+    """Return the real parts 0 to H, then the imaginary parts 1 to H, of (H + 1, R'): w_-j is conjugate."""
+    return np.concatenate([harmonics.real.ravel(), harmonics[1:].imag.ravel()])
+
+
+def _complex(real: FloatArray, count: int, rows: int) -> ComplexArray:
+    """Return the Fourier coefficients (count, R') of what `_real` made."""
+    harmonics = real[: count * rows].reshape(count, rows).astype(complex)
+    harmonics[1:] += 1j * real[count * rows :].reshape(count - 1, rows)
+    return harmonics
+
+
+def _at_rest(at: Excited, rows: FloatArray) -> FloatArray:
+    """Displacements (n, f) per static force along rows (f, n); `SolveError` where a motion is free."""
+    per_meter = 1.0 / at.linear.scale
+    held = per_meter[:, None] * at.linear.stiffness * per_meter
+    try:
+        moved = np.linalg.solve(held, (rows * per_meter).T)
+    except np.linalg.LinAlgError as error:
+        raise SolveError("nothing holds the system at its static equilibrium") from error
+    return np.asarray(moved * per_meter[:, None])
