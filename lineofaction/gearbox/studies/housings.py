@@ -31,7 +31,7 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.figures import LINEAR
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.schemas.studied import OverOrders
+from lineofaction.gearbox.schemas.studied import OverOrders, OverSpeedsOrRun
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.cost import StudyCost, Work, scene_before_tables, sized
 from lineofaction.gearbox.studies.excitations import excitations_of
@@ -140,6 +140,11 @@ def predicted_response(scene: SceneInput, inputs: OverOrders) -> StudyCost | Non
         return None  # the study says it, on its own tables
     systems = Work("systems with or without an effect", cost.system, cost.systems)
     return StudyCost((Work("speeds", cost.speed, speed.size), systems))
+
+
+def predicted_forces(scene: SceneInput, inputs: OverSpeedsOrRun) -> StudyCost | None:
+    """Return what the `bearing_forces` take; None as of `predicted_response`, and of a run: none is read."""
+    return predicted_response(scene, inputs) if inputs.run is None else None
 
 
 def no_surface(housings: list[str]) -> BadInput:

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 from command_line import loa
+from housing_solid import write_housed_scene
 from spur_case import spur_case
 
 from host.directories import cache_home
@@ -174,6 +175,46 @@ def test_a_study_costs_its_runs_and_the_contact_of_other_flanks(
         assert pieces.get("contacts", 0) == contacts
 
 
+def test_a_complaint_costs_its_lines_at_one_speed_and_of_a_case_next_to_nothing(case: CheckedCase) -> None:
+    study, (scene, folder) = STUDIES["complaint"], scene_of(EXAMPLES / "palermo_scene.toml")
+    costs = {}
+    for hertz in (150.0, 1500.0):
+        inputs = validated(study.inputs, {"frequency_hz": hertz, "speed_rpm": 450.0})
+        costs[hertz] = study_cost(study, study.run.narrowed(scene, inputs), folder, inputs)
+    lines = [part.each for cost in costs.values() if cost for part in cost.parts if part.name == "lines"]
+    assert lines[1] == pytest.approx(10.0 * lines[0])
+    inputs = validated(study.inputs, {"frequency_hz": 150.0, "speed_rpm": 450.0})
+    alone = study_cost(study, study.run.narrowed(case, inputs), folder, inputs)
+    assert alone is not None and 0.0 < alone.seconds < 0.1
+
+
+@pytest.fixture
+def housed(tmp_path: Path) -> Path:
+    """A folder with a scene in a housing with a surface, and its case."""
+    scene = write_housed_scene(tmp_path) / "scene.json"
+    table = json.loads(scene.read_text())
+    del table["meshes"][0]["database_file"]
+    table["meshes"][0]["case_file"], table["run"]["duration_s"] = "palermo_spur_20_20.toml", 5.0
+    scene.write_text(json.dumps(table))
+    (tmp_path / "palermo_spur_20_20.toml").write_text((EXAMPLES / "palermo_spur_20_20.toml").read_text())
+    return scene
+
+
+def test_a_vibration_costs_the_response_where_something_vibrates_and_no_run_is_named(housed: Path) -> None:
+    study, inputs = STUDIES["vibration"], {"speed_rpm": SPEEDS}
+    costs = [
+        study_cost(study, *scene_of(scene), validated(study.inputs, fields))
+        for scene, fields in (
+            (housed, inputs),
+            (housed, {"run": "0" * 64}),
+            (EXAMPLES / "palermo_scene.toml", inputs),
+        )
+    ]
+    response = STUDIES["response"]
+    alike = study_cost(response, *scene_of(housed), validated(response.inputs, inputs))
+    assert costs == [alike, None, None] and alike is not None
+
+
 def test_a_study_whose_runs_nobody_predicts_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
     study, (scene, folder) = STUDIES["study"], scene_of(EXAMPLES / "palermo_scene.toml")
     costs = iter((StudyCost((Work("runs", 2.0),)), None, None))  # of one point it is known
@@ -197,13 +238,13 @@ def test_the_status_sums_what_is_due(case: CheckedCase, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("subject", ["case", "scene"])
 def test_the_status_has_the_cost_of_each_of_these_verbs(
-    subject: str, case: CheckedCase, tmp_path: Path
+    subject: str, case: CheckedCase, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
     verbs = {"ablate", "frontier", "root-stress"}
     if subject == "scene":
-        for name in ("palermo_scene.toml", "palermo_spur_20_20.toml"):
-            (tmp_path / name).write_text((EXAMPLES / name).read_text())
+        verbs |= {"vibration"}
         (tmp_path / "case.toml").unlink()
+        request.getfixturevalue("housed")
     facts = json.loads(loa("status", tmp_path, "--json").stdout)
     assert verbs <= {row["verb"] for row in facts["results"] if (row["cpu_seconds"] or 0.0) > 0.0}
 

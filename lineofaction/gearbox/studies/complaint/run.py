@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
 from bounds.types import Json
 from dynamics.assembly.assemble import System, assemble
-from dynamics.errors import InputError
+from dynamics.errors import InputError, SolveError
+from dynamics.influence.neglected_check import response_cost
 from dynamics.linearize import ForcedResponse, ModalAnalysis, forced_response, modal_analysis
 from dynamics.mechanism.passing import Passing
+from dynamics.scene import Scene
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
 from lineofaction.gearbox.convert.complaint import (
     Complaint,
+    complaint_of,
     complaint_of_case,
     leading_shaft,
     sentence,
@@ -28,11 +33,13 @@ from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.complaint import ComplaintFigures, Inputs
 from lineofaction.gearbox.studies.computation import Computation, Means, record_file
+from lineofaction.gearbox.studies.cost import StudyCost, Work, scene_before_tables, sized
 from lineofaction.gearbox.studies.excitations import (
     complaint_at_loads,
     with_facts_of_scene,
 )
 from lineofaction.gearbox.studies.figures import figures_of
+from lineofaction.gearbox.studies.modes.run import modes_cost
 from model_studies import in_unit
 
 REACH = 2.0
@@ -40,6 +47,8 @@ REACH = 2.0
 RESOLVED = 1.5
 """Frequency to which shafts that bend are resolved, over that of the complaint: modes above have less."""
 MOST_ORDERS = 100
+_OF_PAIR, _ASSEMBLED = 1e-3, 3
+"""CPU seconds of the answer about a case; how often a scene is assembled."""
 PAIR_ALONE: Json = {"equilibrium": None, "effect_ledger": None, "parting": 0.0}
 """Facts of the answer about a case: teeth and speeds say it."""
 
@@ -113,6 +122,29 @@ class _ComplaintStudy(
         if isinstance(subject, CheckedCase):
             complaint_of_case(subject.case)
 
+    def predicted(
+        self, subject: CheckedCase | SceneInput, _inputs: Inputs, _cache: Path | None
+    ) -> StudyCost | None:
+        """Return what the modes and the lines at one speed take; of a case it is a count of teeth."""
+        if isinstance(subject, CheckedCase):
+            return StudyCost((Work("orders", _OF_PAIR),))
+        with boundary_errors():
+            before = scene_before_tables(subject)
+        if before is None:
+            return None
+        complaint = complaint_of(subject, before)
+        speed, highest = _leading_speed(complaint, before), _highest_order(complaint)
+        with boundary_errors():
+            began = cpu_seconds()
+            system = sized(before, _reach(complaint))
+            assembly = Work("assembly", cpu_seconds() - began, _ASSEMBLED)
+            cost = StudyCost((assembly,)) + modes_cost(system, len(speed))
+        if speed and highest <= MOST_ORDERS:
+            with suppress(InputError, SolveError):  # nothing excites: the orders are named all the same
+                lines = response_cost(system, np.array(speed), highest).speed
+                cost += StudyCost((Work("lines", lines),))
+        return cost
+
     def compute(self, made: CheckedCase | TabledScene, _inputs: Inputs, means: Means) -> AnsweredComplaint:
         if isinstance(made, CheckedCase):
             return _of_pair(made.case, means)
@@ -121,9 +153,8 @@ class _ComplaintStudy(
             system = assemble(subject.scene)
         complaint = complaint_at_loads(system, subject)
         with boundary_errors():
-            speed = _leading_speed(complaint, subject)
-            reach = None if complaint.frequency is None else RESOLVED * complaint.frequency
-            modes = modal_analysis(system, speed, highest_frequency=reach)
+            speed = _leading_speed(complaint, subject.scene)
+            modes = modal_analysis(system, speed, highest_frequency=_reach(complaint))
         means.report("modes", 1.0)
         response = _response(system, complaint, speed)
         forces = tuple(_force(response, order, complaint.bearing) for order in _orders(complaint))
@@ -170,11 +201,16 @@ def _figures_of(each: Passing, complaint: Complaint) -> Json:
     }
 
 
-def _leading_speed(complaint: Complaint, subject: TabledScene) -> list[float]:
+def _reach(complaint: Complaint) -> float | None:
+    """Return the frequency to which shafts that bend are resolved, Hz."""
+    return None if complaint.frequency is None else RESOLVED * complaint.frequency
+
+
+def _leading_speed(complaint: Complaint, scene: Scene) -> list[float]:
     """Return the speed of the shaft that speeds of studies are of, rad/s; none without, or from rest."""
-    if complaint.speed is None or not any(part.speed.extreme for part in subject.scene.references):
+    if complaint.speed is None or not any(part.speed.extreme for part in scene.references):
         return []
-    return [complaint.turns[leading_shaft(subject.scene)] * complaint.speed]
+    return [complaint.turns[leading_shaft(scene)] * complaint.speed]
 
 
 def _near_modes(modes: ModalAnalysis, complaint: Complaint) -> tuple[NearMode, ...]:
@@ -200,9 +236,13 @@ def _orders(complaint: Complaint) -> list[float]:
     return [each.order * complaint.per_pitch for each in complaint.within]
 
 
+def _highest_order(complaint: Complaint) -> int:
+    return max(int(np.ceil(max(_orders(complaint)) - 1e-6)), 1)
+
+
 def _response(system: System, complaint: Complaint, speed: Sequence[float]) -> ForcedResponse | None:
     """Return the linear response up to the orders that pass; None: without a speed, or nothing excites."""
-    highest = max(int(np.ceil(max(_orders(complaint)) - 1e-6)), 1)
+    highest = _highest_order(complaint)
     if not speed or highest > MOST_ORDERS:
         return None
     try:

@@ -10,7 +10,7 @@ import numpy as np
 
 from bounds import engineering
 from bounds.types import Json
-from dynamics.assembly.assemble import assemble
+from dynamics.assembly.assemble import System, assemble
 from dynamics.linearize import ModalAnalysis, modal_analysis
 from dynamics.linearize.modal_analysis import resolved_to
 from lineofaction.gearbox.convert.case import boundary_errors
@@ -35,6 +35,13 @@ MOST_GROUPS = 12
 """Speeds whose modes are listed to be looked at."""
 
 
+def modes_cost(system: System, speeds: int) -> StudyCost:
+    """Return what the modes of a system at rest and at so many speeds take."""
+    freedoms = system.freedoms.column.size
+    at_rest, each = _AT_REST * freedoms**2, _LINEAR * freedoms + _CUBIC * freedoms**3
+    return StudyCost((Work("modes at rest", at_rest), Work("modes at speed", each, speeds)))
+
+
 class _ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
     inputs, answer, file = Inputs, ModesFigures, array_file(ModalAnalysis)
 
@@ -49,9 +56,8 @@ class _ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
                 return None
             speeds = np.array(inputs.speed_rpm) * RPM
             highest = resolved_to(sized(before), speeds, inputs.orders, inputs.highest_frequency_hz)
-            freedoms = sized(before, highest or None).freedoms.column.size
-        at_rest, each = _AT_REST * freedoms**2, _LINEAR * freedoms + _CUBIC * freedoms**3
-        return StudyCost((Work("modes at rest", at_rest), Work("speeds", each, len(speeds))))
+            system = sized(before, highest or None)
+        return modes_cost(system, len(speeds))
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> ModalAnalysis:
         with boundary_errors():

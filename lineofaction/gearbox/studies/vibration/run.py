@@ -29,9 +29,10 @@ from lineofaction.gearbox.level_quantity import velocity_of
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
+from lineofaction.gearbox.studies.cost import StudyCost
 from lineofaction.gearbox.studies.excitations import order_names, with_facts_of_scene
 from lineofaction.gearbox.studies.figures import figures_of
-from lineofaction.gearbox.studies.housings import bearing_forces
+from lineofaction.gearbox.studies.housings import bearing_forces, predicted_forces
 from lineofaction.gearbox.studies.motion import OfferedMotion, UnitMotion
 from lineofaction.gearbox.studies.vibration import Inputs, VibrationFigures
 from lineofaction.gearbox.units import RPM
@@ -92,6 +93,11 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, HousingVibrationResul
         if not any(part.has_surface for part in scene.housings):
             value = f"{len(scene.housings)} by their matrices" if scene.housings else "none"
             raise BadInput.of("housings", value, "one with mass, a surface or points", _ADVICE)
+
+    def predicted(self, scene: SceneInput, inputs: Inputs, _cache: Path | None) -> StudyCost | None:
+        """Return what the forces on bearings take, with which the motion of the housing is a product."""
+        seen = any(part.has_surface for part in scene.housings)
+        return predicted_forces(scene, inputs) if seen else None
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> HousingVibrationResult:
         tabled = subject.steady
