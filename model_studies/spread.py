@@ -5,7 +5,6 @@ from __future__ import annotations
 import warnings
 
 import numpy as np
-from scipy.stats import binom, rankdata
 
 from bounds.types import FloatArray
 
@@ -39,6 +38,8 @@ def quantile_bounds(
     The number of samples below the quantile is binomial, so two order statistics enclose it with at least the
     given confidence, whatever the distribution (Conover: Practical Nonparametric Statistics, 3.2).
     """
+    from scipy.stats import binom  # noqa: PLC0415 (start-up time)
+
     count, loads = sample.shape
     ordered = np.sort(sample, axis=0)
     outside = 0.5 * (1.0 - confidence)
@@ -55,6 +56,8 @@ def rank_correlation(deviation: FloatArray, sample: FloatArray) -> FloatArray:
     `deviation` (N, d) is taken from the design, `sample` (N, L) follows it. A response may grow to both sides
     of a design, so the size of a deviation counts as well as its value.
     """
+    from scipy.stats import rankdata  # noqa: PLC0415 (start-up time)
+
     ranks = rankdata(sample, axis=0)
     signed, sized = (_correlation(rankdata(x, axis=0), ranks) for x in (deviation, np.abs(deviation)))
     return np.where(np.abs(sized) > np.abs(signed), sized, signed)

@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 from scipy.io import wavfile
-from scipy.signal import butter, detrend, sosfiltfilt
 
 from bounds import above, at_least, at_most
 from dynamics.checks import increasing, integer, one_of, positive
@@ -146,6 +145,8 @@ def audible(values: FloatArray, sample_rate: float) -> FloatArray:
     samples = np.shape(values)[-1]
     if samples < 4:
         raise InputError("values", samples, "at least 4 samples")
+    from scipy.signal import butter, detrend, sosfiltfilt  # noqa: PLC0415 (start-up time)
+
     sections = butter(SLOPE, LOWEST, "highpass", fs=sample_rate, output="sos")
     beyond = min(round(sample_rate / LOWEST), samples - 1)  # a period of the lowest frequency, reflected
     return np.asarray(sosfiltfilt(sections, detrend(values), padtype="even", padlen=beyond))

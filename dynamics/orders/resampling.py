@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.signal import fftconvolve, firwin, kaiser_beta, resample_poly
 
 from bounds import at_most
 from dynamics.checks import integer, one_of
@@ -78,6 +77,8 @@ def resampled(values: FloatArray, up: int, down: int, half_length: int) -> Float
     within 3e-6; those as far above it are removed by 112 dB. `half_length`: of the filter, in samples of the
     lower rate.
     """
+    from scipy.signal import firwin, resample_poly  # noqa: PLC0415 (start-up time)
+
     if up == down:
         return np.array(values, dtype=float)
     steps = max(up, down)
@@ -104,6 +105,8 @@ def low_passed(values: FloatArray, frequency: float) -> FloatArray:
     Contents up to the frequency keep their amplitude within 0.01 %; those 10 % above it are removed by 80 dB.
     `frequency`: cycles a sample; a series that holds no more is returned as it is.
     """
+    from scipy.signal import fftconvolve, firwin, kaiser_beta  # noqa: PLC0415 (start-up time)
+
     middle = frequency * (1.0 + 0.5 * TRANSITION)
     if frequency * (1.0 + TRANSITION) >= NYQUIST:
         return np.array(values, dtype=float)

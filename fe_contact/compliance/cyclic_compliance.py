@@ -104,13 +104,12 @@ class _SectorSizes(NamedTuple):
         return min(SPACE * self.loads, 0.75 * self.cut)
 
 
-@lru_cache(maxsize=64)
 def predict_cost(
     gear: Toothing,
     recipe: SectorRecipe | None = None,
     cache: Path | None = None,
 ) -> PredictedCost:
-    """Predict what `flank_compliance_3d` costs for a gear that is not in the cache.
+    """Predict what `flank_compliance_3d` costs for a gear that is not in the cache, by its shape alone.
 
     Parameters
     ----------
@@ -119,7 +118,11 @@ def predict_cost(
     cache : Path, optional
         Directory of what is known of the host.
     """
-    recipe = recipe or SectorRecipe.standard(gear)
+    return _predicted(gear.unmodified(), recipe or SectorRecipe.standard(gear), cache)
+
+
+@lru_cache(maxsize=64)
+def _predicted(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> PredictedCost:
     grid = sector_outline(tooth_profile(gear), recipe).grid
     sector = swept_sector(grid, gear.face_width, recipe, bore_support(gear), gear.web)
     tree = sector_tree(sector)

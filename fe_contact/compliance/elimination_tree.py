@@ -136,7 +136,7 @@ class _Builder:
         self.occurrences[kept] += 1  # never complete
         self.order = np.full(len(self.occurrences), -1)
         self.done = 0
-        self._seen = np.zeros(nodes.max() + 1, dtype=bool)
+        self._seen = np.zeros(nodes.max() + 2, dtype=bool)  # the last for -1
 
     def build(self, group: IntArray) -> _Draft:
         """Return the front of a group of elements and number what it eliminates."""
@@ -173,11 +173,11 @@ class _Builder:
 
     def _shared(self, group: IntArray, other: IntArray) -> int:
         mine, theirs = self.nodes[group], self.nodes[other]
-        mine = mine[mine >= 0]
         self._seen[mine] = True
-        count = int(self._seen[np.unique(theirs[theirs >= 0])].sum())
+        self._seen[-1] = False
+        both = theirs[self._seen[theirs]]
         self._seen[mine] = False
-        return count
+        return len(set(both.tolist()))
 
 
 def sector_tree(sector: SweptSector) -> EliminationTree:

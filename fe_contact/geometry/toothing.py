@@ -306,6 +306,17 @@ class Toothing:
         """Return the gear if it is spur or right hand, else its mirror image."""
         return replace(self, helix_angle=abs(self.helix_angle))
 
+    def unmodified(self) -> Self:
+        """Return the gear that is meshed: flanks as involute helicoids, all teeth alike."""
+        return replace(
+            self,
+            modification=UNMODIFIED,
+            pitch_deviation=NO_PITCH_DEVIATION,
+            run_out=NO_RUN_OUT,
+            waves=(),
+            tooth_flanks=(),
+        )
+
     def with_parts(self, parts: Collection[str]) -> Toothing:
         """Return the gear without the optional parts of its body that are not among `parts`.
 

@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.special import ndtri
-from scipy.stats import binomtest, sobol_indices
 
 from fe_contact.errors import InputError, integer, positive
 from fe_contact.geometry import ParallelAxes, Toothing
@@ -270,6 +269,8 @@ def _shares(
     limit: OrderLimit, amplitude: FloatArray, confidence: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the share of pairs (N, L) above a limit, and its bounds, (L,) each."""
+    from scipy.stats import binomtest  # noqa: PLC0415 (start-up time)
+
     above = amplitude > limit.amplitude
     bounds = [
         binomtest(int(count), len(above)).proportion_ci(confidence, method="wilson")
@@ -292,6 +293,8 @@ def _level(limit: OrderLimit, drawn: DrawnPairs, load: int) -> Callable[[FloatAr
 
 def _indices(limit: OrderLimit, drawn: DrawnPairs, load: int) -> tuple[FloatArray, FloatArray]:
     """Return the first-order and total Sobol' indices of the level, (d,) each."""
+    from scipy.stats import sobol_indices  # noqa: PLC0415 (start-up time)
+
     level = _level(limit, drawn, load)
     indices = sobol_indices(
         func=lambda deviation: level(deviation)[None], n=BASE_PAIRS, dists=list(drawn.of_pair), rng=drawn.seed

@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
-from scipy.stats import sobol_indices
 
 from fe_contact.contact import Candidates
 from fe_contact.contact.load_weights import load_weights
@@ -200,6 +199,8 @@ def _indices(
     limit: OrderLimit, passing: ToothPassing, teeth: ToothTolerances, load: int, seed: int
 ) -> tuple[FloatArray, FloatArray]:
     """Return the first-order and total Sobol' indices of the level, (d,) each."""
+    from scipy.stats import sobol_indices  # noqa: PLC0415 (start-up time)
+
     one = teeth.drawn(BASE_PAIRS, seed + 1)
     other = teeth.drawn(BASE_PAIRS, seed + 1, after=teeth.dimensions)
 

@@ -65,10 +65,23 @@ print(*sys.modules, file=sys.stderr)
 
 
 def test_computing_verbs_start_without_what_some_scenes_need() -> None:
-    code = "import sys, lineofaction.cli.analyze, lineofaction.cli.simulate; print(*sys.modules)"
-    loaded = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=300
-    ).stdout.split()
+    loaded = modules_of("import lineofaction.cli.analyze, lineofaction.cli.simulate")
     assert "dynamics.scene" in loaded
     unneeded = {"scipy.stats", "scipy.optimize", "scipy.interpolate", "scipy.spatial", "httpx2", "xarray"}
-    assert not unneeded & set(loaded)
+    assert not unneeded & loaded
+
+
+def test_what_every_study_would_cost_is_said_without_statistics() -> None:
+    """All studies are loaded for the state of a folder; draws, filters and tests only where they are made."""
+    loaded = modules_of(
+        "from lineofaction.gearbox.registry import STUDIES; [own.run for own in STUDIES.values()]"
+    )
+    assert "dynamics.orders.resampling" in loaded and "fe_contact.microgeometry.order_limit" in loaded
+    assert not {"scipy.stats", "scipy.signal", "xarray"} & loaded
+
+
+def modules_of(code: str) -> set[str]:
+    """Return the names of the modules that are loaded once a process has run a line."""
+    command = [sys.executable, "-c", f"{code}; import sys; print(*sys.modules)"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=300)
+    return set(done.stdout.split())

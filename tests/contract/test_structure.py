@@ -11,15 +11,15 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (44_562, 839),
-    ("dynamics",): (45_816, 915),
-    ("lineofaction.gearbox",): (28_939, 594),
+    ("fe_contact",): (44_589, 839),
+    ("dynamics",): (45_820, 915),
+    ("lineofaction.gearbox",): (28_941, 594),
     ("lineofaction.report",): (12_984, 245),
     ("service",): (15_259, 361),
     ("lineofaction.client",): (2_944, 55),
     ("lineofaction.cli",): (5_807, 85),
     ("lineofaction.hardcases",): (3_841, 35),
-    ("bounds", "host", "model_studies"): (4_537, 157),
+    ("bounds", "host", "model_studies"): (4_540, 157),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 PAGE = 8_280

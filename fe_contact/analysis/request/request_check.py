@@ -120,7 +120,11 @@ def check_request(
 
 
 def as_checked(
-    pair: ParallelAxes | Checked, at: TableAxes | OperatingPoint | None, options: AnalysisOptions
+    pair: ParallelAxes | Checked,
+    at: TableAxes | OperatingPoint | None,
+    options: AnalysisOptions,
+    *,
+    neglect: bool = True,
 ) -> Checked:
     """Check the inputs of a table or of one point, as `check_request` does; what is checked stays as it is.
 
@@ -131,7 +135,7 @@ def as_checked(
     if at is None:
         raise TypeError("a pair needs the axes of its table, or its operating point")
     if isinstance(at, TableAxes):
-        return check_request(pair, at, options)
+        return check_request(pair, at, options, neglect=neglect)
     # what does not show in the transmission error may show in pressures and stresses
     return check_request(pair, at.axes, options, whole_table=False, neglect=False)
 

@@ -49,11 +49,16 @@ class Sensitivity:
     center_distance_change: RippleCurve
 
     @staticmethod
-    def request(pair: ParallelAxes | Checked, axes: TableAxes | None, options: AnalysisOptions) -> Checked:
+    def request(
+        pair: ParallelAxes | Checked,
+        axes: TableAxes | None,
+        options: AnalysisOptions,
+        *,
+        neglect: bool = True,
+    ) -> Checked:
         """Check the request over both deviations, once; what is checked stays as it is."""
-        return as_checked(
-            pair, axes, replace(options, model="3d" if options.model == "auto" else options.model)
-        )
+        model = "3d" if options.model == "auto" else options.model
+        return as_checked(pair, axes, replace(options, model=model), neglect=neglect)
 
 
 def study_sensitivity(

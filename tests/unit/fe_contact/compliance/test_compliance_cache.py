@@ -29,7 +29,8 @@ from fe_contact.compliance import (
     flank_compliances_3d,
     predict_cost,
 )
-from fe_contact.geometry import Gear
+from fe_contact.geometry import FlankModification, Gear
+from fe_contact.geometry.tooth_deviations import RunOut
 from fe_contact.material import Material
 from fe_contact.mesh import ClampedBore, PlaneStrain, SectorRecipe
 from host import lock
@@ -330,3 +331,15 @@ def test_cost_is_known_before_the_run(gear: Gear) -> None:
     tracemalloc.stop()
     assert 0.8 < predicted.bytes / peak < 1.8
     assert predict_cost(gear).seconds > predicted.seconds
+
+
+@pytest.mark.law
+def test_gears_of_one_shape_cost_the_same_and_are_predicted_once() -> None:
+    """Reliefs and deviations change no body; another tip diameter does."""
+    recipe = SectorRecipe.draft(SPUR)
+    plain = predict_cost(SPUR, recipe)
+    relief = FlankModification(tip_relief=20e-6, tip_relief_length=1e-3)
+    relieved = replace(SPUR, modification=relief, run_out=RunOut(10e-6))
+    assert predict_cost(relieved, recipe) is plain
+    shorter = replace(relieved, tip_diameter=2.0 * SPUR.tip_radius - 0.2 * SPUR.normal_module)
+    assert predict_cost(shorter, recipe).bytes != plain.bytes
