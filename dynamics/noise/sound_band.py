@@ -196,6 +196,16 @@ frequencies too high, and walls of castings vary by some per cent."""
 USUAL_RANGES = {name: guess.usual for name, guess in GUESSES.items()}
 
 
+def responses_of_band(scene: Scene, *, mounted: bool) -> int:
+    """Return how many linear responses a band takes over all ranges, in a scene whose housings radiate.
+
+    `mounted`: whether one of them stands on mounts.
+    """
+    bare = SoundModel(scene, {}, {})
+    of_scene = sum(guess.varied(bare, 2.0) is not bare for guess in GUESSES.values())
+    return 2 + 2 * (len(("housing_damping", "housing_frequency")) + mounted + of_scene) + CASES
+
+
 MOST_MISSED = 10.0
 """dB; speeds that miss more are no map of a resonance."""
 

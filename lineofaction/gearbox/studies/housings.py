@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
 
@@ -124,10 +124,13 @@ def sized_response(scene: Scene, inputs: OverOrders, means: Means) -> tuple[Forc
     return replace(response, facts=facts | known), system
 
 
-def predicted_response(scene: SceneInput, inputs: OverOrders) -> StudyCost | None:
+def predicted_response(
+    scene: SceneInput, inputs: OverOrders, further: Callable[[Scene], int] | None = None
+) -> StudyCost | None:
     """Return what the `sized_response` of a scene takes, before its tables; None: nothing predicts it.
 
-    Modes that a solid housing keeps are not known before and do not count. Raises `BadInput`: no such scene.
+    `further`: how many responses of varied scenes there are beside it. Modes that a solid housing keeps are
+    not known before and do not count. Raises `BadInput`: no such scene.
     """
     with boundary_errors():
         before = scene_before_tables(scene)
@@ -135,16 +138,26 @@ def predicted_response(scene: SceneInput, inputs: OverOrders) -> StudyCost | Non
         return None
     speed = np.array(inputs.speed_rpm) * RPM
     try:
-        cost = response_cost(sized(before), speed, inputs.orders)
+        began = cpu_seconds()
+        system = sized(before)
+        assembly = cpu_seconds() - began
+        cost = response_cost(system, speed, inputs.orders)
     except (InputError, SolveError):
         return None  # the study says it, on its own tables
     systems = Work("systems with or without an effect", cost.system, cost.systems)
-    return StudyCost((Work("speeds", cost.speed, speed.size), systems))
+    parts = Work("speeds", cost.speed, speed.size), systems
+    if further is None:
+        return StudyCost(parts)
+    return StudyCost(
+        (*parts, Work("responses of the band", assembly + speed.size * cost.speed, further(before)))
+    )
 
 
-def predicted_forces(scene: SceneInput, inputs: OverSpeedsOrRun) -> StudyCost | None:
-    """Return what the `bearing_forces` take; None as of `predicted_response`, and of a run: none is read."""
-    return predicted_response(scene, inputs) if inputs.run is None else None
+def predicted_forces(
+    scene: SceneInput, inputs: OverSpeedsOrRun, further: Callable[[Scene], int] | None = None
+) -> StudyCost | None:
+    """Return what the `bearing_forces` take, as `predicted_response`; None of a run: none is read."""
+    return predicted_response(scene, inputs, further) if inputs.run is None else None
 
 
 def no_surface(housings: list[str]) -> BadInput:

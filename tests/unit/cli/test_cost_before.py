@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import re
+import tomllib
 from collections import Counter, OrderedDict
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -16,18 +18,26 @@ from spur_case import spur_case
 from host.directories import cache_home
 from lineofaction.cli import run_study, simulate
 from lineofaction.cli.status import run_status
-from lineofaction.cli.subjects import simulation_cost, study_cost, table_cost
+from lineofaction.cli.subjects import simulation_cost, study_cost, table_cost, tabled_scene
 from lineofaction.gearbox.convert import live
 from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.convert.live import plan_of
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, read_model, validated
+from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.cost import CASES, StudyCost, Work
 from lineofaction.gearbox.studies.study import run
 from lineofaction.gearbox.subjects import scene_of
 
+sound_band_module = import_module("dynamics.noise.sound_band")
 EXAMPLES = Path(__file__).parents[3] / "examples"
 SPEEDS = [100.0 * k for k in range(1, 61)]
+CHANGE: dict[str, Any] = {
+    "after": tomllib.loads((EXAMPLES / "palermo_spur_20_20.toml").read_text()),
+    "speed_rpm": SPEEDS[:6],
+    "orders": 4,
+    "load_cases": [{"name": "whole"}],
+}
 GROWING: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "sensitivity": (
         {"misalignment_um": [0.0], "center_distance_change_percent": [0.0, 0.1]},
@@ -215,6 +225,48 @@ def test_a_vibration_costs_the_response_where_something_vibrates_and_no_run_is_n
     assert costs == [alike, None, None] and alike is not None
 
 
+def test_the_band_of_a_sound_costs_as_many_responses_as_it_has(
+    housed: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And two more where it stands on mounts, whose stiffness is guessed too."""
+    study, (scene, folder) = STUDIES["noise"], scene_of(housed)
+    fields = {"speed_rpm": [300.0, 600.0], "orders": 2, "radiation": "equivalent_radiated_power"}
+    inputs, alone = (validated(study.inputs, {**fields, "band": band}) for band in (True, False))
+    responses: list[float] = []
+    forced = sound_band_module.forced_power
+
+    def counted(*values: Any) -> Any:
+        responses.append(1.0)
+        return forced(*values)
+
+    monkeypatch.setattr(sound_band_module, "forced_power", counted)
+    tabled = tabled_scene(scene, folder, None, lambda *_: None)
+    study.run.compute(tabled, inputs, Means(cache_home(), lambda *_: None))
+    foot = scene.housings[0].feet[0].model_copy(update={"mount_stiffness_n_per_m": (1e6, 1e6, 1e6)})
+    part = scene.housings[0].model_copy(update={"feet": (foot,)})
+    mounted = scene.model_copy(update={"housings": (part,)})
+    stands, hangs = (study_cost(study, own, folder, inputs) for own in (scene, mounted))
+    assert stands is not None and hangs is not None
+    assert (stands.parts[-1].pieces, hangs.parts[-1].pieces) == (len(responses), len(responses) + 2)
+    assert study_cost(study, scene, folder, alone) == StudyCost(stands.parts[:-1])
+
+
+def test_a_sound_whose_radiation_may_take_more_is_left_out(housed: Path) -> None:
+    study, (scene, folder) = STUDIES["noise"], scene_of(housed)
+    for fields in ({}, {"boundary_elements": False}, {"sensitivities": True}, {"run": "0" * 64}):
+        speeds = {} if "run" in fields else {"speed_rpm": SPEEDS[:6]}
+        assert study_cost(study, scene, folder, validated(study.inputs, speeds | fields)) is None
+
+
+def test_a_change_costs_two_contacts_a_pair_and_two_of_the_designs() -> None:
+    study, (scene, folder) = STUDIES["change"], scene_of(EXAMPLES / "palermo_scene.toml")
+    for samples in (10, 40):
+        inputs = validated(study.inputs, CHANGE | {"tolerances": {"samples": samples}})
+        cost = study_cost(study, scene, folder, inputs)
+        assert cost is not None
+        assert [part.pieces for part in cost.parts] == [1, 2 * samples + 2]
+
+
 def test_a_study_whose_runs_nobody_predicts_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
     study, (scene, folder) = STUDIES["study"], scene_of(EXAMPLES / "palermo_scene.toml")
     costs = iter((StudyCost((Work("runs", 2.0),)), None, None))  # of one point it is known
@@ -238,13 +290,22 @@ def test_the_status_sums_what_is_due(case: CheckedCase, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("subject", ["case", "scene"])
 def test_the_status_has_the_cost_of_each_of_these_verbs(
-    subject: str, case: CheckedCase, tmp_path: Path, request: pytest.FixtureRequest
+    subject: str,
+    case: CheckedCase,
+    tmp_path: Path,
+    request: pytest.FixtureRequest,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     verbs = {"ablate", "frontier", "root-stress"}
     if subject == "scene":
-        verbs |= {"vibration"}
+        verbs |= {"vibration", "noise", "complaint", "change"}
         (tmp_path / "case.toml").unlink()
-        request.getfixturevalue("housed")
+        scene = request.getfixturevalue("housed")
+        heard = {"complaint": {"frequency_hz": 150.0, "speed_rpm": 450.0}}
+        scene.write_text(json.dumps(json.loads(scene.read_text()) | heard))
+        (tmp_path / "change.json").write_text(json.dumps(CHANGE))
+        for radiation in ("_PANELS", "BUDGET"):  # of a scene as small as this they take more
+            monkeypatch.setattr(import_module("lineofaction.gearbox.studies.noise.run"), radiation, 0.0)
     facts = json.loads(loa("status", tmp_path, "--json").stdout)
     assert verbs <= {row["verb"] for row in facts["results"] if (row["cpu_seconds"] or 0.0) > 0.0}
 

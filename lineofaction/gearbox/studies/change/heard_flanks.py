@@ -12,9 +12,10 @@ import numpy as np
 from dynamics.acoustics import ElementalRadiators
 from dynamics.assembly.assemble import System, assemble
 from dynamics.deflection.loaded_scene import with_loads
+from dynamics.errors import DynamicsError
 from dynamics.linearize import FlankTransfer, OtherFlanks, flank_transfer
 from dynamics.linearize.operating_speeds import common_period
-from dynamics.linearize.transfer import FlankExcitation
+from dynamics.linearize.transfer import FlankExcitation, transfer_seconds
 from dynamics.noise import (
     BearingForce,
     Quantity,
@@ -38,6 +39,7 @@ from fe_contact.microgeometry.scatter import MISALIGNMENT
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.housings import FOLDER
 from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
+from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.change import (
     BEARING_FORCE,
     SOUND_POWER,
@@ -48,6 +50,7 @@ from lineofaction.gearbox.studies.change import (
 from lineofaction.gearbox.studies.change.question import HeardQuestion, heard_housing
 from lineofaction.gearbox.studies.change.result import ALL
 from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.cost import scene_before_tables, sized
 from lineofaction.gearbox.studies.deflect.cases import load_cases
 from lineofaction.gearbox.studies.housings import radiation_of
 from lineofaction.gearbox.units import MM, RPM, UM
@@ -202,6 +205,39 @@ def heard_loads(
         form = _form(subject, transfer, model, question.heard)
         cases.append(HeardLoad(load, OtherFlanks.of(system, index, transfer), transfer, form, lines))
     return tuple(cases)
+
+
+_AT_REST, _LEVEL = (6e-3, 1.2e-6), 0.01
+"""CPU seconds of a table at rest in the scene, and by freedoms squared; a level over its transfer functions.
+
+5 to 170 freedoms, within a factor of 2.
+"""
+
+
+class LevelsCost(NamedTuple):
+    """CPU seconds of the transfer functions of all load cases, and of the levels of a table; the scene."""
+
+    transfer: float
+    each: float
+    scene: Scene
+
+
+def levels_cost(scene: SceneInput, mesh: str, question: HeardQuestion) -> LevelsCost | None:
+    """Return what levels by the flanks of a mesh take; None: nothing predicts it.
+
+    Neither modes nor the radiation of a solid housing are known before; they do not count. Raises `BadInput`.
+    """
+    before = scene_before_tables(scene)
+    if before is None:
+        return None
+    cases, speed = len(question.load_cases), np.array(question.speed_rpm) * RPM
+    try:
+        system = sized(before)
+        transfer = cases * transfer_seconds(system, speed, orders_heard(system, mesh, question.orders))
+    except (DynamicsError, InputError):
+        return None  # the study says it, on its own tables
+    at_rest = _AT_REST[0] + _AT_REST[1] * system.freedoms.column.size**2
+    return LevelsCost(transfer, cases * at_rest + _LEVEL * transfer, before)
 
 
 def orders_heard(system: System, mesh: str, orders: int) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
@@ -49,6 +50,7 @@ from dynamics.noise.estimated_radiation import NAME as ESTIMATE
 from dynamics.noise.exact_lines import BUDGET, EXACT, FLAT, line_cost
 from dynamics.noise.floor_sound import mean_square_floor
 from dynamics.noise.housing_radiation import resolved_frequency
+from dynamics.noise.sound_band import responses_of_band
 from dynamics.noise.sound_over_time import BLOCK
 from dynamics.results import RunResult
 from dynamics.types import ComplexArray, FloatArray
@@ -60,11 +62,13 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
+from lineofaction.gearbox.studies.cost import StudyCost
 from lineofaction.gearbox.studies.excitations import facts_of_scene, order_names
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.housings import (
     bearing_forces,
     no_surface,
+    predicted_forces,
     radiation_of,
     require_surface,
 )
@@ -95,6 +99,10 @@ def _write_panels(sound: RadiatedSound, _scene: SceneInput, file: Path) -> None:
     write_surface(file, panels.hull.nodes, panels.hull.triangles, {}, fields)
 
 
+_PANELS = 60.0
+"""CPU seconds of the panels of a housing at most, measured 5 to 60; they are kept."""
+
+
 class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
     inputs, answer, file = Inputs, NoiseFigures, array_file(RadiatedSound)
     writers = MappingProxyType({".vtu": _write_panels})
@@ -108,6 +116,23 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
             bound = f"left out with {PLANE.model_name}, which has no sound pressure"
             raise BadInput.of("microphone_mm", list(inputs.microphone_mm), bound, "Take the estimate.")
         require_surface(subject)
+
+    def predicted(self, scene: SceneInput, inputs: Inputs, _cache: Path | None) -> StudyCost | None:
+        """Return what the response and those of its band take; None where the radiation may take more.
+
+        That depends on the mesh of the housing, which is not made before. Nor are contacts of sensitivities
+        predicted.
+        """
+        sounding = [part for part in scene.housings if part.has_surface]
+        if inputs.sensitivities or not sounding:
+            return None
+        mounted = any(foot.mount_stiffness_n_per_m is not None for part in sounding for foot in part.feet)
+        band = partial(responses_of_band, mounted=mounted) if inputs.band else None
+        cost = predicted_forces(scene, inputs, band)
+        radiation = 0.0 if inputs.radiation == PLANE.model_name else _PANELS * len(sounding)
+        if inputs.radiation == ESTIMATE and inputs.boundary_elements:
+            radiation += BUDGET
+        return cost if cost is not None and cost.seconds >= radiation else None
 
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> RadiatedSound:
         subject = tabled.steady

@@ -12,9 +12,7 @@ import numpy as np
 
 from dynamics.assembly.assemble import assemble
 from dynamics.deflection.loaded_scene import with_loads
-from dynamics.errors import DynamicsError
 from dynamics.linearize.steady_vibration import excited
-from dynamics.linearize.transfer import transfer_seconds
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.condensed_request import condensed_pair
 from fe_contact.analysis.run_plan import predicted_designs
@@ -47,13 +45,13 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.change.heard_flanks import (
     UNITS,
     heard_loads,
+    levels_cost,
     line_names,
     mesh_index,
-    orders_heard,
     quantity_of,
 )
 from lineofaction.gearbox.studies.computation import Means
-from lineofaction.gearbox.studies.cost import StudyCost, Work, scene_before_tables, sized
+from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.deflect import Inputs as DeflectInputs
 from lineofaction.gearbox.studies.deflect.cases import load_cases
 from lineofaction.gearbox.studies.deflect.run import RUN as DEFLECT
@@ -73,12 +71,6 @@ from model_studies.stage_clock import StageClock
 
 WALK, FINISH, LINEARIZED = 20, 8, 2.5
 """Designs of a usual walk at few positions and of one that goes on in full; values that their slopes cost."""
-
-EXCITATION, LEVEL = (6e-3, 1.2e-6), 0.01
-"""CPU seconds of a table at rest in the scene, and by freedoms squared; a level over its transfer functions.
-
-5 to 170 freedoms, within a factor of 2.
-"""
 
 
 @dataclass(frozen=True)
@@ -196,21 +188,13 @@ def heard_cost(
 
     Neither modes nor the radiation of a solid housing are known before; they do not count. Raises `BadInput`.
     """
-    before = scene_before_tables(scene)
-    if before is None:
+    levels = levels_cost(scene, mesh.name, question)
+    if levels is None:
         return None
-    cases, speed = len(question.load_cases), np.array(question.speed_rpm) * RPM
-    try:
-        system = sized(before)
-        orders = orders_heard(system, mesh.name, question.orders)
-        transfer = cases * transfer_seconds(system, speed, orders)
-    except (DynamicsError, InputError):
-        return None  # the search says it, on its own tables
     predicted, search, stated = predicted_designs(request.checked, cache), request.search, question.tolerances
-    share = cases * BESIDE_EACH.size / request.checked.request.load.size
-    at_rest = EXCITATION[0] + EXCITATION[1] * system.freedoms.column.size**2
+    share = len(question.load_cases) * BESIDE_EACH.size / request.checked.request.load.size
     rough, full = (
-        share * predicted.design * part + cases * at_rest + LEVEL * transfer
+        share * predicted.design * part + levels.each
         for part in (min(search.exploration / search.positions, 1.0), 1.0)
     )
     spread = question.quantile is not None
@@ -218,14 +202,14 @@ def heard_cost(
     few, many = usual_heard_designs(search)
     parts = [
         Work("gears", predicted.bodies),
-        Work("transfer functions", transfer),
+        Work("transfer functions", levels.transfer),
         Work("designs", rough, few),
         Work("designs", full, many * nodes),
         Work("analyses", share * (predicted.design + predicted.errors), 2),
         Work("pairs", rough, 2 * stated.samples),
     ]
     cost = StudyCost(tuple(parts), predicted.bytes)
-    stands = before.meshes[mesh_index(before, mesh.name)].misalignment
+    stands = levels.scene.meshes[mesh_index(levels.scene, mesh.name)].misalignment
     if question.misalignment_um is None and predicted.across_face and not stands:
         cost += DEFLECT.predicted(scene, DeflectInputs(load_cases=question.load_cases), cache)
     return cost

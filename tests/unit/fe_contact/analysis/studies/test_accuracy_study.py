@@ -138,6 +138,8 @@ def test_a_prediction_has_the_fidelities_of_finite_elements_and_full_contact_by_
     assert [*told] == [*(result.name for result in spur.results if result.stages.get("compliance")), NAME]
     assert min(told.values()) > 0.0
     assert told[NAME] == pytest.approx(8.0 * predicted_frontier(checked, SPUR, 1, None)[NAME])
+    helical = Frontier.request(pair_of(0.3), *table_request(normal_forces=[500.0], positions=32))
+    assert [*predicted_frontier(helical, SPUR, 8, None)] == ["3d_draft", "3d_standard"]
 
 
 def test_errors_of_a_spur_pair_fall_from_fidelity_to_fidelity(spur):
