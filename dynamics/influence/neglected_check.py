@@ -159,8 +159,9 @@ def response_influences(scene: Scene, speed: FloatArray, time: float = 0.0) -> d
     return _influences(scene, assemble(scene), conditions_at(speed, time))
 
 
-_SOLVED, _BEGUN = 4.5e-8, 0.01
-"""CPU seconds of a line at a speed by freedoms squared, and of an effect beside its lines.
+_SOLVED, _VARYING, _BEGUN = 4.5e-8, 2e-3, 0.01
+"""CPU seconds of a line at a speed by freedoms squared, of stiffness that varies at a speed, and of an effect
+beside its lines.
 
 5 to 170 freedoms, 2 to 30 lines: within a factor of 2.
 """
@@ -181,7 +182,8 @@ def response_cost(system: System, speed: FloatArray, orders: int) -> ResponseCos
     """
     freedoms, switched = system.freedoms.column.size, len(_switchable(system))
     at = excited(system, 0.0, max(orders, FEWER))
-    each, fewer = (_SOLVED * freedoms**2 * possible_lines(at, count, speed).size for count in (orders, FEWER))
+    lines = (possible_lines(at, count, speed).size for count in (orders, FEWER))
+    each, fewer = (_VARYING + _SOLVED * freedoms**2 * count for count in lines)
     return ResponseCost(each, _BEGUN + fewer * min(speed.size, SPEEDS), 1 + switched)
 
 

@@ -41,6 +41,7 @@ from dynamics.linearize.steady_vibration import (
     with_receptances,
 )
 from dynamics.linearize.strongest_lines import require_memory, strongest_lines
+from dynamics.linearize.varying_stiffness import VaryingStiffness, still_motion
 from dynamics.motion.force_balance import block_diagonal
 from dynamics.results.array_file import ArrayFile, stored
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
@@ -223,6 +224,26 @@ class FlankTransfer(ArrayFile):
         ]
         v = solved(np.eye(len(self.force)) + taken[..., 1:], np.stack(right, axis=-1))
         return np.concatenate([np.zeros((*v.shape[:2], 1, v.shape[3])), v], axis=2)
+
+    def varied_inputs(self, at: Excited, flanks: FlankExcitation) -> tuple[ComplexArray, float]:
+        """Return `inputs` of flanks with tangents that vary with position, and the residual left, relative.
+
+        `at` is the scene about its equilibrium with them. With B = (1 + X A)^-1 they take v from the inputs
+        as in a scene of the receptances A B.
+        """
+        inputs, count = self.inputs(flanks), at.cycles[-1].rows.stop
+        taken = self._taken(flanks.tangent - self.tangent, flanks.viscous - self.viscous, self.motion)
+        reach = np.linalg.inv(np.eye(len(self.force)) + taken[..., 1:])[..., :count]
+        moved = np.einsum("rshc,shcf->shrf", self.motion[:count, :, :, 1:], reach)
+        made = np.einsum("rshc,shc->shr", self.motion[:count], inputs)
+        made[..., self.first[: len(flanks.static)]] -= flanks.static.T
+        rows = self.gradient[:count]
+        varying, residual = VaryingStiffness.of(at, self.harmonics, rows @ still_motion(at, rows)), 0.0
+        for s in range(self.speed.size if varying.parts else 0):
+            push, left = varying.push(moved[s], made[s])
+            inputs[s, :, 1:] -= np.einsum("hrf,hf->hr", reach[s], push[1:])
+            residual = max(residual, left)
+        return inputs, residual
 
     def _taken(self, stiffer: FloatArray, damped: FloatArray, moved: ComplexArray) -> ComplexArray:
         """Return the forces (S, H, R, c) that changed tangents (R, R) take of motions (R, S, H, c)."""

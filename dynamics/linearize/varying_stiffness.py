@@ -58,26 +58,24 @@ def varied(at: Excited, steady: Steady) -> tuple[Steady, FloatArray]:
     SolveError
         If nothing bounds the motion, or nothing holds the system at rest.
     """
-    speeds, count, rows = len(steady.omega), steady.harmonics.size, steady.force.shape[1]
+    speeds, rows = len(steady.omega), steady.force.shape[1]
     shift = np.zeros((len(at.cycles), speeds))
-    parts = [part for index in range(len(at.cycles)) for part in _varying(at, index, steady.harmonics)]
     direction = at.system.arrays.direction[:rows]
-    still = direction @ _at_rest(at, direction)
-    if not parts:
+    still = direction @ still_motion(at, direction)
+    varying = VaryingStiffness.of(at, steady.harmonics, still)
+    if not varying.parts:
         return steady, shift
     first = [cycle.rows.start for cycle in at.cycles]
     u, force = steady.displacement.copy(), np.repeat(steady.force, speeds // len(steady.force), axis=0)
     residual = steady.residual
     for s in range(speeds):
-        moved = direction @ steady.receptance[s]
-        made = np.zeros((count + 1, rows), dtype=complex)
-        made[1:] = 0.5 * (u[s] @ direction.T)
-        made[1:, first] -= 0.5 * steady.static.T
-        push, left = _push(parts, np.concatenate([still[None], moved]), made)
+        made = u[s] @ direction.T
+        made[:, first] -= steady.static.T
+        push, left = varying.push(direction @ steady.receptance[s], made)
         if not left <= ROUNDED:
             raise unbounded(at.linear, steady.omega[s : s + 1])
-        u[s] -= 2.0 * np.einsum("hnf,hf->hn", steady.receptance[s], push[1:])
-        force[s] -= 2.0 * push[1:].T
+        u[s] -= np.einsum("hnf,hf->hn", steady.receptance[s], push[1:])
+        force[s] -= push[1:].T
         shift[:, s] = -(still @ push[0].real)[first]
         residual = max(residual, left)
     return replace(steady, displacement=u, force=force, residual=residual), shift
@@ -143,6 +141,39 @@ class _Varying:
         return np.asarray(np.fft.rfft(force, axis=0)[self.line])
 
 
+@dataclass(frozen=True)
+class VaryingStiffness:
+    """The tangents of flanks about an equilibrium less their means, in H harmonics.
+
+    Attributes
+    ----------
+    parts : tuple
+        Of the flanks whose tangents vary.
+    still : (R', R') array
+        Static receptance of the rows of all driving flanks, m/N.
+    """
+
+    parts: tuple[_Varying, ...]
+    still: FloatArray
+
+    @classmethod
+    def of(cls, at: Excited, harmonics: IntArray, still: FloatArray) -> VaryingStiffness:
+        """Look at the flanks `at` their equilibrium."""
+        flanks = range(len(at.cycles))
+        return cls(tuple(part for index in flanks for part in _varying(at, index, harmonics)), still)
+
+    def push(self, moved: ComplexArray, made: ComplexArray) -> tuple[ComplexArray, float]:
+        """Return what the varying tangents take at a speed (H + 1, R'), N, and the residual left, relative.
+
+        The first is the mean, the others are amplitudes. `moved` (H, R', R') are receptances of the rows,
+        m/N, and `made` (H, R') amplitudes of what makes force with the mean tangents, m.
+        """
+        whole = np.concatenate([np.zeros_like(made[:1]), 0.5 * made])
+        push, left = _solved(self.parts, np.concatenate([self.still[None], moved]), whole)
+        push[1:] *= 2.0
+        return push, left
+
+
 def _varying(at: Excited, index: int, harmonics: IntArray) -> list[_Varying]:
     """Return the flank of a mesh; nothing where its tangents do not vary or it does not turn."""
     cycle, period = at.cycles[index], at.system.scene.meshes[index].table.period
@@ -174,7 +205,9 @@ def _alike(cycle: FlankCycle) -> bool:
     return bool(most <= ROUNDING * np.max(np.abs(cycle.tangent)))
 
 
-def _push(parts: list[_Varying], moved: ComplexArray, made: ComplexArray) -> tuple[ComplexArray, float]:
+def _solved(
+    parts: tuple[_Varying, ...], moved: ComplexArray, made: ComplexArray
+) -> tuple[ComplexArray, float]:
     """Solve the balance at a speed, and return the residual that is left, relative.
 
     Parameters
@@ -221,7 +254,7 @@ def _complex(real: FloatArray, count: int, rows: int) -> ComplexArray:
     return harmonics
 
 
-def _at_rest(at: Excited, rows: FloatArray) -> FloatArray:
+def still_motion(at: Excited, rows: FloatArray) -> FloatArray:
     """Displacements (n, f) per static force along rows (f, n); `SolveError` where a motion is free."""
     per_meter = 1.0 / at.linear.scale
     held = per_meter[:, None] * at.linear.stiffness * per_meter

@@ -126,14 +126,16 @@ def test_the_sample_is_that_of_the_tolerances_of_the_case() -> None:
 
 @pytest.mark.parametrize("side", ["before", "after"])
 def test_as_designed_is_what_a_whole_analysis_of_the_scene_gives(side: str) -> None:
-    """Bearing forces of the forced response with the table of the case, not of condensed gears."""
+    """Bearing forces of the forced response with the table of the case lie within the stated error."""
     whole = scene()
     whole["meshes"][0]["case"] = RELIEVED if side == "after" else case()
     found = response(whole, {name: QUESTION[name] for name in ("speed_rpm", "orders")})
     square = 0.5 * np.sum(np.abs(found.bearing_force[:, :3]) ** 2, axis=(0, 1)).max(axis=0)
-    level = getattr(relieved(), side).nominal[1, 1:]
-    loud = level > level.max() - 25.0
-    np.testing.assert_allclose(level[loud], 10.0 * np.log10(square)[loud], atol=0.2)
+    levels = getattr(relieved(), side)
+    level, (below, above) = levels.nominal[1, 1:], levels.error[:, 1, 1:]
+    off, loud = 10.0 * np.log10(square) - level, level > level.max() - 25.0
+    assert np.all((off >= -below) & (off <= above), where=loud), (off, below, above)
+    assert np.max(np.abs(off[loud])) > 0.1  # by the stiffness that varies
 
 
 def test_twice_the_transmission_error_is_6_db_louder(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -111,7 +111,8 @@ class HeardLoad:
     def errors(self, table: SteDatabase, worst_speed: bool) -> FloatArray:
         """Return how far the levels may be below and above for the errors of a table, (2, K) dB.
 
-        Those of transmission error, load arm and friction are independent; each adds in phase at worst.
+        Those of transmission error, load arm and friction are independent; each adds in phase at worst. A
+        stiffness that varies with position, which the levels leave out, comes on top.
         """
         scene = self.with_table(table)
         flanks = scene.excitation
@@ -129,7 +130,9 @@ class HeardLoad:
             self.levels(each**2, worst_speed)
             for each in (np.maximum(size - off, CANCELED * size), size, size + off)
         )
-        return np.stack([own - low, high - own])
+        varied = self.transfer.varied_inputs(scene.at, flanks)[0]
+        left_out = self.levels(self.form.weighted(varied), worst_speed) - own
+        return np.stack([own - low - np.minimum(left_out, 0.0), high - own + np.maximum(left_out, 0.0)])
 
 
 @dataclass(frozen=True)

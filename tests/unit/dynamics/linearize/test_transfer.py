@@ -12,7 +12,8 @@ from two_stage_scenes import two_stages
 
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
-from dynamics.linearize import harmonic_response
+from dynamics.linearize import forced_response, harmonic_response
+from dynamics.linearize.steady_vibration import excited
 from dynamics.linearize.transfer import FlankTransfer, flank_transfer, transfer_seconds
 
 ORDERS = 4
@@ -53,6 +54,24 @@ def test_far_flanks_respond_as_a_scene_with_them(rolling: bool) -> None:
     bearings = slice(own.first[2], None)
     moved = np.abs(flanks.tangent - own.tangent)[bearings, bearings].max(initial=0.0)
     assert bool(moved > 1e-3 * np.abs(own.tangent).max()) is rolling
+
+
+def test_with_tangents_that_vary_flanks_respond_as_a_scene_with_them() -> None:
+    """Of the scene itself and of far flanks; with the mean tangents alone forces are another."""
+    own = transfer()
+    for scene in (unit(), unit(far_table(), table())):
+        system = assemble(scene)
+        direct, at = forced_response(system, SPEEDS, ORDERS), excited(system, 0.0, ORDERS)
+        inputs, residual = own.varied_inputs(at, own.excitation(system))
+        assert residual < 1e-8
+        kept = np.isin(own.order, direct.order)
+        size = np.abs(direct.bearing_force).max()
+        forces = [
+            np.einsum("bdshc,shc->bdsh", own.bearing_force, each)[..., kept]
+            for each in (inputs, own.inputs(own.excitation(system)))
+        ]
+        np.testing.assert_allclose(forces[0], direct.bearing_force, rtol=0.0, atol=1e-6 * size)
+        assert np.abs(forces[1] - direct.bearing_force).max() > 1e-3 * size
 
 
 def test_the_response_is_linear_in_what_excites() -> None:
