@@ -51,7 +51,7 @@ _MODEL_HEAD = ("model", "level, dB", "stated error, dB", "CPU s", "CPU s predict
 
 def _sound_map(sound: RadiatedSound) -> Figure:
     orders, (x, along) = sound.orders, row_axis(sound.speed, sound.facts)
-    forces = "linear: mean mesh stiffness, no loss of contact"
+    forces = "linear: stiffness varies with position, no loss of contact"
     if of_run(sound.facts) is not None:
         forces = "with the amplitudes of the run"
     return Figure(
