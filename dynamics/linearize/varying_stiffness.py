@@ -89,7 +89,7 @@ def varied_vibration(
     And the largest transmission errors over the speeds with mean tangents, excited by static errors and by
     blocked forces, (m, H) each, m.
     """
-    rows = at.system.arrays.direction[: at.cycles[-1].rows.stop]
+    rows = at.system.arrays.direction[: at.cycles[-1].rows.stop if at.cycles else 0]
     watched = at.system.arrays.direction[at.system.driving_rows]
     largest = np.zeros((2, len(watched), harmonics.size))
     blocks: list[Steady] = []

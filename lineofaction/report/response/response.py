@@ -83,8 +83,8 @@ def _total(response: ForcedResponse) -> FloatArray:
 SHOWN_ORDERS, SHOWN_PEAKS = 6, 15
 
 WITH_MESHES = (
-    "Peak amplitudes of the mesh orders about the static equilibrium, linear: stiffness varies with position, no loss "
-    "of contact. Last: the least mesh force; negative means that flanks lift off."
+    "Peak amplitudes of the mesh orders about the static equilibrium, linear: stiffness varies with "
+    "position, no loss of contact. Last: the least mesh force; negative means that flanks lift off."
 )
 WITHOUT_MESHES = "Peak amplitudes of the orders of the leading shaft about the static equilibrium, linear."
 
