@@ -36,10 +36,7 @@ def force_words(facts: Json) -> tuple[tuple[str, str], ...]:
     """Say whose forces on bearings a result rests on, and how far the orders of a run hold."""
     run = of_run(facts)
     if run is None:
-        about = (
-            "forces on bearings",
-            "linear steady response: stiffness varies with position, flanks in contact",
-        )
+        about = ("forces on bearings", "linear steady response: stiffness varies, flanks in contact")
         return (about, *orders_left_out(facts))
     windows = f"{len(run['time_s'])} windows of {run['window_pitches']} base pitches"
     if run["windows_left_out"]:
