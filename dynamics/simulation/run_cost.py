@@ -113,7 +113,8 @@ def _probe(system: System, time: float) -> _Probe:
         )
         if not status.usable:
             raise SolveError(f"no steps at {time:.6g} s: {status.name.lower()}")
-        if not first and steps >= LEAST_STEPS and (seconds > ENOUGH or passed >= system.scene.duration):
+        whole = stretch >= system.scene.duration  # of a short run all its steps are few
+        if not first and (whole or (steps >= LEAST_STEPS and seconds > ENOUGH)):
             return _Probe(start, seconds / passed, steps / passed, code.may_follow)
         stretch, first = 2.0 * stretch, False
 

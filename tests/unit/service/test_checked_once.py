@@ -21,6 +21,7 @@ from lineofaction.gearbox.convert.live import plan_of
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.toml import toml_text
+from lineofaction.gearbox.studies import cost
 from service.app import create_app
 from service.page.files import examples
 from service.schemas.execute import AnalyzeInputs
@@ -74,7 +75,8 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> Iterator[Calls]:
         return validate(text)
 
     monkeypatch.setattr(Case, "model_validate_json", read)
-    monkeypatch.setattr(preparations.CASES, "_kept", type(preparations.CASES)()._kept)
+    for cases in (preparations.CASES, cost.CASES):
+        monkeypatch.setattr(cases, "_kept", type(cases)()._kept)
     _replace(monkeypatch, "gear_pair", convert, converted)
     _replace(monkeypatch, "check_request", check, checked)
     yield calls

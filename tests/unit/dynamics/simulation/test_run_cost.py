@@ -7,6 +7,7 @@ from geared_scenes import gear_pair_scene, square_wave_table, with_bushings
 
 from dynamics.assembly.assemble import assemble
 from dynamics.integrators import code_choice
+from dynamics.integrators.march import advance_to
 from dynamics.loads import TimeLaw
 from dynamics.simulation import run_cost, run_scene
 from dynamics.simulation.run_cost import FINER, PARTS, SHARE, _probe, probe_run
@@ -25,6 +26,20 @@ def test_a_probe_takes_the_steps_of_the_run(scene):
     probed = sum(_probe(system, part * scene.duration).steps for part in PARTS) / len(PARTS)
     taken = run_scene(scene).statistics
     assert probed * scene.duration == pytest.approx(taken.accepted + taken.rejected, rel=0.3)
+
+
+def test_a_run_of_few_steps_is_probed_as_a_whole(scene, monkeypatch):
+    """However few they are: the next stretch would be no longer."""
+    lasted = []
+
+    def counted(march, code, until, sink):
+        lasted.append(until)
+        assert len(lasted) <= 2
+        return advance_to(march, code, until, sink)
+
+    monkeypatch.setattr(run_cost, "advance_to", counted)
+    short = replace(scene, duration=1e-6)
+    assert 0.0 < _probe(assemble(short), 0.0).seconds < 1e9
 
 
 def test_a_prediction_is_linear_in_the_duration(scene, monkeypatch):
