@@ -102,12 +102,11 @@ def run_study(study: Study, options: Json) -> None:
     for subject, _ in subjects:
         study.run.check(subject, inputs)
     written = [subject.case if isinstance(subject, CheckedCase) else subject for subject, _ in subjects]
-    if not options["json"]:
-        _announce_cost(study, subjects, inputs, options.get("service"))
     runs = targets[0].with_name(f"{targets[0].stem}_runs") if targets else None
     stopping = until_interrupted if study.run.interruptible else nullcontext
     with (
         open_executor(options["workers"], options["scheduler"]) as others,
+        _announced_cost(study, subjects, inputs, options),
         _resumed_workers(study, written, inputs, others) as workers,
         progress_bar() as report,
         stopping() as cancel,
@@ -133,12 +132,15 @@ def run_study(study: Study, options: Json) -> None:
         raise JobFailed(failure)
 
 
-def _announce_cost(study: Study, subjects: Sequence[Any], inputs: Any, service: str | None) -> None:
+@contextmanager
+def _announced_cost(study: Study, subjects: Sequence[Any], inputs: Any, options: Json) -> Iterator[None]:
     """Say on standard error what the study will take, if that is more than a moment and can be predicted."""
-    costs = [study_cost(study, subject, folder, inputs) for subject, folder in subjects]
-    if study.run.tables and service is None:
-        costs += [tables_cost(*each) for each in subjects if isinstance(each[0], SceneInput)]
-    announce_cost(study.name, costs)
+    if not options["json"]:
+        costs = [study_cost(study, subject, folder, inputs) for subject, folder in subjects]
+        if study.run.tables and options.get("service") is None:
+            costs += [tables_cost(*each) for each in subjects if isinstance(each[0], SceneInput)]
+        announce_cost(study.name, costs)
+    yield
 
 
 def _tell(
