@@ -245,12 +245,7 @@ def steady_vibration(
 ) -> Steady:
     """Return the vibration at `speed` (S,), of `harmonics` (H,) those that are excited."""
     harmonics = heard_harmonics(at, speed, harmonics, (excitation,))
-    static, force = flank_forces(at, harmonics, excitation)
-    loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
-    omega = _omega(at, speed, harmonics)
-    terms = gyroscopic_terms(at.system, speed) if at.turning else []
-    u, residual, _ = _solve(at, _pushed(at, force) + loads, omega, terms, progress=progress)
-    return Steady(harmonics, omega, static, force[None], u[..., 0], residual, u[..., 1:])
+    return _vibration(at, speed, harmonics, excitation, progress=progress)[0]
 
 
 def heard_harmonics(
@@ -271,7 +266,7 @@ def with_blocked(
 
     (m, H), m.
     """
-    return _with_receptances(at, speed, harmonics, rows, beside=EXCITATIONS[1])
+    return _vibration(at, speed, harmonics, EXCITATIONS[0], rows, beside=EXCITATIONS[1])
 
 
 def _heard(force: ComplexArray) -> BoolArray:
@@ -306,19 +301,25 @@ def swept_vibration(
 
 def with_receptances(at: Excited, speed: FloatArray, harmonics: IntArray, rows: FloatArray) -> Steady:
     """Return the vibration at `speed` (S,) in all `harmonics` (H,), with the receptances of `rows` (f, n)."""
-    return _with_receptances(at, speed, harmonics, rows)[0]
+    return _vibration(at, speed, harmonics, EXCITATIONS[0], rows)[0]
 
 
-def _with_receptances(
-    at: Excited, speed: FloatArray, harmonics: IntArray, rows: FloatArray, beside: str = ""
+def _vibration(
+    at: Excited,
+    speed: FloatArray,
+    harmonics: IntArray,
+    excitation: str,
+    rows: FloatArray | None = None,
+    beside: str = "",
+    progress: Callable[[float], None] | None = None,
 ) -> tuple[Steady, FloatArray]:
-    """Return `with_receptances`, and what `_solve` returns of the excitation `beside` it, "": of none."""
-    static, force = flank_forces(at, harmonics)
+    """Return the vibration in all `harmonics`, and what `_solve` returns of the excitation `beside` it."""
+    static, force = flank_forces(at, harmonics, excitation)
     loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
     other = _pushed(at, flank_forces(at, harmonics, beside)[1]) + loads if beside else None
     omega = _omega(at, speed, harmonics)
     terms = gyroscopic_terms(at.system, speed) if at.turning else []
-    u, residual, largest = _solve(at, _pushed(at, force) + loads, omega, terms, rows, beside=other)
+    u, residual, largest = _solve(at, _pushed(at, force) + loads, omega, terms, rows, other, progress)
     return Steady(harmonics, omega, static, force[None], u[..., 0], residual, u[..., 1:]), largest
 
 

@@ -33,6 +33,7 @@ from dynamics.linearize.harmonic_response import bearing_forces, extremes
 from dynamics.linearize.load_harmonics import load_harmonics, load_multiples
 from dynamics.linearize.operating_speeds import checked_speeds
 from dynamics.linearize.steady_vibration import (
+    ROUNDED,
     Excited,
     excited,
     flank_forces,
@@ -229,7 +230,7 @@ class FlankTransfer(ArrayFile):
         """Return `inputs` of flanks with tangents that vary with position, and the residual left, relative.
 
         `at` is the scene about its equilibrium with them. With B = (1 + X A)^-1 they take v from the inputs
-        as in a scene of the receptances A B.
+        as in a scene of the receptances A B. Raises `SolveError` where nothing bounds the vibration.
         """
         inputs, count = self.inputs(flanks), at.cycles[-1].rows.stop
         taken = self._taken(flanks.tangent - self.tangent, flanks.viscous - self.viscous, self.motion)
@@ -243,6 +244,8 @@ class FlankTransfer(ArrayFile):
             push, left = varying.push(moved[s], made[s])
             inputs[s, :, 1:] -= np.einsum("hrf,hf->hr", reach[s], push[1:])
             residual = max(residual, left)
+        if not residual <= ROUNDED:
+            raise SolveError("the vibration is unbounded with these flanks at one of the speeds")
         return inputs, residual
 
     def _taken(self, stiffer: FloatArray, damped: FloatArray, moved: ComplexArray) -> ComplexArray:

@@ -187,16 +187,12 @@ def _varying(at: Excited, index: int, harmonics: IntArray) -> list[_Varying]:
     highest = 2 * int(line[-1])
     samples = next_fast_len(2 * highest + 2, real=True)
     p = cycle.tangent.shape[0]
-    spectrum = np.zeros((samples // 2 + 1, p, p), dtype=complex)
+    spectrum, multiples = np.zeros((samples // 2 + 1, p, p), dtype=complex), np.arange(1, highest + 1)
     for i, j in np.ndindex(p, p):
         values = cycle.tangents[:, i, j]
-        spectrum[1 : highest + 1, i, j] = 0.5 * harmonics_of(at, index, values, turns * _to(highest))
+        spectrum[1 : highest + 1, i, j] = 0.5 * harmonics_of(at, index, values, turns * multiples)
     tangent = np.fft.irfft(spectrum, samples, axis=0) * samples
     return [_Varying(cycle.rows, np.append(0, own + 1), np.append(0, line), tangent)]
-
-
-def _to(highest: int) -> IntArray:
-    return np.arange(1, highest + 1, dtype=np.int64)
 
 
 def _alike(cycle: FlankCycle) -> bool:
