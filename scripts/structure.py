@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import ast
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from html import escape
 from pathlib import Path
@@ -45,15 +45,18 @@ def imported(file: Path) -> tuple[str, ...]:
 
 @cache
 def _imports(code: str) -> tuple[str, ...]:
-    return tuple(_imported(ast.parse(code)))
+    return tuple(_imported(ast.parse(code).body))
 
 
-def _imported(tree: ast.Module) -> Iterator[str]:
-    for node in ast.walk(tree):
+def _imported(body: Iterable[ast.AST]) -> Iterator[str]:
+    """Yield what statements import; no expression is looked into, where nothing can be imported."""
+    for node in body:
         if isinstance(node, ast.ImportFrom) and node.module and not node.level:
             yield from (f"{node.module}.{alias.name}" for alias in node.names)
         elif isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
+        for inner in ("body", "orelse", "finalbody", "handlers", "cases"):
+            yield from _imported(getattr(node, inner, ()))
 
 
 def arrows() -> set[tuple[str, str]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, Field, create_model, model_validator
@@ -46,6 +46,7 @@ _SUBJECTS: dict[str, type[BoundaryModel]] = {
 }
 
 
+@cache
 def study_inputs(study: Study) -> type[BoundaryModel]:
     """Return the model of the inputs of a study's process: what is studied, and what is varied."""
     bases = (study.inputs, _SUBJECTS[study.takes.subject])
@@ -101,6 +102,7 @@ def _wanted_output() -> type[BoundaryModel]:
     return create_model("WantedNcOutput", __base__=BoundaryModel, **fields)
 
 
+@cache
 def execute_model(process: str, inputs: type[BoundaryModel], output: str) -> type[_ExecuteBody]:
     """Return the model of a process' body.
 

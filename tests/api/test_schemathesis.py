@@ -158,6 +158,7 @@ def kind_of(fault: dict[str, Any]) -> str:
     return re.sub(r"-?\d[\d.e+-]*", "#", f"{fault['field']}: {fault['bound']}")
 
 
+@pytest.mark.drawn
 @parametrized(chosen)
 def test_a_request_is_answered_as_documented(operation: Operation) -> None:
     @as_long_as(max(EACH * 4 // 5, FEW))

@@ -59,6 +59,7 @@ def edited(page: Page, typed: dict[str, Any]) -> list[list[str]]:
     return [*found, *twice]
 
 
+@pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("name", CASES)
 def test_what_the_service_completes_is_no_edit(page: Page, name: str) -> None:

@@ -171,6 +171,7 @@ def arrays(found: SteDatabase) -> Iterator[tuple[str, np.ndarray]]:
             yield name, values
 
 
+@pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("scene", list(SCENES))
 @pytest.mark.parametrize("name", [effect.name for effect in OF_CONTACT])
@@ -213,6 +214,7 @@ def everything() -> Scene:
     return with_mesh(scene, coast=CoastFlank(backlash=10e-6, thickness=0.48))
 
 
+@pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("name", [effect.name for effect in OF_DYNAMICS])
 def test_a_run_with_an_effect_off_is_that_of_a_build_without_it(

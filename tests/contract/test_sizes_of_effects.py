@@ -122,6 +122,7 @@ def table_words(tables: list[Json]) -> dict[str, str]:
     return {row[0].replace(" ", "_"): row[column] for row in table["rows"]}
 
 
+@pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("name", CASES)
 def test_five_outputs_tell_one_number(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -27,7 +27,7 @@ def leave_to_the_night(items: Iterable[pytest.Item]) -> None:
     _by_day = True
     functions: dict[str, list[pytest.Item]] = {}
     for item in items:
-        if item.get_closest_marker("drawn"):
+        if item.get_closest_marker("drawn") and not item.get_closest_marker("nightly"):
             functions.setdefault(item.nodeid.partition("[")[0], []).append(item)
     for cases in functions.values():
         drawn = draw([case.nodeid for case in cases], turn())

@@ -17,7 +17,7 @@ import psutil
 import pytest
 from suite_selection import COSTS, PASSED, ROOT, SLOW, digest, read_costs, read_passed
 
-LEAST = 0.5
+LEAST = 0.3
 """Tests below this (s) are not on record: they are as good as free."""
 _PROPERTY, _SHARED = "cpu_seconds", "shared_cpu_seconds"
 

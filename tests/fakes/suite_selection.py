@@ -27,9 +27,9 @@ TESTS = Path(__file__).parents[1]
 ROOT = TESTS.parent
 RECORDS = TESTS / "records"
 COSTS, PASSED = RECORDS / "cpu_seconds.csv", RECORDS / "passed.csv"
-SLOW = 1.0
+SLOW = 0.6
 """CPU seconds of a test from which on it is slow."""
-LONG = 3.0
+LONG = 2.0
 """CPU seconds from which on a law, too, runs only when what it rests on changed; a fixture that costs as much
 counts for each test of the file that shares it."""
 BUDGET = 120.0
@@ -157,20 +157,30 @@ def digest(file: Path) -> str:
 @cache
 def rests_on(file: Path) -> tuple[frozenset[Path], frozenset[str]]:
     """Return the files of the tests, and the houses that a test file rests on, those below included."""
-    files, houses, waiting = set[Path](), set[str](), [file, *_conftests(file)]
+    files, houses, waiting = set[Path](), set[str](), {file, *_conftests(file)}
     while waiting:
         path = waiting.pop()
         files.add(path)
-        for module in structure.imported(path):
-            name = module.removeprefix("tests.fakes.").split(".")[0]
-            candidates = (folder / f"{name}.py" for folder in IMPORTED)
-            if helper := next(filter(Path.exists, candidates), None):
-                waiting += {helper} - files
-            elif house := structure.house_of(module):
-                houses.update(_with_those_below(house))
-            elif name in (*STARTS_PROCESSES, "lineofaction"):
-                houses.update(structure.HOUSES)
+        helpers, named = _imported(path)
+        waiting |= helpers - files
+        houses |= named
     return frozenset(files), frozenset(houses)
+
+
+@cache
+def _imported(path: Path) -> tuple[frozenset[Path], frozenset[str]]:
+    """Return the fakes and scripts that a file imports, and the houses, those below included."""
+    helpers, houses = set[Path](), set[str]()
+    for module in structure.imported(path):
+        name = module.removeprefix("tests.fakes.").split(".")[0]
+        candidates = (folder / f"{name}.py" for folder in IMPORTED)
+        if helper := next(filter(Path.exists, candidates), None):
+            helpers.add(helper)
+        elif house := structure.house_of(module):
+            houses.update(_with_those_below(house))
+        elif name in (*STARTS_PROCESSES, "lineofaction"):
+            houses.update(structure.HOUSES)
+    return frozenset(helpers), frozenset(houses)
 
 
 @cache
@@ -182,7 +192,8 @@ def _with_those_below(house: str) -> frozenset[str]:
 
 def _named_in(file: Path) -> Iterator[Path]:
     """Yield the files that a test file names in `RESTS_ON`, and those in folders it names there."""
-    for statement in ast.parse(file.read_text("utf-8")).body:
+    text = file.read_text("utf-8")
+    for statement in ast.parse(text).body if "RESTS_ON" in text else ():
         match statement:
             case ast.Assign(targets=[ast.Name("RESTS_ON")], value=value):
                 for name in ast.literal_eval(value):

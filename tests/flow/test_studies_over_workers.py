@@ -122,6 +122,7 @@ def pool(request: pytest.FixtureRequest) -> Iterator[Workers]:
         yield processes
 
 
+@pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("row", ROWS, ids=str)
 def test_a_study_gives_the_same_bits_by_any_number_of_processes(

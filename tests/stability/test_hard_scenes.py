@@ -23,6 +23,7 @@ SCENES = [
 ]
 
 
+@pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("scene", SCENES)
 def test_scene(scene: HardScene) -> None:

@@ -167,6 +167,7 @@ def judged(odd: Odd) -> Any:
     return pytest.param(odd, id=odd.name, marks=[open_defect] if odd.name == SLOW_TO_CONVERGE else [])
 
 
+@pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("odd", [judged(odd) for odd in ODD])
 def test_what_is_odd_but_feasible_is_computed(odd: Odd) -> None:

@@ -141,6 +141,7 @@ def _overshoots(pair: ParallelAxes, side: Side) -> np.ndarray:
     return np.array([0.002, 0.1, 0.5, 0.99]) * limit
 
 
+@pytest.mark.drawn
 @pytest.mark.parametrize("side", ["approach", "exit"])
 @pytest.mark.parametrize("name", PAIRS)
 def test_gap_is_the_lag_that_makes_rigid_flanks_touch(name: str, side: Side, record_figure: Any) -> None:

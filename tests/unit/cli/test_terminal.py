@@ -55,6 +55,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     }
 
 
+@pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("columns", COLUMNS)
 @pytest.mark.parametrize("verb", ANSWERS)

@@ -169,6 +169,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[httpx2.Request]:
     return requests
 
 
+@pytest.mark.drawn
 @pytest.mark.parametrize("name", HOSTILE)
 @pytest.mark.parametrize("ending", ["toml", "nc"])
 def test_a_hostile_address_is_one_error_that_names_the_word(

@@ -130,6 +130,7 @@ def check_same_series(run: RunResult, other: RunResult) -> None:
     assert run.receipt["sampling"] == other.receipt["sampling"]
 
 
+@pytest.mark.drawn
 @pytest.mark.parametrize("path", VARIED)
 def test_a_run_among_others_is_the_run_alone_to_the_last_bit(path: str) -> None:
     scenes, (first, other) = varied(path), VARIED[path]

@@ -7,11 +7,12 @@ from itertools import islice
 
 import pytest
 import sbom
-from cyclonedx.schema import SchemaVersion
-from cyclonedx.validation.json import JsonStrictValidator
 
 
 def test_it_lists_what_is_installed_in_its_format(monkeypatch: pytest.MonkeyPatch) -> None:
+    from cyclonedx.schema import SchemaVersion  # noqa: PLC0415 (two seconds that each worker would pay)
+    from cyclonedx.validation.json import JsonStrictValidator  # noqa: PLC0415
+
     some = [*islice(sbom.python_packages(), 5), *islice(sbom.debian_packages(), 5)]
     monkeypatch.setattr(sbom, "python_packages", lambda: iter(some))
     monkeypatch.setattr(sbom, "debian_packages", lambda: iter(()))

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 import suite_selection
-from suite_selection import ROOT, TESTS, digest, heed_named_files, houses_from, rests_on, select
+from suite_selection import LONG, ROOT, SLOW, TESTS, digest, heed_named_files, houses_from, rests_on, select
 
 HERE = Path(__file__)
 SLOW_TEST = "tests/unit/scripts/test_suite_selection.py::slow"
@@ -42,7 +42,7 @@ def _left(items: list[Any], **options: Any) -> list[str]:
 def on_record(monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:
     """Have a slow test on record, and what it rested on; the caller may change that."""
     passed = {"tests/unit/scripts/test_suite_selection.py": digest(HERE)}
-    monkeypatch.setattr(suite_selection, "read_costs", lambda: {SLOW_TEST: 1.1})
+    monkeypatch.setattr(suite_selection, "read_costs", lambda: {SLOW_TEST: SLOW + 0.1})
     monkeypatch.setattr(suite_selection, "read_passed", lambda: passed)
     return passed
 
@@ -60,14 +60,14 @@ def test_a_slow_law_runs() -> None:
 def test_a_long_law_runs_when_what_it_rests_on_changed(
     on_record: dict[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(suite_selection, "read_costs", lambda: {SLOW_TEST: 3.1})
+    monkeypatch.setattr(suite_selection, "read_costs", lambda: {SLOW_TEST: LONG + 0.1})
     assert _left([_item("slow", "law")]) == ["slow"]
     on_record.clear()
     assert _left([_item("slow", "law")]) == []
 
 
 @pytest.mark.usefixtures("on_record")
-@pytest.mark.parametrize(("cost", "left"), [(2.9, []), (3.1, ["sharing", "sharing too"])])
+@pytest.mark.parametrize(("cost", "left"), [(LONG - 0.1, []), (LONG + 0.1, ["sharing", "sharing too"])])
 def test_a_dear_fixture_counts_for_each_test_that_shares_it(
     monkeypatch: pytest.MonkeyPatch, cost: float, left: list[str]
 ) -> None:
@@ -76,7 +76,8 @@ def test_a_dear_fixture_counts_for_each_test_that_shares_it(
 
 
 def test_a_chain_runs_whole_or_not_at_all(on_record: dict[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(suite_selection, "read_costs", lambda: {SLOW_TEST: 0.9, f"{SLOW_TEST}_too": 0.2})
+    costs = {SLOW_TEST: SLOW - 0.1, f"{SLOW_TEST}_too": 0.2}
+    monkeypatch.setattr(suite_selection, "read_costs", lambda: costs)
     chain = [_item("slow", "chain"), _item("slow_too", "chain"), _item("quick")]
     assert _left(chain) == ["slow", "slow_too"]
     assert _left([_item("slow", "chain"), _item("slow_too")]) == []

@@ -124,6 +124,7 @@ def opened(text: str, folder: Path, *options: str) -> Result:
     return loa("open", file, "-o", folder / "out", "--strict", *options)
 
 
+@pytest.mark.drawn
 @pytest.mark.parametrize("fault", LEFT_OUT)
 def test_a_unit_with_one_fault_names_what_is_left_out_first_and_last(fault: str, tmp_path: Path) -> None:
     file, edit, parts = LEFT_OUT[fault]

@@ -112,6 +112,7 @@ def test_a_request_repeated_after_an_upgrade_is_the_same_job(machine: Bench) -> 
     assert named("b" * 64) == first
 
 
+@pytest.mark.drawn
 @pytest.mark.parametrize("name", [*INPUTS, *(f"{name} of a scene" for name in ("ablate", "frontier"))])
 def test_normalized_inputs_are_inputs_of_the_same_work(machine: Bench, name: str) -> None:
     """A job is submitted again with the inputs that it shows: that is the same work."""

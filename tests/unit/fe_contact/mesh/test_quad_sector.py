@@ -49,6 +49,7 @@ ODD: dict[str, Toothing] = {
 }
 
 
+@pytest.mark.drawn
 @pytest.mark.parametrize("name", ODD)
 def test_elements_of_odd_gears_are_good(name: str) -> None:
     for recipe in (SectorRecipe.draft(ODD[name]), SectorRecipe.fine(ODD[name])):
