@@ -24,8 +24,8 @@ MOST_TRIANGLES = 20_000
 WANTED_TRIANGLES = 6_000
 """Of a solid without small faces."""
 _FARTHEST = from_to(0.0, 1e3, "m")
-_FINEST_GRID, _COARSER = 256.0, 0.8
-"""Cells across a surface whose points are put together, and by which the next grid has fewer."""
+_FINEST_GRID, _COARSER, _LEAST_AREA = 256.0, 0.8, 1e-9
+"""Cells across a surface, in each its points are put together; how many fewer next; least area of a facet."""
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,7 @@ def _together(points: FloatArray, facets: IntArray, size: float) -> tuple[IntArr
     cell = cell.ravel()
     outwards = np.lexsort((np.linalg.norm(points - 0.5 * (low + high), axis=1), cell))
     outermost = outwards[np.cumsum(count) - 1]
-    moved = np.sort(cell[facets], axis=1)
-    whole = np.all(np.diff(moved, axis=1) > 0, axis=1)
-    _, first = np.unique(moved[whole], axis=0, return_index=True)
+    one, two, three = np.moveaxis(points[outermost][cell[facets]], 1, 0)
+    whole = np.linalg.norm(np.cross(two - one, three - one), axis=1) > _LEAST_AREA * size**2
+    _, first = np.unique(np.sort(cell[facets][whole], axis=1), axis=0, return_index=True)
     return outermost, cell[facets][whole][np.sort(first)]

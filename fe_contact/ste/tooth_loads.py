@@ -14,8 +14,8 @@ from fe_contact.ste.curve import OperatingPoint, at_operating_point
 from fe_contact.ste.fields import SteFields
 from fe_contact.types import FloatArray, IntArray
 
-_ALIKE = 1e-6
-"""Of the largest load: teeth that differ by less are alike."""
+_ALIKE = 5e-4
+"""Of the largest load: teeth that differ by less are alike, three decimals tell none apart."""
 _SAME = 1e-9
 """Base pitches between two phases that are one."""
 

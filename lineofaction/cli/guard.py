@@ -16,8 +16,10 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass
 from functools import wraps
+from shutil import get_terminal_size
+from textwrap import TextWrapper
 from types import FrameType
-from typing import Annotated, Any, NoReturn, ParamSpec, TypeVar, get_type_hints
+from typing import IO, Annotated, Any, NoReturn, ParamSpec, TypeVar, get_type_hints
 
 import typer
 
@@ -100,6 +102,13 @@ def _begin(form: str) -> _Warned:
     return warned
 
 
+def in_lines(text: str, stream: IO[str]) -> str:
+    """Break a text for a terminal between words; a word longer than a line, as a path, stays whole."""
+    width = get_terminal_size().columns if stream.isatty() else sys.maxsize
+    fitted = TextWrapper(width, break_long_words=False, break_on_hyphens=False)
+    return "\n".join(line if len(line) <= width else fitted.fill(line) for line in text.splitlines())
+
+
 def warn(warnings: Iterable[Json]) -> None:
     """Gather warnings, and print those that are new: where people read, not into JSON or CSV."""
     warned = _current.get(None) or _begin("text")
@@ -109,7 +118,8 @@ def warn(warnings: Iterable[Json]) -> None:
         warned.messages[warning["message"]] = warning
         if warned.form != "json":
             stream = sys.stdout if warned.form == "text" else sys.stderr
-            print(f"warning ({warning['check']}): {warning['message']}", file=stream, flush=True)
+            text = f"warning ({warning['check']}): {warning['message']}"
+            print(in_lines(text, stream), file=stream, flush=True)
 
 
 def messages() -> list[str]:
@@ -228,5 +238,5 @@ def _notes(error: BaseException) -> list[str]:
 
 def _leave(text: str, code: int) -> NoReturn:
     sys.stdout.flush()
-    print(text, file=sys.stderr, flush=True)  # noqa: T201 (this is the command line)
+    print(in_lines(text, sys.stderr), file=sys.stderr, flush=True)  # noqa: T201 (this is the command line)
     raise typer.Exit(code)

@@ -25,7 +25,7 @@ from rich.progress import (
 from rich.table import Table
 from rich.theme import Theme
 
-from lineofaction.cli.guard import warnings_so_far
+from lineofaction.cli.guard import in_lines, warnings_so_far
 from lineofaction.gearbox.problems import BadInput
 from model_studies.progress import silent, stage_name
 
@@ -54,6 +54,14 @@ class _Marks(RegexHighlighter):
     ]
 
 
+class _Terminal(Console):
+    """Breaks sentences between words."""
+
+    def print(self, *objects: Any, soft_wrap: bool | None = None, **options: Any) -> None:
+        broken = (in_lines(words, self.file) for words in objects) if soft_wrap else objects
+        super().print(*broken, soft_wrap=soft_wrap, **options)
+
+
 FOUND = "bold"
 """Style of the line that says what was found."""
 _THEME = Theme({"loa.error": "cyan", "loa.beside": "bright_black"})
@@ -66,7 +74,7 @@ def console() -> Console:
     """
     plain: Any = {"markup": False, "emoji": False}
     if sys.stdout.isatty():
-        return Console(highlighter=_Marks(), theme=_THEME, **plain)
+        return _Terminal(highlighter=_Marks(), theme=_THEME, **plain)
     plain["highlight"] = False
     columns = os.environ.get("COLUMNS", "")
     return Console(

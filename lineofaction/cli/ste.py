@@ -128,10 +128,8 @@ def _answer(database: SteDatabase, file: Path, curve: dict[str, Any]) -> Iterato
         level, bar = 20.0 * math.log10(line[1]), "█" * round(_BAR * line[1] / largest)
         yield f"{_figure(*line, decimals)}   {level:6.1f} dB re 1 µm  {bar}".rstrip()
     if unknown:
-        orders, below = (
-            ", ".join(name for name, _, _ in unknown),
-            max(error for _, _, error in unknown if error),
-        )
+        orders = ", ".join(name for name, _, _ in unknown)
+        below = max(error for _, _, error in unknown if error)
         yield f"  {orders.replace(', harmonic', ',')}: below {engineering(below, 2)} µm, their error"
     shares = np.array(curve["load_share"])
     carrying = (shares > 0.0).sum(axis=1)

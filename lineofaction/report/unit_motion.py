@@ -22,7 +22,7 @@ MOST_FACETS = 60_000
 """Of a surface: one with more is drawn by the corners of its triangles."""
 VELOCITY_REFERENCE = 5e-8
 """m/s, root mean square, of 0 dB: 1 pW/m^2 of plane waves where rho c is 400 N s/m^3."""
-QUIETEST = 1e-15  # m/s
+QUIETEST = 1e-8  # of the reference
 _LENGTHS = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0], dtype=bool)
 
 
@@ -81,13 +81,15 @@ def _surface_json(surface: SurfaceShape, is_velocity: bool) -> Json:
     points, motion, facets = surface.points[used], surface.motion[used], facets.reshape(-1, 3)
     if not (np.all(np.isfinite(points)) and np.all(np.isfinite(motion))):
         raise DamagedFile("The stored motion of the surface has values that are not finite.")
-    level = None
-    if is_velocity:
-        normals = node_normals(points, facets)
-        rms = np.abs(np.sum(motion * normals, axis=1)) / np.sqrt(2.0)
-        level = packed(20.0 * np.log10(np.maximum(rms, QUIETEST) / VELOCITY_REFERENCE))
+    amplitude = np.abs(np.sum(motion * node_normals(points, facets), axis=1))
+    largest = float(np.max(amplitude, initial=0.0)) or 1.0
+    size = amplitude / (np.sqrt(2.0) * VELOCITY_REFERENCE if is_velocity else largest)
+    level = {
+        "level_db": packed(20.0 * np.log10(np.maximum(size, QUIETEST))),
+        "level_re": "50 nm/s" if is_velocity else "the largest",
+    }
     moved = {"real": packed(motion.real / MM), "imaginary": packed(motion.imag / MM)}
-    return packed_surface(points, facets) | moved | {"level_db": level}
+    return packed_surface(points, facets) | moved | level
 
 
 def _rounded(values: Any) -> list[list[float]]:

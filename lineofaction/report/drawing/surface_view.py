@@ -127,7 +127,7 @@ def surface_panels(
     value : (t,) array
         Where some is negative, colors are even about 0.
     label, words : str
-        Of the colors, with the unit after the last comma, and in the titles of the panels.
+        Of the colors, with the unit after the last comma, and in the titles of the panels, if any.
     """
     moved = points + offset
     largest = float(np.max(np.abs(value), initial=0.0)) or 1.0
@@ -142,24 +142,28 @@ def surface_panels(
         outline = Line("edges at rest", edges[:, 0], edges[:, 1], palette.INK, width=0.6)
         across, up = (Axis("mm", limits=(0.0, float(along[-1]))) for along in (x, y))
         shade = HeatMap(x, y, image, label, largest, least)
-        panels.append(Panel(across, up, (outline,), title=f"{side}: {words}", shade=shade, equal=True))
+        titled = f"{side}: {words}" if words else side
+        panels.append(Panel(across, up, (outline,), title=titled, shade=shade, equal=True))
     return tuple(panels)
 
 
-def shape_figure(key: str, title: str, shape: SurfaceShape, one: float, unit: str) -> Figure:
-    """Draw a surface as it moves, from two sides; `one` of its motion is 1 of the unit."""
-    fastest = float(np.linalg.norm(shape.motion, axis=1).max())
+def shape_figure(key: str, title: str, shape: SurfaceShape, unit: tuple[float, str] | None) -> Figure:
+    """Draw a surface as it moves, from two sides; a unit is its size and name, that of a mode None."""
+    fastest = max(float(np.linalg.norm(shape.motion, axis=1).max()), 1e-300)
     drawn = DRAWN * float(np.ptp(shape.points, axis=0).max())
     turned = shape.motion * np.exp(-0.5j * np.angle(np.sum(shape.motion**2)))  # as much as can be is real
-    offset = drawn / max(fastest, 1e-300) * turned.real
-    scale = f"{number(fastest / one, 3)} {unit} drawn as {number(drawn / MM, 3)} mm"
-    label, value = f"normal to the surface, {unit}", np.abs(shape.normal_motion) / one
+    offset = drawn / fastest * turned.real
+    one, name = unit or (fastest, "part of the largest motion")
+    size = f"{number(fastest / one, 3)} {name}" if unit else ""
+    scale = f"{size} drawn as {number(drawn / MM, 3)} mm" if unit else ""
+    largest = f"the largest motion is {size}" if unit else "a mode has a shape and no size"
+    label, value = f"normal to the surface, {name}", np.abs(shape.normal_motion) / one
     return Figure(
         key=key,
         title=title,
         caption="Colors: peak amplitude normal to the surface. Drawn: the motion at the instant at which it "
-        "is largest. Lines: edges at rest.",
-        alternative=f"{title}: the largest motion is {number(fastest / one, 3)} {unit}.",
+        f"is largest{'' if unit else ', in arbitrary size'}. Lines: edges at rest.",
+        alternative=f"{title}: {largest}.",
         content=surface_panels(shape.points, shape.facets, offset, value, label, scale),
     )
 

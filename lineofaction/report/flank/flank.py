@@ -417,15 +417,11 @@ def _text(flanks: LoadDistribution) -> Iterator[str]:
         f"torque {scene.torque:.6g} N m, normal force {scene.normal_force:.6g} N, "
         f"misalignment {scene.misalignment / UM:.4g} µm"
     )
-    yield (
-        f"largest pressure {1e-6 * flanks.clear_pressure.max():.4g} MPa{edge_words(flanks.edge_pressure)}, "
-        f"largest line load {1e-3 * flanks.line_load.max():.4g} N/mm"
-    )
+    yield f"largest line load {1e-3 * flanks.line_load.max():.4g} N/mm"
     if flanks.face_position.size > 1:
         low, high = (1e3 * end for end in (flanks.load_centroid.min(), flanks.load_centroid.max()))
         yield (
-            f"K_Hbeta {engineering(flanks.mean_face_load_factor, 3)} over the cycle, at most "
-            f"{engineering(flanks.face_load_factor.max(), 3)} at one position; "
+            f"K_Hbeta at most {engineering(flanks.face_load_factor.max(), 3)} at one position; "
             f"load centroid {engineering(low, 3)} to {engineering(high, 3)} mm from mid-face"
         )
     yield from assumption_lines(receipt)

@@ -234,11 +234,11 @@ def _shape_figure(result: HousingVibrationResult) -> Figure | None:
         return None
     if result.mode:
         what = f"Mode {result.mode}, {number(result.natural_frequency[result.mode - 1], 4)} Hz"
-        one, unit = 1.0, "1"
+        unit = None
     else:
         what = f"Operating deflection at {_where(result.analysis)}"
-        one, unit = MM_PER_S, "mm/s"
-    return shape_figure("housing_shape", what, shape, one, unit)
+        unit = MM_PER_S, "mm/s"
+    return shape_figure("housing_shape", what, shape, unit)
 
 
 def _words(result: HousingVibrationResult) -> str:

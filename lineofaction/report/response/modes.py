@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -214,9 +214,8 @@ def _housing(modes: ModalAnalysis) -> tuple[Figure, ...]:
         shape_figure(
             "modal_housing",
             f"The housing in mode {mode + 1} at rest, {number(modes.natural_frequency[mode], 4)} Hz",
-            replace(shape, motion=shape.motion / np.linalg.norm(shape.motion, axis=1).max()),
-            1.0,
-            "1",
+            shape,
+            None,
         )
         for mode, shape in zip(lowest, shapes, strict=True)
         if shape is not None

@@ -14,7 +14,7 @@ export const MOVING = new Set(["modes", "deflection", "vibration"]); // kinds of
 
 /** @typedef {{name: string, position_mm: number[], real: number[][], imaginary: number[][]}} ShaftMotion six at each station: mm and rad */
 /** @typedef {{place_mm: string, normal: string, facets: string}} Surface */
-/** @typedef {Surface & {real: string, imaginary: string, level_db: string | null}} SurfaceMotion */
+/** @typedef {Surface & {real: string, imaginary: string, level_db: string | null, level_re: string}} SurfaceMotion */
 /** @typedef {{oscillates: boolean, shafts: ShaftMotion[], surface: SurfaceMotion | null}} UnitMotion */
 /** @typedef {{values: Float32Array, stations: number[]}} Moved displacement and rotation of each station; first place, distance, whether it is all one disc */
 
@@ -46,7 +46,7 @@ export function hullOf(surface) {
     });
     most = Math.max(most, Math.hypot(...three(real), ...three(imaginary)));
   }
-  return { mesh: { values, indices, marked: 0 }, parts: [3, 3, 1, 3, 3], most, ends, levels: levels ? [top - RANGE, top] : null };
+  return { mesh: { values, indices, marked: 0 }, parts: [3, 3, 1, 3, 3], most, ends, levels: levels ? `${top - RANGE} to ${top} dB re ${surface.level_re}` : null };
 }
 
 export class Motion {
@@ -189,7 +189,7 @@ export class Motions {
     motion.part = Number(this.amplitude.value);
     this.factor.textContent = motion.oscillates ? "" : `× ${number(motion.part * motion.factor, 2)}`;
     this.levels.hidden = !motion.hull?.levels;
-    this.levels.textContent = motion.hull?.levels ? `${motion.hull.levels.join(" to ")} dB re 50 nm/s` : "";
+    this.levels.textContent = motion.hull?.levels ?? "";
     this.view.stage.wake();
   }
 }

@@ -111,10 +111,10 @@ void main() {
 export const LEVELS = `
 in float lit;
 in float part;
+uniform float opacity;
 out vec4 painted;
 ${SCALE}
 void main() {
-  float opacity = part < 0.0 ? 0.3 : 1.0;
   vec3 own = part < 0.0 ? vec3(0.5, 0.55, 0.6) : scale(part);
   painted = vec4(own * lit * opacity, opacity);
 }`;

@@ -236,7 +236,8 @@ export class Gearbox {
   get reach() {
     const [low, high] = this.box;
     const tips = this.stages.map(({ pair }) => pair.outline.wheel.radius_mm.tip);
-    return (Math.hypot(...high.map((value, k) => (value - low[k]) / 2)) + 0.5 * Math.max(0, ...tips)) || 1;
+    const beyond = this.drawnHousing ? 0 : 0.5 * Math.max(0, ...tips); // gears are within a housing
+    return (Math.hypot(...high.map((value, k) => (value - low[k]) / 2)) + beyond) || 1;
   }
 
   frame(camera) {
@@ -271,19 +272,21 @@ export class Gearbox {
     for (const again of marked) again();
   }
 
-  /** Draw the surface of a housing: by its levels, or so that the rest is seen through it. */
+  /** Draw the surface of a housing by its levels; what moves with it, or stands in it, is seen through it. */
   surface(gl, frame) {
     const { program, at } = this.programs.hull;
     const { mesh, parts, levels } = this.drawnHousing;
     const { phase, part, factor } = this.motion ?? { phase: 0, part: 0, factor: 0 };
+    const alone = Boolean(levels) && !this.motion.shafts.size;
     this.hull ??= held(gl, mesh, parts);
     gl.useProgram(program);
+    gl.uniform1f(at.opacity, alone ? 1 : levels ? 0.6 : 0.3);
     gl.uniformMatrix4fv(at.view, false, frame.view);
     gl.uniform3fv(at.back, frame.back);
     gl.uniform2f(at.now, part * factor * Math.cos(phase), part * factor * Math.sin(phase));
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-    gl.depthMask(Boolean(levels)); // what has levels hides what is behind it
+    gl.depthMask(alone); // hides what is behind it
     gl.bindVertexArray(this.hull.array);
     gl.drawElements(gl.TRIANGLES, this.hull.count, gl.UNSIGNED_INT, 0);
     gl.depthMask(true);

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import io
 import os
 import re
 import subprocess
@@ -16,7 +17,8 @@ from small_table import small_table
 from spur_case import spur_case
 
 from lineofaction.cli.commands import app
-from lineofaction.cli.output import console, table
+from lineofaction.cli.guard import in_lines
+from lineofaction.cli.output import FOUND, console, table
 from lineofaction.cli.verbs import of_imports
 from lineofaction.cli.verbs.of_studies import GROUPS, StudyGroup
 
@@ -90,6 +92,32 @@ def test_a_wide_table_stands_in_blocks_and_no_word_is_broken(
     assert len(blocks) > 1 and all("second stage" in block and "load case 1" in block for block in blocks)
     assert [cell for cell in rows[0][2:] if cell not in printed] == []
     assert [k for k in range(12) if f"quantity-{k}," not in printed] == []
+
+
+class Terminal(io.StringIO):
+    """A stream that is one."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.mark.parametrize("columns", COLUMNS)
+def test_a_terminal_breaks_sentences_between_words_and_leaves_paths_whole(
+    columns: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", str(columns))
+    path = f"/tmp/{'unit-' * 30}/flank.nc"
+    text = f"error: {'peak-to-peak transmission error ' * 6}of\n  {path} and what follows it {'µm ' * 60}"
+    lines = in_lines(text, Terminal()).splitlines()
+    assert max(len(line) for line in lines if line != path) <= columns < len(path)
+    assert path in lines
+    assert " ".join(lines).split() == text.split()
+    assert in_lines(text, io.StringIO()) == text, "a pipe has lines of any length"
+    shown = Terminal()
+    monkeypatch.setattr("sys.stdout", shown)
+    console().print(text, soft_wrap=True, style=FOUND)
+    printed = re.sub(r"\x1b\[[\d;]*m", "", shown.getvalue())
+    assert [line.strip() for line in printed.splitlines()] == [line.strip() for line in lines]
 
 
 # Styles: on a terminal, and there alone.

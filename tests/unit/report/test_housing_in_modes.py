@@ -45,6 +45,8 @@ def test_the_report_draws_the_lowest_mode_in_which_the_housing_has_a_third(modes
     assert number > 0, "shafts move below it"
     sizes = [float(np.nanmax(panel.shade.z)) for panel in figure.content]
     assert 0.3 < max(sizes) <= 1.0, "of the largest motion"
+    words = [panel.title for panel in figure.content]
+    assert not any(char.isdigit() for title in words for char in title or ""), "a mode has no size"
     none = replace(modes, surface_motion=np.empty((0, 3, 0), dtype=np.float32))
     assert pictures(none) == []
 
@@ -60,7 +62,12 @@ def test_the_page_is_sent_the_surface_of_every_mode_with_its_shafts(modes: Modal
         expected = 1e3 * (modes.surface_motion @ shape).reshape(-1)
         size = np.abs(expected).max()
         np.testing.assert_allclose(parts[0] + 1j * parts[1], expected, atol=1e-6 * size)
-        assert surface["level_db"] is None
+        level = np.frombuffer(base64.b64decode(surface["level_db"]), "<f4")
+        normal = np.frombuffer(base64.b64decode(surface["normal"]), "<f4").reshape(-1, 3)
+        across = np.abs(np.sum(expected.reshape(-1, 3) * normal, axis=1))
+        moves = across > 1e-4 * across.max()
+        np.testing.assert_allclose(level[moves], 20.0 * np.log10(across[moves] / across.max()), atol=0.02)
+        assert surface["level_re"] == "the largest"
 
 
 def test_a_file_keeps_the_motion_of_the_surface(modes: ModalAnalysis, tmp_path: Path) -> None:

@@ -411,3 +411,16 @@ def test_a_coarse_surface_of_a_box_keeps_its_edges_and_its_volume() -> None:
     corners = np.moveaxis(drawn.points[drawn.facets], 1, 0)
     volume = np.sum(np.cross(corners[0], corners[1]) * corners[2]) / 6.0
     assert volume == pytest.approx(np.prod(sides), rel=1e-9)
+
+
+def test_no_facet_of_a_coarse_surface_is_a_line() -> None:
+    sides = np.array([0.2, 0.1, 0.06])
+    cells = (40, 20, 12)
+    mesh = box((0.2, 0.1, 0.06), cells)
+    inside = (mesh.points > 1e-9) & (mesh.points < sides - 1e-9)
+    moved = np.random.default_rng(1).uniform(-0.45, 0.45, mesh.points.shape) * sides / cells
+    fine = DrawnSurface(mesh.points + np.where(inside, moved, 0.0), mesh.surface[:, :3])
+    for most in (300, 600, 1000):
+        drawn, _ = fine.of_at_most(most)
+        one, two, three = np.moveaxis(drawn.points[drawn.facets], 1, 0)
+        assert np.linalg.norm(np.cross(two - one, three - one), axis=1).min() > 1e-12, "m^2"
