@@ -128,11 +128,12 @@ def panel_sound(
     air, outer = air or Air(), outer_hull(housing)
     velocity, hertz = _coordinate_velocity(response, housing, bearings, at), float(response.frequency[at])
     weights = radiation.weights(hertz)
-    panels = radiation.hull_at(outer, weights[0][0], air.sound_speed)
+    resolved = [each for each in weights if radiation.hull_at(outer, each[0], air.sound_speed)] or weights
+    panels = radiation.hull_at(outer, resolved[-1][0], air.sound_speed)
     if panels is None:
         panels, model = RadiatingHull(outer.hull, outer.shapes), EquivalentRadiatedPower()
-    moving = {knot: np.asarray(panels.shapes @ radiation.radiating(velocity, knot)) for knot, _ in weights}
-    parts = [weight * panel_power(model, panels.hull, knot, moving[knot], air) for knot, weight in weights]
+    moving = {knot: np.asarray(panels.shapes @ radiation.radiating(velocity, knot)) for knot, _ in resolved}
+    parts = [weight * panel_power(model, panels.hull, knot, moving[knot], air) for knot, weight in resolved]
     power = np.sum(parts, axis=0)
     whole = float(radiation.power(np.array([hertz]), velocity[None])[0])
     return PanelSound(panels.hull, np.asarray(power * (whole / power.sum() if whole > 0.0 else 1.0)))

@@ -180,7 +180,7 @@ class SurfaceShape:
         """Return the mean outward motion of each facet, (4 t,)."""
         a, b, c = np.moveaxis(self.points[self.facets], 1, 0)
         normal = np.cross(b - a, c - a)
-        normal /= np.linalg.norm(normal, axis=1)[:, None]
+        normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
         return np.asarray(np.sum(self.motion[self.facets].mean(axis=1) * normal, axis=1))
 
 

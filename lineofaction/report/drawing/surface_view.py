@@ -104,7 +104,7 @@ def _folds(points: FloatArray, triangles: IntArray) -> IntArray:
     """Return the sharp edges of triangles (t, 3) as pairs of nodes, (e, 2)."""
     corner = points[triangles]
     normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
     edges = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
     unique, index = np.unique(edges, axis=0, return_inverse=True)
     order = np.argsort(index.ravel(), kind="stable")
@@ -142,7 +142,7 @@ def surface_panels(
         outline = Line("edges at rest", edges[:, 0], edges[:, 1], palette.INK, width=0.6)
         across, up = (Axis("mm", limits=(0.0, float(along[-1]))) for along in (x, y))
         shade = HeatMap(x, y, image, label, largest, least)
-        titled = f"{side}: {words}" if words else side
+        titled = f"{side}{words and f': {words}'}"
         panels.append(Panel(across, up, (outline,), title=titled, shade=shade, equal=True))
     return tuple(panels)
 
@@ -154,17 +154,16 @@ def shape_figure(key: str, title: str, shape: SurfaceShape, unit: tuple[float, s
     turned = shape.motion * np.exp(-0.5j * np.angle(np.sum(shape.motion**2)))  # as much as can be is real
     offset = drawn / fastest * turned.real
     one, name = unit or (fastest, "part of the largest motion")
-    size = f"{number(fastest / one, 3)} {name}" if unit else ""
-    scale = f"{size} drawn as {number(drawn / MM, 3)} mm" if unit else ""
-    largest = f"the largest motion is {size}" if unit else "a mode has a shape and no size"
+    size, length = f"{number(fastest / one, 3)} {name}", f"{number(drawn / MM, 3)} mm"
+    scale, largest = f"{size} drawn as {length}", f"the largest motion is {size}"
     label, value = f"normal to the surface, {name}", np.abs(shape.normal_motion) / one
     return Figure(
         key=key,
         title=title,
         caption="Colors: peak amplitude normal to the surface. Drawn: the motion at the instant at which it "
         f"is largest{'' if unit else ', in arbitrary size'}. Lines: edges at rest.",
-        alternative=f"{title}: {largest}.",
-        content=surface_panels(shape.points, shape.facets, offset, value, label, scale),
+        alternative=f"{title}: {largest if unit else 'a shape without size'}.",
+        content=surface_panels(shape.points, shape.facets, offset, value, label, scale if unit else ""),
     )
 
 

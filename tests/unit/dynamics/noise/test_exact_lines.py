@@ -25,6 +25,7 @@ from dynamics.noise import (
 )
 from dynamics.noise.coarse_hull import Coarseness
 from dynamics.noise.exact_lines import BLEND, EXACT, FLAT
+from dynamics.noise.housing_radiation import BAND
 
 HERTZ = 700.0
 
@@ -80,6 +81,34 @@ def test_panels_add_up_to_the_power_of_a_line(estimate: EstimatedRadiation) -> N
     assert sound.power[point] == pytest.approx(3.0 * before.power[point], rel=1e-9)
     panels = panel_sound(response(), housing(), None, made, point, ElementalRadiators(), AIR)
     assert panels.power.sum() == pytest.approx(sound.power[point], rel=1e-9)
+
+
+def test_panels_between_the_line_and_the_octave_below_are_those_of_the_finer_octave(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The line takes the knot between two octaves out; panels of the lower one do not resolve it."""
+    known, model = radiation().facts.resolved_frequency, ElementalRadiators()
+    point = (0, 0)
+    hertz = float(response().frequency[point])
+    between, high = 1.012 * hertz, 1.8 * hertz
+    assert high < known
+    octaves = housing_radiation(housing(), model, [between**2 / high * BAND, high / BAND], AIR)
+    assert np.any(np.abs(octaves.frequency / between - 1.0) < 1e-9)
+    beside = estimated_radiation(housing(), octaves, AIR)
+    made = with_exact_lines(beside, [line(beside, 1.05 * hertz, 3.0)])
+    (below, _), (above, _) = made.weights(hertz)
+    assert below < between < above
+    chosen, used = [], []
+    panels_module = sys.modules["dynamics.noise.panel_sound"]
+    choose, power = EstimatedRadiation.hull_at, panels_module.panel_power
+    monkeypatch.setattr(
+        EstimatedRadiation,
+        "hull_at",
+        lambda own, outer, at, c: chosen.append(at) or choose(own, outer, at, c),
+    )
+    monkeypatch.setattr(panels_module, "panel_power", lambda *call: used.append(call[2]) or power(*call))
+    assert panel_sound(response(), housing(), None, made, point, model, AIR).power.sum() > 0.0
+    assert max(used) == above <= chosen[-1], "of the panels that were chosen last"
 
 
 @pytest.mark.law
