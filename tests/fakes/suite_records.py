@@ -2,7 +2,11 @@
 
 Counted is the time of this process, of its children and of theirs, from set-up to tear-down. Set-up that
 tests share (a fixture of a file or of the run) counts for none of them: it would only move to the next. That
-of a file is on record by the fixture's own name.
+of a file is on record by the fixture's own name. What tests share without a fixture the first of them pays: a
+test that had it from another keeps half of what it cost before.
+
+A run without `--all` renews what it runs: slow tests that it leaves out stay on record, and so does what
+their file rested on when they passed.
 """
 
 from __future__ import annotations
@@ -70,15 +74,19 @@ class SuiteRecords:
             self.failed.add(_file(report.nodeid))
 
     def pytest_sessionfinish(self, session: pytest.Session) -> None:
-        """Renew the records of the files that were run, where the run is led."""
+        """Renew the records of what was run, where the run is led."""
         if hasattr(session.config, "workerinput") or not self.seconds:
             return
         ran = set(map(_file, self.seconds))
-        costs = {test: s for test, s in read_costs().items() if _file(test) not in ran}
-        costs |= {test: s for test, s in self.seconds.items() if s >= LEAST}
+        gone = ran if session.config.getoption("all") else frozenset()  # else what did not run was left out
+        before = read_costs()
+        left = {t: s for t, s in before.items() if t not in self.seconds and _file(t) not in gone}
+        now = {test: max(s, before.get(test, 0.0) / 2) for test, s in self.seconds.items()}
+        costs = left | {test: s for test, s in now.items() if s >= LEAST}
         _write(COSTS, ("test", "cpu_seconds"), ((test, f"{s:.1f}") for test, s in costs.items()))
         slow = {_file(test) for test, s in costs.items() if s > SLOW}
-        passed = read_passed() | {file: digest(ROOT / file) for file in ran & slow - self.failed}
+        whole = ran - {_file(test) for test, s in left.items() if s > SLOW}
+        passed = read_passed() | {file: digest(ROOT / file) for file in whole & slow - self.failed}
         there = {file: sums for file, sums in passed.items() if file in slow and (ROOT / file).exists()}
         _write(PASSED, ("file", "rested_on"), there.items())
 
