@@ -59,6 +59,14 @@ def visit(browser: Browser, address: str) -> Iterator[Visit]:
     seen.page.close()
 
 
+@pytest.fixture(scope="module")
+def scripts(browser: Browser, address: str) -> Iterator[Page]:
+    """Return a page whose scripts are asked, and which nothing changes."""
+    page = opened(browser, address).page
+    yield page
+    page.close()
+
+
 def bar(page: Page) -> dict[str, str]:
     return {name: page.locator(f"#bar-{name}").input_value() for name in FIELDS}
 
@@ -89,10 +97,10 @@ def said(page: Page, text: str) -> None:
         {"order": 40.0, **AT_40},
     ],
 )
-def test_the_order_is_that_of_the_service(visit: Visit, complaint: dict[str, Any]) -> None:
+def test_the_order_is_that_of_the_service(scripts: Page, complaint: dict[str, Any]) -> None:
     case = CASE | {"pair": PAIR, "complaint": complaint}
     known = complaint_of_case(validated(Case, case))
-    heard = visit.page.evaluate(HEARD, case)
+    heard = scripts.evaluate(HEARD, case)
     assert heard["order"] == pytest.approx(known.order * known.per_pitch)
     assert heard["harmonic"] == known.within[0].harmonic
     assert heard["torque"] == known.torques["pair"]
@@ -101,11 +109,11 @@ def test_the_order_is_that_of_the_service(visit: Visit, complaint: dict[str, Any
 @pytest.mark.parametrize(
     "stated", [{"frequency_hz": 1486.0}, {"frequency_hz": 1453.0, "tolerance_percent": 3.0}]
 )
-def test_what_is_no_harmonic_to_the_service_is_none_in_the_bar(visit: Visit, stated: dict[str, Any]) -> None:
+def test_what_is_no_harmonic_to_the_service_is_none_in_the_bar(scripts: Page, stated: dict[str, Any]) -> None:
     case = CASE | {"pair": PAIR, "complaint": stated | {"speed_rpm": 2100.0}}
     with pytest.raises(BadInput, match="of what passes"):
         complaint_of_case(validated(Case, case))
-    assert visit.page.evaluate(HEARD, case)["harmonic"] is None
+    assert scripts.evaluate(HEARD, case)["harmonic"] is None
 
 
 @pytest.mark.law

@@ -9,8 +9,10 @@ import time
 import tomllib
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
+import jsonschema_rs
 import numpy as np
 import pytest
 from lxml import etree
@@ -229,14 +231,18 @@ def test_what_is_written_of_every_form_is_valid() -> None:
 
 def _validate(document: Document) -> None:
     """Validate both forms against the published schemas, as they are but for the three numbers of 2.0.0."""
-    import jsonschema  # noqa: PLC0415 (a second that each worker would pay)
-
-    schema = etree.XMLSchema(etree.parse(reference("schema/rexs-file.xsd")))
+    schema, rules = _schemas()
     schema.assertValid(etree.fromstring(serialized(document, "a.rexs")))
     two_numbers = re.sub(r"^2\.0\.0$", "2.0", document.model.version)
     text = serialized(Document(replace(document.model, version=two_numbers)), "a.rexsj")
+    rules.validate(json.loads(text))
+
+
+@cache
+def _schemas() -> tuple[etree.XMLSchema, jsonschema_rs.Draft7Validator]:
     rules = json.loads(reference("schema/rexs-file.json").read_text("utf-8"))
-    jsonschema.Draft7Validator(rules).validate(json.loads(text))
+    schema = etree.XMLSchema(etree.parse(reference("schema/rexs-file.xsd")))
+    return schema, jsonschema_rs.Draft7Validator(rules)
 
 
 def _attributes_in(path: Path) -> int:
@@ -258,6 +264,7 @@ STAGES = {"FVA-I": INDUSTRIAL, "FVA_P": PLANETARY, "SEW_3": SEW}
 EXAMPLES = pytest.mark.parametrize("path", examples(), ids=lambda path: path.name)
 
 
+@cache
 def unit_of(path: object) -> tuple[GearUnit, tuple[StageCase, ...]]:
     unit = GearUnit(upgrade(read_rexs(path).model)[0])  # type: ignore[arg-type]
     return unit, StageCase.all_of(unit, {})
