@@ -72,7 +72,7 @@ def ran(visit: Visit, name: str) -> Locator:
     if part.locator(".plot").count():
         return part
     for label, wish in wishes.items():
-        control = part.get_by_label(label)
+        control = part.get_by_label(label).first  # "Pairs" before "Pairs analyzed whole"
         if control.evaluate("node => node.tagName") == "SELECT":
             control.select_option(label=wish)
         else:

@@ -235,15 +235,14 @@ export class Gearbox {
   /** Half of its size in mm. */
   get reach() {
     const [low, high] = this.box;
-    const tips = this.stages.map(({ pair }) => pair.outline.wheel.radius_mm.tip);
-    const beyond = this.drawnHousing ? 0 : 0.5 * Math.max(0, ...tips); // gears are within a housing
-    return (Math.hypot(...high.map((value, k) => (value - low[k]) / 2)) + beyond) || 1;
+    const beyond = this.drawnHousing ? [] : this.stages.map(({ pair }) => 0.5 * pair.outline.wheel.radius_mm.tip); // gears are within a housing
+    return (Math.hypot(...high.map((value, k) => (value - low[k]) / 2)) + Math.max(0, ...beyond)) || 1;
   }
 
   frame(camera) {
     const [low, high] = this.box;
     const center = /** @type {[number, number, number]} */ (low.map((value, k) => (value + high[k]) / 2));
-    camera.look(center, this.reach, 0.8, 0.35);
+    camera.look(center, this.reach, 0.8, 0.35, 0.85);
   }
 
   advance(seconds) {
@@ -274,21 +273,25 @@ export class Gearbox {
 
   /** Draw the surface of a housing by its levels; what moves with it, or stands in it, is seen through it. */
   surface(gl, frame) {
-    const { program, at } = this.programs.hull;
-    const { mesh, parts, levels } = this.drawnHousing;
+    const [{ program, at }, { mesh, parts, levels }] = [this.programs.hull, this.drawnHousing];
     const { phase, part, factor } = this.motion ?? { phase: 0, part: 0, factor: 0 };
-    const alone = Boolean(levels) && !this.motion.shafts.size;
     this.hull ??= held(gl, mesh, parts);
     gl.useProgram(program);
-    gl.uniform1f(at.opacity, alone ? 1 : levels ? 0.6 : 0.3);
+    gl.uniform1f(at.opacity, !levels ? 0.3 : this.motion.shafts.size ? 0.7 : 1);
     gl.uniformMatrix4fv(at.view, false, frame.view);
     gl.uniform3fv(at.back, frame.back);
     gl.uniform2f(at.now, part * factor * Math.cos(phase), part * factor * Math.sin(phase));
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-    gl.depthMask(alone); // hides what is behind it
+    gl.depthMask(Boolean(levels));
     gl.bindVertexArray(this.hull.array);
-    gl.drawElements(gl.TRIANGLES, this.hull.count, gl.UNSIGNED_INT, 0);
+    gl.depthFunc(gl.LEQUAL);
+    if (levels) gl.disable(gl.CULL_FACE); // coarse facets of a thin wall are of either side
+    for (const seen of levels ? [false, true] : [true]) { // with levels its nearest walls alone are seen
+      gl.colorMask(seen, seen, seen, seen);
+      gl.drawElements(gl.TRIANGLES, this.hull.count, gl.UNSIGNED_INT, 0);
+    }
+    gl.depthFunc(gl.LESS);
     gl.depthMask(true);
     gl.disable(gl.BLEND);
   }

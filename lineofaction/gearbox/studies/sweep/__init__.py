@@ -9,7 +9,7 @@ from pydantic import Field
 from lineofaction.gearbox.schemas.figures import Figures, Json, Part, Source
 from lineofaction.gearbox.schemas.model import BoundaryModel, Row
 
-Axis = Annotated[str, Field(min_length=1, max_length=1000)]
+Axis = Annotated[str, Field(min_length=1, max_length=90)]
 Shown = Literal["peak_to_peak", "harmonic_1", "harmonic_2", "harmonic_3", "max_pressure", "face_load_factor"]
 """Of `fe_contact.microgeometry.sweep.SWEPT`, which takes longer to load than a service to start."""
 
