@@ -106,7 +106,7 @@ def assert_alike(found: Any, known: Any) -> None:
         assert len(found) == len(known)
         for one, other in zip(found, known, strict=True):
             assert_alike(one, other)
-    elif isinstance(known, list) and None in known or not isinstance(known, (int, float, list)):
+    elif (isinstance(known, list) and None in known) or not isinstance(known, (int, float, list)):
         assert found == known
     else:
         assert found == pytest.approx(known, rel=1e-4, abs=1e-9)

@@ -129,7 +129,7 @@ function fitted({ data, layout }, width) {
 
 /** Let go of plots that have left the page: what plotly.js ties to the window holds them, their data and their listeners. */
 async function swept() {
-  for (const old of [...shown.keys()].filter((node) => !node.isConnected && node.dataset.drawn)) {
+  for (const old of [...shown.keys()].filter(({ isConnected, dataset }) => !isConnected && (dataset.drawn || dataset.placed))) {
     shown.delete(old);
     sizes.unobserve(old);
     if (old.data) (await plotly()).purge(old);
@@ -146,6 +146,7 @@ export const painted = () => new Promise((done) => {
 export async function plot(node, figure) {
   await swept();
   shown.set(node, figure);
+  if (node.isConnected) node.dataset.placed = "yes"; // also in a tab that nobody opens, where it is not drawn
   sizes.observe(node);
   if (node.clientWidth) await draw(node, figure);
 }

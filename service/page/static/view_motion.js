@@ -188,8 +188,7 @@ export class Motions {
     if (!motion) return;
     motion.part = Number(this.amplitude.value);
     this.factor.textContent = motion.oscillates ? "" : `× ${number(motion.part * motion.factor, 2)}`;
-    this.levels.hidden = !motion.hull?.levels;
-    this.levels.textContent = motion.hull?.levels ?? "";
+    Object.assign(this.levels, { hidden: !motion.hull?.levels, textContent: motion.hull?.levels ?? "" });
     this.view.stage.wake();
   }
 }
