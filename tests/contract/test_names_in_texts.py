@@ -78,6 +78,7 @@ def texts() -> Iterator[Path]:
         yield from (file for file in found if file.is_file() and file.suffix in ("", ".py", ".toml", ".yaml"))
 
 
+@pytest.mark.law
 def test_what_texts_name_is_there() -> None:
     files = {file: file.read_text("utf-8") for file in texts()}
     assert sum(bool(NAME.search(content)) for content in files.values()) > 50
