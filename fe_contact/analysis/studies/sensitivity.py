@@ -49,16 +49,10 @@ class Sensitivity:
     center_distance_change: RippleCurve
 
     @staticmethod
-    def request(
-        pair: ParallelAxes | Checked,
-        axes: TableAxes | None,
-        options: AnalysisOptions,
-        *,
-        neglect: bool = True,
-    ) -> Checked:
-        """Check the request over both deviations, once; what is checked stays as it is."""
+    def request(pair: ParallelAxes | Checked, axes: TableAxes | None, options: AnalysisOptions) -> Checked:
+        """Check the request over both deviations, once: each table decides what it neglects."""
         model = "3d" if options.model == "auto" else options.model
-        return as_checked(pair, axes, replace(options, model=model), neglect=neglect)
+        return as_checked(pair, axes, replace(options, model=model), neglect=False)
 
 
 def study_sensitivity(
@@ -97,7 +91,7 @@ def _curves(checked: Checked, corner_contact: str, run: Run) -> tuple[RippleCurv
     """Return both curves; every table neglects what it does not need itself."""
     whole, none = checked.request, np.zeros(1)
     effects = {**whole.options.effects, named(EFFECTS, "corner_contact"): corner_contact}
-    request = replace(whole, options=replace(whole.options, effects=effects), neglected={})
+    request = replace(whole, options=replace(whole.options, effects=effects))
     skews, changes = (np.union1d(none, each) for each in (whole.misalignment, whole.center_distance_change))
     skewed, moved = (
         ste_database(

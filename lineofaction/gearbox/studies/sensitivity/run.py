@@ -149,7 +149,7 @@ def _changes(checked: CheckedCase, inputs: Inputs) -> tuple[float, ...]:
 
     def meshes(changes: tuple[float, ...]) -> bool:
         with suppress(InputError):
-            return bool(_at_changes(checked, inputs, changes, neglect=False))
+            return bool(_at_changes(checked, inputs, changes))
         return False
 
     return tuple(inputs.center_distance_change_percent) or next(filter(meshes, _USUAL), _USUAL[0])
@@ -160,9 +160,7 @@ def _tables(checked: CheckedCase, inputs: Inputs) -> Checked:
     return _at_changes(checked, inputs, _changes(checked, inputs))
 
 
-def _at_changes(
-    checked: CheckedCase, inputs: Inputs, percent: tuple[float, ...], *, neglect: bool = True
-) -> Checked:
+def _at_changes(checked: CheckedCase, inputs: Inputs, percent: tuple[float, ...]) -> Checked:
     pair, load = checked.pair, checked.case.load
     torques, forces = load.torque_n_m, load.normal_force_n
     axes = TableAxes(
@@ -170,7 +168,7 @@ def _at_changes(
         misalignments=[value * UM for value in inputs.misalignment_um],
         center_distance_changes=[0.01 * value * pair.center_distance for value in percent],
     )
-    return Sensitivity.request(pair, axes, study_options(checked.options), neglect=neglect)
+    return Sensitivity.request(pair, axes, study_options(checked.options))
 
 
 def _curves(study: PairStudy) -> Iterator[tuple[Any, ...]]:
