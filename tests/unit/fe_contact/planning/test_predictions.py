@@ -9,7 +9,7 @@ import pytest
 from analysis_requests import table_request
 
 from bounds import engineering
-from fe_contact import AllowedError, FlankModification, Gear, GearPair, analyze
+from fe_contact import AllowedError, FlankModification, Gear, GearPair, analyze, ste_database
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.run_plan import plan_run
@@ -247,3 +247,13 @@ def test_more_positions_are_expected_where_pitches_differ():
     alike, differing, longest = (expected_positions(few, period) for period in (1, 391, 2300))
     assert differing > alike > longest == few.nodes.start + 1
     assert {expected_positions(requested, period) for period in (1, 391)} == {20}
+
+
+@pytest.mark.parametrize("model", ["3d", "plane_strain"])
+def test_positions_of_spur_pairs_are_those_expected_at_one_load_and_at_several(model):
+    """Handovers move with the load: each has positions of its own."""
+    wide = GearPair(*[Gear(20, 4e-3, 8e-3, 40e-3)] * 2, 80e-3)
+    for loads in ([5e2], [1e2, 4e2, 1e3, 2e3]):
+        asked = check_request(wide, *table_request(normal_forces=loads, level="draft", model=model))
+        solved = ste_database(asked).position.size
+        assert 0.8 < expected_positions(decide(asked).plan) / solved < 1.25
