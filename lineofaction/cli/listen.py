@@ -14,7 +14,7 @@ from dynamics.results import RunResult
 from host.directories import cache_home
 from lineofaction.cli.guard import warn
 from lineofaction.cli.output import check_writable, console, output_of, print_json, progress_bar, table
-from lineofaction.cli.subjects import assessed_scene
+from lineofaction.cli.subjects import announce_cost, assessed_scene, listening_cost
 from lineofaction.gearbox.convert.housings import HousedScene, housings_in
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import SOUND, run_in
@@ -122,6 +122,10 @@ def _housing_sounds(
     _require_no_view(view, receiver)
     scene, folder = assessed_scene(file)
     receiver = receiver.in_scene(scene)
+    if receiver.microphone_mm:
+        sounding = sum(part.has_surface for part in scene.housings)
+        durations = (float(run.time[-1] - run.time[0]) for run in runs.values())
+        announce_cost("listen", [listening_cost(each, housings=sounding) for each in durations])
     sounds: list[_RunSound] = []
     remarks: list[str] = []
     with progress_bar() as report:

@@ -11,6 +11,7 @@ from bounds import engineering
 from lineofaction.cli.output import console, print_json, table
 from lineofaction.cli.subjects import (
     inputs_of_study,
+    listening_cost,
     simulation_cost,
     study_cost,
     table_cost,
@@ -47,6 +48,8 @@ def _result_cost(verb: str, source: Path, project: Path) -> StudyCost | None:
         return table_cost(read_model(Case, source))
     if verb == "simulate":
         return simulation_cost(*scene_of(source))
+    if verb == "listen":
+        return listening_cost(scene_of(source)[0].run.duration_s)
     if study is None:
         return None
     if "shafts" in read_table(source):

@@ -34,7 +34,7 @@ from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.reading import located
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.studied import OverSpeeds
-from lineofaction.gearbox.studies.cost import CASES, StudyCost, Work, run_cost
+from lineofaction.gearbox.studies.cost import CASES, StudyCost, Work, panels_work, run_cost
 from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.subjects import MeshTables, finished, scene_of, with_own_cases
 from lineofaction.gearbox.tabled_scene import ComputedTables
@@ -121,6 +121,18 @@ def tables_cost(scene: SceneInput, folder: Path) -> StudyCost:
 def simulation_cost(scene: SceneInput, folder: Path) -> StudyCost | None:
     """Return the predicted cost of a run, without the tables of its scene; None: not predicted."""
     return run_cost(with_own_cases(scene, folder))
+
+
+_READING, _HEARD, _BY_EAR = 0.5, 0.06, 2.9
+"""CPU seconds: of a run as it is read, of a second of it, and of a second at a microphone, where hearing
+counts."""
+
+
+def listening_cost(seconds: float, *, housings: int = 0) -> StudyCost:
+    """Return the predicted cost of a run of so many seconds as a sound: through so many housings by ear."""
+    each = _BY_EAR if housings else _HEARD
+    sound = Work("runs", _READING), Work("seconds of sound", each, seconds)
+    return StudyCost((panels_work(housings), *sound) if housings else sound)
 
 
 def announce_cost(verb: str, costs: Sequence[StudyCost | None]) -> None:

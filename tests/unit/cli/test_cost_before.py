@@ -15,6 +15,7 @@ from command_line import loa
 from housing_solid import write_housed_scene
 from spur_case import spur_case
 
+from dynamics.acoustics import BoundaryElements, ElementalRadiators
 from dynamics.influence import neglected_check
 from host.directories import cache_home
 from lineofaction.cli import run_study, simulate
@@ -27,6 +28,7 @@ from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.cost import CASES, StudyCost, Work
+from lineofaction.gearbox.studies.noise.run import USUAL_LINE
 from lineofaction.gearbox.studies.study import run
 from lineofaction.gearbox.subjects import scene_of
 
@@ -254,11 +256,46 @@ def test_the_band_of_a_sound_costs_as_many_responses_as_it_has(
     assert study_cost(study, scene, folder, alone) == StudyCost(stands.parts[:-1])
 
 
-def test_a_sound_whose_radiation_may_take_more_is_left_out(housed: Path) -> None:
+def test_the_lines_of_a_sound_are_within_twice_those_that_boundary_elements_correct(
+    housed: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At a microphone too; a line costs what its usual hull does."""
     study, (scene, folder) = STUDIES["noise"], scene_of(housed)
-    for fields in ({}, {"boundary_elements": False}, {"sensitivities": True}, {"run": "0" * 64}):
-        speeds = {} if "run" in fields else {"speed_rpm": SPEEDS[:6]}
-        assert study_cost(study, scene, folder, validated(study.inputs, speeds | fields)) is None
+    fields = {"speed_rpm": [300.0, 600.0], "orders": 2, "band": False, "microphone_mm": [40.0, 60.0, 1000.0]}
+    inputs = validated(study.inputs, fields)
+    panels: list[int] = []
+
+    def by_monopoles(_model: Any, hull: Any, *of: Any) -> Any:
+        panels.append(len(hull.triangles))
+        return ElementalRadiators().resistance(hull, *of)
+
+    monkeypatch.setattr(BoundaryElements, "resistance", by_monopoles)
+    cost = study_cost(study, scene, folder, inputs)
+    assert cost is not None
+    tabled = tabled_scene(scene, folder, None, lambda *_: None)
+    study.run.compute(tabled, inputs, Means(folder, lambda *_: None))
+    (lines,) = (part for part in cost.parts if part.name == "lines by boundary elements")
+    assert 0.5 <= lines.pieces / len(panels) <= 2.0
+    each = [BoundaryElements().cost(count, 0.0, 0).seconds / USUAL_LINE.seconds for count in panels]
+    assert all(0.5 < share < 2.0 for share in each)
+
+
+def test_more_points_have_more_lines_up_to_the_most(housed: Path) -> None:
+    study, (scene, folder) = STUDIES["noise"], scene_of(housed)
+
+    def pieces(**fields: Any) -> float:
+        cost = study_cost(study, scene, folder, validated(study.inputs, {"speed_rpm": SPEEDS[:6], **fields}))
+        assert cost is not None
+        return next((part.pieces for part in cost.parts if "boundary" in part.name), 0.0)
+
+    assert [pieces(orders=6), pieces(speed_rpm=SPEEDS, orders=10)] == [3, 4]
+    assert pieces(boundary_elements=False) == 0.0
+
+
+def test_a_sound_of_a_run_and_its_contacts_are_not_predicted(housed: Path) -> None:
+    study, (scene, folder) = STUDIES["noise"], scene_of(housed)
+    for fields in ({"sensitivities": True, "speed_rpm": SPEEDS[:6]}, {"run": "0" * 64}):
+        assert study_cost(study, scene, folder, validated(study.inputs, fields)) is None
 
 
 def test_a_change_costs_two_contacts_a_pair_and_two_of_the_designs() -> None:
@@ -297,18 +334,15 @@ def test_the_status_has_the_cost_of_each_of_these_verbs(
     case: CheckedCase,
     tmp_path: Path,
     request: pytest.FixtureRequest,
-    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     verbs = {"ablate", "frontier", "root-stress"}
     if subject == "scene":
-        verbs |= {"vibration", "noise", "complaint", "change"}
+        verbs |= {"listen", "vibration", "noise", "complaint", "change"}
         (tmp_path / "case.toml").unlink()
         scene = request.getfixturevalue("housed")
         heard = {"complaint": {"frequency_hz": 150.0, "speed_rpm": 450.0}}
         scene.write_text(json.dumps(json.loads(scene.read_text()) | heard))
         (tmp_path / "change.json").write_text(json.dumps(CHANGE))
-        for radiation in ("_PANELS", "BUDGET"):  # of a scene as small as this they take more
-            monkeypatch.setattr(import_module("lineofaction.gearbox.studies.noise.run"), radiation, 0.0)
     facts = json.loads(loa("status", tmp_path, "--json").stdout)
     assert verbs <= {row["verb"] for row in facts["results"] if (row["cpu_seconds"] or 0.0) > 0.0}
 

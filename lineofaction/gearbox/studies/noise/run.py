@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
@@ -47,7 +48,7 @@ from dynamics.noise import (
 )
 from dynamics.noise.estimated_radiation import LEAST
 from dynamics.noise.estimated_radiation import NAME as ESTIMATE
-from dynamics.noise.exact_lines import BUDGET, EXACT, FLAT, line_cost
+from dynamics.noise.exact_lines import BUDGET, COARSE, EXACT, FLAT, LINES, line_cost
 from dynamics.noise.floor_sound import mean_square_floor
 from dynamics.noise.housing_radiation import resolved_frequency
 from dynamics.noise.sound_band import responses_of_band
@@ -62,7 +63,7 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
-from lineofaction.gearbox.studies.cost import StudyCost
+from lineofaction.gearbox.studies.cost import StudyCost, Work, panels_work
 from lineofaction.gearbox.studies.excitations import facts_of_scene, order_names
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.housings import (
@@ -99,8 +100,13 @@ def _write_panels(sound: RadiatedSound, _scene: SceneInput, file: Path) -> None:
     write_surface(file, panels.hull.nodes, panels.hull.triangles, {}, fields)
 
 
-_PANELS = 60.0
-"""CPU seconds of the panels of a housing at most, measured 5 to 60; they are kept."""
+USUAL_LINE = BoundaryElements().cost(2 * COARSE.cells, 0.0, 0)
+"""Of boundary elements on the reference host: most hulls are the coarsest, two panels to a cell."""
+
+
+def _usual_lines(points: int) -> int:
+    """Return how many lines boundary elements usually correct: 1 of 4 points, 3 of 36."""
+    return min(LINES, math.ceil(0.5 * math.sqrt(points)))
 
 
 class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
@@ -117,11 +123,11 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
             raise BadInput.of("microphone_mm", list(inputs.microphone_mm), bound, "Take the estimate.")
         require_surface(subject)
 
-    def predicted(self, scene: SceneInput, inputs: Inputs, _cache: Path | None) -> StudyCost | None:
-        """Return what the response and those of its band take; None where the radiation may take more.
+    def predicted(self, scene: SceneInput, inputs: Inputs, cache: Path | None) -> StudyCost | None:
+        """Return what the response, those of its band, and a usual radiation take.
 
-        That depends on the mesh of the housing, which is not made before. Nor are contacts of sensitivities
-        predicted.
+        How many panels a housing has its mesh says, which is not made before: of one that is larger or finer
+        than a usual gear case the panels take more. Contacts of sensitivities are not predicted.
         """
         sounding = [part for part in scene.housings if part.has_surface]
         if inputs.sensitivities or not sounding:
@@ -129,10 +135,15 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
         mounted = any(foot.mount_stiffness_n_per_m is not None for part in sounding for foot in part.feet)
         band = partial(responses_of_band, mounted=mounted) if inputs.band else None
         cost = predicted_forces(scene, inputs, band)
-        radiation = 0.0 if inputs.radiation == PLANE.model_name else _PANELS * len(sounding)
+        if cost is None or inputs.radiation == PLANE.model_name:
+            return cost
+        parts = [panels_work(len(sounding))]
         if inputs.radiation == ESTIMATE and inputs.boundary_elements:
-            radiation += BUDGET
-        return cost if cost is not None and cost.seconds >= radiation else None
+            points = len(inputs.speed_rpm) * inputs.orders
+            line = on_this_host(WORK.format(BoundaryElements().model_name), USUAL_LINE, cache).seconds
+            lines = min(_usual_lines(points) * len(sounding), max(int(BUDGET / USUAL_LINE.seconds), 1))
+            parts.append(Work("lines by boundary elements", line, lines))
+        return cost + StudyCost(tuple(parts))
 
     def compute(self, tabled: TabledScene, inputs: Inputs, means: Means) -> RadiatedSound:
         subject = tabled.steady
