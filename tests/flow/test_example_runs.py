@@ -40,6 +40,7 @@ def example(file: Path):
     return dynamic_scene(given, tables)
 
 
+@pytest.mark.drawn
 @pytest.mark.parametrize("file", SCENES)
 def test_the_energy_balance_of_every_example_closes(file, record_figure):
     whole = example(file)

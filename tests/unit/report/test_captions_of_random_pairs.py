@@ -377,6 +377,7 @@ def seeds() -> list[object]:
     return [*range(EVERY_CHANGE), *late]
 
 
+@pytest.mark.drawn
 @pytest.mark.parametrize("seed", seeds())
 def test_findings_are_true_of_random_pairs(seed: int) -> None:
     check(*drawn_at_random(seed))

@@ -85,6 +85,7 @@ class Recording:
         return (function(shared, item) for item in items)
 
 
+@pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize(
     ("process", "further", "task"),

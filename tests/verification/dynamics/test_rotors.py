@@ -115,6 +115,7 @@ def response() -> ForcedResponse:
     return forced_response(assemble(dynamic_scene(scene_of(EXAMPLE)[0], {})), SPEEDS, orders=1)
 
 
+@pytest.mark.drawn
 @pytest.mark.parametrize(("unbalance", "speed"), BY_ROSS)
 def test_bearing_and_mesh_forces_are_those_of_ross(
     response: ForcedResponse, unbalance: str, speed: float

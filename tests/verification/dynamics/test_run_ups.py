@@ -289,6 +289,7 @@ def test_nothing_folds_and_no_peak_is_missed(scene, rpm, record_figure):
     assert rms == pytest.approx(np.sqrt(np.mean(points**2)), rel=2e-3)
 
 
+@pytest.mark.drawn
 @pytest.mark.parametrize("rpm", [500.0, 955.0, 9000.0])
 @pytest.mark.parametrize("scene", SCENES)
 def test_a_peak_does_not_depend_on_the_rate_of_the_output(scene, rpm, record_figure):

@@ -51,6 +51,7 @@ def state(system, rng):
     return q, rng.normal(size=n) * 1e-3 / system.arrays.scale
 
 
+@pytest.mark.drawn
 @pytest.mark.parametrize("on", [EFFECTS, EFFECTS[:1], EFFECTS[1:2], EFFECTS[2:], EFFECTS[:2]])
 def test_the_stage_matrices_are_the_derivatives_of_the_forces(table, on):
     system = assemble(scene_on(table, on))

@@ -90,6 +90,7 @@ def in_pieces(scene, path, blocks):
     raise AssertionError("never ended")
 
 
+@pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("name", SCENES)
 def test_a_run_in_pieces_is_the_run_in_memory_bit_by_bit(name, tmp_path):

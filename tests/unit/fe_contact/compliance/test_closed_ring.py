@@ -52,6 +52,7 @@ def solved_harmonics(monkeypatch: pytest.MonkeyPatch, size: int) -> list[int]:
     return numbers
 
 
+@pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("name", GEARS)
 def test_blocks_are_as_exact_as_stated(

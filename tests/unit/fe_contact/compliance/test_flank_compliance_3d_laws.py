@@ -44,6 +44,7 @@ def global_compliance(gear: Toothing, recipe: SectorRecipe) -> np.ndarray:
     return factorise(matrix, block=1)(loads)[number[:, sector.flank]]
 
 
+@pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize(
     "gear",

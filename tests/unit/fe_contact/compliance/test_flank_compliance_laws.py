@@ -49,6 +49,7 @@ def of_ring(gear: Toothing, recipe: MeshRecipe) -> FlankCompliance:
     return flank_compliance(gear, recipe, teeth=5)
 
 
+@pytest.mark.drawn
 @pytest.mark.law
 @ALL_RINGS
 def test_equals_the_solution_of_the_whole_uncondensed_mesh(gear: Toothing, real: int | None) -> None:

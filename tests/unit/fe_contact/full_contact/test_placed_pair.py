@@ -45,6 +45,7 @@ def closest(first: FloatArray, second: FloatArray) -> float:
     return float(np.sqrt(((first[:, None] - second[None]) ** 2).sum(axis=2).min()))
 
 
+@pytest.mark.drawn
 @pytest.mark.parametrize("pair", [PAIR, INTERNAL], ids=["external", "internal"])
 @pytest.mark.parametrize("position", [-0.45, 0.0, 0.3])
 def test_every_pair_on_the_path_of_contact_touches(pair: ParallelAxes, position: float) -> None:

@@ -188,6 +188,7 @@ def swept(profile: ToothProfile) -> FloatArray:
     return np.concatenate(places)
 
 
+@pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("ring", RINGS.values(), ids=RINGS)
 def test_rolling_cutter_touches_the_whole_flank_and_cuts_it_nowhere(ring: Toothing) -> None:

@@ -31,6 +31,7 @@ def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("compliance")
 
 
+@pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("model", ["plane_strain", "plane_stress"])
 @pytest.mark.parametrize(("teeth", "width"), [((20, 25), 3.0), ((23, 61), 6.0), ((40, 80), 18.0)])

@@ -93,6 +93,7 @@ CASES: dict[str, tuple[Callable[[], GearPair], dict[str, Any]]] = {
 }
 
 
+@pytest.mark.drawn
 @pytest.mark.law
 @pytest.mark.parametrize("case", CASES)
 def test_a_table_cut_into_blocks_keeps_its_bits(case: str, cache: Path) -> None:
