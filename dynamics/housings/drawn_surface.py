@@ -117,17 +117,21 @@ def _drawn(points: FloatArray, facets: IntArray, most: int, field: str) -> Drawn
 
 
 def _together(points: FloatArray, facets: IntArray, size: float) -> tuple[IntArray, IntArray]:
-    """Put points in a cell of a grid together in the outermost, so edges stay; facets without area go.
+    """Put points in a cell of a grid together in the outermost, so edges stay.
 
+    Facets without area go, and of a wall that is thinner than a cell the side towards the middle.
     Returns the outermost of each cell and the facets between them.
     """
     low, high = points.min(axis=0), points.max(axis=0)
-    cells = np.floor((points - low) / size).astype(np.int64)
+    middle, cells = 0.5 * (low + high), np.floor((points - low) / size).astype(np.int64)
     _, cell, count = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
     cell = cell.ravel()
-    outwards = np.lexsort((np.linalg.norm(points - 0.5 * (low + high), axis=1), cell))
+    outwards = np.lexsort((np.linalg.norm(points - middle, axis=1), cell))
     outermost = outwards[np.cumsum(count) - 1]
     one, two, three = np.moveaxis(points[outermost][cell[facets]], 1, 0)
-    whole = np.linalg.norm(np.cross(two - one, three - one), axis=1) > _LEAST_AREA * size**2
-    _, first = np.unique(np.sort(cell[facets][whole], axis=1), axis=0, return_index=True)
-    return outermost, cell[facets][whole][np.sort(first)]
+    across = np.cross(two - one, three - one)
+    whole = np.flatnonzero(np.linalg.norm(across, axis=1) > _LEAST_AREA * size**2)
+    inwards = np.sum(across * (one - middle), axis=1)[whole] <= 0.0
+    facets = cell[facets[whole[np.argsort(inwards, kind="stable")]]]
+    _, first = np.unique(np.sort(facets, axis=1), axis=0, return_index=True)
+    return outermost, facets[np.sort(first)]

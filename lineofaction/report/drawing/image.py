@@ -293,7 +293,9 @@ def _scale(ax: Axes, axis: Axis, name: str) -> None:
     ax.set(**{f"{name}label": axis.label, f"{name}scale": axis.scale})
     drawn = getattr(ax, f"{name}axis")
     if axis.names:
-        drawn.set_ticks([value for value, _ in axis.names], labels=[text for _, text in axis.names])
+        many = name == "x" and sum(len(text) for _, text in axis.names) > _HALF_LABEL
+        texts = [text.replace(" ", "\n") if many else text for _, text in axis.names]
+        drawn.set_ticks([value for value, _ in axis.names], labels=texts)
         drawn.set_minor_locator(NullLocator())
         return
     if axis.scale == "linear":

@@ -424,3 +424,19 @@ def test_no_facet_of_a_coarse_surface_is_a_line() -> None:
         drawn, _ = fine.of_at_most(most)
         one, two, three = np.moveaxis(drawn.points[drawn.facets], 1, 0)
         assert np.linalg.norm(np.cross(two - one, three - one), axis=1).min() > 1e-12, "m^2"
+
+
+def test_a_thin_wall_is_seen_from_outside() -> None:
+    """Both its sides become one, which is that away from the middle, whichever comes first."""
+    sides, wall = np.array([0.2, 0.1, 0.06]), 2e-3
+    outer, inner = box((0.2, 0.1, 0.06), (40, 20, 12)), box((0.196, 0.096, 0.056), (41, 21, 13))
+    points = np.concatenate([outer.points, inner.points + wall])
+    facets = [outer.surface[:, :3], inner.surface[:, :3][:, ::-1] + len(outer.points)]
+    for order in (1, -1):
+        drawn, _ = DrawnSurface(points, np.concatenate(facets[::order])).of_at_most(1500)
+        one, two, three = np.moveaxis(drawn.points[drawn.facets], 1, 0)
+        across = 0.5 * np.cross(two - one, three - one)
+        for axis in range(3):
+            at_end = np.all(drawn.points[drawn.facets][..., axis] > sides[axis] - 1.5 * wall, axis=1)
+            outwards = across[at_end, axis]
+            assert outwards[outwards > 0.0].sum() > 0.8 * np.prod(np.delete(sides, axis))
