@@ -46,7 +46,7 @@ def _show(
 ) -> None:
     database = open_ste(file)
     warn(database.metadata.warnings)
-    curve = curve_json(database, **_arguments(point), at=None if at is None else positions(at))
+    curve = curve_json(database, **_arguments(point, database), at=None if at is None else positions(at))
     if as_json:
         print_json(curve)
     elif as_csv:
@@ -70,13 +70,12 @@ def open_ste(file: Path) -> SteDatabase:
     return SteDatabase.from_netcdf(file)
 
 
-def _arguments(point: dict[str, float | None]) -> dict[str, Any]:
+def _arguments(point: dict[str, float | None], database: SteDatabase) -> dict[str, Any]:
     torque, force, misalignment_um, center_distance_change_mm = point.values()
-    if (torque is None) == (force is None):
-        both = None if torque is None else f"--torque {torque:g} --force {force:g}"
-        raise BadInput.of(
-            "--torque", both, "given, or --force instead, but not both", "For example --torque 100."
-        )
+    if torque is not None and force is not None:
+        advice = "Leave out one of them, or both for the highest load."
+        raise BadInput.of("--torque", f"{torque:g} --force {force:g}", "the only load", advice)
+    force = float(database.force[-1]) if torque is None and force is None else force
     for name, value in point.items():
         if value is not None and not math.isfinite(value):
             raise BadInput.of(f"--{name.replace('_', '-')}", value, "a finite number")

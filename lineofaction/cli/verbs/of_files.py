@@ -116,7 +116,7 @@ def _geometry(
 @computing
 def _ste(
     database: Annotated[Path, typer.Argument(help="STE database (netCDF), or the folder of tables.")],
-    torque: Annotated[float | None, typer.Option(help="Torque on the driving gear in N m.")] = None,
+    torque: Annotated[float | None, typer.Option(help="On the driving gear, N m; default: highest.")] = None,
     force: Force = None,
     at: Annotated[
         str | None,

@@ -114,10 +114,15 @@ def test_force_and_torque_are_the_same_question(table: Path) -> None:
     assert printed("ste", table, "--force", repr(force)) == by_torque
 
 
+def test_without_a_load_the_curve_is_that_of_the_highest(table: Path) -> None:
+    highest = small_table().force[-1]
+    assert highest > small_table().force[2]
+    assert printed("ste", table) == printed("ste", table, "--force", repr(float(highest)))
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ([], "--torque = nothing"),
         (["--torque", "100", "--force", "2660"], "--torque = "),
         (["--torque", "nan"], "--torque = nan: must be a finite number"),
         (["--torque", "-5"], "torque_n_m = -5.0: must be above 0"),
