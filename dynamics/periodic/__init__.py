@@ -2,8 +2,8 @@
 
 from dynamics.periodic.continuation import BranchStatus, follow_branch
 from dynamics.periodic.period_map import PeriodicProblem, PeriodMap, periodic_problem
-from dynamics.periodic.shooting import Instability, Orbit, OrbitStatus, find_orbit
-from dynamics.periodic.steady_states import SteadyStates, motion, settled, spectrum, steady_states, sweep
+from dynamics.periodic.shooting import Instability, Orbit, OrbitStatus, find_orbit, settled
+from dynamics.periodic.steady_states import SteadyStates, motion, spectrum, steady_states, sweep
 
 __all__ = [
     "BranchStatus",

@@ -25,6 +25,7 @@ ITERATION_LIMIT = 8
 EASY = 4  # iterations: with fewer the step along the branch grows
 SMALLEST_STEP = 1e-5  # of the largest
 LARGEST_STEP = 0.02  # between neighboring motions, of the larger speed or of the size of the state
+MOST_POINTS = 500
 FOLD_LIMIT = 1e-5  # of the tangent: where its part along the speed counts as zero
 FOLD_ITERATIONS = 20
 FOLD_SHARE = 0.3  # of a bracket that each iteration takes off at least
@@ -97,7 +98,7 @@ def follow_branch(
     last: float,
     largest_step: float = LARGEST_STEP,
     guess: FloatArray | None = None,
-    points: int = 500,
+    points: int = MOST_POINTS,
     progress: Callable[[float], None] | None = None,
 ) -> Branch:
     """Follow the periodic motions from the speed `first` until they leave the range `first` to `last`.

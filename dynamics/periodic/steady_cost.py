@@ -8,14 +8,17 @@ import numpy as np
 
 from dynamics.assembly.assemble import System
 from dynamics.linearize.operating_speeds import leading_law
-from dynamics.periodic.continuation import LARGEST_STEP
+from dynamics.periodic.continuation import LARGEST_STEP, MOST_POINTS
 from dynamics.periodic.period_map import PeriodicProblem, PeriodMap, periodic_problem
+from dynamics.periodic.shooting import SETTLING, settled
 from dynamics.types import FloatArray
 from host import cpu_seconds
 
 ENOUGH, LEAST_STEPS, TIMES = 0.01, 16, 3
 """CPU s and steps of a stretch that tells, and how often it is taken: the quickest counts, as other work on
 the machine only slows it. All stretches of a probe take at most six times as long, where steps are cheap."""
+PROBED, AFFORDED = 9, 0.5
+"""Speeds at which motions settle, and CPU s that this may take: where it takes more, no flank lifts off."""
 SWEEP_ITERATIONS, BRANCH_ITERATIONS = 0, 2
 """Newton iterations behind settling, and of a point of a branch: on average 0 to 0.5 and 1 to 2.7."""
 
@@ -59,13 +62,29 @@ def steady_cost(
     sense = float(np.sign(system.scene.references[leading_law(system)].speed.extreme))
     problem = periodic_problem(system, sense * float(speed[0]), repeat)
     each = float(np.mean([period_seconds(problem, sense * float(at)) for at in (speed[0], speed[-1])]))
-    freedoms, several = problem.rest.size // 2, speed.size > 1
+    freedoms, several, points = problem.rest.size // 2, speed.size > 1, branch_points(speed)
+    if several and branch and PROBED * SETTLING * each < AFFORDED:
+        each, points = _settling(problem, sense * speed)
     return SteadyCost(
         speed.size * (2 if several else 1),
         motion_periods(freedoms, periods) * each,
-        branch_points(speed) if branch and several else 0,
+        points if branch and several else 0,
         point_periods(freedoms) * each,
     )
+
+
+def _settling(problem: PeriodicProblem, speed: FloatArray) -> tuple[float, int]:
+    """Return the CPU seconds of a period of settling motions, and how many points a branch through them has.
+
+    Where flanks lift off steps are halved, and states change more than speeds: the arclength counts both.
+    """
+    began, state, passed = cpu_seconds(), problem.rest, []
+    for at in np.linspace(speed[0], speed[-1], PROBED).tolist():
+        state = settled(problem, at, state)
+        passed.append(np.append(state / problem.size, at / speed[-1]))
+    seconds = (cpu_seconds() - began) / (PROBED * SETTLING)
+    length = float(np.nan_to_num(np.linalg.norm(np.diff(passed, axis=0), axis=1)).sum())
+    return seconds, min(int(np.ceil(length / LARGEST_STEP)) + 1, MOST_POINTS)
 
 
 def period_seconds(problem: PeriodicProblem, speed: float) -> float:

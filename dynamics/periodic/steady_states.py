@@ -10,13 +10,12 @@ import numpy as np
 import scipy
 
 from dynamics.assembly.assemble import System
-from dynamics.checks import integer
 from dynamics.errors import InputError
 from dynamics.linearize.operating_speeds import checked_speeds, leading_law
 from dynamics.motion.observation import observe, static_deflections
 from dynamics.periodic.continuation import Branch, follow_branch
 from dynamics.periodic.period_map import PeriodicProblem, PeriodMap, periodic_problem
-from dynamics.periodic.shooting import Instability, Orbit, find_orbit
+from dynamics.periodic.shooting import SETTLING, Instability, Orbit, find_orbit, settled
 from dynamics.periodic.steady_cost import motion_periods, period_seconds
 from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.run_checks import checked_ledger
@@ -162,24 +161,6 @@ def _figures(problem: PeriodicProblem, orbit: Orbit) -> tuple[FloatArray, FloatA
     )
     bearing = np.sqrt(np.sum(np.var(series.bearing_force[:, :3], axis=-1), axis=1))
     return np.array(figures), np.asarray(bearing)
-
-
-SETTLING = 64  # periods; at a damping ratio of 0.01 in resonance the rest is below 2 %
-
-
-def settled(
-    problem: PeriodicProblem, speed: float, state: FloatArray | None = None, periods: int = SETTLING
-) -> FloatArray:
-    """Return the state (2n,) in meters that `periods` periods at `speed` make of `state` (at rest: None).
-
-    A start for `find_orbit` on a motion that attracts, where Newton's method alone could end anywhere.
-    """
-    integer("periods", periods, 0, 10_000_000)
-    over_period = PeriodMap(problem, speed)
-    y = np.array(problem.rest if state is None else state, dtype=float)
-    for _ in range(periods):
-        y = over_period(y)
-    return y
 
 
 def sweep(

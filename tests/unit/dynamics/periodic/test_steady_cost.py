@@ -65,6 +65,17 @@ def test_the_periods_of_a_branch_are_those_counted(pair, marched):
     assert len(branch.orbits) == pytest.approx(branch_points(SPEEDS), abs=2)
 
 
+@pytest.mark.parametrize("span", [(0.3, 0.7), (0.5, 1.0)], ids=["in contact", "lifting off"])
+def test_the_points_of_a_branch_are_within_twice_those_expected(span, monkeypatch):
+    """Where flanks lift off the state changes more than the speed, around folds."""
+    monkeypatch.setattr("dynamics.periodic.steady_cost.AFFORDED", np.inf)
+    system, speeds = oscillator(1.0), np.array(span) / 20.0
+    start = find_orbit(problem := periodic_problem(system, speeds[0]), speeds[0])
+    branch = follow_branch(problem, *speeds, guess=start.state)
+    expected = steady_cost(system, speeds, periods=SETTLING).points
+    assert 0.5 < expected / len(branch.orbits) < 2.0, (expected, len(branch.orbits), branch_points(speeds))
+
+
 def test_a_prediction_is_linear_in_speeds_settling_and_repetitions(pair, monkeypatch):
     monkeypatch.setattr("dynamics.periodic.steady_cost.period_seconds", lambda problem, _: problem.repeat)
     n = periodic_problem(pair, SPEEDS[0]).rest.size // 2
