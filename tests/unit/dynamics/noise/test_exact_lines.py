@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -98,15 +100,19 @@ def test_panels_between_the_line_and_the_octave_below_are_those_of_the_finer_oct
     made = with_exact_lines(beside, [line(beside, 1.05 * hertz, 3.0)])
     (below, _), (above, _) = made.weights(hertz)
     assert below < between < above
-    chosen, used = [], []
+    chosen: list[float] = []
+    used: list[float] = []
     panels_module = sys.modules["dynamics.noise.panel_sound"]
-    choose, power = EstimatedRadiation.hull_at, panels_module.panel_power
-    monkeypatch.setattr(
-        EstimatedRadiation,
-        "hull_at",
-        lambda own, outer, at, c: chosen.append(at) or choose(own, outer, at, c),
-    )
-    monkeypatch.setattr(panels_module, "panel_power", lambda *call: used.append(call[2]) or power(*call))
+
+    def noted(call: Any, at: int, heard: list[float]) -> Callable[..., Any]:
+        def called(*arguments: Any) -> Any:
+            heard.append(arguments[at])
+            return call(*arguments)
+
+        return called
+
+    monkeypatch.setattr(EstimatedRadiation, "hull_at", noted(EstimatedRadiation.hull_at, 2, chosen))
+    monkeypatch.setattr(panels_module, "panel_power", noted(panels_module.panel_power, 2, used))
     assert panel_sound(response(), housing(), None, made, point, model, AIR).power.sum() > 0.0
     assert max(used) == above <= chosen[-1], "of the panels that were chosen last"
 
