@@ -102,7 +102,8 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
         """Return what the gears and the tables over each deviation take, without and with corner contact."""
         with boundary_errors():
             checked = case.request(_tables, inputs)
-            predicted = predicted_designs(checked, cache)
+            skewed = replace(checked.request, center_distance_change=np.zeros(1))  # a table has one axis
+            predicted = predicted_designs(replace(checked, request=skewed), cache)
         axes = checked.request.misalignment, checked.request.center_distance_change
         values = 2 * sum(np.union1d(np.zeros(1), axis).size for axis in axes)
         each = predicted.design + predicted.errors
