@@ -17,14 +17,15 @@ from fe_contact.contact.point_problem import (
     PointProblems,
     approach,
     carrying_strip,
-    motion_at,
+    motions,
     point_problems,
     press,
     pressed_state,
-    problem_at,
+    problem_on,
+    row_bodies,
 )
 from fe_contact.contact.problem import Candidates, ContactProblem
-from fe_contact.contact.strip import past_break
+from fe_contact.contact.strip import means_past_break
 from fe_contact.contact.sweep import ContactSolution
 from fe_contact.contact.tilted_bodies import yield_to
 from fe_contact.contact.touch import rolls_at
@@ -98,16 +99,19 @@ def weigh(
     half: FloatArray,
 ) -> None:
     """Fill in what rows of shares (R, P, m) push, (R, P, L, m), and the strips of all positions and loads."""
-    for p in range(force.shape[0]):
-        problem, here = problem_at(every, p)
-        rows = np.ascontiguousarray(shares[:, p][:, here])
-        for k in range(force.shape[1]):
-            parts = _pushed(problem, force[p, k][here], rows)
-            for q in range(here.size):
-                at, carried = here[q], force[p, k, here[q]]
-                pushed[:, p, k, at] = parts[:, q]
-                if carried > 0.0:
-                    middle[p, k, at], half[p, k, at] = carrying_strip(problem.law, problem.place[q], carried)
+    count = every.bodies.shape[0]
+    for row in range(count):
+        bodies = row_bodies(every, row)
+        for p in range(row, force.shape[0], count):
+            problem, here = problem_on(every, bodies, p)
+            rows = np.ascontiguousarray(shares[:, p][:, here])
+            for k in range(force.shape[1]):
+                parts = _pushed(problem, force[p, k][here], rows)
+                for q in range(here.size):
+                    at, carried = here[q], force[p, k, here[q]]
+                    pushed[:, p, k, at] = parts[:, q]
+                    if carried > 0.0:
+                        middle[p, k, at], half[p, k, at] = carrying_strip(problem.law, q, carried)
 
 
 @inner(error_model="numpy")
@@ -119,7 +123,7 @@ def _pushed(problem: PointProblem, force: FloatArray, rows: FloatArray) -> Float
     state = pressed_state(problem, force)
     for q in range(force.size):
         if force[q] > 0.0:
-            state.slope[q] = 1.0 / approach(problem.law, problem.place[q], force[q])[1]
+            state.slope[q] = 1.0 / approach(problem.law, q, force[q])[1]
     system = empty_system(problem)
     size = newton_system(problem, state, system)
     held, motion = np.zeros((2, state.held.size))
@@ -135,8 +139,7 @@ def _pushed(problem: PointProblem, force: FloatArray, rows: FloatArray) -> Float
         for r in range(size):
             held[system.member[r]] = right[a, r]
         yield_to(state.yielding, held, motion)
-        for q in range(force.size):
-            out[a, q] = state.slope[q] * (rows[a, q] - motion_at(problem, q, motion))
+        out[a] = state.slope * (rows[a] - motions(problem, motion))
     return out
 
 
@@ -162,17 +165,20 @@ def force_changes(problem: ContactProblem, solution: ContactSolution, opened: Fl
 @njit(cache=True, error_model="numpy")
 def _respond(every: PointProblems, force: FloatArray, opened: FloatArray, changes: FloatArray) -> None:
     """Fill in the changes of the forces of all positions and loads: dF = S (m dd - dg), n'dF = 0."""
-    for p in range(force.shape[0]):
-        problem, here = problem_at(every, p)
-        rows = np.empty((len(opened) + 1, here.size))
-        rows[0] = problem.motion_arm
-        for k in range(force.shape[1]):
-            rows[1:] = opened[:, p, k][:, here]
-            parts = _pushed(problem, force[p, k][here], rows)
-            stiff = dot(problem.torque_arm, parts[0], here.size)
-            for a in range(len(opened)):
-                lag = dot(problem.torque_arm, parts[a + 1], here.size) / stiff
-                changes[a, p, k][here] = lag * parts[0] - parts[a + 1]
+    count = every.bodies.shape[0]
+    for row in range(count):
+        bodies = row_bodies(every, row)
+        for p in range(row, force.shape[0], count):
+            problem, here = problem_on(every, bodies, p)
+            rows = np.empty((len(opened) + 1, here.size))
+            rows[0] = problem.motion_arm
+            for k in range(force.shape[1]):
+                rows[1:] = opened[:, p, k][:, here]
+                parts = _pushed(problem, force[p, k][here], rows)
+                stiff = dot(problem.torque_arm, parts[0], here.size)
+                for a in range(len(opened)):
+                    lag = dot(problem.torque_arm, parts[a + 1], here.size) / stiff
+                    changes[a, p, k][here] = lag * parts[0] - parts[a + 1]
 
 
 _NODE = math.sqrt(0.75)
@@ -241,7 +247,7 @@ class _Strips:
         """Return the means over the strips of what a break removes, m, and of its slope."""
         beyond = start.side * (distance - self.middle)  # from the middle to the break
         jump, bend = (np.broadcast_to(value, beyond.shape) for value in (start.jump, start.bend))
-        return _means_past_break(beyond, self.half, jump, bend)
+        return means_past_break(beyond, self.half, jump, bend)
 
     def nodes(
         self, gear: int, roll_length: FloatArray, face_position: FloatArray, x: FloatArray
@@ -471,20 +477,6 @@ class CarryingStrips:
                 for node, part in rest.nodes(gear, roll_length, face_position, x):
                     _spread(side * dipole, node, part, by_node)
         return by_node.reshape(len(rows), roll_length.size, face_position.size)
-
-
-@njit(cache=True, error_model="numpy")
-def _means_past_break(
-    beyond: FloatArray, half: FloatArray, jump: FloatArray, bend: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return the means over strips (k,) of jump d + bend d^2/2 past a break in m, and of its slope."""
-    height, slope = np.zeros((2, beyond.size))
-    for i in range(beyond.size):
-        if beyond[i] < half[i]:
-            angle, _, ramp, _, square = past_break(beyond[i], half[i])
-            height[i] = (jump[i] * ramp + 0.5 * bend[i] * square) / math.pi
-            slope[i] = (jump[i] * angle + bend[i] * ramp) / math.pi
-    return height, slope
 
 
 def _spread(values: FloatArray, node: IntArray, part: FloatArray, by_node: FloatArray) -> None:

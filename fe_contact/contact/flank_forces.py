@@ -10,7 +10,7 @@ import numpy as np
 from fe_contact.contact.face_patch import FaceGrid, face_loads
 from fe_contact.contact.patch import Patches, load_vector
 from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices
-from fe_contact.contact.strip import Gap, gap_at, half_strip
+from fe_contact.contact.strip import Gap, gap_table, half_strip
 from fe_contact.types import BoolArray, FloatArray, IntArray
 from host.loops import njit
 
@@ -35,7 +35,9 @@ def contact_pressure(problem: ContactProblem, force: FloatArray) -> FloatArray:
     at_edge, none = (here.low >= 0.0) | (here.high <= 0.0), np.full(here.low.shape, np.inf)
     endless = _unchamfered(here)._replace(low=-none, high=none)
     endless = endless._replace(slope=np.where(at_edge, 0.0, endless.slope))
-    _fill(endless, np.ascontiguousarray(force) / candidates.width[:, None], problem.modulus, pressure)
+    _fill(
+        gap_table(endless), np.ascontiguousarray(force) / candidates.width[:, None], problem.modulus, pressure
+    )
     return pressure
 
 
@@ -70,16 +72,17 @@ def _unchamfered(about: Gap) -> Gap:
 
 
 @njit(cache=True)
-def _fill(about: Gap, line_load: FloatArray, modulus: float, out: FloatArray) -> None:
+def _fill(about: FloatArray, line_load: FloatArray, modulus: float, out: FloatArray) -> None:
     """Fill in where there is load."""
     positions, loads, contacts = line_load.shape
     for p in range(positions):
-        here = gap_at(about, p)
         for k in range(loads):
             for i in range(contacts):
                 load = line_load[p, k, i]
                 if load > 0.0:
-                    out[p, k, i] = 2.0 * load / (math.pi * half_strip(here, i, load, modulus)[0])
+                    out[p, k, i] = (
+                        2.0 * load / (math.pi * half_strip(about[p], i, load, modulus, 0.0, 0.0)[1])
+                    )
 
 
 ByTooth = dict[int, FloatArray]

@@ -29,10 +29,12 @@ from fe_contact.contact.point_problem import (
     State,
     approach,
     evaluate,
-    motion_at,
+    motions,
+    plain_approach,
     press,
     pressed_state,
     stiffness,
+    width_of,
 )
 from fe_contact.contact.tilted_bodies import fill_yielding, move, yield_to
 from fe_contact.types import FloatArray, IntArray
@@ -137,16 +139,18 @@ def solve_point(
 def _start(problem: PointProblem, total: float, gap: FloatArray, state: State) -> float:
     """Fill the state by the given forces, or a guess of them; return the elastic deflection they ask for."""
     state.force[:] = np.maximum(state.force, 0.0)
-    if not state.force.any():
+    guessed = not state.force.any()
+    if guessed:
         _guess(problem, total, gap, state.force)
     press(problem, state.force, state.held)
     move(problem, state)
+    law, force, motion = problem.law, state.force, motions(problem, state.moved)
     needed, arm = 0.0, 0.0
     for q in range(gap.size):
-        if state.force[q] > 0.0:
-            value, _, _ = approach(problem.law, problem.place[q], state.force[q])
-            needed += state.force[q] * (gap[q] + value + motion_at(problem, q, state.moved))
-            arm += state.force[q] * problem.motion_arm[q]
+        if force[q] > 0.0:
+            value = plain_approach(law, q, force[q]) if guessed else approach(law, q, force[q])[0]
+            needed += force[q] * (gap[q] + value + motion[q])
+            arm += force[q] * problem.motion_arm[q]
     elastic = needed / arm
     evaluate(problem, gap, elastic, state)
     return float(elastic)
@@ -157,7 +161,7 @@ def _guess(problem: PointProblem, total: float, gap: FloatArray, force: FloatArr
     """Fill in forces as the gaps would take them if all contacts gave way as the first one to touch."""
     depth, carried = total * _softness(problem, int(np.argmin(gap))), 0.0
     for q in range(gap.size):
-        force[q] = max(depth - gap[q], 0.0) * problem.law.width[problem.place[q]]
+        force[q] = max(depth - gap[q], 0.0) * width_of(problem.law, q)
         carried += problem.torque_arm[q] * force[q]
     force *= total / carried
 
@@ -211,11 +215,11 @@ def _settle(
     problem: PointProblem, gap: FloatArray, elastic: float, step: float, motion: FloatArray, state: State
 ) -> bool:
     """Add what a last step changes of the forces; not if a law is bent by more than the tolerance over it."""
-    m = gap.size
-    nearer = np.empty(m)
+    m, arm = gap.size, problem.motion_arm
+    nearer, moved = motions(problem, motion), motions(problem, state.moved)
     for q in range(m):
-        nearer[q] = problem.motion_arm[q] * step - motion_at(problem, q, motion)
-        closer = problem.motion_arm[q] * elastic - gap[q] - motion_at(problem, q, state.moved)
+        nearer[q] = arm[q] * step - nearer[q]
+        closer = arm[q] * elastic - gap[q] - moved[q]
         if not nearer[q] * nearer[q] <= STEP_TOLERANCE * elastic * abs(closer):
             return False
     for q in range(m):
@@ -335,14 +339,15 @@ def _residuals(
     any_beyond = False
     state.held[:] = state.pressed
     move(problem, state)
+    law, force, motion = problem.law, state.force, motions(problem, state.moved)
     for q in range(gap.size):
         value, beyond = 0.0, False
-        if state.force[q] > 0.0:
-            value, _, beyond = approach(problem.law, problem.place[q], state.force[q])
+        if force[q] > 0.0:
+            value, _, beyond = approach(law, q, force[q])
         any_beyond = any_beyond or beyond
-        slack = gap[q] + value + motion_at(problem, q, state.moved) - problem.motion_arm[q] * elastic
+        slack = gap[q] + value + motion[q] - problem.motion_arm[q] * elastic
         residual[1] = max(residual[1], -slack / elastic)
-        residual[2] = max(residual[2], -state.force[q] / total)
-        residual[3] = max(residual[3], abs(state.force[q] * slack / elastic) / total)
+        residual[2] = max(residual[2], -force[q] / total)
+        residual[3] = max(residual[3], abs(force[q] * slack / elastic) / total)
     residual[0] = abs(dot(problem.torque_arm, state.force, gap.size) - total) / total
     return any_beyond

@@ -9,7 +9,16 @@ import numpy as np
 
 from fe_contact.contact.elimination import subtract
 from fe_contact.contact.problem import ContactProblem
-from fe_contact.contact.strip import Gap, free_strip, gap_at, half_strip, strip_at, strip_load, strip_middle
+from fe_contact.contact.strip import (
+    CURVATURE,
+    free_strip,
+    gap_table,
+    half_strip,
+    strip_at,
+    strip_load,
+    strip_middle,
+    widest_strip,
+)
 from fe_contact.types import BoolArray, FloatArray, IntArray
 from host.loops import inner
 
@@ -20,36 +29,45 @@ SMALLEST_STRIP = 1e-4
 """Half length of the contact strip over the reference length below which the law is straight."""
 LARGEST_STRIP = 0.66
 """Half length of the contact strip over the reference length above which the law goes on straight."""
-_TOLERANCE = 1e-9
+_TOLERANCE, _PLAIN_TOLERANCE = 1e-9, 1e-6
 _STEPS = 100
 
 
-class _LocalLaw(NamedTuple):
-    """The law of n contacts at one position.
+_WIDTH, _FREE, _MODULUS, _MIDDLE, _HALF = range(5)
+"""Columns of `LocalLaw.strip`."""
+
+
+class LocalLaw(NamedTuple):
+    """The law of m contacts at one position.
 
     Attributes
     ----------
-    width : ndarray, shape (n,)
-        Length of contact line of each, m.
-    gap : Gap
-        About the touching points.
-    free : ndarray, shape (n,)
-        Half strip in m up to which that is a parabola alone; see `_free_strips`.
+    gap : ndarray, shape (m, 4 + 3 B)
+        About the touching points, a `gap_table`.
+    strip : ndarray, shape (m, 5)
+        Length of contact line of each in m; half strip in m up to which its gap is a parabola alone; contact
+        modulus E* in Pa, less where a tip corner yields; middle and half length of the strip found last, from
+        which the next one is searched, m: a half length of zero is none yet.
     length : float
         Reference length, m.
-    modulus : ndarray, shape (n,)
-        Contact modulus E* in Pa: less where a tip corner yields.
     """
 
-    width: FloatArray
-    gap: Gap
-    free: FloatArray
+    gap: FloatArray
+    strip: FloatArray
     length: float
-    modulus: FloatArray
 
 
 @inner(error_model="numpy")
-def approach(law: _LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
+def local_law(gap: FloatArray, width: FloatArray, modulus: FloatArray, length: float) -> LocalLaw:
+    """Return the law of a table of gaps under which no strip is known yet."""
+    strip = np.zeros((width.size, 5))
+    for i in range(width.size):
+        strip[i, _WIDTH], strip[i, _FREE], strip[i, _MODULUS] = width[i], free_strip(gap, i), modulus[i]
+    return LocalLaw(gap, strip, length)
+
+
+@inner(error_model="numpy")
+def approach(law: LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
     """Local approach of contact `i` under `force` in N.
 
     Returns
@@ -59,50 +77,75 @@ def approach(law: _LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
     beyond : bool
         Whether the strip has outgrown the reference length.
     """
-    p, width = force / law.width[i], law.width[i]
-    k, least, most = _limits(law, i)
-    half, rigid = half_strip(law.gap, i, p, law.modulus[i]) if p > 0.0 else (0.0, 0.0)
+    width, modulus = law.strip[i, _WIDTH], law.strip[i, _MODULUS]
+    p, (k, least, most) = force / width, _limits(law, i)
+    half, rigid = 0.0, 0.0
+    if p > 0.0:
+        middle, half, rigid = half_strip(law.gap, i, p, modulus, law.strip[i, _MIDDLE], law.strip[i, _HALF])
+        law.strip[i, _MIDDLE], law.strip[i, _HALF] = middle, half
     if half <= least:
-        load, rigid = strip_load(law.gap, i, least, law.modulus[i])
+        load, rigid = strip_load(law.gap, i, least, modulus)
         slope = rigid / load + k * (-math.log(SMALLEST_STRIP) - 0.25)
         return slope * p, slope / width, False
     beyond = half > most
     if beyond:
-        half, (_, rigid) = most, strip_load(law.gap, i, most, law.modulus[i])
+        half, (_, rigid) = most, strip_load(law.gap, i, most, modulus)
     slope = k * (math.log(law.length / half) - 0.25)
     return rigid + slope * p, slope / width, beyond
 
 
 @inner(error_model="numpy")
-def carrying_strip(law: _LocalLaw, i: int, force: float) -> tuple[float, float]:
-    """Return middle and half length in m of the strip over which contact `i` carries `force` in N, > 0."""
-    _, least, most = _limits(law, i)
-    half, _ = half_strip(law.gap, i, force / law.width[i], law.modulus[i])
-    half = min(max(half, least), most)
-    return (0.0 if half <= law.free[i] else strip_middle(law.gap, i, half)), half
+def plain_approach(law: LocalLaw, i: int, force: float) -> float:
+    """Return the local approach in m of contact `i` under `force` in N, > 0, on a gap that is a parabola."""
+    p, (k, least, most) = force / law.strip[i, _WIDTH], _limits(law, i)
+    curvature = float(law.gap[i, CURVATURE])
+    half = min(max(math.sqrt(2.0 * k * p / curvature), least), most)
+    return 0.25 * curvature * half * half + k * p * (math.log(law.length / half) - 0.25)
 
 
 @inner(error_model="numpy")
-def _force_at(law: _LocalLaw, i: int, value: float) -> tuple[float, float]:
+def width_of(law: LocalLaw, i: int) -> float:
+    """Return the length of contact line of contact `i`, m."""
+    return float(law.strip[i, _WIDTH])
+
+
+@inner(error_model="numpy")
+def carrying_strip(law: LocalLaw, i: int, force: float) -> tuple[float, float]:
+    """Return middle and half length in m of the strip over which contact `i` carries `force` in N, > 0."""
+    _, least, most = _limits(law, i)
+    p, modulus = force / law.strip[i, _WIDTH], law.strip[i, _MODULUS]
+    _, half, _ = half_strip(law.gap, i, p, modulus, law.strip[i, _MIDDLE], law.strip[i, _HALF])
+    half = min(max(half, least), most)
+    return (0.0 if half <= law.strip[i, _FREE] else strip_middle(law.gap, i, half)), half
+
+
+@inner(error_model="numpy")
+def _force_at(law: LocalLaw, i: int, value: float) -> tuple[float, float]:
     """Force of contact `i` in N at a local approach in m, and its derivative in N/m; zero where flanks part.
 
     The inverse of `approach`.
     """
     if value <= 0.0:
         return 0.0, 0.0
-    half = _plain_strip(law.gap.curvature[i], law.length, value)
-    if half <= law.free[i]:
-        load, slope = _plain_load(law.gap.curvature[i], law.length, law.modulus[i], half, value)
+    width, free, modulus = law.strip[i, _WIDTH], law.strip[i, _FREE], law.strip[i, _MODULUS]
+    middle, half, curvature = 0.0, law.strip[i, _HALF], law.gap[i, CURVATURE]
+    if half <= free:
+        half = _plain_strip(curvature, law.length, value, half)
+    else:
+        middle = law.strip[i, _MIDDLE]
+    if half <= free:
+        load, slope = _plain_load(curvature, law.length, modulus, half, value)
     else:
         _, least, most = _limits(law, i)
         guess = max(half, least)
-        half, first, rigid = strip_at(law.gap, i, value, law.length, guess)
-        carried = 0.5 * math.pi * law.modulus[i] * half * first
+        middle, half, first, rigid = strip_at(law.gap, i, value, law.length, middle, guess)
+        carried = 0.5 * math.pi * modulus * half * first
         if not least < half < most:
-            half = _strip_at(law, i, value, guess)
-            carried, rigid = strip_load(law.gap, i, half, law.modulus[i])
-        load, slope = _load_on(half, carried, rigid, law.length, law.modulus[i], value)
-    return law.width[i] * load, law.width[i] * slope
+            half, middle = _strip_at(law, i, value, guess), 0.0
+            carried, rigid = strip_load(law.gap, i, half, modulus)
+        load, slope = _load_on(half, carried, rigid, law.length, modulus, value)
+    law.strip[i, _MIDDLE], law.strip[i, _HALF] = middle, half
+    return width * load, width * slope
 
 
 @inner(error_model="numpy")
@@ -122,26 +165,29 @@ def _load_on(
 
 
 @inner(error_model="numpy")
-def _limits(law: _LocalLaw, i: int) -> tuple[float, float, float]:
+def _limits(law: LocalLaw, i: int) -> tuple[float, float, float]:
     """Return k = 2/(pi E*) in 1/Pa, and the least and the largest half strip that the formulas take, m."""
-    return 2.0 / (math.pi * law.modulus[i]), SMALLEST_STRIP * law.length, LARGEST_STRIP * law.length
+    return 2.0 / (math.pi * law.strip[i, _MODULUS]), SMALLEST_STRIP * law.length, LARGEST_STRIP * law.length
 
 
 @inner(error_model="numpy")
-def _plain_strip(curvature: float, length: float, value: float) -> float:
+def _plain_strip(curvature: float, length: float, value: float, guess: float) -> float:
     """Half strip in m of a parabola at an approach in m: y (1/4 - ln(y)/2) = 2 approach/(q l^2), y = (h/l)^2.
 
-    Not above `LARGEST_STRIP` reference lengths.
+    Not above `LARGEST_STRIP` reference lengths. `guess`: half strip to begin with in m, or zero. The last
+    step leaves its square.
     """
     scaled = 2.0 * value / (curvature * length * length)
     most = LARGEST_STRIP * LARGEST_STRIP
     if scaled >= most * (0.25 - 0.5 * math.log(most)):
         return LARGEST_STRIP * length
-    y = scaled / (0.25 - 0.4 * math.log(0.5 * scaled))
+    y = min(guess * guess / (length * length), most)
+    if y == 0.0:
+        y = scaled / (0.25 - 0.4 * math.log(0.5 * scaled))
     for _ in range(_STEPS):
         following = (scaled - 0.5 * y) / (-0.25 - 0.5 * math.log(y))  # Newton's step, written out
         following = min(max(following, 0.1 * y), most)
-        if abs(following - y) <= 1e-9 * y:
+        if abs(following - y) <= _PLAIN_TOLERANCE * y:
             return length * math.sqrt(following)
         y = following
     return length * math.sqrt(y)
@@ -158,23 +204,17 @@ def _plain_load(
 
 
 @inner(error_model="numpy")
-def _free_strips(gap: Gap) -> FloatArray:
-    """Half strips (n,) in m up to which gaps are parabolas."""
-    return np.array([free_strip(gap, i) for i in range(gap.slope.size)])
-
-
-@inner(error_model="numpy")
-def _strip_at(law: _LocalLaw, i: int, value: float, half: float) -> float:
+def _strip_at(law: LocalLaw, i: int, value: float, half: float) -> float:
     """Half strip in m at an approach in m, from a guess on; at the limits where it would be beyond them."""
     k, low, high = _limits(law, i)
-    high = min(high, 0.5 * (law.gap.high[i] - law.gap.low[i]))
+    high = min(high, widest_strip(law.gap, i))
     if high <= low:
         return float(high)
     half = min(half, high)
     below, above, power = low, high, 2.0
     last_half, last_error = 0.0, math.inf
     for _ in range(_STEPS):
-        load, rigid = strip_load(law.gap, i, half, law.modulus[i])
+        load, rigid = strip_load(law.gap, i, half, law.strip[i, _MODULUS])
         error = math.log((rigid + k * load * (math.log(law.length / half) - 0.25)) / value)
         if error < 0.0:
             below = half
@@ -208,8 +248,8 @@ class PointProblems(NamedTuple):
     present : ndarray of bool, shape (Q, n)
     curves, heights : ndarray, shapes (points of a pair, K), (K, K)
     gap, motion_arm, torque_arm, width : ndarray, shape (P, m)
-    about : Gap
-        Arrays (P, m) and (P, m, B).
+    about : ndarray, shape (P, m, 4 + 3 B)
+        A `gap_table`.
     modulus : ndarray, shape (Q, m)
     """
 
@@ -223,7 +263,7 @@ class PointProblems(NamedTuple):
     motion_arm: FloatArray
     torque_arm: FloatArray
     width: FloatArray
-    about: Gap
+    about: FloatArray
     length: float
     modulus: FloatArray
 
@@ -247,7 +287,7 @@ def point_problems(problem: ContactProblem) -> PointProblems:
         rows(c.motion_arm),
         rows(c.torque_share),
         rows(c.width),
-        Gap(*map(rows, c.gap_about)),
+        gap_table(c.gap_about),
         float(c.slices.law_length),
         rows(2.0 / (math.pi * (first + second))),
     )
@@ -268,14 +308,11 @@ class PointProblem(NamedTuple):
         Parts of the force of each contact on w curves beside each other, and of their heights there.
     first : ndarray of int, shape (m,)
         The first of those curves.
-    place : ndarray of int, shape (m,)
-        Each contact among the points of all pairs.
     gap : ndarray, shape (m,)
         Normal rigid gap in m.
     motion_arm, torque_arm : ndarray, shape (m,)
         Normal approach per unit deflection, and share of the load per unit force; > 0.
     law : LocalLaw
-        Of all points of all pairs.
     """
 
     bodies: FloatArray
@@ -283,11 +320,10 @@ class PointProblem(NamedTuple):
     radius: FloatArray
     curve: FloatArray
     first: IntArray
-    place: IntArray
     gap: FloatArray
     motion_arm: FloatArray
     torque_arm: FloatArray
-    law: _LocalLaw
+    law: LocalLaw
 
 
 class RowBodies(NamedTuple):
@@ -333,19 +369,15 @@ def problem_at(every: PointProblems, p: int) -> tuple[PointProblem, IntArray]:
 def problem_on(every: PointProblems, bodies: RowBodies, p: int) -> tuple[PointProblem, IntArray]:
     """Return the problem of a position on the bodies of its row, and its contacts among all candidates."""
     row, (points, count) = p % every.bodies.shape[0], every.curves.shape
-    there = bodies.there[::count]
-    pairs = np.cumsum(there) - 1  # of all pairs among those that are there
+    pairs = np.cumsum(bodies.there[::count]) - 1  # of all pairs among those that are there
     here = np.flatnonzero(~(every.gap[p] == np.inf))  # also those that are not a number
-    at = np.flatnonzero(np.repeat(there, points))
     radius = every.radius[p % every.radius.shape[0]][bodies.there]
-    gaps = gap_at(gap_at(every.about, p), at)
-    law = _LocalLaw(every.width[p][at], gaps, _free_strips(gaps), every.length, every.modulus[row][at])
-    slot = pairs[here // points] * points + here % points
+    law = local_law(every.about[p][here], every.width[p][here], every.modulus[row][here], every.length)
     point = here % points
     first = pairs[here // points] * count + bodies.first[point]
     arms = every.motion_arm[p][here], every.torque_arm[p][here]
     held = bodies.moved, bodies.tilt, radius
-    return PointProblem(*held, bodies.curve[point], first, slot, every.gap[p][here], *arms, law), here
+    return PointProblem(*held, bodies.curve[point], first, every.gap[p][here], *arms, law), here
 
 
 @inner(error_model="numpy")
@@ -412,46 +444,40 @@ def pressed_state(problem: PointProblem, force: FloatArray) -> State:
 @inner(error_model="numpy")
 def evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: State) -> None:
     """Fill in forces and slopes of the contacts, and the forces on the curves, under the motions."""
-    width, curvature, free = problem.law.width, problem.law.gap.curvature, problem.law.free
-    length, modulus = problem.law.length, problem.law.modulus
+    law, arm, motion = problem.law, problem.motion_arm, motions(problem, state.moved)
     for q in range(gap.size):
-        closer = problem.motion_arm[q] * elastic - gap[q] - motion_at(problem, q, state.moved)
-        state.force[q], state.slope[q] = 0.0, 0.0
-        if closer <= 0.0:
-            continue
-        i = problem.place[q]
-        half = _plain_strip(curvature[i], length, closer)
-        if half <= free[i]:
-            line_load, stiffness = _plain_load(curvature[i], length, modulus[i], half, closer)
-            state.force[q], state.slope[q] = width[i] * line_load, width[i] * stiffness
-        else:
-            state.force[q], state.slope[q] = _force_at(problem.law, i, closer)
+        state.force[q], state.slope[q] = _force_at(law, q, arm[q] * elastic - gap[q] - motion[q])
     press(problem, state.force, state.pressed)
 
 
 @inner(error_model="numpy")
 def press(problem: PointProblem, force: FloatArray, out: FloatArray) -> None:
     """Fill in the forces of the contacts on the curves."""
+    curve, first = problem.curve, problem.first
     out[:] = 0.0
     for q in range(force.size):
         if force[q] != 0.0:
-            for a in range(problem.curve.shape[1]):
-                out[problem.first[q] + a] += problem.curve[q, a] * force[q]
+            for a in range(curve.shape[1]):
+                out[first[q] + a] += curve[q, a] * force[q]
 
 
 @inner(error_model="numpy")
-def motion_at(problem: PointProblem, q: int, moved: FloatArray) -> float:
-    """Return the motion of the bodies at a contact, m."""
-    value = 0.0
-    for a in range(problem.curve.shape[1]):
-        value += problem.curve[q, a] * moved[problem.first[q] + a]
-    return value
+def motions(problem: PointProblem, moved: FloatArray) -> FloatArray:
+    """Return the motions of the bodies at the contacts (m,) from those of the curves, m."""
+    curve, first, out = problem.curve, problem.first, np.empty(problem.first.size)
+    for q in range(out.size):
+        value = 0.0
+        for a in range(curve.shape[1]):
+            value += curve[q, a] * moved[first[q] + a]
+        out[q] = value
+    return out
 
 
 @inner(error_model="numpy")
 def stiffness(problem: PointProblem, state: State) -> float:
     """Return how fast the contacts take load as the gear moves, N/m."""
+    torque_arm, slope, motion_arm = problem.torque_arm, state.slope, problem.motion_arm
     value = 0.0
-    for q in range(state.slope.size):
-        value += problem.torque_arm[q] * state.slope[q] * problem.motion_arm[q]
+    for q in range(slope.size):
+        value += torque_arm[q] * slope[q] * motion_arm[q]
     return value

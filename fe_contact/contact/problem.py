@@ -10,7 +10,7 @@ import numpy as np
 import scipy
 
 from fe_contact.contact.patch import Patches
-from fe_contact.contact.strip import Gap, StripMiddles, rolling_radii, strip_middles
+from fe_contact.contact.strip import Gap, StripMiddles, gap_table, rolling_radii, strip_middles
 from fe_contact.contact.touch import Touch
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray
@@ -250,11 +250,11 @@ class Candidates:
         return rolling_radii(*self._small_strips).reshape(self.gap.shape)
 
     @property
-    def _small_strips(self) -> tuple[Gap, FloatArray]:
+    def _small_strips(self) -> tuple[FloatArray, FloatArray]:
         """Gaps about all touching points, and half strips there in m; none where there is no candidate."""
-        flat = Gap(*(np.ascontiguousarray(x).reshape(self.gap.size, *x.shape[2:]) for x in self.gap_about))
+        table = gap_table(self.gap_about)
         half = np.sqrt(_SMALL_LOAD * self.slices.edge_load * self.radius)
-        return flat, np.where(np.isfinite(self.gap), half, 0.0).ravel()
+        return table.reshape(-1, table.shape[2]), np.where(np.isfinite(self.gap), half, 0.0).ravel()
 
     @property
     def motion_arm(self) -> FloatArray:

@@ -30,13 +30,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fe_contact.types import FloatArray, IntArray
+from fe_contact.types import FloatArray
 from host.loops import inner, njit
 
 _TOLERANCE = 1e-9
 """Of strip and middle over the strip; the approach is stationary in both."""
 _STEPS = 100
-_NEWTON_STEPS, _NEWTON_TOLERANCE = 8, 1e-8
+_NEWTON_STEPS, _HELD_STEPS, _NEWTON_TOLERANCE = 8, 12, 1e-8
 """Of strip and middle at once, and their last step over the strip, which leaves its square."""
 _TILTED = 0.1
 """Way of the middle by which its response to tilt is found, over half the strip."""
@@ -68,34 +68,45 @@ class Gap(NamedTuple):
     bend: FloatArray
 
 
-@inner(error_model="numpy")
-def gap_at(about: Gap, at: int | IntArray) -> Gap:
-    """Return the gaps at one of the positions of arrays (P, n) and (P, n, B), or some of those of (n,)."""
-    return Gap(
-        about.slope[at],
-        about.curvature[at],
-        about.low[at],
-        about.high[at],
-        about.place[at],
-        about.jump[at],
-        about.bend[at],
-    )
+_SLOPE, CURVATURE, _LOW, _HIGH, _BREAKS = range(5)
+_PLACE, _JUMP, _BEND, _WIDTH = range(4)
+"""Columns of a table of gaps, and of each of its breaks. A loop passes on one array faster than seven."""
+
+
+def gap_table(gap: Gap) -> FloatArray:
+    """Return gaps (..., n) row by row, (..., n, 4 + 3 B): slope, curvature, ends, then each break."""
+    table = np.empty((*gap.slope.shape, _BREAKS + _WIDTH * gap.place.shape[-1]))
+    for column, values in enumerate((gap.slope, gap.curvature, gap.low, gap.high)):
+        table[..., column] = values
+    for column, values in enumerate((gap.place, gap.jump, gap.bend)):
+        table[..., _BREAKS + column :: _WIDTH] = values
+    return table
 
 
 @inner(error_model="numpy")
-def free_strip(gap: Gap, i: int) -> float:
+def free_strip(gap: FloatArray, i: int) -> float:
     """Half strip in m up to which a gap is a parabola: to the nearest edge or break; 0 on a slope."""
-    if gap.slope[i] != 0.0:
+    if gap[i, _SLOPE] != 0.0:
         return 0.0
-    free: float = min(-gap.low[i], gap.high[i])
-    for k in range(gap.place.shape[1]):
-        free = min(free, abs(gap.place[i, k]))
+    free: float = min(-gap[i, _LOW], gap[i, _HIGH])
+    for k in range(_BREAKS, gap.shape[1], _WIDTH):
+        free = min(free, abs(gap[i, k]))
     return free
 
 
 @inner(error_model="numpy")
-def half_strip(gap: Gap, i: int, line_load: float, modulus: float) -> tuple[float, float]:
-    """Return half the length of the strip in m and the mean gap over it in m, from the touching point's on.
+def widest_strip(gap: FloatArray, i: int) -> float:
+    """Half strip in m from edge to edge."""
+    return 0.5 * float(gap[i, _HIGH] - gap[i, _LOW])
+
+
+@inner(error_model="numpy")
+def half_strip(
+    gap: FloatArray, i: int, line_load: float, modulus: float, center: float, guess: float
+) -> tuple[float, float, float]:
+    """Return middle and half the length of the strip in m, and the mean gap over it in m.
+
+    All from the touching point on; the middle is that of the guess where bounds had to be searched.
 
     Parameters
     ----------
@@ -105,14 +116,17 @@ def half_strip(gap: Gap, i: int, line_load: float, modulus: float) -> tuple[floa
         p in N/m, > 0.
     modulus : float
         Contact modulus E* in Pa.
+    center, guess : float
+        Middle and half length of a strip near it, m; a half length of zero is none.
     """
-    hertz = math.sqrt(4.0 * line_load / (math.pi * modulus * gap.curvature[i]))
+    hertz = math.sqrt(4.0 * line_load / (math.pi * modulus * gap[i, CURVATURE]))
     if hertz <= free_strip(gap, i):
-        return hertz, 0.25 * gap.curvature[i] * hertz * hertz
-    half, _, rigid = strip_at(gap, i, 2.0 * line_load / (math.pi * modulus), 0.0, hertz)
+        return 0.0, hertz, 0.25 * gap[i, CURVATURE] * hertz * hertz
+    scaled = 2.0 * line_load / (math.pi * modulus)
+    found, half, _, rigid = strip_at(gap, i, scaled, 0.0, center, guess if guess > 0.0 else hertz)
     if half > 0.0:
-        return half, rigid
-    widest = 0.5 * (gap.high[i] - gap.low[i])
+        return found, half, rigid
+    widest = widest_strip(gap, i)
     below, above = 0.0, math.inf
     half, power = min(hertz, widest), 2.0
     last_half, last_error = 0.0, math.inf
@@ -134,18 +148,20 @@ def half_strip(gap: Gap, i: int, line_load: float, modulus: float) -> tuple[floa
         if abs(following - half) <= _TOLERANCE * half:
             break
         last_half, last_error, half = half, error, following
-    return half, rigid
+    return center, half, rigid
 
 
 @inner(error_model="numpy")
-def strip_load(gap: Gap, i: int, half: float, modulus: float) -> tuple[float, float]:
+def strip_load(gap: FloatArray, i: int, half: float, modulus: float) -> tuple[float, float]:
     """Return the line load in N/m under a strip of this half length, and the mean gap over it in m."""
     if half <= free_strip(gap, i):
-        rise = 0.25 * gap.curvature[i] * half * half
+        rise = 0.25 * gap[i, CURVATURE] * half * half
         return math.pi * modulus * rise, rise
     center = strip_middle(gap, i, half)
     slope, first, mean, _, _, _ = _means(gap, i, center, half)
-    if gap.low[i] + half < center < gap.high[i] - half:  # what is left of the slope is the middle's rounding
+    if (
+        gap[i, _LOW] + half < center < gap[i, _HIGH] - half
+    ):  # what is left of the slope is the middle's rounding
         first -= slope * _tilting(gap, i, center, half)
     else:
         first += abs(slope)
@@ -153,30 +169,32 @@ def strip_load(gap: Gap, i: int, half: float, modulus: float) -> tuple[float, fl
 
 
 @inner(error_model="numpy")
-def _tilting(gap: Gap, i: int, center: float, half: float) -> float:
+def _tilting(gap: FloatArray, i: int, center: float, half: float) -> float:
     """Return how the mean of g' sin t changes with that of g' as the middle moves.
 
     Where a break is at the end of the strip both go with the root of the distance, so that the middle is
     never exact enough; to each other they are straight.
     """
-    by_slope, by_first = float(gap.curvature[i]), 0.0
-    for k in range(gap.place.shape[1]):
-        side = 1.0 if gap.place[i, k] >= 0.0 else -1.0
-        sine = side * (gap.place[i, k] - center) / half
+    by_slope, by_first = float(gap[i, CURVATURE]), 0.0
+    for k in range(_BREAKS, gap.shape[1], _WIDTH):
+        side = 1.0 if gap[i, k + _PLACE] >= 0.0 else -1.0
+        sine = side * (gap[i, k + _PLACE] - center) / half
         if sine < 1.0 + 4.0 * _TOLERANCE:  # the end may be held at a break, to either side of it by rounding
             sine = min(max(sine, -1.0), 1.0)
             cosine = max(math.sqrt(1.0 - sine * sine), 1e-12)
             angle = 0.5 * math.pi - math.asin(sine)
-            by_slope += (gap.bend[i, k] * angle + gap.jump[i, k] / (half * cosine)) / math.pi
-            by_first += side * (gap.bend[i, k] * cosine + gap.jump[i, k] * sine / (half * cosine)) / math.pi
+            by_slope += (gap[i, k + _BEND] * angle + gap[i, k + _JUMP] / (half * cosine)) / math.pi
+            by_first += (
+                side * (gap[i, k + _BEND] * cosine + gap[i, k + _JUMP] * sine / (half * cosine)) / math.pi
+            )
     return by_first / by_slope
 
 
 @inner(error_model="numpy")
-def strip_middle(gap: Gap, i: int, half: float) -> float:
+def strip_middle(gap: FloatArray, i: int, half: float) -> float:
     """Return the middle of a strip in m: where pressure vanishes at both ends, or one end is at an edge."""
-    low: float = max(-half, gap.low[i] + half)
-    high: float = min(half, gap.high[i] - half)
+    low: float = max(-half, gap[i, _LOW] + half)
+    high: float = min(half, gap[i, _HIGH] - half)
     if low >= high:
         return 0.5 * (low + high)
     center, before = min(max(0.0, low), high), math.inf
@@ -219,15 +237,15 @@ class StripMiddles(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy")
-def strip_middles(gap: Gap, half: FloatArray) -> StripMiddles:
+def strip_middles(gap: FloatArray, half: FloatArray) -> StripMiddles:
     """Return the middles of strips of half lengths (n,) in m, at most from edge to edge."""
-    zero, half = np.zeros(half.size), np.minimum(half, 0.5 * (gap.high - gap.low))
-    found = StripMiddles(zero, half, zero.copy(), gap.curvature.copy())
+    zero, half = np.zeros(half.size), np.minimum(half, 0.5 * (gap[:, _HIGH] - gap[:, _LOW]))
+    found = StripMiddles(zero, half, zero.copy(), gap[:, CURVATURE].copy())
     for i in range(half.size):
         h = half[i]
         if h > free_strip(gap, i):
             center = strip_middle(gap, i, h)
-            inside = gap.low[i] + h < center < gap.high[i] - h
+            inside = gap[i, _LOW] + h < center < gap[i, _HIGH] - h
             found.middle[i], found.slope[i] = center, 0.0 if inside else _means(gap, i, center, h)[0]
             if h > 0.0:
                 near = _NEAR * h
@@ -237,16 +255,16 @@ def strip_middles(gap: Gap, half: FloatArray) -> StripMiddles:
 
 
 @njit(cache=True, error_model="numpy")
-def rolling_radii(gap: Gap, half: FloatArray) -> FloatArray:
+def rolling_radii(gap: FloatArray, half: FloatArray) -> FloatArray:
     """Return how far the middles of such strips move back as the gap tilts by 1 (n,), m.
 
     On the mean of tilts that move it by `_TILTED` of the half length on plain flanks; none where an edge
     holds it.
     """
-    half, radius = np.minimum(half, 0.5 * (gap.high - gap.low)), 1.0 / gap.curvature
-    tilt = _TILTED * half * gap.curvature
-    back = Gap(gap.slope + tilt, gap.curvature, gap.low, gap.high, gap.place, gap.jump, gap.bend)
-    forth = Gap(gap.slope - tilt, gap.curvature, gap.low, gap.high, gap.place, gap.jump, gap.bend)
+    half, radius = np.minimum(half, 0.5 * (gap[:, _HIGH] - gap[:, _LOW])), 1.0 / gap[:, CURVATURE]
+    tilt, back, forth = _TILTED * half * gap[:, CURVATURE], gap.copy(), gap.copy()
+    back[:, _SLOPE] += tilt
+    forth[:, _SLOPE] -= tilt
     for i in range(half.size):
         h = half[i]
         if (1.0 + _TILTED) * h > free_strip(gap, i) and h > 0.0:
@@ -255,8 +273,10 @@ def rolling_radii(gap: Gap, half: FloatArray) -> FloatArray:
 
 
 @inner(error_model="numpy")
-def strip_at(gap: Gap, i: int, value: float, length: float, half: float) -> tuple[float, float, float]:
-    """Return the strip of an approach or a load where no edge is near, by Newton's method from a guess on.
+def strip_at(
+    gap: FloatArray, i: int, value: float, length: float, center: float, half: float
+) -> tuple[float, float, float, float]:
+    """Return the strip of an approach or a load, by Newton's method from a guess on.
 
     Parameters
     ----------
@@ -264,18 +284,22 @@ def strip_at(gap: Gap, i: int, value: float, length: float, half: float) -> tupl
         The approach, m; or, where `length` is zero, 2 p/(pi E*), m.
     length : float
         Reference length, m.
-    half : float
-        Guess of half the strip, m.
+    center, half : float
+        Guess of the middle and of half the strip, m.
 
     Returns
     -------
-    half, first, mean : float
-        Half strip in m, means of g' sin t and of g in m over it; zeros where the method does not get there.
+    center, half, first, mean : float
+        Middle and half strip in m, means of g' sin t and of g in m over it, and to the first of them that of
+        g' where an edge holds the strip; zeros where the method does not get there.
     """
-    center = 0.0
     for _ in range(_NEWTON_STEPS):
-        if not gap.low[i] + half < center < gap.high[i] - half:
+        if not half > 0.0:
             break
+        if center <= gap[i, _LOW] + half:
+            return _held_strip(gap, i, value, length, half, 1.0)
+        if center >= gap[i, _HIGH] - half:
+            return _held_strip(gap, i, value, length, half, -1.0)
         slope, first, mean, bend, tilt, bulge = _means(gap, i, center, half)
         law, off, across = 1.0, half * first - value, half * tilt
         if length > 0.0:
@@ -287,8 +311,35 @@ def strip_at(gap: Gap, i: int, value: float, length: float, half: float) -> tupl
         center += aside
         half += wider
         if abs(aside) + abs(wider) <= _NEWTON_TOLERANCE * half:
-            return half, first + tilt * aside + bulge * wider, mean + slope * aside + first * wider
-    return 0.0, 0.0, 0.0
+            mean += slope * aside + first * wider
+            return center, half, first + tilt * aside + bulge * wider, mean
+    return 0.0, 0.0, 0.0, 0.0
+
+
+@inner(error_model="numpy")
+def _held_strip(
+    gap: FloatArray, i: int, value: float, length: float, half: float, side: float
+) -> tuple[float, float, float, float]:
+    """Return what `strip_at` does of a strip that begins at the lower edge (`side` 1) or ends at the upper.
+
+    The mean of g' then pushes it against the edge; the pressure there is singular.
+    """
+    widest = widest_strip(gap, i)
+    for _ in range(_HELD_STEPS):
+        if not half < widest:
+            break
+        center = gap[i, _LOW] + half if side > 0.0 else gap[i, _HIGH] - half
+        slope, first, mean, bend, tilt, bulge = _means(gap, i, center, half)
+        law, first, growth = 1.0, first + side * slope, bend + 2.0 * side * tilt + bulge
+        off = half * first - value
+        if length > 0.0:
+            law = math.log(length / half) - 0.25
+            off = mean + half * first * law - value
+        wider = -off / (law * (first + half * growth))
+        if abs(wider) <= _NEWTON_TOLERANCE * half and side * slope >= 0.0:
+            return center + side * wider, half + wider, first + growth * wider, mean + first * wider
+        half = max(half + wider, 0.1 * half)
+    return 0.0, 0.0, 0.0, 0.0
 
 
 @inner(error_model="numpy")
@@ -317,20 +368,36 @@ def past_break(beyond: float, half: float) -> tuple[float, float, float, float, 
     return angle, cosine, ramp, tilted, half * tilted - beyond * ramp
 
 
+@njit(cache=True, error_model="numpy")
+def means_past_break(
+    beyond: FloatArray, half: FloatArray, jump: FloatArray, bend: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the means over strips (k,) of jump d + bend d^2/2 past a break in m, and of its slope."""
+    height, slope = np.zeros((2, beyond.size))
+    for i in range(beyond.size):
+        if beyond[i] < half[i]:
+            angle, _, ramp, _, square = past_break(beyond[i], half[i])
+            height[i] = (jump[i] * ramp + 0.5 * bend[i] * square) / math.pi
+            slope[i] = (jump[i] * angle + bend[i] * ramp) / math.pi
+    return height, slope
+
+
 @inner(error_model="numpy")
-def _means(gap: Gap, i: int, center: float, half: float) -> tuple[float, float, float, float, float, float]:
+def _means(
+    gap: FloatArray, i: int, center: float, half: float
+) -> tuple[float, float, float, float, float, float]:
     """Return the means of g', g' sin t, g, g'', g'' sin t and g'' sin^2 t over the angle t of the strip."""
-    s, q = float(gap.slope[i]), float(gap.curvature[i])
+    s, q = float(gap[i, _SLOPE]), float(gap[i, CURVATURE])
     slope = s + q * center
     first = 0.5 * q * half
     mean = s * center + 0.5 * q * (center * center + 0.5 * half * half)
     bend, tilt, bulge = q, 0.0, 0.5 * q
-    for k in range(gap.place.shape[1]):
-        side = 1.0 if gap.place[i, k] >= 0.0 else -1.0
-        beyond = side * (gap.place[i, k] - center)  # from the middle to the break
+    for k in range(_BREAKS, gap.shape[1], _WIDTH):
+        side = 1.0 if gap[i, k + _PLACE] >= 0.0 else -1.0
+        beyond = side * (gap[i, k + _PLACE] - center)  # from the middle to the break
         if beyond >= half:
             continue
-        a, b = gap.jump[i, k], gap.bend[i, k]
+        a, b = gap[i, k + _JUMP], gap[i, k + _BEND]
         angle, cosine, ramp, tilted, square = past_break(beyond, half)
         slope += side * (a * angle + b * ramp) / math.pi
         first += (a * cosine + b * tilted) / math.pi

@@ -165,7 +165,9 @@ def flanks_excess(
 
 def _form(height: FloatArray, waves: FloatArray, at: FloatArray) -> FloatArray:
     """Return shapes of this height whose mean line over -1 to 1 is zero: a measurement splits them so."""
-    shape = np.where(waves == 0.0, 1.0 / 3.0 - at**2, 0.5 * np.cos(math.pi * waves * at))
+    shape = 1.0 / 3.0 - at**2
+    if waves.any():
+        shape = np.where(waves == 0.0, shape, 0.5 * np.cos(math.pi * waves * at))
     return np.asarray(height * shape)
 
 

@@ -31,11 +31,11 @@ from model_studies.run_log import corrections
 # Constants fitted to tables of 3 to 70 candidates in the plane and over the face, met within 0.6 to 1.5 where
 # the search ends with the positions expected; a level without a floor may ask for twice as many.
 
-_PLANE_POSITION, _PLANE_POINT, _PLANE_CANDIDATE = 4e-5, 3e-6, 0.55e-6
+_PLANE_POSITION, _PLANE_POINT, _PLANE_CANDIDATE = 4e-5, 2e-6, 0.36e-6
 _FACE_POSITION, _FACE_SLICE = 0.4e-6, 2.2e-5
 """Per slice of a tooth pair and square of the elements of a module along the profile, and per slice."""
-_FACE_CANDIDATE = 4.6e-6
-_TOOTH_POINT, _BEGUN = 0.45e-6, 20e-6
+_FACE_CANDIDATE = 2e-6
+_TOOTH_POINT, _BEGUN = 0.4e-6, 10e-6
 """In pitches that differ: gaps of a touching point; first load of a set per carrying slice, beside others."""
 _FACE_TILT = 2.7
 """Assembly with the change of the compliance along sloping flanks, over that without."""

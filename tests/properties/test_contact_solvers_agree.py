@@ -15,8 +15,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fe_contact.contact.newton import CONVERGED, solve_point
-from fe_contact.contact.point_problem import PointProblem, _free_strips, _LocalLaw
-from fe_contact.contact.strip import Gap
+from fe_contact.contact.point_problem import PointProblem, local_law
+from fe_contact.contact.strip import Gap, gap_table
 from lineofaction.hardcases.contact.interior_point import GapAbout, Problem, solve
 
 MODULUS = 115e9
@@ -94,13 +94,12 @@ class Solved:
     def __init__(self, problem: Problem, load: float, force: np.ndarray | None = None) -> None:
         p, n = problem, problem.gap.size
         gap = Gap(*vars(p.gap_about).values())
-        law = _LocalLaw(p.width, gap, _free_strips(gap), p.length, p.modulus)
         there = np.flatnonzero(np.isfinite(p.gap))
+        law = local_law(gap_table(gap)[there], p.width[there], p.modulus[there], p.length)
         point = PointProblem(
             p.compliance,
             *untilted(n),
             np.ones((there.size, 1)),
-            there,
             there,
             p.gap[there],
             p.motion_arm[there],
@@ -174,13 +173,12 @@ def test_contacts_that_press_on_few_slices(seed, kind, arms, load, slices):
     bodies = compliance(np.random.default_rng(seed + 1), "body", slices)
     whole = replace(problem, compliance=blend @ bodies @ blend.T)
     gap = Gap(*vars(problem.gap_about).values())
-    law = _LocalLaw(problem.width, gap, _free_strips(gap), problem.length, problem.modulus)
+    law = local_law(gap_table(gap), problem.width, problem.modulus, problem.length)
     point = PointProblem(
         bodies,
         *untilted(slices),
         blend,
         np.zeros(12, dtype=int),
-        np.arange(12),
         problem.gap,
         problem.motion_arm,
         problem.torque_arm,

@@ -11,7 +11,7 @@ import math
 import numpy as np
 import pytest
 
-from fe_contact.contact.strip import Gap, half_strip, strip_load
+from fe_contact.contact.strip import Gap, gap_table, half_strip, strip_load
 from fe_contact.contact.touch import _moved_gap, _touching_places
 
 MODULUS = 115e9
@@ -26,8 +26,16 @@ def gap(*breaks, slope=0.0, curvature=1.0 / RADIUS, low=-math.inf, high=math.inf
     return Gap(*one, *(column[None].copy() for column in columns))
 
 
+def half_of(about: Gap, contact: int, load: float, modulus: float) -> tuple[float, float]:
+    return half_strip(gap_table(about), contact, load, modulus, 0.0, 0.0)[1:]
+
+
+def load_on(about: Gap, contact: int, half: float, modulus: float) -> tuple[float, float]:
+    return strip_load(gap_table(about), contact, half, modulus)
+
+
 def approach(about: Gap, load: float, patch: float = 1.0) -> float:
-    half, mean = half_strip(about, 0, load, MODULUS)
+    half, mean = half_of(about, 0, load, MODULUS)
     return mean + K * load * (math.log(patch / half) - 0.25)
 
 
@@ -64,7 +72,7 @@ def test_a_wedge():
     """P = E* a tan(angle), K. L. Johnson, Contact Mechanics, section 5.2."""
     rise, half = 0.02, 1e-4
     wedge = gap((0.0, 2.0 * rise, 0.0), slope=-rise, curvature=1e-9)
-    assert strip_load(wedge, 0, half, MODULUS)[0] == pytest.approx(MODULUS * half * rise, rel=1e-8, abs=0.0)
+    assert load_on(wedge, 0, half, MODULUS)[0] == pytest.approx(MODULUS * half * rise, rel=1e-8, abs=0.0)
 
 
 @pytest.mark.parametrize("ratio", [0.1, 0.5, 0.9, 0.99])
@@ -80,8 +88,8 @@ def test_a_flat_punch_with_rounded_edges(ratio):
         / RADIUS
         * ((math.pi - 2.0 * phi) / (2.0 * math.sin(phi) ** 2) - 1.0 / math.tan(phi))
     )
-    assert strip_load(rounded, 0, flat / ratio, MODULUS)[0] == pytest.approx(load, rel=1e-9, abs=0.0)
-    assert half_strip(rounded, 0, load, MODULUS)[0] == pytest.approx(flat / ratio, rel=1e-8, abs=0.0)
+    assert load_on(rounded, 0, flat / ratio, MODULUS)[0] == pytest.approx(load, rel=1e-9, abs=0.0)
+    assert half_of(rounded, 0, load, MODULUS)[0] == pytest.approx(flat / ratio, rel=1e-8, abs=0.0)
 
 
 def test_a_truncated_parabola_is_a_punch_once_it_is_full():
@@ -89,11 +97,9 @@ def test_a_truncated_parabola_is_a_punch_once_it_is_full():
     edge = 1e-4
     truncated = gap(low=-edge, high=edge)
     full = math.pi * MODULUS * edge**2 / (4.0 * RADIUS)
-    assert half_strip(truncated, 0, 0.5 * full, MODULUS)[0] == pytest.approx(math.sqrt(0.5) * edge, rel=1e-12)
+    assert half_of(truncated, 0, 0.5 * full, MODULUS)[0] == pytest.approx(math.sqrt(0.5) * edge, rel=1e-12)
     loads = full * np.array([1.0, 2.0, 5.0])
-    assert [half_strip(truncated, 0, load, MODULUS)[0] for load in loads] == pytest.approx(
-        [edge] * 3, rel=1e-9
-    )
+    assert [half_of(truncated, 0, load, MODULUS)[0] for load in loads] == pytest.approx([edge] * 3, rel=1e-9)
     values = np.array([approach(truncated, load) for load in loads])
     assert np.diff(values) / np.diff(loads) == pytest.approx(K * (-math.log(edge) - 0.25), rel=1e-9)
 
@@ -150,7 +156,7 @@ def test_against_boundary_elements(name, record_figure):
 def test_the_slope_in_the_load_is_that_of_a_punch(name):
     about = GAPS[name]
     for load in (2e3, 2e4, 1.7e5):
-        half, _ = half_strip(about, 0, load, MODULUS)
+        half, _ = half_of(about, 0, load, MODULUS)
         step = 1e-4 * load
         slope = (approach(about, load + step) - approach(about, load - step)) / (2.0 * step)
         assert slope == pytest.approx(K * (-math.log(half) - 0.25), rel=1e-5, abs=0.0)
@@ -164,7 +170,7 @@ def test_lengths_scale(name, scale):
         about.slope, about.curvature / scale, scale * about.low, scale * about.high,
         scale * about.place, about.jump, about.bend / scale,
     )  # fmt: skip
-    small, large = half_strip(about, 0, 1e5, MODULUS), half_strip(larger, 0, scale * 1e5, MODULUS)
+    small, large = half_of(about, 0, 1e5, MODULUS), half_of(larger, 0, scale * 1e5, MODULUS)
     assert large == pytest.approx((scale * small[0], scale * small[1]), rel=1e-9)
 
 
@@ -195,7 +201,7 @@ def test_load_grows_with_the_strip_where_its_end_stays_at_a_kink():
     one = [np.array([value]) for value in (0.0, 24.9, -6.8e-3, np.inf)]
     gap = Gap(*one, np.array([[63.47e-6]]), np.array([[0.577]]), np.zeros((1, 1)))
     halves = np.linspace(0.95, 1.6, 5000) * 63.47e-6
-    loads = np.array([strip_load(gap, 0, half, MODULUS)[0] for half in halves])
+    loads = np.array([load_on(gap, 0, half, MODULUS)[0] for half in halves])
     assert np.all(np.diff(loads) > 0.0)
     for half, load in zip(halves[::250], loads[::250], strict=True):
-        assert half_strip(gap, 0, load, MODULUS)[0] == pytest.approx(half, rel=1e-6)
+        assert half_of(gap, 0, load, MODULUS)[0] == pytest.approx(half, rel=1e-6)

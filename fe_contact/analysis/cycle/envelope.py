@@ -18,9 +18,9 @@ from fe_contact.analysis.cycle.tangents import (
     nominal_tangent,
     pitch_tangents,
 )
-from fe_contact.analysis.pairs.kept_contact import solved_in_parts
+from fe_contact.analysis.pairs.kept_contact import problems_in_parts
 from fe_contact.analysis.pairs.pair_contact import OperatingPoint
-from fe_contact.contact import Candidates, ContactProblem, ContactSolution
+from fe_contact.contact import Candidates, ContactProblem, ContactSolution, solve_contact
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.cost_of_derivatives import BATCH, DRAWN
@@ -70,8 +70,9 @@ class CycleContact:
 
     def exact(self, pitches: IntArray) -> FloatArray:
         """Return the transmission error in whole base pitches (t,), (t, P, L) in m."""
-        (kept,) = solved_in_parts(self.point, self.position, (self.load,), pitches, edges=False)
-        return self.by_pitch(_converged(kept.solution).deflection)
+        parts = problems_in_parts(self.point, self.position, pitches)
+        deflection = [_converged(solve_contact(part, self.load)).deflection for part in parts]
+        return self.by_pitch(np.concatenate(deflection))
 
     def solved(self, pitches: IntArray) -> SolvedState:
         """Solve whole base pitches.

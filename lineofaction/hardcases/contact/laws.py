@@ -10,7 +10,7 @@ import numpy as np
 from fe_contact.analysis.pairs.pair_contact import PairContact, operating_points, pair_contact
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact import ContactModel, ContactProblem, ContactSolution
-from fe_contact.contact.point_problem import motion_at, point_problems, pressed_state, problem_at
+from fe_contact.contact.point_problem import motions, point_problems, pressed_state, problem_at
 from fe_contact.contact.tilted_bodies import fill_yielding, move
 from fe_contact.geometry import Gear, GearPair, ParallelAxes
 from fe_contact.options import AnalysisOptions, TableAxes
@@ -167,8 +167,7 @@ def _plain(problem: ContactProblem, position: int, force: FloatArray) -> Problem
     state = pressed_state(point, force[here])
     move(point, state)
     fill_yielding(point, state)
-    units = np.eye(len(point.bodies))
-    blend = np.array([[motion_at(point, q, one) for one in units] for q in range(here.size)])
+    blend = np.array([motions(point, one) for one in np.eye(len(point.bodies))]).T
     real = np.isin(np.arange(c.pair.size), here)
     motion = c.motion_arm[position, real]
     row = position % len(problem.compliance)

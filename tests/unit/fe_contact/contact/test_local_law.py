@@ -9,17 +9,20 @@ import pytest
 from hertz_laws import edge_contact_length, edge_half_width, line_load_at_half_width, local_approach
 
 from fe_contact.contact.point_problem import (
+    _HALF,
+    _MIDDLE,
+    _MODULUS,
     LARGEST_STRIP,
     SMALLEST_STRIP,
+    LocalLaw,
     _force_at,
-    _free_strips,
-    _LocalLaw,
     _plain_load,
     _plain_strip,
     _strip_at,
     approach,
+    local_law,
 )
-from fe_contact.contact.strip import Gap, strip_at, strip_load
+from fe_contact.contact.strip import Gap, free_strip, gap_table, strip_at, strip_load
 from fe_contact.hertz import contact_modulus, half_width
 from fe_contact.material import STEEL, Material
 
@@ -30,21 +33,19 @@ SLOPES = [math.nan, 0.1, 0.01, 0.0, -1e-3, -0.01, -0.1]
 LINE_LOADS = np.geomspace(1e1, 8e4, 25)
 
 
-def law_of(slope: float, first: Material = STEEL, second: Material = STEEL, scale: float = 1.0) -> _LocalLaw:
+def law_of(slope: float, first: Material = STEEL, second: Material = STEEL, scale: float = 1.0) -> LocalLaw:
     gap, width = gap_of(slope, scale * RADIUS), np.array([scale * WIDTH])
-    return _LocalLaw(
-        width, gap, _free_strips(gap), scale * LENGTH, np.array([contact_modulus(first, second)])
-    )
+    return local_law(gap_table(gap), width, np.array([contact_modulus(first, second)]), scale * LENGTH)
 
 
-def low(law: _LocalLaw) -> float:
+def low(law: LocalLaw) -> float:
     """Line load up to which the law is its secant."""
-    return strip_load(law.gap, 0, SMALLEST_STRIP * law.length, law.modulus[0])[0]
+    return strip_load(law.gap, 0, SMALLEST_STRIP * law.length, law.strip[0, _MODULUS])[0]
 
 
-def high(law: _LocalLaw) -> float:
+def high(law: LocalLaw) -> float:
     """Line load above which the law goes on straight."""
-    return strip_load(law.gap, 0, LARGEST_STRIP * law.length, law.modulus[0])[0]
+    return strip_load(law.gap, 0, LARGEST_STRIP * law.length, law.strip[0, _MODULUS])[0]
 
 
 def gap_of(slope: float, radius: float) -> Gap:
@@ -67,7 +68,7 @@ def hertz_room(p: float, slope: float, first: Material, second: Material) -> flo
     return rigid + sum(float(local_approach(p, LENGTH, width, m)) for m in (first, second))
 
 
-def value(law: _LocalLaw, p: float) -> float:
+def value(law: LocalLaw, p: float) -> float:
     return approach(law, 0, p * WIDTH)[0]
 
 
@@ -143,17 +144,19 @@ def test_the_force_at_an_approach_is_its_inverse(slope):
 def test_a_parabola_needs_no_search():
     # what the solver takes where neither an edge nor a break is near is the same law
     law = law_of(math.nan)
-    curvature, gap = 1.0 / RADIUS, law.gap
+    curvature, gap = 1.0 / RADIUS, gap_of(math.nan, RADIUS)
     for p in np.geomspace(1e-3 * low(law), 1e2 * high(law), 200):
         value = approach(law, 0, p * WIDTH)[0]
-        half = _plain_strip(curvature, LENGTH, value)
-        load, stiffness = _plain_load(curvature, LENGTH, law.modulus[0], half, value)
-        assert (WIDTH * load, WIDTH * stiffness) == pytest.approx(_force_at(law, 0, value), rel=1e-12)
-    assert _free_strips(gap)[0] == math.inf
-    assert _free_strips(gap._replace(slope=np.array([0.01])))[0] == 0.0
-    assert _free_strips(gap._replace(low=np.array([-2e-4]), high=np.array([1e-4])))[0] == 1e-4
+        half = _plain_strip(curvature, LENGTH, value, 0.0)
+        load, stiffness = _plain_load(curvature, LENGTH, law.strip[0, _MODULUS], half, value)
+        found, from_the_last = _force_at(law_of(math.nan), 0, value), _force_at(law, 0, value)
+        assert (WIDTH * load, WIDTH * stiffness) == pytest.approx(found, rel=1e-12)
+        assert from_the_last == pytest.approx(found, rel=1e-11)
+    assert free_strip(gap_table(gap), 0) == math.inf
+    assert free_strip(gap_table(gap._replace(slope=np.array([0.01]))), 0) == 0.0
+    assert free_strip(gap_table(gap._replace(low=np.array([-2e-4]), high=np.array([1e-4]))), 0) == 1e-4
     broken = gap._replace(place=np.array([[-5e-5, 3e-4]]), jump=np.ones((1, 2)), bend=np.ones((1, 2)))
-    assert _free_strips(broken)[0] == 5e-5
+    assert free_strip(gap_table(broken), 0) == 5e-5
 
 
 def test_equal_patches_far_from_the_edge_give_hertz():
@@ -178,7 +181,7 @@ def test_blunt_wedge_keeps_its_digits():
     # phi R is far beyond the strip; c = 4 p/(pi E* phi) there and b_eff = c exp(-1/2)/2
     modulus, wedge, radius, patch = contact_modulus(STEEL, STEEL), 0.3, 2e4, 3e-4
     k, gap = 1.0 / (math.pi * modulus), gap_of(wedge, radius)
-    law = _LocalLaw(np.array([WIDTH]), gap, _free_strips(gap), patch, np.array([modulus]))
+    law = local_law(gap_table(gap), np.array([WIDTH]), np.array([modulus]), patch)
     p = 1.5 * low(law)
     half_width_at_edge = 2.0 * p / (math.pi * modulus * wedge) * math.exp(-0.5)
     expected = 2.0 * k * p * (math.log(patch / half_width_at_edge) + 0.25)
@@ -197,17 +200,40 @@ def test_newtons_strip_is_the_one_that_is_held_between_bounds(jump):
         place = rng.uniform(-1.2, 1.2, (1, 2)) * 1e-4
         bends = rng.uniform(0.0, 2.0, (1, 2)) / RADIUS
         one, away = np.array([1.0 / RADIUS]), np.array([1e-2])
-        gap = Gap(np.zeros(1), one, -away, away, place, np.full((1, 2), jump), bends)
-        law = _LocalLaw(np.array([WIDTH]), gap, _free_strips(gap), LENGTH, np.array([modulus]))
-        guess = _plain_strip(one[0], LENGTH, value)
+        gap = gap_table(Gap(np.zeros(1), one, -away, away, place, np.full((1, 2), jump), bends))
+        law = local_law(gap, np.array([WIDTH]), np.array([modulus]), LENGTH)
+        guess = _plain_strip(one[0], LENGTH, value, 0.0)
         held = _strip_at(law, 0, value, guess)
-        half, first, mean = strip_at(gap, 0, value, LENGTH, guess)
+        center, half, first, mean = strip_at(gap, 0, value, LENGTH, 0.0, guess)
         if SMALLEST_STRIP * LENGTH < half < LARGEST_STRIP * LENGTH:
             found += 1
             load, rigid = strip_load(gap, 0, held, modulus)
             assert half == pytest.approx(held, rel=1e-7, abs=0.0)
             assert 0.5 * math.pi * modulus * half * first == pytest.approx(load, rel=1e-7, abs=0.0)
             assert mean == pytest.approx(rigid, rel=1e-7, abs=0.0)
-            under, _, own = strip_at(gap, 0, half * first, 0.0, guess)
+            _, under, _, own = strip_at(gap, 0, half * first, 0.0, 0.0, guess)
             assert under == 0.0 or (under, own) == pytest.approx((half, mean), rel=1e-7, abs=0.0)
+            assert strip_at(gap, 0, value, LENGTH, center, half)[1:] == pytest.approx(
+                (half, first, mean), rel=1e-12, abs=0.0
+            )
     assert found > 20
+
+
+@pytest.mark.parametrize("slope", [0.1, 0.01, 0.0, -1e-3, -0.01])
+def test_a_strip_that_an_edge_holds_follows_from_any_other(slope):
+    """From strips of a tenth to ten times the load, held or free, the one between bounds is found."""
+    law, held = law_of(slope), 0
+    for p in LINE_LOADS:
+        expected, stiffness, _ = approach(law_of(slope), 0, p * WIDTH)
+        bounded = _strip_at(law_of(slope), 0, expected, 1e-2 * LENGTH)
+        for share in (0.1, 0.7, 1.0, 1.4, 10.0):
+            before = approach(law_of(slope), 0, share * p * WIDTH)[0]
+            other = law_of(slope)
+            _force_at(other, 0, before)
+            found = _force_at(other, 0, expected)
+            assert found == pytest.approx((p * WIDTH, 1.0 / stiffness), rel=1e-7, abs=0.0)
+            middle, half, *_ = strip_at(law.gap, 0, expected, LENGTH, *other.strip[0, [_MIDDLE, _HALF]])
+            if half > SMALLEST_STRIP * LENGTH and middle <= law.gap[0, 2] + 1.001 * half:
+                held += 1
+                assert half == pytest.approx(bounded, rel=1e-6, abs=0.0)
+    assert held >= 10

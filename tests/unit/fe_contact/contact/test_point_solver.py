@@ -28,13 +28,12 @@ from fe_contact.contact.patch import Patches
 from fe_contact.contact.point_problem import (
     PointProblem,
     State,
-    _free_strips,
-    _LocalLaw,
     approach,
+    local_law,
     point_problems,
     problem_at,
 )
-from fe_contact.contact.strip import Gap
+from fe_contact.contact.strip import Gap, gap_table
 from fe_contact.effects.influence.deflection_budget import Springs
 from fe_contact.types import Status
 
@@ -48,17 +47,17 @@ def point(compliance, gap, motion_arm=None, torque_arm=None, edge_slope=math.nan
     n = len(gap)
     ones = np.ones(n)
     gap_about = beside_an_edge(edge_slope, n)
-    law = _LocalLaw(WIDTH * ones, gap_about, _free_strips(gap_about), LENGTH, MODULUS * ones)
     motion = ones if motion_arm is None else np.asarray(motion_arm)
     torque = motion if torque_arm is None else np.asarray(torque_arm)
     there = np.flatnonzero(np.asarray(gap) != math.inf)
+    widths, moduli = np.full((2, there.size), [[WIDTH], [MODULUS]])
+    law = local_law(gap_table(gap_about)[there], widths, moduli, LENGTH)
     bodies, gaps = np.asarray(compliance, float), np.asarray(gap, float)[there]
     return PointProblem(
         bodies,
         np.zeros((0, 0)),
         np.zeros(n),
         np.ones((there.size, 1)),
-        there,
         there,
         gaps,
         motion[there],
@@ -240,7 +239,7 @@ def test_sweep_equals_single_solves_and_a_failure_stays_alone():
             d, tangent, *_, force, _ = solve(single, load)
             assert solution.deflection[p, k] == pytest.approx(d, rel=1e-12, abs=0.0)
             assert solution.tangent[p, k] == pytest.approx(tangent, rel=1e-9, abs=0.0)
-            assert solution.force[p, k, single.place] == pytest.approx(force, rel=1e-9, abs=0.0)
+            assert solution.force[p, k, single.first] == pytest.approx(force, rel=1e-9, abs=0.0)
     broken = problem.candidates.gap.copy()
     broken[0] = math.inf
     candidates = SimpleNamespace(**(vars(problem.candidates) | {"gap": broken}))
