@@ -144,26 +144,26 @@ class LeastTangents:
     @classmethod
     def of(cls, tangent: Tangent, gaps: ToothGaps, pitches: IntArray) -> LeastTangents:
         """Begin with one tangent in whole base pitches (t,)."""
-        ste, distance = tangent.over(gaps, pitches)
-        sums = tangent.sums.over(gaps, pitches, np.ones(ste.shape, dtype=bool))
-        return cls(ste, distance, np.zeros(ste.shape, dtype=np.int16), sums.reshape(*ste.shape, -1))
+        moved, every = tangent.moved(gaps, pitches), np.ones((pitches.size, *tangent.value.shape), dtype=bool)
+        change, shape = moved.sum(axis=0), every.shape
+        distance = tangent.distance(moved, change, every).reshape(shape)
+        sums = tangent.sums.over(gaps, pitches, every).reshape(*shape, -1)
+        return cls(tangent.value + change, distance, np.zeros(shape, dtype=np.int16), sums)
 
     def and_of(
         self, number: int, tangent: Tangent, gaps: ToothGaps, pitches: IntArray, but: BoolArray
     ) -> LeastTangents:
         """Return the least with another tangent, in the same pitches `but` (t,) some."""
-        ste, distance = tangent.over(gaps, pitches)
+        moved = tangent.moved(gaps, pitches)
+        change = moved.sum(axis=0)
+        ste = tangent.value + change
         less = (ste < self.ste) & ~but[:, None, None]
-        sums = self.sums
+        distance, state, sums = self.distance.copy(), self.state.copy(), self.sums
+        distance[less], state[less] = tangent.distance(moved, change, less), number
         if sums.shape[3]:
             sums = sums.copy()
             sums[less] = tangent.sums.over(gaps, pitches, less)
-        return LeastTangents(
-            np.where(less, ste, self.ste),
-            np.where(less, distance, self.distance),
-            np.where(less, np.int16(number), self.state),
-            sums,
-        )
+        return LeastTangents(np.where(less, ste, self.ste), distance, state, sums)
 
     @property
     def furthest(self) -> FloatArray:

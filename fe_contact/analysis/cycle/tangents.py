@@ -132,28 +132,25 @@ class Tangent:
     at_state: FloatArray
     sums: LoadSums
 
-    def over(self, gaps: ToothGaps, pitches: IntArray) -> tuple[FloatArray, FloatArray]:
-        """Return the transmission error in whole base pitches (t,), and how far from the state it is.
+    def moved(self, gaps: ToothGaps, pitches: IntArray) -> FloatArray:
+        """Return what the teeth that meet in whole base pitches (t,) add to the state, (J, t, P, L) in m."""
+        (first, second), (own, other) = gaps.teeth(pitches), self.by_tooth
+        beyond = own - self.at_state[:, None]
+        moved = np.empty((gaps.pair.size, pitches.size, *self.value.shape))
+        for j in range(gaps.pair.size):
+            np.add(beyond[j, first[:, j]], other[j, second[:, j]], out=moved[j])
+        return moved
 
-        Returns
-        -------
-        ste, distance : ndarray, shape (t, P, L)
-            m. The distance is the mean over the pairs, by their parts, of how far each is moved against the
-            other gear.
+    def distance(self, moved: FloatArray, change: FloatArray, where: BoolArray) -> FloatArray:
+        """Return how far the state is from some of t pitches, P positions and L loads (t, P, L), m.
+
+        It is the mean over the pairs, by their parts, of how far each is `moved` against the other gear.
+        `change`: their sum.
         """
-        added = self.added(gaps, pitches)
-        added -= self.at_state[:, None]
-        change = added.sum(axis=0)
-        distance = np.zeros(change.shape)
-        for own, part in zip(added, self.part, strict=True):
-            distance += np.abs(own - part * change)
-        return self.value + change, distance
-
-    def added(self, gaps: ToothGaps, pitches: IntArray) -> FloatArray:
-        """Return what the teeth that meet in whole base pitches (t,) add to each pair, (J, t, P, L) in m."""
-        first, second = gaps.teeth(pitches)
-        pairs = range(gaps.pair.size)
-        return np.stack([self.by_tooth[0][j, first[:, j]] + self.by_tooth[1][j, second[:, j]] for j in pairs])
+        whole, distance = change[where], np.zeros(np.count_nonzero(where))
+        for own, part in zip(moved, self.part, strict=True):
+            distance += np.abs(own[where] - np.broadcast_to(part, where.shape)[where] * whole)
+        return distance
 
 
 @dataclass(frozen=True)
@@ -176,7 +173,7 @@ def pitch_tangents(gaps: ToothGaps, state: SolvedState, pitches: IntArray) -> li
     return [
         replace(
             each,
-            at_state=each.added(gaps, pitches[k : k + 1])[:, 0],
+            at_state=each.moved(gaps, pitches[k : k + 1])[:, 0],
             sums=each.sums.about(gaps, int(pitches[k])),
         )
         for k, each in enumerate(_tangents(gaps, state, pitches.size))
