@@ -59,7 +59,7 @@ def _rendered(view: _View, corners: FloatArray, value: FloatArray) -> tuple[Floa
     Parameters
     ----------
     corners : (n, 3, 3) array
-        Of the facets, counter-clockwise as seen from outside; those turned away are not seen.
+        Of the facets, seen from either side: a thin wall may have but one of its two.
     value : (n,) array
     """
     flat = view.pixels(corners)
@@ -85,17 +85,16 @@ def _covered(
     offset = np.stack(np.meshgrid(np.arange(side + 1), np.arange(side + 1)), axis=-1).reshape(-1, 2)
     pixel = first[:, None] + offset
     a, edge, other = corner[:, 0], corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
-    area = edge[:, 0] * other[:, 1] - edge[:, 1] * other[:, 0]
-    area = np.where(area > 1e-9, area, np.inf)  # the others are turned away
+    area = (edge[:, 0] * other[:, 1] - edge[:, 1] * other[:, 0])[:, None]
+    area = np.where(np.abs(area) > 1e-9, area, np.inf)  # the others are seen edge on
     x, y = np.moveaxis(pixel - a[:, None, :2], 2, 0)
-    second = (x * other[:, None, 1] - y * other[:, None, 0]) / area[:, None]
-    third = (y * edge[:, None, 0] - x * edge[:, None, 1]) / area[:, None]
-    inside = (
-        (second >= -1e-9) & (third >= -1e-9) & (second + third <= 1.0 + 1e-9) & np.isfinite(area)[:, None]
-    )
+    second = (x * other[:, None, 1] - y * other[:, None, 0]) / area
+    third = (y * edge[:, None, 0] - x * edge[:, None, 1]) / area
+    inside = (second >= -1e-9) & (third >= -1e-9) & (second + third <= 1.0 + 1e-9) & np.isfinite(area)
     inside &= np.all((pixel >= 0) & (pixel < view.shape[::-1]), axis=2)
     row, place = np.nonzero(inside)
     ahead = a[row, 2] + second[row, place] * edge[row, 2] + third[row, place] * other[row, 2]
+    ahead -= np.where(area[row, 0] < 0.0, 1.0, 0.0)  # behind those that face the eye
     number = pixel[row, place, 1] * view.shape[1] + pixel[row, place, 0]
     return facets[row], number, ahead
 

@@ -84,3 +84,13 @@ def test_a_panel_shows_the_moved_surface_and_the_nine_edges_in_sight_at_rest() -
     drawn = np.nansum(np.hypot(np.diff(line.x), np.diff(line.y)))
     assert drawn == pytest.approx(0.75 * whole, rel=0.02)  # three of twelve, one of each length, are behind
     assert away.shade.z.shape[0] * (away.shade.y[1] - away.shade.y[0]) > still.shade.y[-1]
+
+
+def test_a_wall_that_has_one_of_its_two_sides_is_seen_from_both() -> None:
+    points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    covered = []
+    for corners in (points, points[::-1]):
+        image, _ = _rendered(_view_of(points, (0.0, 0.2, 1.0)), corners[None], np.ones(1))
+        covered.append(np.isfinite(image))
+    assert np.array_equal(*covered)
+    assert covered[0].mean() > 0.4
