@@ -263,6 +263,15 @@ class SoundBand:
             total=tuple(rows),
         )
 
+    def about(self, power: OrderPower) -> SoundBand:
+        """Return the bands, as wide as they are, about the levels of other powers of the same orders, (H, S).
+
+        Those of a response in which stiffness varies, where the ranges were run over the mean stiffness.
+        """
+        loudest = np.searchsorted(self.speed, self.loudest_speed)
+        own = _levels(self.order, loudest, self.order, power).tolist()
+        return self._of_bands([replace(band, nominal=at) for band, at in zip(self._bands, own, strict=True)])
+
     def with_power_error(
         self, name: str, power: OrderPower, below: FloatArray, above: FloatArray
     ) -> SoundBand:

@@ -100,7 +100,7 @@ def plain_approach(law: LocalLaw, i: int, force: float) -> float:
     p, (k, least, most) = force / law.strip[i, _WIDTH], _limits(law, i)
     curvature = float(law.gap[i, CURVATURE])
     half = min(max(math.sqrt(2.0 * k * p / curvature), least), most)
-    return 0.25 * curvature * half * half + k * p * (math.log(law.length / half) - 0.25)
+    return float(0.25 * curvature * half * half + k * p * (math.log(law.length / half) - 0.25))
 
 
 @inner(error_model="numpy")

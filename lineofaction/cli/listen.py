@@ -115,14 +115,14 @@ def _position(text: str) -> tuple[float, ...]:
 
 
 def _housing_sounds(
-    runs: Mapping[str, RunResult], file: Path, receiver: Receiver, view: RunView
+    runs: Mapping[str, RunResult], file: Path, receiver: Receiver, view: RunView, *, announced: bool
 ) -> tuple[list[_RunSound], str]:
     """Return runs through the housings of a scene, and what to say of all."""
     receiver = replace(receiver, direction=view.direction)
     _require_no_view(view, receiver)
     scene, folder = assessed_scene(file)
     receiver = receiver.in_scene(scene)
-    if receiver.microphone_mm:
+    if receiver.microphone_mm and announced:
         sounding = sum(part.has_surface for part in scene.housings)
         durations = (float(run.time[-1] - run.time[0]) for run in runs.values())
         announce_cost("listen", [listening_cost(each, housings=sounding) for each in durations])
@@ -195,7 +195,7 @@ def run_listen(
     if scene is None or receiver is None:
         sounds, remark = _bearing_sounds(runs, view)
     else:
-        sounds, remark = _housing_sounds(runs, scene, receiver, view)
+        sounds, remark = _housing_sounds(runs, scene, receiver, view, announced=not as_json)
     scale = full_scale_of([sound.recording for sound in sounds])
     if output.suffix != ".wav":
         output.mkdir(exist_ok=True)

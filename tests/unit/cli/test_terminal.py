@@ -155,7 +155,7 @@ def test_the_finding_is_bold_errors_are_colored_and_what_is_beside_is_grey(files
     assert re.search(re.escape(GREY) + "next: loa report", shown)
     plain = loa(*arguments).output
     assert "\x1b" not in plain
-    assert re.sub(r"\x1b\[[\d;]*m", "", shown) == plain
+    assert re.sub(r"\x1b\[[\d;]*m", "", shown).split() == plain.split()  # a long path breaks its line
     assert "\x1b[3" not in seen_on_a_terminal(arguments, NO_COLOR="1")
 
 

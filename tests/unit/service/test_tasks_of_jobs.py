@@ -44,7 +44,7 @@ NOTHING_STORED = SimpleNamespace(find=lambda *_: None)
 @pytest.fixture(autouse=True)
 def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut small tables as large ones are."""
-    monkeypatch.setattr(contact_lines, "TASK_SECONDS", 1e-3)
+    monkeypatch.setattr(contact_lines, "TASK_SECONDS", 1e-4)
     monkeypatch.setattr(executor, "START_SECONDS", 0.0)
 
 

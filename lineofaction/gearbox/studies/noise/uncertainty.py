@@ -91,7 +91,7 @@ def uncertainty(
     with boundary_errors():
         if inputs.band:
             own = inputs.model_copy(update={"housing_damping": inputs.housing_damping or damping.factors})
-            band = _band_of(model, sound.speed, inputs.orders, own, means)
+            band = _band_of(model, sound.speed, inputs.orders, own, means).about(sound.orders)
             below, above = np.maximum(off[1].T, 0.0), np.maximum(-off[0].T, 0.0)
             band = band.with_power_error("radiation_model", sound.orders, below, above)
             source = damping.source if inputs.housing_damping is None else "range stated"
