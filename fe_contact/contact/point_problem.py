@@ -453,12 +453,11 @@ def evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: Stat
 @inner(error_model="numpy")
 def press(problem: PointProblem, force: FloatArray, out: FloatArray) -> None:
     """Fill in the forces of the contacts on the curves."""
-    curve, first = problem.curve, problem.first
     out[:] = 0.0
     for q in range(force.size):
         if force[q] != 0.0:
-            for a in range(curve.shape[1]):
-                out[first[q] + a] += curve[q, a] * force[q]
+            for a in range(problem.curve.shape[1]):
+                out[problem.first[q] + a] += problem.curve[q, a] * force[q]
 
 
 @inner(error_model="numpy")
@@ -476,8 +475,7 @@ def motions(problem: PointProblem, moved: FloatArray) -> FloatArray:
 @inner(error_model="numpy")
 def stiffness(problem: PointProblem, state: State) -> float:
     """Return how fast the contacts take load as the gear moves, N/m."""
-    torque_arm, slope, motion_arm = problem.torque_arm, state.slope, problem.motion_arm
     value = 0.0
-    for q in range(slope.size):
-        value += torque_arm[q] * slope[q] * motion_arm[q]
+    for q in range(state.slope.size):
+        value += problem.torque_arm[q] * state.slope[q] * problem.motion_arm[q]
     return value

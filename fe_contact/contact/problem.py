@@ -249,7 +249,7 @@ class Candidates:
         """How far those middles move back from tip 1 (P, m) as flanks tilt by 1, m."""
         return rolling_radii(*self._small_strips).reshape(self.gap.shape)
 
-    @property
+    @cached_property
     def _small_strips(self) -> tuple[FloatArray, FloatArray]:
         """Gaps about all touching points, and half strips there in m; none where there is no candidate."""
         table = gap_table(self.gap_about)

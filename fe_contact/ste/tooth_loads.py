@@ -81,8 +81,9 @@ def tooth_loads(table: SteFields, point: OperatingPoint) -> tuple[ToothLoads, ..
 
 
 def _worst(largest: FloatArray) -> tuple[int, ...]:
+    """Return the teeth of the largest value; none where that is no more than the mean."""
     most = np.flatnonzero(largest >= (1.0 - _ALIKE) * largest.max())
-    return tuple(int(k) + 1 for k in most) if most.size < largest.size else ()
+    return tuple(int(k) + 1 for k in most) if largest.max() > (1.0 + _ALIKE) * largest.mean() else ()
 
 
 def _of_gear(table: SteFields, values: list[FloatArray], gear: int) -> ToothLoads:

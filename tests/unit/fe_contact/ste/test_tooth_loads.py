@@ -11,6 +11,7 @@ import pytest
 
 from fe_contact import Gear, GearPair, PitchDeviation, SteDatabase, analyze
 from fe_contact.errors import DatabaseError, SolveError
+from fe_contact.ste.tooth_loads import ToothLoads
 
 EARLY, TORQUE = 7, 100.0
 TEETH = 17, 23
@@ -146,3 +147,12 @@ def test_pitches_by_derivatives_have_the_loads_of_all_pitches() -> None:
         assert own.pressure == pytest.approx(exact.pressure, abs=pressure)
         assert own.most_pressed == exact.most_pressed
         assert own.pressure.max() == pytest.approx(exact.pressure.max(), rel=1e-9)
+
+
+def test_one_tooth_that_carries_a_little_less_tells_none_apart() -> None:
+    forces = np.where(np.arange(29) == 24, 1927.0, 1928.2)[:, None]
+    alike = ToothLoads(0, np.zeros(1), forces, forces)
+    assert alike.most_loaded == alike.most_pressed == ()
+    pressed = forces.copy()
+    pressed[3] *= 1.001
+    assert ToothLoads(0, np.zeros(1), pressed, forces).most_loaded == (4,)
