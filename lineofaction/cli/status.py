@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,23 +20,24 @@ from lineofaction.cli.subjects import (
 )
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.project import ResultState, file_of, status_of
+from lineofaction.gearbox.project import ResultState, file_of, status_of, unread_in
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, read_model, read_table
 from lineofaction.gearbox.studies.cost import CASES, StudyCost
 from lineofaction.gearbox.subjects import scene_of
 
 
-def result_costs(states: Iterable[ResultState], project: Path) -> dict[str, StudyCost]:
+def result_costs(states: Iterable[ResultState], project: Path) -> dict[str, StudyCost | BadInput]:
     """Return the predicted cost by the name of the result, as its verb would run without options.
 
-    What nothing predicts is left out, and what the verb would refuse.
+    Of what the verb would refuse its reason. What nothing predicts is left out.
     """
-    costs = {}
+    costs: dict[str, StudyCost | BadInput] = {}
     for state in states:
         try:
             own = None if state.source is None else _result_cost(state.verb, state.source, project)
-        except BadInput:
+        except BadInput as refused:
+            costs[state.name] = refused
             continue
         if own is not None:
             costs[state.name] = own
@@ -76,36 +78,59 @@ def run_status(folder: Path, *, as_json: bool) -> None:
     """Print the state of the results of a folder."""
     if not folder.is_dir():
         raise BadInput.of("folder", str(folder), "a folder", "Make one with: loa open UNIT.rexs")
-    states = status_of(folder)
+    states, unread = status_of(folder), [_reason(error) for error in unread_in(folder)]
     tables, costs = scene_tables_cost(folder).seconds, result_costs(states, folder)
-    seconds = {name: cost.seconds for name, cost in costs.items()}
+    seconds = {name: cost.seconds for name, cost in costs.items() if isinstance(cost, StudyCost)}
+    refused = {name: _reason(cost) for name, cost in costs.items() if isinstance(cost, BadInput)}
     due = [own.name for own in states if own.state != "fresh"]
     whole = tables + sum(seconds.get(name, 0.0) for name in due)
-    unknown = sum(name not in seconds for name in due)
     if as_json:
         facts = [
             {"name": own.name, "verb": own.verb, "state": own.state, "cpu_seconds": seconds.get(own.name)}
+            | ({"refused": refused[own.name]} if own.name in refused else {})
             for own in states
         ]
-        known = {"tables_cpu_seconds": tables, "due_cpu_seconds": whole, "not_predicted": unknown}
-        print_json({"results": facts, **known})
+        known = {"tables_cpu_seconds": tables, "due_cpu_seconds": whole}
+        known["not_predicted"] = sum(name not in seconds for name in due)
+        print_json({"results": facts, **known, "unread": unread})
         return
     counts = Counter[str](own.state for own in states)
     out = console()
     out.print(", ".join(f"{counts[state]} {state}" for state in _STATES))
     if due:
-        beyond = f", without {unknown} that nothing predicts" if unknown else ""
-        out.print(f"stale or missing: about {engineering(whole, 2)} CPU s{beyond}")
+        kinds = {"that nothing predicts": sum(name not in costs for name in due)}
+        kinds["refused"] = sum(name in refused for name in due)
+        beyond = " and ".join(f"{count} {kind}" for kind, count in kinds.items() if count)
+        rest = f", without {beyond}" if beyond else ""
+        out.print(f"stale or missing: about {engineering(whole, 2)} CPU s{rest}", soft_wrap=True)
     if tables:
-        out.print(f"of that the tables of the scene, which are not kept: {engineering(tables, 2)} CPU s")
+        words = f"of that the tables of the scene, which are not kept: {engineering(tables, 2)} CPU s"
+        out.print(words, soft_wrap=True)
+    shown = {name: engineering(cost, 2) for name, cost in seconds.items()}
+    shown |= dict.fromkeys(refused, "refused")
     rows = [
-        [
-            own.state,
-            own.name,
-            f"loa {own.verb}",
-            engineering(seconds[own.name], 2) if own.name in seconds else "-",
-        ]
+        [own.state, own.name, f"loa {own.verb}", shown.get(own.name, "-")]
         for own in sorted(states, key=lambda own: _STATES.index(own.state))
     ]
     out.print(table([*_HEAD, "CPU s"], rows, words=_HEAD))
-    out.print("CPU s as predicted for the verb without options; - not predicted")
+    out.print("CPU s as predicted for the verb without options; - not predicted", soft_wrap=True)
+    verbs = {own.name: own.verb for own in states}
+    for line in [*_refusals({name: verbs[name] for name in refused}, refused), *unread]:
+        out.print(line, soft_wrap=True)
+
+
+def _reason(error: BadInput) -> str:
+    """Say in a line what a verb refuses, without what to try: the verb says it."""
+    return "; ".join(str(replace(fault, suggestion="")) for fault in error.faults)
+
+
+_NAMED = 3
+"""Verbs that are named where they refuse for one reason."""
+
+
+def _refusals(verbs: Mapping[str, str], reasons: Mapping[str, str]) -> Iterator[str]:
+    """Yield each reason once, after the verbs that refuse for it."""
+    for reason in dict.fromkeys(reasons.values()):
+        own = list(dict.fromkeys(verbs[name] for name in reasons if reasons[name] == reason))
+        named = ", ".join(own) if len(own) <= _NAMED else f"{own[0]} and {len(own) - 1} more"
+        yield f"refused by loa {named}: {reason}"

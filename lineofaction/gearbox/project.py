@@ -49,7 +49,7 @@ def files_of(named: InputFile, subject: str) -> list[InputFile]:
         files = [InputFile(path, named.overrides, named.path, path.stem) for path in chosen]
         if files:
             return files if kind == "case" else [only(files, named.path, kind)]
-    raise BadInput.of("file", str(named), f"a folder with a {subject} file in it", "Make one with: loa new")
+    raise _none_of(named.path, str(named), subject)
 
 
 Named = TypeVar("Named", InputFile, Path)
@@ -170,9 +170,7 @@ def status_of(project: Path) -> list[ResultState]:
     tables = dict(_tables(project))
     subjects = [kind for kind in _SIGNS if _chosen(tables, kind)]
     if not subjects:
-        raise BadInput.of(
-            "file", str(project), "a folder with a case or scene file in it", "Make one: loa new"
-        )
+        raise _none_of(project, str(project), "case or scene")
     newest = max(path.stat().st_mtime for path in tables)
     expected = _expected(tables)
     names = (path.relative_to(project).as_posix() for path in results_in(project))
@@ -225,14 +223,32 @@ def _parts(tables: Mapping[Path, Mapping[str, Any]]) -> list[str]:
     return cases if len(cases) > 1 else []
 
 
+def unread_in(project: Path) -> list[BadInput]:
+    """Return why files of a folder that may hold a table cannot be read: they are no files of the project."""
+    return [content for _, content in _contents(project) if isinstance(content, BadInput)]
+
+
 def _tables(project: Path) -> Iterator[tuple[Path, dict[str, Any]]]:
-    """Yield the files of a folder that hold a table; what cannot be read is no file of the project."""
+    """Yield the files of a folder that hold a table."""
+    for path, content in _contents(project):
+        if isinstance(content, dict):
+            yield path, content
+
+
+def _contents(project: Path) -> Iterator[tuple[Path, dict[str, Any] | BadInput]]:
     for path in sorted(project.iterdir()):
         if path.suffix in _ENDINGS and path.is_file():
             try:
                 yield path, read_table(path)
-            except BadInput:
-                continue
+            except BadInput as unread:
+                yield path, unread
+
+
+def _none_of(project: Path, named: str, kind: str) -> BadInput:
+    """Return the error of a folder that holds no file of a kind; one that cannot be read might be it."""
+    none = BadInput.of("file", named, f"a folder with a {kind} file in it", "Make one with: loa new")
+    unread = [fault for error in unread_in(project) for fault in error.faults]
+    return BadInput([*none.faults, *unread])
 
 
 def _listed(paths: Iterable[Path | InputFile]) -> str:
