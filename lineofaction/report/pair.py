@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from pydantic import ValidationError
@@ -34,7 +34,7 @@ from fe_contact.geometry.iso6336_stiffness import iso6336_stiffness
 from fe_contact.material import Material
 from fe_contact.plausibility import mesh_findings
 from fe_contact.ste import PairFacts, SteDatabase
-from fe_contact.types import Json
+from fe_contact.types import IntArray, Json
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.live import pair_outline
 from lineofaction.gearbox.schemas.case import Case
@@ -203,7 +203,8 @@ def _made(gear: Toothing) -> list[ToothFlank]:
 
 def _section(pair: ParallelAxes) -> Panel:
     outline = pair_outline(pair)
-    lines = [_gear_line(name, outline[name]) for name in _SIDES]
+    half = _HEIGHT * pair.pinion.normal_module / MM
+    lines = [_gear_line(name, outline[name], _WIDTH * half) for name in _SIDES]
     for name, radius in zip(_SIDES, pair.operating_pitch_radii, strict=True):
         center = outline[name]["centre_mm"]
         angle = np.linspace(0.0, 2.0 * math.pi, 721)
@@ -214,21 +215,30 @@ def _section(pair: ParallelAxes) -> Panel:
     lines.append(Line("path of contact", path[:, 0], path[:, 1], palette.GREEN, width=2.4, markers=True))
     notes = tuple(Note(x, y, name, -(name == "D"), left=name in "AB") for name, (x, y) in points.items())
     pitch_point = pair.operating_pitch_radii[0] / MM
-    half = _HEIGHT * pair.pinion.normal_module / MM
     x = Axis("mm", limits=(-_WIDTH * half, _WIDTH * half))
     y = Axis("mm", limits=(pitch_point - half, pitch_point + half))
     return Panel(x, y, tuple(lines), title="Transverse section", notes=notes, equal=True)
 
 
-def _gear_line(name: str, gear: Json) -> Line:
+def _gear_line(name: str, gear: Json, across: float) -> Line:
+    """Draw the teeth of a gear near the mesh; `across`, mm, is seen to either side."""
     tooth = np.array(gear["tooth_mm"])
     pitch = -2.0 * math.pi / gear["teeth"]  # teeth follow each other from left to right
-    angles = math.radians(gear["angle_deg"]) + pitch * np.arange(gear["teeth"])
+    angles = math.radians(gear["angle_deg"]) + pitch * _near(gear, across)
     x = np.cos(angles)[:, None] * tooth[:, 0] - np.sin(angles)[:, None] * tooth[:, 1]
     y = np.sin(angles)[:, None] * tooth[:, 0] + np.cos(angles)[:, None] * tooth[:, 1]
-    closed = [np.append(part.ravel(), part.ravel()[0]) for part in (x, y)]
-    center = gear["centre_mm"]
-    return Line(name, closed[0] + center[0], closed[1] + center[1], _SIDES[name], width=1.4)
+    whole = len(angles) == gear["teeth"]
+    closed = [np.append(part.ravel(), part.ravel()[0] if whole else 0.0) for part in (x, y)]
+    center = gear["centre_mm"]  # where the ends of a part of the teeth meet
+    outline = Line(name, closed[0] + center[0], closed[1] + center[1], _SIDES[name], width=1.4)
+    return replace(outline, filled=gear["radius_mm"]["tip"] > gear["radius_mm"]["root"])  # no ring gear
+
+
+def _near(gear: Json, across: float) -> IntArray:
+    """Return the numbers of the teeth near the mesh: as far to either side as twice what is drawn, or all."""
+    count, reach = gear["teeth"], 2.0 * across / gear["radius_mm"]["root"]
+    beside = math.ceil(reach * count / (2.0 * math.pi)) + 1
+    return np.arange(count) if reach >= 1.0 else np.arange(-beside, beside + 1)
 
 
 def _half(of_class: Callable[[Toothing, int], float], gear: Toothing, tolerance_class: int | None) -> float:

@@ -66,7 +66,8 @@ class Line:
     """A curve, or points if `width` is 0. NaN breaks it. `x` and `y` have the shape (n,).
 
     `band` is the half-height of an error band about it, one number or (n,); 0 or NaN: none. `label` stands
-    at its right end, in place of `name` in the legend; its rows are parted by line feeds.
+    at its right end, in place of `name` in the legend; its rows are parted by line feeds. `filled`: a closed
+    outline, tinted within.
     """
 
     name: str
@@ -78,6 +79,7 @@ class Line:
     markers: bool = False
     band: float | FloatArray = 0.0
     label: str = ""
+    filled: bool = False
 
     @property
     def has_band(self) -> bool:

@@ -117,6 +117,7 @@ _LEADER = 0.02  # of the panel's width, from the end of a line to its label
 _NARROW = 100.0  # largest over smallest value of a logarithmic axis with plain numbers
 _DECADE = (1.0, 10.0)  # of a logarithmic axis that has nothing to show
 _BOX = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.0}  # under a text on colors
+_TINT = 0.13  # of what an outline holds
 _DASH = {"solid": "-", "dash": "--", "dot": ":"}
 
 
@@ -219,6 +220,8 @@ def _draw(ax: Axes, line: Line) -> Any:
     if line.markers:
         stroke |= {"marker": "o", "ms": 6}
     (handle,) = ax.plot(line.x, line.y, solid_capstyle="butt", **stroke)
+    if line.filled:
+        ax.fill(line.x, line.y, color=line.color, alpha=_TINT, lw=0, zorder=0.4)
     if line.has_band:
         ax.fill_between(line.x, line.y - line.band, line.y + line.band, color=line.color, alpha=0.2, lw=0)
     return handle

@@ -133,6 +133,7 @@ _NOTE_ROW = 15  # pixels
 _LABEL_ROW, _LEADER, _LABEL_CHARACTER = 15, 18, 6.6  # pixels of a label at a line: row, way to it, character
 _BAND_ALPHA = "33"  # of an error band, after the six digits of its color
 _ROW_CHARACTERS, _HANDLE_CHARACTERS = 120, 7  # of the legend's type: across the page, beside a name
+_TINT = "22"  # of what an outline holds
 _BOX = "rgba(255,255,255,0.8)"  # under a text on colors
 _FONT = {"family": "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', sans-serif", "size": 14}
 
@@ -270,7 +271,8 @@ def _whole(panel: Panel, name: Literal["x", "y"]) -> Json:
 
 def _line(line: Line, suffix: str, show: bool) -> Json:
     """One curve; curves of one name share a legend entry."""
-    return {
+    filled = {"fill": "toself", "fillcolor": line.color + _TINT, "hoveron": "points"} if line.filled else {}
+    return filled | {
         "type": "scatter",
         "mode": "lines" if not line.markers else "lines+markers" if line.width else "markers",
         "name": line.name,
