@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from page_picture import CANVAS, different, picture, stopped, vertices
+from page_picture import CANVAS, different, has_room, picture, stopped, vertices
 from page_visit import PATIENCE, Visit, opened, opened_scene, shown, tab
 from playwright.sync_api import Browser, Page, expect
 
@@ -296,6 +296,7 @@ def test_a_unit_in_its_housing_moves_in_a_mode_and_stands_deflected(
     of_walls = np.linalg.norm(unpacked(moving["surface"]["real"]), axis=1)
     assert of_walls.max() > 10.0 * of_shafts, "what is seen to move is the housing"
     assert of_walls.min() < 1e-3 * of_walls.max(), "its feet stand"
+    has_room(page)
     amplitude.fill("3")
     mode = picture(page)
     amplitude.fill("0")
@@ -309,6 +310,7 @@ def test_a_unit_in_its_housing_moves_in_a_mode_and_stands_deflected(
     largest = max(np.linalg.norm(row[:3]) for shaft in shafts for row in shaft["real"])
     amplitude.fill("1")
     expect(size).to_have_text(re.compile(r"^× [1-9]"))
+    has_room(page)
     bent = picture(page)
     times = float(size.inner_text().removeprefix("× "))
     extent = 0.5 * np.linalg.norm([100.0, 80.0]) + 100.0

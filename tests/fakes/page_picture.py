@@ -111,6 +111,26 @@ def stopped(page: Page) -> None:
         stop.click()
 
 
+PICTURE, CURVE = 120.0, 140.0  # pixels of height at least
+
+
+def has_room(page: Page) -> None:
+    """See that a small phone shows the picture and the curve as they are now."""
+    before, chosen = page.viewport_size, page.locator("#tabs [aria-selected=true]").inner_text()
+    page.set_viewport_size({"width": 400, "height": 660})
+    until(lambda: _height(page, CANVAS) > PICTURE)
+    page.get_by_role("tab", name="Ripple", exact=True).click()
+    until(lambda: _height(page, "#live-ripple .plot") > CURVE)
+    assert _height(page, CANVAS) > PICTURE
+    page.get_by_role("tab", name=chosen, exact=True).click()
+    assert before is not None
+    page.set_viewport_size(before)
+
+
+def _height(page: Page, part: str) -> float:
+    return (page.locator(part).bounding_box() or {"height": 0.0})["height"]
+
+
 def different(first: np.ndarray, second: np.ndarray) -> float:
     """Return the part of the points that differ; of pictures of other sizes all."""
     if first.shape != second.shape:

@@ -40,7 +40,7 @@ export function steFigure(shown) {
     ...over(curve, curve.ste_um.map((value) => value - curve.mean_um)), type: "scatter", mode: "lines", name,
     line: { color, width, dash },
   }));
-  return { data, layout: layout("position, base pitches", "transmission error less its mean, µm") };
+  return { data, layout: layout("position, base pitches", "error less its mean, µm") };
 }
 
 /** The strongest orders of a curve up to the fourth of the mesh, by name: of the mesh, of a shaft, or beside the mesh. @param {any} curve */

@@ -8,9 +8,9 @@ const plusMinus = (error, coming) => (Number.isFinite(error) ? `± ${number(erro
 const change = (value, from) => (from ? `${signed(100 * (value / from - 1), 3)} %` : "");
 const decibels = (value, from) => (from && value ? `${signed(20 * Math.log10(value / from), 2)} dB` : "");
 
-/** Pressure at edges, apart from that of the flank; nothing where no contact reaches one. */
+/** What a largest pressure is of, and that at edges, where the true one is singular; nothing where no contact reaches one. */
 export function edgeWords({ edge_pressure_mpa: edge }) {
-  return edge ? `up to ${number(edge, 4)} MPa at edges, indicative` : "";
+  return edge ? `on the flank, ${number(edge, 3)} MPa at the edges (indicative)` : "";
 }
 
 /** The error without the bias of a plane model, which has its own statement. */
@@ -72,7 +72,7 @@ export function mainFigures(now, from) {
     entry("peak to peak", now.peak_to_peak_um, now.peak_to_peak_error_um, from.peak_to_peak_um, "peak_to_peak"),
     entry("mean", now.mean_um, now.mean_error_um, from.mean_um, "mean"),
     entry("first harmonic", now.harmonics_um[0], now.harmonics_error_um?.[0], from.harmonics_um[0], "first_harmonic", decibels),
-    ["largest pressure", `${number(pressure, 4)} MPa`, remarks(edgeWords(now.flanks), change(pressure, from.flanks.largest_pressure_mpa))],
+    ["largest pressure", `${number(pressure, 3)} MPa`, remarks(edgeWords(now.flanks), change(pressure, from.flanks.largest_pressure_mpa))],
   ];
   if (factor !== null) entries.push(["K_Hbeta", number(factor, 4), change(factor, from.flanks.k_h_beta)]);
   return now.bias ? [...entries, ["bias of the mean", `${signed(100 * now.bias.mean, 2)} %`, now.bias.words]] : entries;
@@ -102,7 +102,7 @@ export function besideFigures(variants, heard) {
       measured("first harmonic, µm", (curve) => curve.harmonics_um[0], (curve) => curve.harmonics_error_um?.[0], "first_harmonic"),
       row(`first harmonic, dB from ${first}`, (curve) => (curve === from ? "" : decibels(curve.harmonics_um[0], from.harmonics_um[0]).replace(" dB", ""))),
       measured("mean, µm", (curve) => curve.mean_um, (curve) => curve.mean_error_um, "mean"),
-      row("largest pressure, MPa", ({ flanks }) => number(flanks.largest_pressure_mpa, 4)),
+      row("largest pressure, MPa", ({ flanks }) => number(flanks.largest_pressure_mpa, 3)),
       ...(from.flanks.k_h_beta === null ? [] : [row("K_Hbeta", ({ flanks }) => (flanks.k_h_beta === null ? "none" : number(flanks.k_h_beta, 4)))]),
       ...(from.bias ? [row("bias of the mean, %", ({ bias }) => (bias ? signed(100 * bias.mean, 2) : "none"))] : []),
     ].map((cells) => cells.map((text) => text.replace("± ", "±\u00a0"))),

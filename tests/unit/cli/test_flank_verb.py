@@ -129,4 +129,4 @@ def test_the_largest_pressure_is_that_of_the_flank_and_an_edge_is_named_apart(sm
     flank, edge = answer["largest_pressure_mpa"], answer["edge_pressure_mpa"]
     assert min(edge, flank) > 0.0
     (line,) = (line for line in told.stdout.splitlines() if line.startswith("largest flank pressure"))
-    assert f"{flank:.4g}"[:3] in line and line.index("MPa") < line.index("at edges")
+    assert f"{flank:.4g}"[:3] in line and line.index("MPa") < line.index("at the edges")
