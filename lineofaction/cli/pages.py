@@ -28,6 +28,7 @@ from lineofaction.gearbox.result_files import stamped
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
 from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.units import UM
+from lineofaction.report.binding import bound
 from lineofaction.report.comparison.compare import compare
 from lineofaction.report.document import (
     Inputs,
@@ -129,41 +130,38 @@ def run_report(
     flank: bool,
     as_json: bool,
 ) -> None:
-    """Write the page, of a folder with several cases one for each and one for the rest.
-
-    Draw the pictures and compute the flank results if requested.
-    """
+    """Write page and pictures; of a folder with several cases what each says stands side by side."""
     projects = [name for name in named if name.is_dir()]
     block = options.about or next(filter(None, map(about, projects)), None)
     told = None if block is None else about_of(block)
-    pages = _pages(named, page)
-    for file in (file for files in pages.values() for file in files):
+    by_part = _by_part(named)
+    output = page or next(iter(projects), Path()) / "report.html"
+    for file in (file for files in by_part.values() for file in files):
         if not file.is_file():
             raise BadInput.of("file", str(file), "a file of results", "Check the path.")
-    written = []
-    for output, files in pages.items():
-        check_writable(output)
+    check_writable(output)
+    pages = {}
+    for part, files in by_part.items():
         read = replace(read_inputs(files), view=view)
         warn(warning for file in files for warning in stamped(file))
-        whole = titled(page_of(_with_flanks(read, quiet=as_json) if flank else read), told)
-        written += write_whole(whole, output, options.images, still_only=options.still)
-        for words in (*whole.alarms, *(whole.block.verdicts if whole.block else ())):
-            if not as_json:
-                console().print(words, soft_wrap=True)
+        with_table = flank and (read.database is not None or len(by_part) == 1)
+        pages[part] = page_of(_with_flanks(read, quiet=as_json) if with_table else read)
+    whole = titled(bound(pages), told)
+    written = write_whole(whole, output, options.images, still_only=options.still)
     if as_json:
-        print_json({"file": str(next(iter(pages))), "written": [str(path) for path in written]})
+        print_json({"file": str(output), "written": [str(path) for path in written]})
         return
+    for words in (*whole.alarms, *(whole.block.verdicts if whole.block else ())):
+        console().print(words, soft_wrap=True)
     for path in written:
         console().print(f"written to {path}", soft_wrap=True)
 
 
-def _pages(named: Sequence[Path], page: Path | None) -> dict[Path, list[Path]]:
-    """Return the results of each page."""
-    if page is None and len(named) == 1 and named[0].is_dir() and (by_part := results_by_part(named[0])):
-        return {named[0] / f"{part or 'report'}.html": files for part, files in by_part.items()}
-    files = [file for name in named for file in (results_in(name) if name.is_dir() else [name])]
-    folder = next((name for name in named if name.is_dir()), Path())
-    return {page or folder / "report.html": files}
+def _by_part(named: Sequence[Path]) -> dict[str, list[Path]]:
+    """Return the results by the case whose they are, of a folder alone; others by an empty text."""
+    if len(named) == 1 and named[0].is_dir() and (by_part := results_by_part(named[0])):
+        return {part.replace("_", " "): files for part, files in by_part.items()}
+    return {"": [file for name in named for file in (results_in(name) if name.is_dir() else [name])]}
 
 
 def _with_flanks(read: Inputs, *, quiet: bool) -> Inputs:

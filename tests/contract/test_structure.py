@@ -14,7 +14,7 @@ BUDGETS = {
     ("fe_contact",): (44_690, 845),
     ("dynamics",): (45_926, 918),
     ("lineofaction.gearbox",): (29_057, 598),
-    ("lineofaction.report",): (13_060, 245),
+    ("lineofaction.report",): (13_215, 246),
     ("service",): (15_259, 361),
     ("lineofaction.client",): (2_944, 55),
     ("lineofaction.cli",): (5_868, 87),
@@ -24,7 +24,7 @@ BUDGETS = {
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 PAGE = 8_280
 """Lines of scripts, style and markup of the page at most: docs/decisions/0011-page-without-framework.md."""
-MOST_FILES = 883
+MOST_FILES = 884
 LONGEST = 500
 WRITTEN = (".js", ".css", ".html")
 MOST_PRIVATE = 225

@@ -42,7 +42,7 @@ def test_every_verb_takes_the_folder_that_open_made(tmp_path: Path) -> None:
         assert done.exit_code == 0, (verb, done.output)
     fresh = {one.verb for one in status_of(unit) if one.state == "fresh"}
     assert fresh == set(VERBS) - {"status", "plan", "geometry", "ste", "report"}
-    assert {page.stem for page in unit.glob("*.html")} == {"report", "first_stage", "second_stage"}
+    assert {page.stem for page in unit.glob("*.html")} == {"report"}
 
 
 # A scene of one pair, to which a housing is added: also what hears it and what searches it.

@@ -199,7 +199,7 @@ def _face_load_figure(result: GearboxDeflection) -> Figure | None:
         panels.append(Panel(Axis("face position, mm"), Axis("load, N/mm"), lines, title=name))
     largest = max(result.flanks, key=lambda part: np.nan_to_num(part.face_load_factor))
     return Figure(
-        key="face_load",
+        key="mesh_face_load",
         title="Load along the face",
         caption="Force of all pairs per width of face, mean over the mesh cycle; 0: mid-face of the pinion.",
         alternative=f"The most uneven is mesh {largest.mesh} under {largest.case}: K_Hbeta "

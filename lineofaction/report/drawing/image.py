@@ -107,12 +107,13 @@ def _strokes(ax: Axes, shade: Strokes) -> Any:
     return loaded
 
 
-_WIDTH, _PANEL_HEIGHT, _DPI = 9.0, 2.7, 150
+_WIDTH, _DPI = 9.0, 150
+_PANEL_HEIGHT, _DRAWING_HEIGHT, _BESIDE = 2.2, 2.7, 0.9  # inches: usual, of a drawing, title and legend
 _LEGEND_CHARACTERS, _HANDLE_CHARACTERS = 120, 9  # of the legend's type: across the sheet, beside a name
 _NOTE_ROW = 10  # points
 _HALF_LABEL, _HIGH_LABEL = 46, 32  # characters of a row below and beside a panel of half the width
 _LONGEST_WORD = 26  # characters; longer ones would leave panels no width
-_LABEL_ROW = 0.075  # of a row of a label at a line, in parts of the panel's height
+_LABEL_ROW = 0.092  # of a row of a label at a line, in parts of the panel's height
 _LEADER = 0.02  # of the panel's width, from the end of a line to its label
 _NARROW = 100.0  # largest over smallest value of a logarithmic axis with plain numbers
 _DECADE = (1.0, 10.0)  # of a logarithmic axis that has nothing to show
@@ -172,8 +173,8 @@ def _glyphs() -> frozenset[int]:
 def panel_sheet(panels: tuple[Panel, ...], across: int = 1) -> Sheet:
     """Draw panels in rows of at most `across`; curves of one name share one entry in the legend below."""
     rows = panel_rows(panels, across)
-    heights = [max(panel_height(panels[index], len(row)) for index in row) for row in rows]
-    sheet = Sheet(figsize=(_WIDTH, _PANEL_HEIGHT * sum(heights) + 1.2), layout="constrained")
+    heights = [max(_height(panels[index], len(row)) for index in row) for row in rows]
+    sheet = Sheet(figsize=(_WIDTH, sum(heights) + _BESIDE), layout="constrained")
     grid = sheet.add_gridspec(len(rows), max(map(len, rows)), height_ratios=heights)
     axes: list[Axes] = [
         sheet.add_subplot(grid[row, :] if len(beside) == 1 else grid[row, column])
@@ -206,6 +207,10 @@ def panel_sheet(panels: tuple[Panel, ...], across: int = 1) -> Sheet:
             fontsize=9,
         )
     return sheet
+
+
+def _height(panel: Panel, beside: int) -> float:
+    return panel_height(panel, beside) * (_DRAWING_HEIGHT if panel.equal else _PANEL_HEIGHT)
 
 
 def _legend_columns(names: list[str]) -> int:

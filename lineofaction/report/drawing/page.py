@@ -6,7 +6,7 @@ import base64
 import gzip
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 from functools import cache
@@ -22,8 +22,10 @@ SCRIPT, STYLE_SHEET = "player.js", "player.css"
 """The page of the service has the same."""
 _ROWS_OF_A_PAGE = 40
 """In print, the most rows of a table that is not cut."""
-_HALF_OF_A_PAGE = 56
-"""Characters across a table beside which another one fits."""
+_HALF_OF_A_PAGE, _ACROSS_A_PAGE = 56, 110
+"""Characters across a table beside which another one fits, and across one that fits."""
+_SHORT = 24
+"""Characters of a cell that is not broken where the table fits."""
 # In this page players stand in the document: the script joins them to their plot once that is drawn.
 _JOINED = """
 if (document.getElementById("library")) await drawn;
@@ -252,10 +254,11 @@ def _table(table: Table, below: str = "") -> str:
     head = "".join(
         f'<th scope="col"{m}>{escape(cell)}</th>' for m, cell in zip(marks, table.head, strict=True)
     )
-    rows = "".join(_row(row, marks) for row in table.rows)
     name = escape(table.caption, quote=True)
     short = " short" if len(table.rows) <= _ROWS_OF_A_PAGE else ""
     width = sum(max(map(len, column)) for column in zip(table.head, *table.rows, strict=True))
+    joined = width <= _ACROSS_A_PAGE
+    rows = "".join(_row(map(_unbroken, row) if joined else row, marks) for row in table.rows)
     short += " narrow" if short and width <= _HALF_OF_A_PAGE else ""
     caption = "" if table.caption == below else f"<caption>{escape(table.caption)}</caption>"
     return (
@@ -265,7 +268,12 @@ def _table(table: Table, below: str = "") -> str:
     )
 
 
-def _row(row: Sequence[str], marks: Sequence[str]) -> str:
+def _unbroken(cell: str) -> str:
+    return cell.replace(" ", "\N{NO-BREAK SPACE}") if len(cell) <= _SHORT else cell
+
+
+def _row(entries: Iterable[str], marks: Sequence[str]) -> str:
+    row = tuple(entries)
     cells = "".join(f"<td{m}>{escape(cell)}</td>" for m, cell in zip(marks[1:], row[1:], strict=True))
     return f'<tr><th scope="row"{marks[0]}>{escape(row[0])}</th>{cells}</tr>'
 

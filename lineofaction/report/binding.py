@@ -1,0 +1,141 @@
+"""Reports of the parts of one unit bound as one: what several say of the same stands side by side, once."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import takewhile, zip_longest
+
+from lineofaction.report.drawing.figure import Figure, Panel, Table
+from lineofaction.report.drawing.page import Headline, Page, Part, Section
+from lineofaction.report.drawing.tables import one_effects_section
+from lineofaction.report.unit_picture import is_picture, one_picture
+
+_SENTENCE = re.compile(r"(?<=[.:!]) (?=[A-Z])")
+_LINKS = ("at", "of", "on", "in", "under", "the")
+"""Words with which no title ends."""
+_Parted = list[tuple[str, Section]]
+"""Sections of one title with the part that each is of."""
+
+
+def bound(pages: Mapping[str, Page]) -> Page:
+    """Return one page of several by the part that each is of; an empty name is the whole unit's."""
+    parts = [name for name in pages if name]
+    if not parts:
+        return pages[""]
+    if len(pages) == 1:
+        return next(iter(pages.values()))
+    sections = one_picture(
+        [section for page in pages.values() for section in page.sections if is_picture(section)]
+    )
+    by_title: dict[tuple[Part, str, str], _Parted] = {}
+    for name, page in pages.items():
+        for section in page.sections:
+            apart = name if section.part is Part.EFFECTS else ""  # their tables become one
+            if not is_picture(section):
+                by_title.setdefault((section.part, section.title, apart), []).append((name, section))
+    merged = (*sections, *(_section(title, parted) for (_, title, _), parted in by_title.items()))
+    ordered = sorted(one_effects_section(merged), key=lambda section: section.part)
+    return Page(
+        f"Gear unit: {', '.join(parts)}",
+        "; ".join(_named(name, page.lead) for name, page in pages.items() if page.lead),
+        tuple(_headline(name, headline) for name, page in pages.items() for headline in page.headlines),
+        tuple(ordered),
+        tuple(dict.fromkeys(_named(name, text) for name, page in pages.items() for text in page.alarms)),
+        records={name: record for page in pages.values() for name, record in page.records.items()},
+    )
+
+
+def _named(part: str, text: str) -> str:
+    return f"{part[0].upper()}{part[1:]}: {text}" if part and text else text
+
+
+def _of(title: str, part: str) -> str:
+    return f"{title}, {part}" if part else title
+
+
+def _headline(part: str, headline: Headline) -> Headline:
+    return replace(headline, name=_of(headline.name, part))
+
+
+def _section(title: str, parted: _Parted) -> Section:
+    """Return one section of those of a title: figures of one key as one, tables by their parts."""
+    figures: dict[str, dict[str, Figure]] = {}
+    for name, section in parted:
+        for figure in section.figures:
+            figures.setdefault(figure.key, {})[name] = figure
+    tables = [_table(name, section, table) for name, section in parted for table in section.tables]
+    folded = [_table(name, section, table) for name, section in parted for table in section.folded]
+    text = _said({name: section.text for name, section in parted})
+    drawn = tuple(_figure(of_parts) for of_parts in figures.values())
+    return Section(title, text, drawn, tuple(tables), tuple(folded), parted[0][1].part)
+
+
+def _table(part: str, section: Section, table: Table) -> Table:
+    """Name the part in the caption; of effects in the column that says where they are."""
+    if not part:
+        return table
+    if section.part is Part.EFFECTS and table in section.tables:
+        rows = tuple((name, _of(where, part), *rest) for name, where, *rest in table.rows)
+        return replace(table, rows=rows)
+    return replace(table, caption=_of(table.caption, part))
+
+
+def _figure(figures: Mapping[str, Figure]) -> Figure:
+    """Return one figure of those of parts: their panels beside each other, the same sentences once."""
+    (first, figure), *others = figures.items()
+    titles = {name: figure.title for name, figure in figures.items()}
+    head = _head(list(titles.values()))
+    own = {name: title.removeprefix(head).strip() for name, title in titles.items()}
+    panels = [
+        [_panel(name, panel, own[name] if others else "") for panel in figure.content]
+        for name, figure in figures.items()
+    ]
+    side_by_side = [panel for row in zip_longest(*panels) for panel in row if panel is not None]
+    return replace(
+        figure,
+        title=" ".join(_trimmed(head.split())) if others else _of(figure.title, first),
+        caption=_said({name: figure.caption for name, figure in figures.items()}),
+        alternative=" ".join(_named(name, figure.alternative) for name, figure in figures.items()),
+        content=tuple(side_by_side),
+        table=None
+        if figure.table is None
+        else _joined({name: f.table for name, f in figures.items() if f.table}),
+    )
+
+
+def _panel(part: str, panel: Panel, own: str) -> Panel:
+    words = ", ".join(filter(None, (own, panel.title[:1].lower() + panel.title[1:])))
+    return replace(panel, title=": ".join(filter(None, (part, words)))) if part else panel
+
+
+def _joined(tables: Mapping[str, Table]) -> Table:
+    """Return the rows of tables below each other by part; of tables of different heads the first."""
+    first = next(iter(tables.values()))
+    if len(tables) == 1 or len({table.head for table in tables.values()}) > 1:
+        return first
+    rows = tuple((part, *row) for part, table in tables.items() for row in table.rows)
+    return replace(first, head=("part", *first.head), rows=rows)
+
+
+def _head(titles: Sequence[str]) -> str:
+    """Return the words with which all titles begin."""
+    words = zip(*(title.split() for title in titles), strict=False)
+    return " ".join(row[0] for row in takewhile(lambda row: len(set(row)) == 1, words))
+
+
+def _trimmed(words: list[str]) -> list[str]:
+    while words[1:] and words[-1] in _LINKS:
+        words = words[:-1]
+    return words
+
+
+def _said(texts: Mapping[str, str]) -> str:
+    """Return what texts say: sentences of all of them once, then the others by part."""
+    sentences = {name: _SENTENCE.split(text) for name, text in texts.items() if text}
+    if not sentences:
+        return ""
+    common = [one for one in next(iter(sentences.values())) if all(one in own for own in sentences.values())]
+    rest = {name: " ".join(one for one in own if one not in common) for name, own in sentences.items()}
+    return " ".join([*common, *(_named(name, text) for name, text in rest.items() if text)])
