@@ -169,7 +169,7 @@ def _table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreporte
         return unmeasured_nodes(plan.positions, len(points.assessed) * plan.load.size)
     pitches = _assessed_pitches(points.nominal.pair, points.places[0].model, plan.nodes.assessed_pitches)
     times = points.period * len(points.places)
-    tried, expected = 0, expected_tries(plan, points.period, len(points.places))
+    tried, expected = 0, expected_tries(points.nominal.pair, plan, points.period, len(points.places))
 
     def solve(position: FloatArray) -> FloatArray:
         """STE (W, P, pitches x places x L) in m; beside the pitches NaN where interpolants do not reach."""

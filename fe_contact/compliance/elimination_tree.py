@@ -131,12 +131,13 @@ class _Builder:
     def __init__(
         self, nodes: IntArray, freedoms: IntArray, position: FloatArray, kept: IntArray, leaf: int
     ) -> None:
-        self.nodes, self.freedoms, self.position, self.leaf = nodes, freedoms, position, leaf
+        self.nodes, self.freedoms, self.leaf = nodes, freedoms, leaf
         self.occurrences = np.bincount(freedoms[freedoms >= 0])
         self.occurrences[kept] += 1  # never complete
         self.order = np.full(len(self.occurrences), -1)
         self.done = 0
-        self._seen = np.zeros(nodes.max() + 2, dtype=bool)  # the last for -1
+        self._seen = np.zeros((2, nodes.max() + 2), dtype=bool)  # the last for -1
+        self._lines = [np.unique(along, return_inverse=True)[1].ravel() for along in position.T]
 
     def build(self, group: IntArray) -> _Draft:
         """Return the front of a group of elements and number what it eliminates."""
@@ -159,11 +160,13 @@ class _Builder:
     def _halves(self, group: IntArray) -> tuple[IntArray, IntArray]:
         """Cut a group along the grid line that leaves the fewest shared nodes and fair halves."""
         cuts: list[tuple[float, int, BoolArray]] = []
-        for line in self.position[group].T:
-            values, count = np.unique(line, return_counts=True)
+        for lines in self._lines:
+            line = lines[group]
+            count = np.bincount(line)
+            values = np.flatnonzero(count)
             if len(values) < 2:
                 continue
-            share = np.cumsum(count)[:-1] / len(group)
+            share = np.cumsum(count[values])[:-1] / len(group)
             i = int(np.argmin(np.abs(share - 0.5)))
             low = line <= values[i]
             shared = self._shared(group[low], group[~low])
@@ -172,12 +175,10 @@ class _Builder:
         return group[low], group[~low]
 
     def _shared(self, group: IntArray, other: IntArray) -> int:
-        mine, theirs = self.nodes[group], self.nodes[other]
-        self._seen[mine] = True
-        self._seen[-1] = False
-        both = theirs[self._seen[theirs]]
-        self._seen[mine] = False
-        return len(set(both.tolist()))
+        self._seen[:] = False
+        mine, theirs = self._seen
+        mine[self.nodes[group]] = theirs[self.nodes[other]] = True
+        return int(np.count_nonzero(mine[:-1] & theirs[:-1]))
 
 
 def sector_tree(sector: SweptSector) -> EliminationTree:

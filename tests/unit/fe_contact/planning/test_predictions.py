@@ -9,7 +9,16 @@ import pytest
 from analysis_requests import table_request
 
 from bounds import engineering
-from fe_contact import AllowedError, FlankModification, Gear, GearPair, analyze, ste_database
+from fe_contact import (
+    AllowedError,
+    FlankModification,
+    Gear,
+    GearPair,
+    RunOut,
+    ToothFlank,
+    analyze,
+    ste_database,
+)
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.run_plan import plan_run
@@ -122,7 +131,7 @@ def test_slices_change_no_positions_but_their_cost():
     wide = pair(helix=0.4, width=40e-3)
     asked = check_request(wide, TableAxes(normal_forces=[500.0]), AnalysisOptions(level="fine"))
     few, many = (decide(asked).in_slices(count).plan for count in (15, 31))
-    assert expected_positions(few) == expected_positions(many)
+    assert expected_positions(wide, few) == expected_positions(wide, many)
     costs = [sum(contact_seconds(wide, plan, asked.model, (1, 1), with_errors=False)) for plan in (few, many)]
     assert 2.0 < costs[1] / costs[0] < 4.0
 
@@ -238,15 +247,21 @@ def test_no_more_pitches_are_expected_than_there_are():
         assert max(solved_pitches(period, in_table=True)) <= period
 
 
-def test_more_positions_are_expected_where_pitches_differ():
-    """As many as rows allow: their handovers are apart. None where they are requested."""
+def test_more_positions_are_expected_where_teeth_differ():
+    """As many as rows allow: their handovers are apart. None where they are requested, nor for run-out."""
+    gears = pair()
     few, requested = (
-        check_request(pair(), *table_request(torques=[40.0], level="draft", positions=count)).plan("draft")
+        check_request(gears, *table_request(torques=[40.0], level="draft", positions=count)).plan("draft")
         for count in (None, 20)
     )
-    alike, differing, longest = (expected_positions(few, period) for period in (1, 391, 2300))
+    unlike, turning = (
+        replace(gears, pinion=replace(gears.pinion, **own))
+        for own in ({"tooth_flanks": (ToothFlank(1, 3e-6),)}, {"run_out": RunOut(5e-6)})
+    )
+    alike, differing, longest = (expected_positions(unlike, few, period) for period in (1, 391, 2300))
     assert differing > alike > longest == few.nodes.start + 1
-    assert {expected_positions(requested, period) for period in (1, 391)} == {20}
+    assert expected_positions(turning, few, 391) == alike
+    assert {expected_positions(unlike, requested, period) for period in (1, 391)} == {20}
 
 
 @pytest.mark.parametrize("model", ["3d", "plane_strain"])
@@ -256,4 +271,17 @@ def test_positions_of_spur_pairs_are_those_expected_at_one_load_and_at_several(m
     for loads in ([5e2], [1e2, 4e2, 1e3, 2e3]):
         asked = check_request(wide, *table_request(normal_forces=loads, level="draft", model=model))
         solved = ste_database(asked).position.size
-        assert 0.8 < expected_positions(decide(asked).plan) / solved < 1.25
+        assert 0.8 < expected_positions(wide, decide(asked).plan) / solved < 1.25
+
+
+@pytest.mark.parametrize(
+    ("tolerance", "least", "most"), [(None, 0.6, 1.6), (AllowedError(0.05, 1e-7), 0.65, 1.4)]
+)
+def test_positions_of_helical_pairs_do_not_grow_with_the_loads(tolerance, least, most):
+    """Their handovers are gentle; without a floor their small ripple asks for more."""
+    gears = pair(helix=0.35, width=20e-3)
+    level = {"level": "draft"} if tolerance is None else {"tolerance": tolerance}
+    for loads in ([2e3], [2e2 * 1.3**k for k in range(12)]):
+        asked = check_request(gears, *table_request(normal_forces=loads, model="3d", **level))
+        solved = ste_database(asked).position.size
+        assert least < expected_positions(gears, decide(asked).plan) / solved < most
