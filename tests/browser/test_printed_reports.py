@@ -19,6 +19,7 @@ from small_inputs import small_inputs
 
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas.report import ReportInput
+from lineofaction.report.binding import bound
 from lineofaction.report.document import page_of, read_inputs, write_whole
 from lineofaction.report.drawing.figure import Table
 from lineofaction.report.drawing.image import panel_sheet
@@ -51,6 +52,12 @@ def of_pair(closed_forms: ModuleType, folder: Path) -> Page:
     return page_of(read_inputs([folder / "ste.nc", folder / "flanks.nc"]))
 
 
+def of_unit(closed_forms: ModuleType, folder: Path) -> Page:
+    """Return the report of two pairs with their flanks and of the unit that they are in."""
+    pairs = {part: of_pair(closed_forms, folder) for part in ("first stage", "second stage")}
+    return bound({"": of_study("deflect")} | pairs)
+
+
 def of_long_table() -> Page:
     """Return a report of a table over pages, whose rows have four lines."""
     words = "a sentence that goes on in its cell, where a page may end; " * 5
@@ -71,6 +78,7 @@ class Report:
     scope="module",
     params=[
         "pair",
+        "unit",
         "optimize",
         "scatter",
         "change",
@@ -88,6 +96,8 @@ def report(
     folder, name = tmp_path_factory.mktemp("printed"), request.param
     if name == "pair":
         page = of_pair(closed_forms, folder)
+    elif name == "unit":
+        page = of_unit(closed_forms, folder)
     else:
         page = of_long_table() if name == "table" else of_study(name)
     page = titled(page, BLOCK)

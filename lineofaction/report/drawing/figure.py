@@ -361,12 +361,12 @@ _SHORT = 12  # characters of a label at a line beside which a panel of half the 
 
 
 def panel_rows(panels: Sequence[Panel], across: int) -> list[list[int]]:
-    """Return panels by rows of at most `across`; maps, wide drawings and long labels stand alone."""
+    """Return panels by rows of at most `across`; strokes, wide drawings and long labels stand alone."""
     rows: list[list[int]] = []
     beside = False
     for index, panel in enumerate(panels):
         labels = max((len(row) for line in panel.lines for row in line.label.split("\n")), default=0)
-        slim = panel_height(panel) > _SLIM if panel.equal else panel.shade is None
+        slim = panel_height(panel) > _SLIM if panel.equal else not isinstance(panel.shade, Strokes)
         narrow = slim and labels <= _SHORT
         if narrow and beside and len(rows[-1]) < across:
             rows[-1].append(index)

@@ -56,7 +56,7 @@ def _color_map(colors: Sequence[str] = palette.CIVIDIS) -> LinearSegmentedColorm
 def _draw_shade(ax: Axes, shade: HeatMap | Strokes) -> None:
     drawn = _cells(ax, shade) if isinstance(shade, HeatMap) else _strokes(ax, shade)
     figure: Any = ax.get_figure()
-    figure.colorbar(drawn, ax=ax, label=shade.label, pad=0.015, fraction=0.06, aspect=14)
+    figure.colorbar(drawn, ax=ax, label=fill(shade.label, _HIGH_LABEL), pad=0.015, fraction=0.06, aspect=14)
 
 
 def _cells(ax: Axes, shade: HeatMap) -> Any:
@@ -108,12 +108,14 @@ def _strokes(ax: Axes, shade: Strokes) -> Any:
 
 
 _WIDTH, _DPI = 9.0, 150
-_PANEL_HEIGHT, _DRAWING_HEIGHT, _BESIDE = 2.2, 2.7, 0.9  # inches: usual, of a drawing, title and legend
+_PANEL_HEIGHT, _NARROW_HEIGHT, _DRAWING_HEIGHT = 2.0, 1.64, 2.6  # inches
+_BESIDE, _BESIDE_COLORS = 0.9, 0.82  # inches for title and legend; width of a panel with a scale of colors
 _LEGEND_CHARACTERS, _HANDLE_CHARACTERS = 120, 9  # of the legend's type: across the sheet, beside a name
 _NOTE_ROW = 10  # points
-_HALF_LABEL, _HIGH_LABEL = 46, 32  # characters of a row below and beside a panel of half the width
+_HALF_LABEL, _HIGH_LABEL, _NARROW_LABEL = 46, 26, 20  # characters of a row below and beside panels
+_NARROW_TYPE = 9  # points, of the labels of a panel of half the width
 _LONGEST_WORD = 26  # characters; longer ones would leave panels no width
-_LABEL_ROW = 0.092  # of a row of a label at a line, in parts of the panel's height
+_LABEL_ROW = 0.1  # of a row of a label at a line, in parts of the panel's height
 _LEADER = 0.02  # of the panel's width, from the end of a line to its label
 _NARROW = 100.0  # largest over smallest value of a logarithmic axis with plain numbers
 _DECADE = (1.0, 10.0)  # of a logarithmic axis that has nothing to show
@@ -193,8 +195,11 @@ def panel_sheet(panels: tuple[Panel, ...], across: int = 1) -> Sheet:
             if name in names:
                 handles.setdefault(name, handle)
         _finish(ax, panel)
-        if index not in alone:
-            ax.set(xlabel=fill(panel.x.label, _HALF_LABEL), ylabel=fill(panel.y.label, _HIGH_LABEL))
+        if index in alone:
+            ax.set_ylabel(fill(panel.y.label, _HIGH_LABEL))
+        else:
+            ax.set_xlabel(fill(panel.x.label, _HALF_LABEL), fontsize=_NARROW_TYPE)
+            ax.set_ylabel(fill(panel.y.label, _NARROW_LABEL), fontsize=_NARROW_TYPE)
         if repeats_below(panels, index) and {index, index + 1} <= alone:
             ax.set_xlabel("")
     if len(handles) > 1:
@@ -210,7 +215,9 @@ def panel_sheet(panels: tuple[Panel, ...], across: int = 1) -> Sheet:
 
 
 def _height(panel: Panel, beside: int) -> float:
-    return panel_height(panel, beside) * (_DRAWING_HEIGHT if panel.equal else _PANEL_HEIGHT)
+    usual = _PANEL_HEIGHT if beside == 1 else _NARROW_HEIGHT
+    drawing = _DRAWING_HEIGHT if panel.shade is None else _BESIDE_COLORS * _DRAWING_HEIGHT
+    return panel_height(panel, beside) * (drawing if panel.equal else usual)
 
 
 def _legend_columns(names: list[str]) -> int:

@@ -250,13 +250,18 @@ def _table(table: Table, below: str = "") -> str:
 
     `below`: the heading that it stands below; a caption with the same words is left out.
     """
-    marks = [' class="n"' if right else "" for right in numeric_columns(table)]
+    numeric = numeric_columns(table)
+    marks = [' class="n"' if right else "" for right in numeric]
     head = "".join(
         f'<th scope="col"{m}>{escape(cell)}</th>' for m, cell in zip(marks, table.head, strict=True)
     )
     name = escape(table.caption, quote=True)
     short = " short" if len(table.rows) <= _ROWS_OF_A_PAGE else ""
-    width = sum(max(map(len, column)) for column in zip(table.head, *table.rows, strict=True))
+    heads = (
+        max(cell.split(), key=len, default="") if n else cell
+        for n, cell in zip(numeric, table.head, strict=True)
+    )
+    width = sum(max(map(len, column)) for column in zip(heads, *table.rows, strict=True))
     joined = width <= _ACROSS_A_PAGE
     rows = "".join(_row(map(_unbroken, row) if joined else row, marks) for row in table.rows)
     short += " narrow" if short and width <= _HALF_OF_A_PAGE else ""
