@@ -31,8 +31,11 @@ def test_the_first_example_stands_there_with_its_errors_when_the_page_opens(
     page = visit.page
     expect(page.locator("#live-ripple .plot")).to_have_attribute("data-drawn", "yes")
     expect(page.locator("#dock-words")).to_contain_text("Gear pair 23/67")
-    edges = r"largest pressure\d+ MPa on the flank, \d+ MPa at the edges \(indicative\)"
+    edges = r"largest pressure\d+ MPa on the flankat the edges\d+ MPa indicative"
     expect(page.locator("#live-figures")).to_contain_text(re.compile(f"peak to peak.*±.*{edges}"))
+    measured = re.findall(r"([\d.]+) µm ± ([\d.]+)", page.locator("#live-figures").inner_text())
+    decimals = [[len(text.partition(".")[2]) for text in pair] for pair in measured]
+    assert len(decimals) == 3 and all(value == error for value, error in decimals), "as the error leaves"
     assert page.evaluate(BEYOND) == [], "on the first screen, which does not scroll"
     assert [url for url in visit.requests if "/execution" in url] == [], "no job"
     assert page.locator(".design-note").count() == 0

@@ -62,6 +62,18 @@ def test_a_card_has_the_ripple_and_the_figures_of_its_table(
     assert not [url for url in seen.requests if "/v1/results/" in url or url.endswith("/results")]
 
 
+def test_differences_that_read_alike_are_counted_only(seen: Visit) -> None:
+    labelled = """async (differences) => {
+      const { label } = await import("/page/job_label.js");
+      return label({ title: "", subject: "", processID: "flank", tags: [], differences })[1]?.textContent;
+    }"""
+    alike = {"field": "scene.housings[0].step_file", "before": "text of 9 bytes", "value": "text of 9 bytes"}
+    other = {"field": "case.load.torque_n_m", "before": [80], "value": [20, 80]}
+    for first, said in (([alike, other], "load.torque_n_m 80 → 20, 80; 1 more"), ([alike], "1 more")):
+        facts = {"since": "x", "first": first, "number": len(first)}
+        assert seen.page.evaluate(labelled, facts) == said
+
+
 def test_a_design_that_was_computed_twice_is_shown_once(
     seen: Visit, gallery: tuple[str, SteDatabase]
 ) -> None:

@@ -87,6 +87,7 @@ def dragged(hand: Hand, slider: str, steps: list[str]) -> dict[str, float]:
         before = answers(hand.page)
         exact.fill(step)
         until(lambda before=before: answers(hand.page) > before)
+        expect(hand.page.locator("#live-figures")).not_to_contain_text("…")  # at rest: with its error
         found[step] = tone(hand.page)
     return found
 

@@ -58,6 +58,19 @@ def test_the_pair_is_drawn_turns_by_keyboard_and_sleeps(view: Visit) -> None:
 
 
 @pytest.mark.law
+def test_a_phone_has_room_beside_variants_and_a_complaint(
+    drawing_browser: Browser, address: str, analyzed: str
+) -> None:
+    page = shown(drawing_browser, address, analyzed).page
+    page.get_by_role("button", name="Another variant").press("Enter")
+    for name, text in {"frequency_hz": "1000", "speed_rpm": "3000", "torque_n_m": "1"}.items():
+        page.locator(f"#bar-{name}").fill(text)
+    expect(page.locator("#complaint output")).to_contain_text("harmonic 1")
+    has_room(page)
+    page.close()
+
+
+@pytest.mark.law
 def test_pressure_follows_a_slider(view: Visit) -> None:
     page = view.page
     before = picture(page)

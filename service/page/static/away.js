@@ -11,12 +11,10 @@ export function watchService(back) {
   document.addEventListener("service-away", async () => {
     line.replaceChildren(make("strong", {}, "The service does not answer. "), "Nothing is lost: jobs go on or begin anew "
       + "when it is back, and this page asks for it every few seconds.");
-    while (!(await answers())) await pause(EVERY);
+    while (!(await get("/health").then(() => true, () => false))) await pause(EVERY);
   });
   document.addEventListener("service-back", () => {
     line.replaceChildren();
     back();
   });
 }
-
-const answers = () => get("/health").then(() => true, () => false);

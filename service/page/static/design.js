@@ -115,7 +115,8 @@ export class Design {
     if (another) byId("name").value = name;
     this.left();
     const replaced = differences(this.fields, this.case, content).filter(({ field }) => field.path[0] !== "pair");
-    this.show(content, { example, note, replaced: settingsReplaced(replaced) });
+    const changes = replaced.filter(({ before, now }) => before !== now).map(({ words, before, now }) => `${words} ${before} → ${now}`);
+    this.show(content, { example, note, replaced: changes.length ? `Settings replaced with it: ${changes.join(", ")}.` : "" });
     this.settled();
     this.address.keep(this.address.typed());
     if (another) document.dispatchEvent(new Event("another"));
@@ -187,13 +188,14 @@ export class Design {
       this.drawing.show(outline);
       this.view.show(outline);
       drawn = true;
+      if (this.expected === undefined) noPlan("The plan is on its way.");
       const plan = await ask("plan", { ...body, caller: this.caller }, signal);
       if (!signal.aborted) this.expected = showPlan(plan);
     }, (problem) => {
       if (signal.aborted || problem.status === 0) return; // asked again when the service is back
       this.refuse(problem);
       this.expected = undefined;
-      noPlan();
+      noPlan("No plan yet: see above what is missing.");
       if (!drawn) this.drawing.stale();
     });
   }
@@ -218,10 +220,4 @@ export class Design {
       button("Set the model to 3d", () => this.take({ "accuracy.model": "3d" }), { class: "small" }),
     );
   }
-}
-
-/** @param {import("./comparison.js").Difference[]} replaced */
-function settingsReplaced(replaced) {
-  if (!replaced.length) return "";
-  return `Settings replaced with it: ${replaced.map(({ words, before, now }) => `${words} ${before} → ${now}`).join(", ")}.`;
 }

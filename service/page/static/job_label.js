@@ -22,11 +22,10 @@ export function label(job) {
 /** The differences from the job before in a line; those from the defaults are what the job is about. @param {Differences | null} differences */
 function apart(differences) {
   if (!differences?.since || !differences.number) return "";
-  const shown = differences.first.slice(0, MOST).map(({ field, before, value }) => (
-    `${field.replace(/^(case|scene)\./, "")} ${written(before)} → ${written(value)}`
-  ));
+  const legible = differences.first.filter(({ before, value }) => written(before) !== written(value)); // not that a long text is another of its length
+  const shown = legible.slice(0, MOST).map(({ field, before, value }) => `${field.replace(/^(case|scene)\./, "")} ${written(before)} → ${written(value)}`);
   const more = differences.number - shown.length;
-  return `${shown.join("; ")}${more ? `; ${more} more` : ""}`;
+  return [...shown, ...(more ? [`${more} more`] : [])].join("; ");
 }
 
 /** @param {unknown} value */

@@ -69,7 +69,7 @@ export class LiveFlanks {
     this.load.block.hidden = !overFace(now);
     const edges = edgeWords(now);
     const factor = now.k_h_beta === null ? "" : `K_Hbeta ${number(now.k_h_beta, 4)}, `;
-    this.pressure.node.setAttribute("aria-label", `Pressure over the driving gear's flank: at most ${number(now.largest_pressure_mpa, 3)} MPa${edges && ` ${edges}`}.`);
+    this.pressure.node.setAttribute("aria-label", `Pressure over the driving gear's flank: at most ${number(now.largest_pressure_mpa, 3)} MPa${edges && ` on the flank, ${edges} at the edges (indicative)`}.`);
     const load = now.worst_load_n_per_mm;
     this.load.node.setAttribute("aria-label", `Load over the face: ${factor}at most ${number(Math.max(...load), 3)} N/mm.`);
     await plot(this.pressure.node, pressureFigure(now));

@@ -5,13 +5,14 @@ import { strongestOrders } from "./live_figures.js";
 
 const plusMinus = (error, coming) => (Number.isFinite(error) ? `± ${number(error, 2)}` : coming ? "± …" : "");
 
-const change = (value, from) => (from ? `${signed(100 * (value / from - 1), 3)} %` : "");
-const decibels = (value, from) => (from && value ? `${signed(20 * Math.log10(value / from), 2)} dB` : "");
+/** A value with as many decimals as its error, or three digits where that is none (yet). */
+const toError = (value, error) => (error > 0 ? value.toFixed(number(error, 2).split(".")[1]?.length ?? 0) : number(value, 3));
 
-/** What a largest pressure is of, and that at edges, where the true one is singular; nothing where no contact reaches one. */
-export function edgeWords({ edge_pressure_mpa: edge }) {
-  return edge ? `on the flank, ${number(edge, 3)} MPa at the edges (indicative)` : "";
-}
+const change = (value, from) => (from && value !== from ? `${signed(100 * (value / from - 1), 3)} %` : "");
+const decibels = (value, from) => (from && value && value !== from ? `${signed(20 * Math.log10(value / from), 2)} dB` : "");
+
+/** Pressure at edges, where the true one is singular, apart from that of the flank; nothing where no contact reaches one. */
+export const edgeWords = ({ edge_pressure_mpa: edge }) => (edge ? `${number(edge, 3)} MPa` : "");
 
 /** The error without the bias of a plane model, which has its own statement. */
 export function ownError({ bias, error_by_source_um: errors }, total, source) {
@@ -21,9 +22,7 @@ export function ownError({ bias, error_by_source_um: errors }, total, source) {
 /** What each source states of the errors of a curve. */
 export function sourcesOf({ bias, error_by_source_um: errors }) {
   const shown = Object.entries(errors).filter(([name]) => !(bias && name === "finite_width"));
-  const row = ([name, { mean, peak_to_peak: ripple, first_harmonic: tone }]) => [
-    name.replaceAll("_", " "), ...[ripple, mean, tone].map((error) => number(error, 2)),
-  ];
+  const row = ([name, of]) => [name.replaceAll("_", " "), ...["peak_to_peak", "mean", "first_harmonic"].map((figure) => number(of[figure], 2))];
   return { caption: "Errors by source, µm", head: ["source", "peak to peak", "mean", "harmonic 1"], rows: shown.map(row) };
 }
 
@@ -64,15 +63,18 @@ export function heardFigures(heard) {
 /** Main figures of a curve, each with its error and its change from another. */
 export function mainFigures(now, from) {
   const remarks = (...words) => words.filter(Boolean).join("; ");
-  const entry = (name, value, error, other, source, changed = change) => [
-    name, `${number(value, 3)} µm`, remarks(plusMinus(ownError(now, error, source), now.preview), changed(value, other)),
-  ];
+  const entry = (name, value, total, other, source, changed = change) => {
+    const error = ownError(now, total, source);
+    return [name, `${toError(value, error)} µm`, remarks(plusMinus(error, now.preview), changed(value, other))];
+  };
+  const edges = edgeWords(now.flanks);
   const { k_h_beta: factor, largest_pressure_mpa: pressure } = now.flanks;
   const entries = [
     entry("peak to peak", now.peak_to_peak_um, now.peak_to_peak_error_um, from.peak_to_peak_um, "peak_to_peak"),
     entry("mean", now.mean_um, now.mean_error_um, from.mean_um, "mean"),
     entry("first harmonic", now.harmonics_um[0], now.harmonics_error_um?.[0], from.harmonics_um[0], "first_harmonic", decibels),
-    ["largest pressure", `${number(pressure, 3)} MPa`, remarks(edgeWords(now.flanks), change(pressure, from.flanks.largest_pressure_mpa))],
+    ["largest pressure", `${number(pressure, 3)} MPa`, remarks(edges && "on the flank", change(pressure, from.flanks.largest_pressure_mpa))],
+    ...(edges ? [["at the edges", edges, "indicative"]] : []),
   ];
   if (factor !== null) entries.push(["K_Hbeta", number(factor, 4), change(factor, from.flanks.k_h_beta)]);
   return now.bias ? [...entries, ["bias of the mean", `${signed(100 * now.bias.mean, 2)} %`, now.bias.words]] : entries;
@@ -84,8 +86,10 @@ export function besideFigures(variants, heard) {
   const shown = [...variants].sort(named);
   const [{ name: first, curve: from }] = shown;
   const row = (name, of) => [name, ...shown.map(({ curve }) => of(curve))];
-  const measured = (name, value, error, source) => row(name, (curve) => (
-    `${number(value(curve), 3)} ${plusMinus(ownError(curve, error(curve), source), curve.preview)}`.trim()));
+  const measured = (name, value, total, source) => row(name, (curve) => {
+    const error = ownError(curve, total(curve), source);
+    return `${toError(value(curve), error)} ${plusMinus(error, curve.preview)}`.trim();
+  });
   const levels = heard?.curves.length ? levelsOf({ ...heard, curves: [...heard.curves].sort(named) }) : [];
   const heardOf = (name, of) => [name, ...shown.map((own) => levels.filter((level) => level.name === own.name).map(of)[0] ?? "none")];
   const complaint = heard ? [

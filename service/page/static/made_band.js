@@ -59,7 +59,7 @@ export class MadeBand {
 
   /** Bands of what is shown, as traces; their figures stand in words. @param {any[]} shown */
   traces(shown) {
-    const bands = this.wanted(shown).map((pair) => ({ ...pair, band: this.known.get(this.of(pair).name) })).filter((each) => each.band);
+    const bands = this.wanted(shown).map((pair) => ({ ...pair, band: this.known.get(this.of(pair).name) ?? { refused: `${pair.name}: pairs are drawn.` } }));
     this.words.textContent = bands.map(({ name, band: of }) => of.refused ?? this.said(name, of)).join(" ");
     return bands.filter(({ band: of }) => of.position).map(({ band: of, color }) => {
       const [low, high] = [of.low_um, of.high_um].map((values) => over({ period: 1, position: of.position }, values));

@@ -58,7 +58,8 @@ function ledger(entries) {
   };
 }
 
-export function noPlan() {
-  byId("plan").replaceChildren(make("p", { class: "hint" }, "No plan yet: see above what is missing."));
+/** @param {string} why */
+export function noPlan(why) {
+  byId("plan").replaceChildren(make("p", { class: "hint" }, why));
   byId("plan-tables").replaceChildren();
 }

@@ -83,9 +83,10 @@ export function marked(figure) {
     const [low, high] = axis.range?.map((end) => (axis.type === "log" ? 10 ** end : end)) ?? rangeOf(traces.map((trace) => trace[letter] ?? []));
     const value = markOn(own, low - EDGE * (high - low), high + EDGE * (high - low));
     if (value === null) return [];
+    const xanchor = letter === "x" && value < 0.5 * (low + high) ? "left" : "right"; // within the plot
     return [{
       type: "line", [`${letter}ref`]: letter + number, [`${letter}0`]: value, [`${letter}1`]: value, [`${other}ref`]: `${axis.anchor ?? other} domain`,
-      ...ACROSS[other], line: { color: "#59636E", dash: "dash", width: 1.5 }, label: { text: "complaint", textposition: "end", textangle: 0, font: { size: 12 } },
+      ...ACROSS[other], line: { color: "#59636E", dash: "dash", width: 1.5 }, label: { text: "complaint", textposition: "end", textangle: 0, font: { size: 12 }, xanchor },
     }];
   };
   return { ...figure, layout: { ...layout, shapes: [...(layout.shapes ?? []), ...Object.entries(layout).reverse().flatMap(line)] } };
