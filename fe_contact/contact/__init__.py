@@ -16,7 +16,7 @@ from fe_contact.contact.candidates import (
     teeth_in_reach,
     with_gaps,
 )
-from fe_contact.contact.flank_forces import at_edges, contact_pressure, face_flank_forces, plane_flank_forces
+from fe_contact.contact.flank_forces import contact_pressure, face_flank_forces, plane_flank_forces
 from fe_contact.contact.model import Break, ContactModel
 from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices, Slices
 from fe_contact.contact.sweep import ContactSolution, Start, solve_contact
@@ -34,7 +34,6 @@ __all__ = [
     "Slices",
     "Start",
     "adjoint",
-    "at_edges",
     "contact_candidates",
     "contact_pressure",
     "contact_problem",

@@ -21,37 +21,32 @@ _EDGE = 0.08
 """Slope against the flank from which on a break is an edge: less than any chamfer's, more than a relief's."""
 
 
-def contact_pressure(problem: ContactProblem, force: FloatArray) -> FloatArray:
-    """Return the peak pressure of each contact in Pa, shape (P, L, n).
+def contact_pressure(problem: ContactProblem, force: FloatArray) -> tuple[FloatArray, BoolArray]:
+    """Return the peak pressure of each contact in Pa, and whether its strip reaches an edge, (P, L, n).
 
     It is 2 p/(pi h), the peak of an elliptic pressure over the strip 2 h as it is: Hertz's on a plain flank.
     Where a relief begins the pressure of a sharp kink is infinite at a point; this is the mean over the
     strip, times 4/pi. At the edge of a tip or of its chamfer, which is never sharp, it is Hertz's as if the
-    flank went on; a rounded tip is what it is. `force`: normal forces, N.
+    flank went on, which only indicates how hard the edge presses: there the pressure is singular. A rounded
+    tip is what it is. `force`: normal forces, N.
     """
-    pressure = np.zeros(force.shape)
     candidates = problem.candidates
-    here = candidates.gap_about
-    at_edge, none = (here.low >= 0.0) | (here.high <= 0.0), np.full(here.low.shape, np.inf)
+    loaded = np.nonzero(force.any(axis=1))
+    here, none = candidates.gap_at(loaded), np.full(loaded[0].size, np.inf)
+    line_load = np.moveaxis(force, 1, 2)[loaded] / candidates.width[loaded][:, None]
+    at_edge = (here.low >= 0.0) | (here.high <= 0.0)
     endless = _unchamfered(here)._replace(low=-none, high=none)
     endless = endless._replace(slope=np.where(at_edge, 0.0, endless.slope))
-    _fill(
-        gap_table(endless), np.ascontiguousarray(force) / candidates.width[:, None], problem.modulus, pressure
-    )
-    return pressure
-
-
-def at_edges(problem: ContactProblem, force: FloatArray, pressure: FloatArray) -> BoolArray:
-    """Return which loaded contacts (P, L, n) reach an edge with their strip: there the pressure is singular.
-
-    `contact_pressure` states Hertz's there, which only indicates how hard the edge presses. `force`,
-    `pressure`: normal forces, N, and their `contact_pressure`, Pa.
-    """
-    here = problem.candidates.gap_about
+    half = _strips(gap_table(endless), line_load, problem.modulus)
     chamfer = np.where(here.jump >= _EDGE, np.abs(here.place), np.inf).min(axis=-1, initial=np.inf)
-    reach = np.minimum(np.minimum(-here.low, here.high), chamfer)[:, None, :]
-    strip = 2.0 * force / (math.pi * problem.candidates.width[:, None])  # half of it, times the pressure
-    return np.asarray((force > 0.0) & (strip > reach * pressure))
+    reach = np.minimum(np.minimum(-here.low, here.high), chamfer)[:, None]
+    pressure, edge = np.zeros(force.shape), np.zeros(force.shape, dtype=np.bool_)
+    row, contact = loaded
+    pressure[row, :, contact] = np.divide(
+        2.0 * line_load, math.pi * half, out=np.zeros(half.shape), where=half > 0.0
+    )
+    edge[row, :, contact] = half > reach
+    return pressure, edge
 
 
 def _unchamfered(about: Gap) -> Gap:
@@ -72,17 +67,14 @@ def _unchamfered(about: Gap) -> Gap:
 
 
 @njit(cache=True)
-def _fill(about: FloatArray, line_load: FloatArray, modulus: float, out: FloatArray) -> None:
-    """Fill in where there is load."""
-    positions, loads, contacts = line_load.shape
-    for p in range(positions):
-        for k in range(loads):
-            for i in range(contacts):
-                load = line_load[p, k, i]
-                if load > 0.0:
-                    out[p, k, i] = (
-                        2.0 * load / (math.pi * half_strip(about[p], i, load, modulus, 0.0, 0.0)[1])
-                    )
+def _strips(about: FloatArray, line_load: FloatArray, modulus: float) -> FloatArray:
+    """Return half the strips of contacts (n,) under line loads (n, L) in N/m, zero where there is none, m."""
+    half = np.zeros(line_load.shape)
+    for i in range(line_load.shape[0]):
+        for k in range(line_load.shape[1]):
+            if line_load[i, k] > 0.0:
+                half[i, k] = half_strip(about, i, line_load[i, k], modulus, 0.0, 0.0)[1]
+    return half
 
 
 ByTooth = dict[int, FloatArray]

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -64,7 +65,7 @@ class Patches:
         """Share of the strip on the edge: 0 before it reaches it, 1 where rigid flanks touch there."""
         return np.minimum(1.5 * self.edge_share, 1.0)
 
-    @property
+    @cached_property
     def law_width(self) -> FloatArray:
         """Half-width in m of the semi-elliptic patch that moves as much on a half plane under its own weight.
 

@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fe_contact.contact.elimination import subtract
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.contact.strip import (
     CURVATURE,
@@ -383,10 +382,9 @@ def problem_on(every: PointProblems, bodies: RowBodies, p: int) -> tuple[PointPr
 @inner(error_model="numpy")
 def _turned(heights: FloatArray, moved: FloatArray) -> FloatArray:
     """Return the heights (r, n) of the curves of all pairs for motions (n, r) of their slices."""
-    count, turned = heights.shape[0], np.zeros(moved.shape)
-    for i in range(moved.shape[0]):
-        for k in range(count):
-            subtract(turned[i], moved[i // count * count + k], -heights[i % count, k])
+    count, turned = heights.shape[0], np.empty(moved.shape)
+    for first in range(0, moved.shape[0], count):
+        np.dot(heights, moved[first : first + count], turned[first : first + count])
     return np.ascontiguousarray(turned.T)
 
 

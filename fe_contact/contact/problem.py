@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy
@@ -14,6 +15,7 @@ from fe_contact.contact.strip import Gap, StripMiddles, gap_table, rolling_radii
 from fe_contact.contact.touch import Touch
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray
+from host.loops import njit
 
 # Slices of the common face width, and the points of the contact line within them.
 
@@ -227,16 +229,19 @@ class Candidates:
     @property
     def gap_about(self) -> Gap:
         """Gap about the touching points in the normal section, arrays (P, m) and (P, m, B)."""
-        normal = math.cos(self.base_helix_angle)
-        touch = self.touch
+        return self.gap_at(...)
+
+    def gap_at(self, places: Any) -> Gap:
+        """Return the same of some of the candidates, by an index of arrays (P, m)."""
+        normal, touch = math.cos(self.base_helix_angle), self.touch
         return Gap(
-            touch.slope * normal,
-            touch.curvature * normal,
-            touch.low,
-            touch.high,
-            touch.place,
-            touch.jump * normal,
-            touch.bend * normal,
+            touch.slope[places] * normal,
+            touch.curvature[places] * normal,
+            touch.low[places],
+            touch.high[places],
+            touch.place[places],
+            touch.jump[places] * normal,
+            touch.bend[places] * normal,
         )
 
     @cached_property
@@ -352,9 +357,7 @@ class ContactProblem:
         compliance, diagonal = self.compliance.copy(), np.arange(slices.pair.size)
         if self.tilt.size and self.candidates.touch.moved.any():
             way = np.clip(self.candidates.touch.moved, -slices.law_length, slices.law_length)
-            displaced = self.candidates.on_mean(way)[: len(self.tilt), :, None] * self.tilt
-            compliance += displaced
-            compliance += np.swapaxes(displaced, 1, 2)
+            _displace(compliance, self.tilt, self.candidates.on_mean(way))
         compliance[:, diagonal, diagonal] -= np.where(slices.present, near, 0.0)
         return compliance
 
@@ -409,3 +412,12 @@ class ContactProblem:
     def touching(self, candidates: Candidates) -> ContactProblem:
         """Return the same compliance with candidates of other gaps."""
         return replace(self, candidates=candidates)
+
+
+@njit(cache=True)
+def _displace(compliance: FloatArray, tilt: FloatArray, way: FloatArray) -> None:
+    """Add what patches that are displaced by `way` (Q, n) in m change of the compliance (Q, n, n)."""
+    for q in range(tilt.shape[0]):
+        for i in range(tilt.shape[1]):
+            for j in range(tilt.shape[1]):
+                compliance[q, i, j] += way[q, i] * tilt[q, i, j] + way[q, j] * tilt[q, j, i]

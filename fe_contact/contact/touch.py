@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 
@@ -22,7 +23,10 @@ def _rounded(gap: Gap, least: FloatArray) -> Gap:
     """Return gaps whose curvature (n,) is nowhere below `least` in 1/m."""
     curvature, bend = np.maximum(gap.curvature, least), gap.bend.copy()
     for i in range(curvature.size):
-        if curvature[i] + np.minimum(bend[i], 0.0).sum() >= least[i]:
+        flattest = curvature[i]
+        for k in range(bend.shape[1]):
+            flattest += min(bend[i, k], 0.0)
+        if flattest >= least[i]:
             continue
         order = np.argsort(np.abs(gap.place[i]))
         left, right = curvature[i], curvature[i]
@@ -133,6 +137,7 @@ _ROUNDEST = 0.25
 """Least curvature of the gap over that of plain involutes."""
 _NEAR = 1e-4
 """Of `_STEP`: step of differences of the exact gap, whose slope is nowhere rounded."""
+_Arrays: TypeAlias = tuple[FloatArray, ...]
 _SIDES: tuple[Side, Side] = ("exit", "approach")
 """Where the tips of the pinion and of the wheel leave contact."""
 
@@ -280,30 +285,46 @@ def modified_touch(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tup
 
 def _moved(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> Touch:
     """Move the touching points to where conjugate gap and `gaps` together are least."""
-    possible = np.isfinite(touch.gap)
-    here = Touch(*(getattr(touch, name)[possible] for name in touch.__dataclass_fields__))
-    flanks = _Flanks(pair, here, np.broadcast_to(face, possible.shape)[possible], gaps)
-    shift = flanks.lowest_sample()
-    now = flanks.gap(shift)
+    shape, possible = touch.gap.shape, np.flatnonzero(np.isfinite(touch.gap))
+    plain = {name: each.reshape(touch.gap.size, *each.shape[2:]) for name, each in vars(touch).items()}
+    here = Touch(**{name: values[possible] for name, values in plain.items()})
+    flanks = _Flanks(pair, here, np.broadcast_to(face, shape).ravel()[possible], gaps)
+    shift, now = flanks.lowest_sample()
+    of: IntArray = np.arange(now.size)
+    found: _Arrays = ()
+    step: FloatArray = np.zeros(0)
     for _ in range(_CUT_TIP_PASSES if flanks.cut_tips else _PASSES):
-        about = flanks.about(shift)
-        step = _touching_places(about, flanks.first - shift, flanks.last - shift)
+        if found:  # where there was no step, the next is none either
+            on = np.flatnonzero(step)
+            flanks, of = flanks.some(on), of[on]
+        x = shift[of]
+        about = flanks.about(x)
+        step = _touching_places(about, flanks.first - x, flanks.last - x)
         # bumps of a measured flank are no parabolas: the step must lead down, unless it is next to nothing
-        ahead = flanks.gap(shift + step)
-        down = (ahead <= now) | (np.abs(step) < 1e-3 * flanks.step)
+        ahead = flanks.gap(x + step)
+        down = (ahead <= now[of]) | (np.abs(step) < 1e-3 * flanks.step)
         step = np.where(down, step, 0.0)
-        least, there = _moved_gap(about, step)
-        gap, shift, now = now + least, shift + step, np.where(down, ahead, now)
-    moved = {"s_1": here.s_1 + shift, "s_2": here.s_2 - shift, "gap": here.gap + gap, "moved": shift}
-    moved |= there._asdict()
+        least, beside = _moved_gap(about, step)
+        found = _replaced(found, of, (now[of] + least, *beside))
+        shift[of], now[of] = x + step, np.where(down, ahead, now[of])
+    moved = {"s_1": here.s_1 + shift, "s_2": here.s_2 - shift, "gap": here.gap + found[0], "moved": shift}
+    moved |= Gap(*found[1:])._asdict()
     result = {}
     for name, values in moved.items():
-        result[name] = np.zeros((*possible.shape, *values.shape[1:]))
-        plain = getattr(touch, name)
-        if plain.shape == result[name].shape:
-            result[name][:] = plain
-        result[name][possible] = values
+        alike = plain[name].shape[1:] == values.shape[1:]
+        every = plain[name].copy() if alike else np.zeros((touch.gap.size, *values.shape[1:]))
+        every[possible] = values
+        result[name] = every.reshape(*shape, *values.shape[1:])
     return replace(touch, **result)
+
+
+def _replaced(whole: _Arrays, of: IntArray, some: _Arrays) -> _Arrays:
+    """Return arrays with new values of some of their entries, or of all."""
+    if not whole or len(of) == len(whole[0]):
+        return some
+    for every, values in zip(whole, some, strict=True):
+        every[of] = values
+    return whole
 
 
 class _Flanks:
@@ -321,29 +342,35 @@ class _Flanks:
         self.step = np.minimum(_STEP / touch.curvature, 0.2 * (self.last - self.first))
         self._tilt = {side: self._beside(side) for side in self.cut_tips}
 
+    def some(self, of: IntArray) -> _Flanks:
+        """Return some of the touching points."""
+        return _Flanks(self._pair, self._touch.rows(of), self._face[of], self._gaps)
+
     def gap(self, x: FloatArray) -> FloatArray:
         """Return the gap at x, m."""
         excess = sum(self._excess(side, x) for side in self.cut_tips)
         return np.asarray(self._plain(x) + self._removed(x) + excess)
 
-    def lowest_sample(self) -> FloatArray:
-        """Return where the gap is least among samples all over the reach, and at 0.
+    def lowest_sample(self) -> tuple[FloatArray, FloatArray]:
+        """Return where the gap is least among samples all over the reach and at 0, and the gap there, m.
 
         Flanks from which material is only removed are nowhere nearer than plain ones: most samples are too
-        far off to be lower than one before them.
+        far off to be lower than the one at 0.
         """
-        bounded = not self.cut_tips and all(term.only_removes for term in self._gaps)
-        lowest, every = np.zeros(self.step.size), np.arange(self.step.size)
+        lowest = np.zeros(self.step.size)
         least = self.gap(lowest)
-        for part in np.linspace(0.0, 1.0, _SAMPLES):
-            x = self.first + (self.last - self.first) * part
-            plain = self._plain(x)
-            may = np.flatnonzero(plain < least) if bounded else every
-            gap = plain[may] + self._removed(x[may], may) if bounded else self.gap(x)
-            lower = gap < least[may]
-            at = may[lower]
-            lowest[at], least[at] = x[at], gap[lower]
-        return lowest
+        bounded = not self.cut_tips and all(term.only_removes for term in self._gaps)
+        may = np.flatnonzero(least > 0.0) if bounded else np.arange(lowest.size)
+        part, near = np.linspace(0.0, 1.0, _SAMPLES)[:, None], self.some(may)
+        x = near.first + (near.last - near.first) * part
+        gap = near._plain(x) if bounded else np.array([near.gap(way) for way in x])
+        if bounded:
+            below = gap < least[may]
+            gap[below] += near._removed(x[below], np.nonzero(below)[1])
+        best, each = gap.argmin(axis=0), np.arange(may.size)
+        lower = gap[best, each] < least[may]
+        lowest[may[lower]], least[may[lower]] = x[best, each][lower], gap[best, each][lower]
+        return lowest, least
 
     def about(self, x: FloatArray) -> Gap:
         """Return the gap about x.

@@ -265,7 +265,7 @@ class LoadFigures:
         ste = np.where(solution.status == Status.CONVERGED, solution.deflection, np.nan)
         face_load = over_face(problem, solution.force)
         at_edges = on_edges(problem, solution.force) / carried(problem, solution.force).sum(axis=2)
-        pressure = contact_pressure(problem, solution.force)
+        pressure, _ = contact_pressure(problem, solution.force)
         stress = np.full(ste.shape[1], np.nan)
         if roots is not None:
             stress = roots.stress(problem, solution.force).max(axis=(0, 1))

@@ -15,7 +15,7 @@ from fe_contact.analysis.live.condensed_request import condense
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
-from fe_contact.contact import at_edges, contact_pressure
+from fe_contact.contact import contact_pressure
 from fe_contact.errors import InputError, increasing
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.evaluator import over_face
@@ -319,8 +319,8 @@ def _of_curves(table: SteDatabase, solved: BoolArray) -> Iterator[FloatArray]:
 def _on_flanks(solved: SolvedOperatingPoint, every: int = 1) -> FloatArray:
     """Return largest pressure in Pa and face load factor of the cycle (L, 2), of each `every`-th position."""
     problem, force = solved.problem, solved.solution.force
-    pressure = contact_pressure(problem, force)
-    clear = np.where(at_edges(problem, force, pressure), 0.0, pressure)[::every].max(axis=(0, 2))
+    pressure, edge = contact_pressure(problem, force)
+    clear = np.where(edge, 0.0, pressure)[::every].max(axis=(0, 2))
     load = over_face(problem, force[::every])
     return np.stack([clear, load.max(axis=1) / load.mean(axis=1)], axis=1)
 

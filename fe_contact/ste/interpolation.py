@@ -33,7 +33,7 @@ class Axis:
     knots: FloatArray
     period: float = 0.0
 
-    @property
+    @cached_property
     def spacing(self) -> FloatArray:
         """Length of every interval: one per knot if periodic, one less if open."""
         if self.period:

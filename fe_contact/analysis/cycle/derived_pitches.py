@@ -27,7 +27,7 @@ from fe_contact.analysis.pairs.kept_contact import (
 )
 from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoints
 from fe_contact.analysis.pairs.tip_edges import edge_depth
-from fe_contact.contact import Candidates, ContactSolution, at_edges, contact_pressure
+from fe_contact.contact import Candidates, ContactSolution, contact_pressure
 from fe_contact.contact.load_weights import load_sums
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
@@ -64,11 +64,10 @@ _CURVES = "static_transmission_error", "load_arm"
 def _keep(point: OperatingPoint, edges: bool, state: SolvedState) -> Mapping[str, NDArray[Any]]:
     """Return the arrays of a table of a state, and what others follow from."""
     problem, solution = state.problem, state.solution
-    pressure = contact_pressure(problem, solution.force)
-    edge = at_edges(problem, solution.force, pressure)
+    pressure, edge = pressed = contact_pressure(problem, solution.force)
     depth = edge_depth(point, problem, solution) if edges else np.zeros(solution.load.size)
     return {
-        **contact_fields(point.contact.pair, problem, solution),
+        **contact_fields(point.contact.pair, problem, solution, pressed),
         _EDGE_OF_PAIR: largest_by_pair(problem.candidates, np.where(edge, pressure, 0.0)),
         **_of_solution(solution),
         "edge_depth": np.broadcast_to(depth, solution.deflection.shape),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fe_contact.contact import ContactProblem, ContactSolution, at_edges, contact_pressure
+from fe_contact.contact import ContactProblem, ContactSolution, contact_pressure
 from fe_contact.contact.touch import rolls_at
 from fe_contact.errors import DatabaseError
 from fe_contact.geometry import ParallelAxes
@@ -237,6 +237,7 @@ def load_distribution(
     misalignment: float = 0.0,
     center_distance_change: float = 0.0,
     metadata: Metadata | None = None,
+    pressed: tuple[FloatArray, BoolArray] | None = None,
 ) -> LoadDistribution:
     """Lay out a contact solution by pair and place along the face.
 
@@ -252,13 +253,16 @@ def load_distribution(
         What the solution was made for, m; kept in the scene.
     metadata : Metadata, optional
         Kept as it is.
+    pressed : (ndarray, ndarray), shapes (P, L, n), optional
+        The `contact_pressure` of the solution, if it is known.
     """
     candidates = problem.candidates
     face = candidates.face_position[candidates.pair == candidates.pair[0]]
     shape = (candidates.position.size, -1, face.size)
     force = solution.force[:, load]
-    pressure = contact_pressure(problem, force[:, None])
-    edge = at_edges(problem, force[:, None], pressure)
+    if pressed is None:
+        pressed = contact_pressure(problem, solution.force)
+    pressure, edge = pressed[0][:, load], pressed[1][:, load]
     gap = _loaded_gap(problem, force, solution.deflection[:, load])
     phase = candidates.position - np.floor(candidates.position)
     nominal, _ = pair.roll_lengths(phase[:, None], candidates.pair)

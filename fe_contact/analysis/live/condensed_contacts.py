@@ -92,9 +92,9 @@ class CondensedContacts:
         """Assemble what is not kept yet: all positions of a table, and those that are solved again."""
         everywhere = self.own.candidates(model, sample.position)
         self.own.assemble(model, everywhere)
-        candidates = everywhere.rows(sample.rows)
-        if self.plane is not None:
-            self.plane.assemble(model, candidates)
+        here = sample.position[sample.rows]
+        if self.plane is not None and self.plane.kept(model, here) is None:
+            self.plane.assemble(model, everywhere.rows(sample.rows))
         for other in (self.sliced, self.coarse, self.patched):
             if other is not None:
-                other.assemble(model, other.candidates(model, candidates.position))
+                other.assemble(model, other.candidates(model, here))

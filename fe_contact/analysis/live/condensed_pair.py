@@ -36,6 +36,7 @@ from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint, SolvedRun
 from fe_contact.analysis.tables import PositionNodes, assembled_table, unmeasured_nodes
+from fe_contact.contact import Start
 from fe_contact.errors import InputError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import TableAxes
@@ -179,6 +180,7 @@ class CondensedPair:
     contacts: CondensedContacts
     neglected: Mapping[str, str] = field(default_factory=dict)
     _apart: OrderedDict[float, CondensedContacts] = field(default_factory=OrderedDict, repr=False)
+    _previews: dict[str, SolvedOperatingPoint] = field(default_factory=dict, repr=False)
 
     @property
     def contact(self) -> PairContact:
@@ -234,7 +236,8 @@ class CondensedPair:
     ) -> tuple[SteDatabase, SolvedOperatingPoint]:
         """Return the table, as `table` does, and the contact solution that it is of.
 
-        A `preview` is the same solution at every other position; its errors are not estimated.
+        A `preview` is the same solution at every other position, found from the preview before it; its errors
+        are not estimated.
         """
         clock = StageClock()
         checked = self._asked(pair, torques, misalignment, center_distance_change)
@@ -252,8 +255,11 @@ class CondensedPair:
                 sample = replace(sample, position=nodes.position, rows=np.arange(rows.size))
         with clock.stage("contact"):
             contacts.touch(model, sample)
-            solved = _solved(checked, plan, points, nodes)
-            kept = KeptContact.of(solved.pair, solved.problem, solved.solution)
+            # what stays is solved from the beginning: it does not depend on what came before
+            solved = _solved(checked, plan, points, nodes, self._previews.get("last") if preview else None)
+            if preview:
+                self._previews["last"] = solved
+            kept = KeptContact.of(solved.pair, solved.problem, solved.solution, solved.pressed)
             table = assembled_table(checked.request, points, nodes, [kept], [])
         with clock.stage("error estimate"):
             stated = unassessed_table(table, points, plan) if preview else None
@@ -380,10 +386,18 @@ class CondensedPair:
 
 
 def _solved(
-    checked: Checked, plan: Plan, points: OperatingPoints, nodes: PositionNodes
+    checked: Checked,
+    plan: Plan,
+    points: OperatingPoints,
+    nodes: PositionNodes,
+    last: SolvedOperatingPoint | None = None,
 ) -> SolvedOperatingPoint:
-    """Solve the one place of a question at all positions of a period."""
-    solved = points.places[0].solve_pitches(nodes.position, plan.load, np.arange(points.period))
+    """Solve the one place of a question at all positions of a period, started from the `last` one."""
+    start, rows = None, nodes.position.size * points.period
+    if last is not None and last.solution.status.shape == (rows, plan.load.size):
+        rise = (plan.load / last.solution.load)[:, None]
+        start = Start(last.problem.candidates, last.solution.force * rise)
+    solved = points.places[0].solve_pitches(nodes.position, plan.load, np.arange(points.period), start)
     return SolvedOperatingPoint(checked, plan, points, [solved])
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from fe_contact.analysis.pairs.pair_contact import OperatingPoint
 from fe_contact.analysis.pairs.tip_edges import edge_depth
-from fe_contact.contact import Candidates, ContactProblem, ContactSolution, at_edges, contact_pressure
+from fe_contact.contact import Candidates, ContactProblem, ContactSolution, contact_pressure
 from fe_contact.contact.sweep import solve_sets
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.cost_model import POINTS_AT_ONCE
@@ -62,9 +62,16 @@ class KeptContact:
     edge_depth: FloatArray
 
     @classmethod
-    def of(cls, pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> KeptContact:
-        """Return all that there is of a solution, edges left aside."""
-        return cls(problem, solution, contact_fields(pair, problem, solution), np.zeros(solution.load.size))
+    def of(
+        cls,
+        pair: ParallelAxes,
+        problem: ContactProblem,
+        solution: ContactSolution,
+        pressed: tuple[FloatArray, BoolArray] | None = None,
+    ) -> KeptContact:
+        """Return all that there is of a solution, edges left aside; see `contact_fields`."""
+        fields = contact_fields(pair, problem, solution, pressed)
+        return cls(problem, solution, fields, np.zeros(solution.load.size))
 
 
 def solved_in_parts(
@@ -137,17 +144,22 @@ def _one_after_another(parts: Sequence[KeptContact]) -> KeptContact:
 
 
 def contact_fields(
-    pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution
+    pair: ParallelAxes,
+    problem: ContactProblem,
+    solution: ContactSolution,
+    pressed: tuple[FloatArray, BoolArray] | None = None,
 ) -> dict[str, NDArray[Any]]:
-    """Arrays (P, F, ...) of one operating point by name in the database; `OF_PAIRS` by its own pairs."""
+    """Arrays (P, F, ...) of one operating point by name in the database; `OF_PAIRS` by its own pairs.
+
+    `pressed`: the `contact_pressure` of its forces, if it is known.
+    """
     candidates = problem.candidates
     good = solution.status == Status.CONVERGED
     loaded = solution.force * candidates.torque_share[:, None, :]
     total = np.where(good, loaded.sum(axis=2), 1.0)
-    pressure = contact_pressure(problem, solution.force)
-    edge = at_edges(problem, solution.force, pressure)
+    pressure, edge = pressed or contact_pressure(problem, solution.force)
     of_pair = candidates.pair[:, None] == np.unique(candidates.pair)
-    pressed = largest_by_pair(candidates, np.where(edge, 0.0, pressure))
+    largest = largest_by_pair(candidates, np.where(edge, 0.0, pressure))
     centroid = (loaded @ candidates.face_position) / total
     along_path = pair.tilt_arm(candidates.touch.roll_1, 0.0)
     return {
@@ -156,8 +168,8 @@ def contact_fields(
         "load_share": (loaded @ of_pair) / total[..., None],
         "face_centroid": centroid,
         "load_arm": centroid + np.einsum("pfm,pm->pf", loaded, along_path) / total,
-        "max_pressure": np.where(good, pressed.max(axis=2), np.nan),
-        "pair_pressure": np.where(good[..., None], pressed, np.nan),
+        "max_pressure": np.where(good, largest.max(axis=2), np.nan),
+        "pair_pressure": np.where(good[..., None], largest, np.nan),
         "edge_pressure": np.where(good, np.where(edge, pressure, 0.0).max(axis=2), np.nan),
         "pairs_in_contact": _pairs_in_contact(solution.force, of_pair),
         "status": solution.status,

@@ -311,12 +311,12 @@ class OperatingPoint:
         return self.contact.solve(self.model, position, load, pitch, start)
 
     def solve_pitches(
-        self, position: FloatArray, load: FloatArray, pitches: IntArray
+        self, position: FloatArray, load: FloatArray, pitches: IntArray, start: Start | None = None
     ) -> tuple[ContactProblem, ContactSolution]:
         """Solve positions (P,) in each of the base pitches (T,), pitch by pitch: T P rows."""
         if self.model.period == 1:
-            return self.solve(position, load)
-        return self.solve(position, load, np.repeat(pitches, position.size))
+            return self.solve(position, load, start=start)
+        return self.solve(position, load, np.repeat(pitches, position.size), start)
 
 
 @dataclass(frozen=True)

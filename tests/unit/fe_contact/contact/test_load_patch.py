@@ -10,7 +10,7 @@ import pytest
 from hertz_laws import edge_contact_length
 from scipy.special import j1
 
-from fe_contact.contact import PatchRule, at_edges, contact_pressure
+from fe_contact.contact import PatchRule, contact_pressure
 from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, face_loads
 from fe_contact.contact.patch import Patches, load_vector, tip_patches
 from fe_contact.contact.strip import Gap
@@ -296,18 +296,22 @@ STRIP = float(half_width(LOAD / WIDTH, RADIUS, MODULUS))
 def problem(slope=0.0, low=-math.inf, high=math.inf, place=math.inf, jump=0.0) -> SimpleNamespace:
     one = [np.array([[value]]) for value in (slope, 1.0 / RADIUS, low, high)]
     breaks = [np.array([[[value]]]) for value in (place, jump, 0.0)]
-    candidates = SimpleNamespace(gap_about=Gap(*one, *breaks), width=np.array([[WIDTH]]))
+
+    def gap_at(places) -> Gap:
+        return Gap(*(each[places] for each in (*one, *breaks)))
+
+    candidates = SimpleNamespace(gap_at=gap_at, width=np.array([[WIDTH]]))
     return SimpleNamespace(candidates=candidates, modulus=MODULUS)
 
 
 def pressure(**about) -> float:
-    return float(contact_pressure(problem(**about), FORCE)[0, 0, 0])
+    return float(contact_pressure(problem(**about), FORCE)[0][0, 0, 0])
 
 
 def edge(force=None, **about) -> bool:
     force = FORCE if force is None else force
     contact = problem(**about)
-    return bool(at_edges(contact, force, contact_pressure(contact, force))[0, 0, 0])
+    return bool(contact_pressure(contact, force)[1][0, 0, 0])
 
 
 HERTZ = float(peak_pressure(LOAD / WIDTH, RADIUS, MODULUS))

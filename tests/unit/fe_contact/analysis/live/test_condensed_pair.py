@@ -104,6 +104,28 @@ def test_a_preview_is_every_other_position_of_the_table_without_errors(cache: Pa
     assert "discretisation" in quick.metadata.receipt["not_estimated"]
 
 
+@pytest.mark.parametrize("model", ["plane_strain", "3d"])
+def test_a_preview_is_found_from_the_one_before_but_does_not_depend_on_it(cache: Path, model: str) -> None:
+    pair, relieved = condensed(PAIR, cache, model), with_flank(PAIR, RELIEF)
+    pair._previews.clear()
+    _, alone = pair.solve_table(relieved, TORQUES, preview=True)
+    pair.solve_table(PAIR, 0.9 * np.array(TORQUES), preview=True)
+    _, after = pair.solve_table(relieved, TORQUES, preview=True)
+    np.testing.assert_allclose(after.solution.deflection, alone.solution.deflection, rtol=1e-10)
+    largest = alone.solution.force.max()
+    np.testing.assert_allclose(after.solution.force, alone.solution.force, rtol=0.0, atol=1e-8 * largest)
+
+
+def test_a_preview_after_one_of_almost_the_same_flanks_takes_fewer_iterations(cache: Path) -> None:
+    pair, relieved = condensed(PAIR, cache, "3d"), with_flank(PAIR, RELIEF)
+    pair._previews.clear()
+    _, alone = pair.solve_table(relieved, TORQUES, preview=True)
+    near = with_flank(PAIR, replace(RELIEF, tip_relief=1.05 * RELIEF.tip_relief))
+    pair.solve_table(near, TORQUES, preview=True)
+    _, after = pair.solve_table(relieved, TORQUES, preview=True)
+    assert after.solution.iterations.mean() < 0.8 * alone.solution.iterations.mean()
+
+
 def test_another_center_distance_has_the_curve_of_its_own_analysis(cache: Path) -> None:
     pair = condensed(PAIR, cache)
     for change in (1e-5, 3e-5, 2e-5):
