@@ -14,7 +14,7 @@ BUDGETS = {
     ("fe_contact",): (44_775, 845),
     ("dynamics",): (45_926, 918),
     ("lineofaction.gearbox",): (29_057, 598),
-    ("lineofaction.report",): (13_215, 246),
+    ("lineofaction.report",): (13_240, 246),
     ("service",): (15_259, 361),
     ("lineofaction.client",): (2_944, 55),
     ("lineofaction.cli",): (5_868, 87),

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from bounds.types import FloatArray, IntArray
 from dynamics.vibration import SurfaceShape
@@ -16,8 +18,14 @@ DRAWN = 0.06
 """Largest motion as it is drawn, over the size of the surface."""
 ACROSS = 360
 """Pixels along the longer side."""
-FOLD = 30.0
-"""Degrees between two triangles from which on their edge is drawn."""
+FOLD = 40.0
+"""Degrees between two triangles of the evened surface from which on their edge is drawn."""
+SIDE = 0.03
+"""Of the surface: the least part between edges, smaller ones have none."""
+ALIKE, PASSES = 80.0, 3
+"""Degrees between neighbors from which on none evens the other, and how often they do."""
+BESIDE = 2
+"""Pixels from the outline to where nothing is seen, at most."""
 BEHIND = 3.0
 """Pixels in depth by which an edge may lie behind what hides nothing: facets are flat, pixels coarse."""
 EYE = (1.0, 0.55, 0.65)
@@ -99,18 +107,65 @@ def _covered(
     return facets[row], number, ahead
 
 
-def _folds(points: FloatArray, triangles: IntArray) -> IntArray:
-    """Return the sharp edges of triangles (t, 3) as pairs of nodes, (e, 2)."""
-    corner = points[triangles]
-    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-    normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
+def _neighbors(triangles: IntArray) -> tuple[IntArray, IntArray, IntArray]:
+    """Return edges between two triangles (t, 3) as pairs of nodes (e, 2), and these two (e,)."""
     edges = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
     unique, index = np.unique(edges, axis=0, return_inverse=True)
     order = np.argsort(index.ravel(), kind="stable")
     pairs = np.flatnonzero(np.diff(index.ravel()[order]) == 0)
-    one, two = order[pairs], order[pairs + 1]
-    sharp = np.sum(normal[one // 3] * normal[two // 3], axis=1) < np.cos(np.radians(FOLD))
-    return np.asarray(unique[index.ravel()[one[sharp]]])
+    return unique[index.ravel()[order[pairs]]], order[pairs] // 3, order[pairs + 1] // 3
+
+
+def _across(points: FloatArray, triangles: IntArray) -> FloatArray:
+    """Return normals (t, 3), as long as twice the area."""
+    corner = points[triangles]
+    return np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+
+
+def _folds(points: FloatArray, triangles: IntArray) -> IntArray:
+    """Return the edges between the large sides of a surface as pairs of nodes, (e, 2).
+
+    Sides are what hangs together without a fold, once the folds of coarse triangles are evened out.
+    """
+    edges, one, two = _neighbors(triangles)
+    across, size = _across(points, triangles), len(triangles)
+    normal = _evened(across, one, two)
+    sharp = np.sum(normal[one] * normal[two], axis=1) < np.cos(np.radians(FOLD))
+    flat = coo_array((np.ones(np.count_nonzero(~sharp)), (one[~sharp], two[~sharp])), shape=(size, size))
+    _, side = connected_components(flat, directed=False)
+    area = np.bincount(side, np.linalg.norm(across, axis=1))
+    large = area > SIDE * area.sum()
+    return np.asarray(edges[(side[one] != side[two]) & large[side[one]] & large[side[two]]])
+
+
+def _outline(view: _View, points: FloatArray, triangles: IntArray, depth: FloatArray) -> IntArray:
+    """Return the edges (e, 2) about what is seen: one side to the eye, the other away, nothing beyond."""
+    edges, one, two = _neighbors(triangles)
+    facing = _across(points, triangles) @ view.axes[:, 2] > 0.0
+    turned = edges[facing[one] != facing[two]]
+    column, row = np.rint(view.pixels(points[turned].mean(axis=1))[:, :2]).astype(int).T
+    blank = np.pad(np.isinf(depth), BESIDE, constant_values=True)
+    around = np.arange(2 * BESIDE + 1)
+    near = blank[row[:, None, None] + around[:, None], column[:, None, None] + around]
+    return np.asarray(turned[near.any(axis=(1, 2))])
+
+
+def _evened(across: FloatArray, one: IntArray, two: IntArray) -> FloatArray:
+    """Return unit normals (t, 3) evened among neighbors `one` and `two` that face much the same way.
+
+    A bilateral filter: the folds of a coarse surface level out, edges between its sides stay.
+    `across`: normals as long as twice the area.
+    """
+    area = np.maximum(np.linalg.norm(across, axis=1), 1e-300)[:, None]
+    normal = across / area
+    for _ in range(PASSES):
+        apart = 1.0 - np.sum(normal[one] * normal[two], axis=1)
+        weight = np.maximum(1.0 - (apart / (1.0 - np.cos(np.radians(ALIKE)))) ** 2, 0.0)[:, None] ** 2
+        mean = area * normal
+        np.add.at(mean, one, weight * area[two] * normal[two])
+        np.add.at(mean, two, weight * area[one] * normal[one])
+        normal = mean / np.maximum(np.linalg.norm(mean, axis=1), 1e-300)[:, None]
+    return np.asarray(normal)
 
 
 def surface_panels(
@@ -131,13 +186,16 @@ def surface_panels(
     moved = points + offset
     largest = float(np.max(np.abs(value), initial=0.0)) or 1.0
     least = -largest if np.any(value < 0.0) else 0.0
-    panels = []
+    panels, folds = [], _folds(points, triangles)
     for side, eye in SIDES.items():
         view = _view_of(np.concatenate([points, moved]), eye)
         image, _ = _rendered(view, moved[triangles], value)
         _, depth = _rendered(view, points[triangles], value)
         x, y = (1e3 * view.step * np.arange(count, dtype=np.float64) for count in view.shape[::-1])
-        edges = 1e3 * view.step * _in_sight(view, points[_folds(points, triangles)], depth)
+        about = _outline(view, points, triangles, depth)
+        inner = folds[~np.isin(folds @ [len(points), 1], about @ [len(points), 1])]
+        seen = _in_sight(view, points[inner], depth), _in_sight(view, points[about], depth, np.inf)
+        edges = 1e3 * view.step * np.concatenate(seen)
         outline = Line("edges at rest", edges[:, 0], edges[:, 1], palette.INK, width=0.6)
         across, up = (Axis("mm", limits=(0.0, float(along[-1]))) for along in (x, y))
         shade = HeatMap(x, y, image, label, largest, least)
@@ -160,17 +218,17 @@ def shape_figure(key: str, title: str, shape: SurfaceShape, unit: tuple[float, s
         key=key,
         title=title,
         caption="Colors: peak amplitude normal to the surface. Drawn: the motion at the instant at which it "
-        f"is largest{'' if unit else ', in arbitrary size'}. Lines: edges at rest.",
+        f"is largest{'' if unit else ', in arbitrary size'}. Lines: outline and large sides at rest.",
         alternative=f"{title}: {largest if unit else 'a shape without size'}.",
         content=surface_panels(shape.points, shape.facets, offset, value, label, scale if unit else ""),
     )
 
 
-def _in_sight(view: _View, ends: FloatArray, depth: FloatArray) -> FloatArray:
+def _in_sight(view: _View, ends: FloatArray, depth: FloatArray, behind: float = BEHIND) -> FloatArray:
     """Return edges (e, 2, 3) that nothing hides as points of a line with breaks, (n, 2) in pixels."""
     flat = view.pixels(ends)
     middle = flat.mean(axis=1)
     column, row = np.rint(middle[:, :2]).astype(int).T
-    seen = flat[middle[:, 2] >= depth[row, column] - BEHIND, :, :2]
+    seen = flat[middle[:, 2] >= depth[row, column] - behind, :, :2]
     gap = np.full((len(seen), 1, 2), np.nan)
     return np.concatenate([seen, gap], axis=1).reshape(-1, 2)

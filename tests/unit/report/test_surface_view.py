@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hulls import sphere
 from lattice_meshes import box
 
 from lineofaction.report.drawing import palette
@@ -94,3 +95,29 @@ def test_a_wall_that_has_one_of_its_two_sides_is_seen_from_both() -> None:
         covered.append(np.isfinite(image))
     assert np.array_equal(*covered)
     assert covered[0].mean() > 0.4
+
+
+@pytest.mark.law
+def test_blocks_of_rough_triangles_have_the_edges_of_the_block_and_no_fold_within_a_side() -> None:
+    mesh = box(SIDES, (6, 4, 2))
+    nodes, triangles = np.unique(mesh.surface[:, :3], return_inverse=True)
+    points, triangles = mesh.points[nodes], triangles.reshape(-1, 3)
+    on_edge = np.sum((points == points.min(axis=0)) | (points == points.max(axis=0)), axis=1) >= 2
+    true = []
+    for seed in range(20):  # triangles of one side are up to 40 degrees apart
+        rough = points + 0.010 * np.random.default_rng(seed).uniform(-1.0, 1.0, points.shape)
+        folds = _folds(rough, triangles)
+        length = np.linalg.norm(points[folds[:, 1]] - points[folds[:, 0]], axis=1).sum()
+        true.append(np.all(on_edge[folds]) and length == pytest.approx(4.0 * sum(SIDES), rel=0.1))
+    assert sum(true) >= 15
+
+
+@pytest.mark.law
+def test_a_sphere_has_its_outline_and_no_edge() -> None:
+    hull, radius = sphere(12, 0.3), 0.3
+    points, triangles = hull.nodes, hull.triangles
+    assert len(_folds(points, triangles)) == 0
+    (panel, _) = surface_panels(points, triangles, np.zeros_like(points), np.ones(len(triangles)), "v, m", "")
+    (line,) = panel.lines
+    drawn = np.nansum(np.hypot(np.diff(line.x), np.diff(line.y)))
+    assert drawn == pytest.approx(2e3 * np.pi * radius, rel=0.15)
