@@ -48,7 +48,7 @@ class PageFile:
         return gzip.compress(self.content, mtime=0)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=256)  # more than there are, which a page requests one after the other
 def page_file(name: str) -> PageFile | None:
     """Return the file of this name, None if the page has none."""
     path = _own().get(name)

@@ -457,3 +457,5 @@ def test_a_complaint_that_is_typed_while_a_unit_opens_is_kept(visit: Visit) -> N
     expect(page.locator("#unit-heard")).to_contain_text("cylindrical_stage 21 at 933.3 Hz: harmonic 1")
     assert bar(page) == {"frequency_hz": "933", "speed_rpm": "2800", "torque_n_m": ""}
     expect(page.locator("#f-complaint-frequency_hz")).to_have_value("933")
+    page.locator("#bar-frequency_hz").fill("1300")
+    expect(page.locator("#unit-heard")).to_contain_text("at 933.3 Hz: no harmonic near")

@@ -196,3 +196,17 @@ def test_an_opened_case_keeps_its_complaint_and_its_title_block(visit: Visit) ->
     kept, given = tomllib.loads(text), tomllib.loads(OPENED)
     assert (kept["complaint"], kept["report"]) == (given["complaint"], given["report"])
     assert visit.complaints == []
+
+
+def test_a_backlash_of_rounding_is_none(visit: Visit) -> None:
+    page = visit.page
+
+    def rounded(route: Route) -> None:
+        answer = route.fetch().json()
+        answer["figures"]["circumferential_backlash_um"] = 7e-4
+        route.fulfill(json=answer)
+
+    page.route("**/drafts/outline", rounded)
+    control(page, "#f-pair-pinion-face_width_mm").fill("4.5")
+    expect(page.locator("#pair-figures")).to_contain_text("backlash, circumferential0 µm")
+    page.unroute("**/drafts/outline")

@@ -82,7 +82,7 @@ export class Drawing {
       ["overlap", number(k.overlap_ratio, 3)],
       ["working pressure angle", `${number(k.working_pressure_angle_deg, 4)}°`],
       ["base pitch", `${number(k.base_pitch_mm, 4)} mm`],
-      ["backlash, circumferential", `${number(Math.abs(k.circumferential_backlash_um) < 1e-6 ? 0 : k.circumferential_backlash_um, 3)} µm`],
+      ["backlash, circumferential", `${number(Number(k.circumferential_backlash_um.toFixed(1)), 3)} µm`],
     ]);
     this.roll();
   }

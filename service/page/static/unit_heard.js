@@ -37,7 +37,7 @@ export function meshesHeard({ meshes = [], gears = [] }, complaint) {
 
 /** @param {Heard} heard */
 const words = ({ name, frequency, harmonic, off }) => (
-  `${name} at ${number(frequency)} Hz: ${harmonic ? `harmonic ${harmonic}, off by ${signed(off, 2)} %` : "none"}`);
+  `${name} at ${number(frequency)} Hz: ${harmonic ? `harmonic ${harmonic}, off by ${signed(off, 2)} %` : "no harmonic near"}`);
 
 /** The line under the tree of a unit. */
 export class UnitHeard {

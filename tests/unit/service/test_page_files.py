@@ -22,7 +22,7 @@ from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_text
 from service.app import create_app
-from service.page.files import examples
+from service.page.files import examples, page_file
 from service.settings import Settings
 
 ROOT = Path(__file__).parents[3]
@@ -197,3 +197,10 @@ def test_the_files_that_a_scene_names_are_read_with_it(client: TestClient) -> No
     files = [FileContentInput.of(case).model_dump(mode="json")]
     read = client.post("/v1/scenes/from-toml", json={"toml": scene.read_text("utf-8"), "files": files})
     assert read.json()["scene"]["meshes"][0]["case"]["pair"]["pinion"]["teeth"] == 20
+
+
+def test_a_second_visit_reads_no_file_of_the_page() -> None:
+    names = [path.name for path in STATIC.iterdir()]
+    first = [page_file(name) for name in names]
+    assert len(names) > 64
+    assert all(page_file(name) is file for name, file in zip(names, first, strict=True))
