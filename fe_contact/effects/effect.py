@@ -144,7 +144,7 @@ def across_face(scene: ContactScene) -> list[str]:
     pair = scene.pair
     reasons = []
     if pair.pinion.helix_angle != 0.0:
-        reasons.append(f"helix angle {np.degrees(pair.pinion.helix_angle):.4g} deg")
+        reasons.append(f"helix angle {np.degrees(pair.pinion.helix_angle):.4g}°")
     reasons += [reason for effect in scene.registry if (reason := effect.across_face(scene))]
     if pair.pinion.face_width != pair.wheel.face_width or pair.axial_offset != 0.0:
         reasons.append("unequal or offset faces")

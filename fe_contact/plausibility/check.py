@@ -30,7 +30,7 @@ _PARTS = (
         0.2,
         0.56,
         "rad",
-        "ISO 53 and AGMA 1106: 14.5 to 30 deg",
+        "ISO 53 and AGMA 1106: 14.5° to 30°",
     ),
     Check(
         "helix_angle",

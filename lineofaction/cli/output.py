@@ -6,11 +6,12 @@ import csv
 import io
 import json
 import os
+import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from rich.console import Console, Group
 from rich.highlighter import RegexHighlighter
@@ -23,6 +24,7 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 from rich.table import Table
+from rich.text import Text
 from rich.theme import Theme
 
 from lineofaction.cli.guard import in_lines, warnings_so_far
@@ -89,13 +91,14 @@ _WIDEST, _GAP = 24, 2
 def table(
     columns: Sequence[str], rows: Sequence[Sequence[str]], title: str = "", words: Sequence[str] = ()
 ) -> Group:
-    """Return a table of right-aligned numbers; columns of `words` are aligned left.
+    """Return a table of numbers, one decimal point below another; columns of `words` are aligned left.
 
     One that is wider than the terminal stands in blocks, each with the first columns of words, or the first
     one: nothing is cut within a word or a number.
     """
     width = console().width
     cells = [[row[k] for row in rows] for k in range(len(columns))]
+    cells = [own if name in words else _aligned(own) for name, own in zip(columns, cells, strict=True)]
     least = [_least(name, own, text=name in words) for name, own in zip(columns, cells, strict=True)]
     keys = max(1, next((k for k, name in enumerate(columns) if name not in words), 1))
     grids: list[Table | str] = []
@@ -106,12 +109,29 @@ def table(
         for k in block:
             grown = min(max(map(len, (columns[k], *cells[k]))), least[k] + max(room, 0))
             room -= grown - least[k]
-            grid.add_column(columns[k], overflow="fold", width=max(grown, least[k]))
-            grid.columns[-1].justify = "left" if columns[k] in words else "right"
-        for row in rows:
-            grid.add_row(*(row[k] for k in block))
+            side: Literal["left", "right"] = "left" if columns[k] in words else "right"
+            grid.add_column(Text(columns[k], justify=side), overflow="fold", width=max(grown, least[k]))
+            if side == "right":  # by hand: a column justified right loses what stands for missing decimals
+                cells[k] = [cell.rjust(max(grown, least[k])) for cell in cells[k]]
+        for index in range(len(rows)):
+            grid.add_row(*(cells[k][index] for k in block))
         grids += ["", grid] if grids else [grid]
     return Group(*grids)
+
+
+_FIGURE = re.compile(r"([+-]?\d+)(\.\d+)?( ?[^\d.e].*)?")
+"""A number and what stands behind it: a unit, its error."""
+
+
+def _aligned(cells: Sequence[str]) -> list[str]:
+    """Return cells of a column with blanks for the decimals that they lack of others."""
+    figures = [_FIGURE.fullmatch(cell) for cell in cells]
+    parts = [figure.groups("") for figure in figures if figure]
+    decimals, behind = (max((len(part[k]) for part in parts), default=0) for k in (1, 2))
+    return [
+        figure[1] + (figure[2] or "").ljust(decimals) + (figure[3] or "").ljust(behind) if figure else cell
+        for cell, figure in zip(cells, figures, strict=True)
+    ]
 
 
 def _least(head: str, cells: Sequence[str], *, text: bool) -> int:

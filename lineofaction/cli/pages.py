@@ -16,7 +16,7 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import PairFacts
 from host.directories import cache_home
 from lineofaction.cli.guard import messages, warn
-from lineofaction.cli.output import Report, check_writable, console, print_json, progress_bar, table
+from lineofaction.cli.output import FOUND, Report, check_writable, console, print_json, progress_bar, table
 from lineofaction.cli.run_study import run_study
 from lineofaction.cli.subjects import assessed_case
 from lineofaction.gearbox.convert.case import CheckedCase, case_at
@@ -92,11 +92,12 @@ def _write_sheet(
 
 def _show_sheet(pair: ParallelAxes, output: Path | None) -> None:
     out = console()
+    title, ratios = _summary(pair)
+    out.print(title, soft_wrap=True, style=FOUND)
+    out.print(ratios, soft_wrap=True)
     for part in data_sheet(pair):
-        out.print(table(part.head, part.rows, part.caption, words=_WORDS))
         out.print()
-    for line in _summary(pair):
-        out.print(line, soft_wrap=True)
+        out.print(table(part.head, part.rows, part.caption, words=_WORDS))
     if output is not None:
         out.print(f"written to {output}", soft_wrap=True)
 

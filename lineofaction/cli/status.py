@@ -102,10 +102,10 @@ def run_status(folder: Path, *, as_json: bool) -> None:
         kinds["refused"] = sum(name in refused for name in due)
         beyond = " and ".join(f"{count} {kind}" for kind, count in kinds.items() if count)
         rest = f", without {beyond}" if beyond else ""
-        out.print(f"stale or missing: about {engineering(whole, 2)} CPU s{rest}", soft_wrap=True)
+        out.print(f"stale or missing: about {engineering(whole, 2)} CPU s{rest}")
     if tables:
         words = f"of that the tables of the scene, which are not kept: {engineering(tables, 2)} CPU s"
-        out.print(words, soft_wrap=True)
+        out.print(words)
     shown = {name: engineering(cost, 2) for name, cost in seconds.items()}
     shown |= dict.fromkeys(refused, "refused")
     rows = [
@@ -113,10 +113,10 @@ def run_status(folder: Path, *, as_json: bool) -> None:
         for own in sorted(states, key=lambda own: _STATES.index(own.state))
     ]
     out.print(table([*_HEAD, "CPU s"], rows, words=_HEAD))
-    out.print("CPU s as predicted for the verb without options; - not predicted", soft_wrap=True)
+    out.print("CPU s as predicted for the verb without options; - not predicted")
     verbs = {own.name: own.verb for own in states}
     for line in [*_refusals({name: verbs[name] for name in refused}, refused), *unread]:
-        out.print(line, soft_wrap=True)
+        out.print(line)
 
 
 def _reason(error: BadInput) -> str:

@@ -274,7 +274,7 @@ def _profile(name: str, pair: ParallelAxes, tolerance_class: int | None) -> Pane
     at_pitch = pitch_point if name == "pinion" else float(pair.mating_roll_length(pitch_point))
     mark = Reference("C", at_pitch / gear.base_radius / DEGREE)
     title = f"Profile of the {name}, root to the {'left' if gear.sign > 0 else 'right'}"
-    return Panel(Axis(f"roll angle of the {name}, deg"), Axis("removed, µm"), lines, (mark,), title=title)
+    return Panel(Axis(f"roll angle of the {name}, °"), Axis("removed, µm"), lines, (mark,), title=title)
 
 
 def _usable(gear: Toothing) -> FloatArray:
@@ -449,7 +449,7 @@ def data_sheet(pair: ParallelAxes) -> tuple[Table, Table, Table]:
 
 
 _POINT_HEAD = (
-    "point", "d_y1 mm", "d_y2 mm", "roll angle 1 deg", "roll angle 2 deg", "sliding factor K_g",
+    "point", "d_y1 mm", "d_y2 mm", "roll angle 1 °", "roll angle 2 °", "sliding factor K_g",
     "specific sliding 1", "specific sliding 2",
 )  # fmt: skip
 

@@ -54,7 +54,7 @@ def _figure(pair: ParallelAxes, model: ContactModel, index: int) -> Figure | Non
         return None
     shape = excess - excess.mean(axis=(1, 2), keepdims=True)
     worst = int(np.argmax(np.ptp(shape, axis=(1, 2))))
-    angle = Axis(f"roll angle of the {name}, deg")
+    angle = Axis(f"roll angle of the {name}, °")
     middle, most = excess[:, :, _FACES // 2], float(np.abs(excess).max())
     of_one = float(np.abs(shape[worst]).max())
     rolled = roll / gear.base_radius / DEGREE

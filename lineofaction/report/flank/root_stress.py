@@ -69,7 +69,7 @@ def _peak_table(stresses: Json) -> Table:
         "root": lambda peak: peak["root"],
         "stress MPa": lambda peak: f"{peak['stress_mpa']:.4g} ±{engineering(peak['error_mpa'], 1)}",
         "position": lambda peak: f"{peak['position']:.3f}",
-        "tangent deg": lambda peak: f"{peak['tangent_angle_deg']:.1f}",
+        "tangent °": lambda peak: f"{peak['tangent_angle_deg']:.1f}",
         "face mm": lambda peak: f"{peak['face_position_mm']:.2f}",
     }
     return Table.of("Tooth-root stress", peaks, columns)

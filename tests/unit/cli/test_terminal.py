@@ -27,7 +27,7 @@ FIRST = 14
 SCENE = Path(__file__).parents[3] / "examples" / "palermo_scene.toml"
 ANSWERS: dict[str, tuple[tuple[str, ...], str]] = {
     "help": (("--help",), "Usage: loa"),
-    "geometry": (("geometry", "CASE"), "number of teeth"),
+    "geometry": (("geometry", "CASE"), r"Gear pair .*: center distance .*\ncontact ratio"),
     "plan": (("plan", "CASE"), r"draft: [\d.]+ CPU s, [\d.]+ GiB"),
     "ste": (("ste", "TABLE", "--torque", "1"), r"peak to peak +[\d.]+ ± [\d.]+ µm"),
     "ste --table": (("ste", "TABLE", "--torque", "1", "--table"), "position"),
@@ -92,6 +92,27 @@ def test_a_wide_table_stands_in_blocks_and_no_word_is_broken(
     assert len(blocks) > 1 and all("second stage" in block and "load case 1" in block for block in blocks)
     assert [cell for cell in rows[0][2:] if cell not in printed] == []
     assert [k for k in range(12) if f"quantity-{k}," not in printed] == []
+
+
+def test_decimal_points_of_a_column_stand_below_each_other(capsys: pytest.CaptureFixture[str]) -> None:
+    """Units and errors, too; what is no number stays at the right."""
+    rows = [
+        ["draft", "16", "7.035 ±0.041", "-11 %"],
+        ["fine", "4.25", "11.6 ±0.1", "+3.2 %"],
+        ["", "", "-", ""],
+    ]
+    console().print(table(["mesh", "CPU s", "mean µm", "p-p"], rows, words=["mesh"]))
+    head, *lines = capsys.readouterr().out.splitlines()
+    assert head.split() == ["mesh", "CPU", "s", "mean", "µm", "p-p"]
+    (whole, mean, part), (point, other, lower) = (
+        [re.search(mark, line).start() for mark in marks]  # type: ignore[union-attr]
+        for line, marks in zip(
+            lines, ([r" 16 ", r"\.035", r"-11"], [r"\.25", r"\.6 ", r"\.2 %"]), strict=False
+        )
+    )
+    assert (whole + 3, mean, part + 3) == (point, other, lower)
+    assert lines[0].index("±") == lines[1].index("±") and lines[0].index("%") == lines[1].index("%")
+    assert lines[2].rstrip().endswith("-") and lines[2].index("-") == lines[0].index("±") + 5
 
 
 class Terminal(io.StringIO):
