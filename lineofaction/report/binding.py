@@ -128,7 +128,7 @@ def _head(titles: Sequence[str]) -> str:
 def _trimmed(words: list[str]) -> list[str]:
     while words[1:] and words[-1] in _LINKS:
         words = words[:-1]
-    return words
+    return [*words[:-1], *(word.rstrip(",;:") for word in words[-1:])]
 
 
 def _said(texts: Mapping[str, str]) -> str:

@@ -360,13 +360,17 @@ _SLIM = 1.5  # height of a drawing over the usual one from which on half the wid
 _SHORT = 12  # characters of a label at a line beside which a panel of half the width stands
 
 
+def _few_marks(shade: HeatMap | Strokes | None) -> bool:
+    return shade is None or (isinstance(shade, HeatMap) and not shade.isolines)
+
+
 def panel_rows(panels: Sequence[Panel], across: int) -> list[list[int]]:
-    """Return panels by rows of at most `across`; strokes, wide drawings and long labels stand alone."""
+    """Return panels by rows of at most `across`; strokes, isolines, wide drawings, long labels are alone."""
     rows: list[list[int]] = []
     beside = False
     for index, panel in enumerate(panels):
         labels = max((len(row) for line in panel.lines for row in line.label.split("\n")), default=0)
-        slim = panel_height(panel) > _SLIM if panel.equal else not isinstance(panel.shade, Strokes)
+        slim = panel_height(panel) > _SLIM if panel.equal else _few_marks(panel.shade)
         narrow = slim and labels <= _SHORT
         if narrow and beside and len(rows[-1]) < across:
             rows[-1].append(index)

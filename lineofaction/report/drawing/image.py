@@ -200,6 +200,8 @@ def panel_sheet(panels: tuple[Panel, ...], across: int = 1) -> Sheet:
         else:
             ax.set_xlabel(fill(panel.x.label, _HALF_LABEL), fontsize=_NARROW_TYPE)
             ax.set_ylabel(fill(panel.y.label, _NARROW_LABEL), fontsize=_NARROW_TYPE)
+            title = fill(panel.title, _HALF_LABEL)
+            ax.set_title(title, loc="left", fontsize=_NARROW_TYPE, fontweight="bold")
         if repeats_below(panels, index) and {index, index + 1} <= alone:
             ax.set_xlabel("")
     if len(handles) > 1:

@@ -51,6 +51,8 @@ def test_what_both_say_stands_once(pages: dict[str, Page]) -> None:
         for figure in section.figures:
             sentences = Counter(figure.caption.split(". "))
             assert max(sentences.values()) == 1, figure.key
+    heads = [figure.title for section in whole.sections for figure in section.figures]
+    assert not [head for head in heads if head.endswith((",", " at", " of"))]
     keys = Counter(figure.key for section in whole.sections for figure in section.figures)
     assert set(keys.values()) == {1}
 
