@@ -260,9 +260,8 @@ def load_distribution(
     face = candidates.face_position[candidates.pair == candidates.pair[0]]
     shape = (candidates.position.size, -1, face.size)
     force = solution.force[:, load]
-    if pressed is None:
-        pressed = contact_pressure(problem, solution.force)
-    pressure, edge = pressed[0][:, load], pressed[1][:, load]
+    known = None if pressed is None else (pressed[0][:, load], pressed[1][:, load])
+    pressure, edge = known or contact_pressure(problem, force[:, None])
     gap = _loaded_gap(problem, force, solution.deflection[:, load])
     phase = candidates.position - np.floor(candidates.position)
     nominal, _ = pair.roll_lengths(phase[:, None], candidates.pair)
