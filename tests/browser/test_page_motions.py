@@ -214,6 +214,20 @@ def test_shafts_gears_and_housing_move_as_the_result_says(
 GEAR_CALLS = (("pinion", 3), ("pinion", 4), ("wheel", 5), ("wheel", 6))
 
 
+def test_a_hollow_shaft_is_seen_through_and_its_bushing_is_as_thick_as_its_wall(
+    visit: Visit, outline: dict[str, Any]
+) -> None:
+    section = {"length_mm": LENGTH, "outer_diameter_mm": 12.0, "bore_diameter_mm": 8.0}
+    solid, output = SCENE["shafts"]
+    hollow = {name: value for name, value in solid.items() if name != "diameter_mm"} | {"sections": [section]}
+    scene = SCENE | {"shafts": [hollow, output]}
+    for drawn, wall in ((SCENE, 6.0), (scene, 2.0)):
+        (calls,) = vertices(visit.page, UNIT, [AT_REST], scene=drawn, outline=outline, motion=None)
+        shaft, bushing = (np.hypot(calls[k][:, 0], calls[k][:, 1]) for k in (0, 2))
+        assert [shaft.min(), shaft.max()] == pytest.approx([6.0 - wall, 6.0], abs=1e-4)
+        assert [bushing.min(), bushing.max()] == pytest.approx([6.0, 6.0 + 0.7 * wall], abs=1e-4)
+
+
 @pytest.mark.law
 def test_a_wheel_stands_at_its_own_place_in_mesh(visit: Visit, outline: dict[str, Any]) -> None:
     shift = 7.0

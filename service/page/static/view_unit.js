@@ -12,41 +12,41 @@ const SIDES = 32; // of a body of revolution
 const SPEED = 0.5; // base pitches a second of the first mesh
 const COLORS = { shaft: [0.62, 0.64, 0.67], bearing: [0.42, 0.46, 0.52] };
 const MARKED = [0.90, 0.62, 0.0];
-const BUSHING = 1.7; // outside over shaft diameter where a scene has no catalog
+const BUSHING = 0.7; // its height over the wall of its shaft where a scene has no catalog
 const WIDTH = 0.55; // of a bearing over its height twice
 const STILL = { values: new Float32Array(12), stations: [0, 1e9, 0] };
 
-/** @typedef {{name: string, origin_mm: number[], length_mm: number, diameter_mm?: number, sections?: {length_mm: number, outer_diameter_mm: number}[]}} Shaft */
+/** @typedef {{name: string, origin_mm: number[], length_mm: number, diameter_mm?: number, sections?: {length_mm: number, outer_diameter_mm: number, bore_diameter_mm?: number}[]}} Shaft */
 
 /** A ring about z. @param {Meshing} made @param {number} inner radius @param {number} outer @param {number} [layers] of its wall, between which it bends */
 function ring(made, inner, outer, low, high, layers = 1) {
-  const turn = (k) => [Math.cos((2 * Math.PI * k) / SIDES), Math.sin((2 * Math.PI * k) / SIDES)];
-  const line = (radius, z, normal) => Array.from({ length: SIDES + 1 }, (_, k) => {
-    const [x, y] = turn(k);
-    return made.vertex([radius * x, radius * y, z], normal ?? [x, y, 0]);
+  const line = (radius, z, up = 0, side = 1) => Array.from({ length: SIDES + 1 }, (_, k) => {
+    const [x, y] = [Math.cos, Math.sin].map((of) => of((2 * Math.PI * k) / SIDES));
+    return made.vertex([radius * x, radius * y, z], up ? [0, 0, up] : [side * x, side * y, 0]);
   });
   const walls = Array.from({ length: layers + 1 }, (_, k) => line(outer, low + ((high - low) * k) / layers));
   const strips = walls.slice(1).map((wall, k) => [walls[k], wall]);
-  for (const [z, up] of [[low, -1], [high, 1]]) strips.push([line(inner, z, [0, 0, up]), line(outer, z, [0, 0, up])]);
+  for (const [z, up] of [[low, -1], [high, 1]]) strips.push([line(inner, z, up), line(outer, z, up)]);
+  if (inner) strips.push([line(inner, low, 0, -1), line(inner, high, 0, -1)]);
   for (const [a, b] of strips) for (let k = 1; k <= SIDES; k += 1) made.quad(a[k - 1], b[k - 1], a[k], b[k]);
 }
 
 /** @param {Shaft} shaft */
 const sectionsOf = (shaft) => shaft.sections ?? [{ length_mm: shaft.length_mm, outer_diameter_mm: shaft.diameter_mm ?? shaft.length_mm / 8 }];
 
-/** The diameter of a shaft at a place along it. @param {Shaft} shaft */
-function diameterAt(shaft, place) {
+/** The section of a shaft at a place along it. @param {Shaft} shaft */
+function sectionAt(shaft, place) {
   let end = 0;
   const section = sectionsOf(shaft).find(({ length_mm: length }) => (end += length) >= place - 1e-9);
-  return (section ?? sectionsOf(shaft).at(-1)).outer_diameter_mm;
+  return section ?? sectionsOf(shaft).at(-1);
 }
 
 /** @param {Shaft} shaft */
 function shaftMesh(shaft) {
   const made = new Meshing();
   let low = 0;
-  for (const { length_mm: length, outer_diameter_mm: diameter } of sectionsOf(shaft)) {
-    ring(made, 0, diameter / 2, low, low + length, Math.ceil((length / shaft.length_mm) * (STATIONS - 1)));
+  for (const { length_mm: length, outer_diameter_mm: diameter, bore_diameter_mm: bore = 0 } of sectionsOf(shaft)) {
+    ring(made, bore / 2, diameter / 2, low, low + length, Math.ceil((length / shaft.length_mm) * (STATIONS - 1)));
     low += length;
   }
   return made.mesh;
@@ -54,8 +54,8 @@ function shaftMesh(shaft) {
 
 /** @param {any} bearing @param {Shaft} shaft */
 function bearingMesh({ position_mm: place, catalog }, shaft) {
-  const inner = diameterAt(shaft, place) / 2;
-  const outer = catalog ? catalog.outside_diameter_mm / 2 : BUSHING * inner;
+  const { outer_diameter_mm: diameter, bore_diameter_mm: bore = 0 } = sectionAt(shaft, place);
+  const [inner, outer] = [diameter / 2, catalog ? catalog.outside_diameter_mm / 2 : diameter / 2 + (BUSHING * (diameter - bore)) / 2];
   const half = WIDTH * (outer - inner);
   const made = new Meshing();
   ring(made, inner, outer, place - half, place + half);
@@ -154,7 +154,7 @@ export class Gearbox {
     const reachAt = (name, place) => {
       const shaft = this.shafts.get(name);
       const near = discs.filter((disc) => disc.shaft === name && Math.abs(disc.position_mm - place) < shaft.length_mm / 32).map(({ reach }) => reach);
-      return Math.max(diameterAt(shaft, place) / 2, ...near);
+      return Math.max(sectionAt(shaft, place).outer_diameter_mm / 2, ...near);
     };
     this.letHullGo();
     this.motion = motion && new Motion(motion, this.reach, reachAt);
@@ -241,8 +241,7 @@ export class Gearbox {
 
   frame(camera) {
     const [low, high] = this.box;
-    const center = /** @type {[number, number, number]} */ (low.map((value, k) => (value + high[k]) / 2));
-    camera.look(center, this.reach, 0.8, 0.35, 0.85);
+    camera.look(/** @type {[number, number, number]} */ (low.map((value, k) => (value + high[k]) / 2)), this.reach, 0.8, 0.35, 0.85);
   }
 
   advance(seconds) {
