@@ -142,6 +142,8 @@ class PredictedDesigns(NamedTuple):
         One pair of flanks at one alignment, all loads at once.
     errors : float
         The solutions that measure the errors of one.
+    positions : int
+        Of one.
     across_face : bool
         Whether the gears are those of three dimensions.
     bytes : float
@@ -153,6 +155,7 @@ class PredictedDesigns(NamedTuple):
     bodies: float
     design: float
     errors: float
+    positions: int
     across_face: bool
     bytes: float
     in_pitches: Callable[[float, Sequence[float], int], float]
@@ -177,7 +180,9 @@ def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
     errors = parts["error estimate"]["solutions"]
     work = unit_work(pair, decided.plan, decided.plan.discretization.slices)
     memory = float(whole.memory_bytes)
-    return PredictedDesigns(bodies, design, errors, model.across_face, memory, work.in_pitches)
+    return PredictedDesigns(
+        bodies, design, errors, whole.positions, model.across_face, memory, work.in_pitches
+    )
 
 
 def _decided(decided: Decided, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:

@@ -17,7 +17,7 @@ from fe_contact.solver_version import SOLVER_VERSION, software_versions
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from host.directories import cache_home
-from lineofaction.cli.guard import warn
+from lineofaction.cli.guard import in_lines, warn
 from lineofaction.cli.output import Report
 from lineofaction.gearbox.convert.case import CheckedCase, CheckedCases, case_at, case_json
 from lineofaction.gearbox.convert.live import cost_of
@@ -139,7 +139,7 @@ def announce_cost(verb: str, costs: Sequence[StudyCost | None]) -> None:
     """Say on standard error what a verb will take, if that is more than a moment and can be predicted."""
     whole = sum(filter(None, costs), StudyCost(()))
     if None not in costs and whole.seconds > ANNOUNCED:
-        sys.stderr.write(f"loa {verb}: {whole.words}\n")
+        sys.stderr.write(in_lines(f"loa {verb}: {whole.words}", sys.stderr) + "\n")
 
 
 # Tables of cases are kept in the cache, under the name of all that decides them: this very program included.

@@ -11,13 +11,13 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (44_775, 845),
+    ("fe_contact",): (44_776, 845),
     ("dynamics",): (45_926, 918),
-    ("lineofaction.gearbox",): (29_057, 598),
+    ("lineofaction.gearbox",): (29_058, 598),
     ("lineofaction.report",): (13_240, 246),
     ("service",): (15_259, 361),
     ("lineofaction.client",): (2_944, 55),
-    ("lineofaction.cli",): (5_890, 87),
+    ("lineofaction.cli",): (5_893, 87),
     ("lineofaction.hardcases",): (3_841, 35),
     ("bounds", "host", "model_studies"): (4_540, 157),
 }

@@ -213,4 +213,4 @@ def draft_line(table: SteDatabase, refining: str) -> str:
 
 
 def _figure(estimate: Estimate) -> str:
-    return f"{estimate.value / UM:.4g} +- {engineering(estimate.error / UM, 1)}"
+    return f"{estimate.value / UM:.4g} ± {engineering(estimate.error / UM, 1)}"

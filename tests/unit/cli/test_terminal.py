@@ -214,3 +214,9 @@ def test_a_verb_in_no_group_fails_the_check(group: str | None, monkeypatch: pyte
     monkeypatch.setattr(of_imports.verbs.registered_commands[0], "rich_help_panel", group)
     with pytest.raises(AssertionError, match="KeyError"):
         check_help(80)
+
+
+def test_a_number_stays_with_its_unit_of_two_words(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "30")
+    lines = in_lines("largest peak-to-peak STE at 27 N m and 28 µm", Terminal()).splitlines()
+    assert lines == ["largest peak-to-peak STE at", "27 N m and 28 µm"]

@@ -61,7 +61,8 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
         points = (
             sampling.positions * len(request.torques) * sampling.tangents * len(request.tolerances.widths)
         )
-        pairs = [Work("pairs", predicted.design, solved), Work("samples", _ADDED * points, sampling.samples)]
+        each = predicted.design * sampling.positions / predicted.positions
+        pairs = [Work("pairs", each, solved), Work("samples", _ADDED * points, sampling.samples)]
         if request.teeth is not None:
             loads = (len(request.torques),)
             revolution = predicted.in_pitches(sampling.positions, loads, request.teeth.teeth)
