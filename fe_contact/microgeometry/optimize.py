@@ -36,7 +36,7 @@ from fe_contact.microgeometry.search import (
     never,
     search_from,
 )
-from fe_contact.microgeometry.variables import GEARS, QUANTITIES, DesignVariable
+from fe_contact.microgeometry.variables import GEARS, LENGTHS, QUANTITIES, DesignVariable
 from fe_contact.options import Run
 from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
@@ -291,15 +291,14 @@ def _why_not(choice: _Choice, request: OptimizationRequest, error: float) -> str
 
 def _not_tried(choice: _Choice, request: OptimizationRequest, study: DesignStudy) -> tuple[str, ...]:
     """Say what the design is the best without: what did not vary, what did not scatter, what was left out."""
-    free = {variable.name for variable in request.variables}
-    kept = [f"{gear}.{name}" for gear in GEARS for name in QUANTITIES if f"{gear}.{name}" not in free]
+    names = _not_varied({variable.name for variable in request.variables})
     spread = (*((MISALIGNMENT,) if request.scatter.misalignment else ()), *request.scatter.modification)
     off = [name for name, choice_of in study.decided.checked.decided.items() if choice_of == "off"]
     bounds = _on_bounds(choice, request)
     starts = "one start" if request.search.starts == 1 else f"{request.search.starts} starts"
     untried = [
         f"wider bounds of {', '.join(bounds)}, which the optimum lies on" if bounds else "",
-        f"other values of {', '.join(kept)}" if kept else "",
+        f"other values of {', '.join(names)}" if names else "",
         f"scatter of anything but {', '.join(spread)}" if spread else "scatter of anything",
         f"neglected effects: {', '.join(off)}" if off else "",
         f"other searches than {starts} of {request.search.method.to_json()['method'].replace('_', ' ')}; "
@@ -307,6 +306,22 @@ def _not_tried(choice: _Choice, request: OptimizationRequest, study: DesignStudy
         "other center distances, and torques without weight",
     ]
     return tuple(filter(None, untried))
+
+
+def _not_varied(free: set[str]) -> list[str]:
+    """Name the figures that stay, those of both gears once; lengths only of amounts that vary."""
+    kept = {
+        gear: [
+            name
+            for name in QUANTITIES
+            if f"{gear}.{name}" not in free
+            and (name not in LENGTHS or f"{gear}.{name.removesuffix('_length')}" in free)
+        ]
+        for gear in GEARS
+    }
+    both = [name for name in QUANTITIES if all(name in own for own in kept.values())]
+    names = [f"{gear}.{name}" for gear, own in kept.items() for name in own if name not in both]
+    return [*names, f"{', '.join(both)} of both gears"] if both else names
 
 
 def _on_bounds(choice: _Choice, request: OptimizationRequest) -> list[str]:

@@ -80,7 +80,8 @@ def _total(response: ForcedResponse) -> FloatArray:
     return np.asarray(np.sum(response.power.loss, axis=(0, 2)))
 
 
-SHOWN_ORDERS, SHOWN_PEAKS = 6, 15
+SHOWN_ORDERS, SHOWN_PEAKS, PRINTED_PEAKS = 6, 15, 4
+"""Peaks of a quantity on the page and on a terminal."""
 
 WITH_MESHES = (
     "Peak amplitudes of the mesh orders about the static equilibrium, linear: stiffness varies with "
@@ -135,12 +136,12 @@ def _bearing_force(response: ForcedResponse) -> FloatArray:
     return np.asarray(np.sqrt(np.sum(np.abs(response.bearing_force[:, :3]) ** 2, axis=1)))
 
 
-def _peak_table(response: ForcedResponse) -> Table:
+def _peak_table(response: ForcedResponse, most: int = SHOWN_PEAKS) -> Table:
     every = peaks(response)
     listed = [
         peak
         for quantity in ("mesh_force", "bearing_force")
-        for peak in [peak for peak in every if peak.quantity == quantity][:SHOWN_PEAKS]
+        for peak in [peak for peak in every if peak.quantity == quantity][:most]
     ]
     columns = {
         "peak of": lambda peak: f"{peak.quantity.replace('_', ' ')}, {peak.name}",
@@ -195,7 +196,7 @@ def _figures(response: ForcedResponse) -> tuple[Figure, ...]:
 
 
 def _text(response: ForcedResponse) -> Iterator[Table | str]:
-    yield _peak_table(response)
+    yield _peak_table(response, PRINTED_PEAKS)
     if (excites := excitation_table(response.facts)) is not None:
         yield excites
     parting = response.speed[~response.in_contact] / RPM
