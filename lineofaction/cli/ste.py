@@ -119,9 +119,9 @@ def _answer(database: SteDatabase, file: Path, curve: dict[str, Any]) -> Iterato
     ]
     known, unknown = _orders(curve)
     errors = [error for _, _, error in (*figures, *known) if error]
-    decimals = max(1 - math.floor(math.log10(min(errors))), 0) if errors else _DECIMALS
+    decimals = max(map(_decimals, errors)) if errors else _DECIMALS
     largest = max((amplitude for _, amplitude, _ in known), default=1.0)
-    yield _figure(*figures[0], decimals)
+    yield _figure(*figures[0], decimals).rstrip()
     yield f"{_figure(*figures[1], decimals)}  {_sparkline(curve['ste_um'])}  two periods"
     for line in known:
         level, bar = 20.0 * math.log10(line[1]), "█" * round(_BAR * line[1] / largest)
@@ -151,9 +151,17 @@ def _with_error(curve: dict[str, Any], name: str) -> tuple[Any, Any]:
     return curve[name], curve.get(name.replace("_um", "_error_um"))
 
 
-def _figure(name: str, value: float, error: float | None, decimals: int) -> str:
-    band = "(error not estimated)" if error is None else f"± {error:.{decimals}f} µm"
-    return f"  {name:<{_NAME}} {value:{_NUMBER}.{decimals}f} {band}"
+def _decimals(error: float) -> int:
+    """Return the decimals of the two digits that an error has."""
+    return max(1 - math.floor(math.log10(error)), 0)
+
+
+def _figure(name: str, value: float, error: float | None, most: int) -> str:
+    """Write a figure to the digits of its error, below those with the `most` decimals."""
+    own = _decimals(error) if error else most
+    room = most - own + (own == 0 < most)
+    band = "(error not estimated)" if error is None else f"± {error:.{own}f} µm{' ' * room}"
+    return f"  {name:<{_NAME}} {value:{_NUMBER - room}.{own}f}{' ' * room} {band}"
 
 
 def _orders(curve: dict[str, Any]) -> tuple[list[_Line], list[_Line]]:

@@ -53,9 +53,11 @@ def test_the_answer_is_one_look(file: Path, answer: list[str]) -> None:
 def test_figures_are_those_of_the_curve_with_two_digits_of_the_error(answer: list[str], curve: Json) -> None:
     for name, key in (("mean", "mean_um"), ("peak to peak", "peak_to_peak_um")):
         (line,) = (line for line in answer if line.startswith(f"  {name} "))
-        found = re.match(rf"  {name} +([\d.]+) ± ([\d.]+) µm", line)
+        found = re.match(rf"  {name} +([\d.]+) +± ([\d.]+) µm", line)
         assert found is not None
-        last = 0.51 * 10.0 ** -len(found[1].partition(".")[2])
+        places = len(found[2].partition(".")[2])
+        assert places == len(found[1].partition(".")[2]) and 9.5 < float(found[2]) * 10.0**places < 100.0
+        last = 0.51 * 10.0**-places
         assert float(found[1]) == pytest.approx(curve[key], abs=last)
         assert float(found[2]) == pytest.approx(curve[key.replace("_um", "_error_um")], abs=last)
 
@@ -66,7 +68,7 @@ def test_harmonics_above_their_errors_are_in_decibels_and_the_others_are_named(
     sizes, errors = (dict(enumerate(curve[name][:8], 1)) for name in ("harmonics_um", "harmonics_error_um"))
     sure = {order for order, size in sizes.items() if size > errors[order]}
     assert 0 < len(sure) < 8
-    pattern = r"  harmonic (\d) +([\d.]+) ± [\d.]+ µm +(-?[\d.]+) dB re 1 µm  ?(█*)"
+    pattern = r"  harmonic (\d) +([\d.]+) +± [\d.]+ µm +(-?[\d.]+) dB re 1 µm  ?(█*)"
     found = {int(line[1]): line for line in (re.match(pattern, line) for line in answer) if line}
     assert set(found) == sure
     for order, line in found.items():

@@ -29,7 +29,7 @@ ANSWERS: dict[str, tuple[tuple[str, ...], str]] = {
     "help": (("--help",), "Usage: loa"),
     "geometry": (("geometry", "CASE"), r"Gear pair .*: center distance .*\ncontact ratio"),
     "plan": (("plan", "CASE"), r"draft: [\d.]+ CPU s, [\d.]+ GiB"),
-    "ste": (("ste", "TABLE", "--torque", "1"), r"peak to peak +[\d.]+ ± [\d.]+ µm"),
+    "ste": (("ste", "TABLE", "--torque", "1"), r"peak to peak +[\d.]+ +± [\d.]+ µm"),
     "ste --table": (("ste", "TABLE", "--torque", "1", "--table"), "position"),
     "report": (("report", "TABLE", "--still", "-o", "PAGE"), "written to"),
     "compare": (("compare", "TABLE", "OTHER", "-o", "PAGE"), "peak to peak at"),
