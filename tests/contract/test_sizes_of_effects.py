@@ -112,8 +112,8 @@ def invoked(*words: object) -> str:
 
 def terminal_changes(text: str) -> dict[str, list[str]]:
     """The changes of mean and peak-to-peak of every effect in the table of the terminal."""
-    rows = re.findall(r"^([a-z ]+?) +(?:yes|no) +(\S+ %) +(\S+ %) ", text, re.M)
-    return {name.replace(" ", "_"): changes for name, *changes in rows}
+    rows = re.findall(r"^([a-z ]+?) +(?:yes|no) +(\S+) +% +(\S+) +% ", text, re.M)
+    return {name.replace(" ", "_"): [f"{change} %" for change in changes] for name, *changes in rows}
 
 
 def table_words(tables: list[Json]) -> dict[str, str]:

@@ -6,7 +6,7 @@ import base64
 import gzip
 import json
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 from functools import cache
@@ -263,7 +263,7 @@ def _table(table: Table, below: str = "") -> str:
     )
     width = sum(max(map(len, column)) for column in zip(heads, *table.rows, strict=True))
     joined = width <= _ACROSS_A_PAGE
-    rows = "".join(_row(map(_unbroken, row) if joined else row, marks) for row in table.rows)
+    rows = "".join(_row(row, marks, joined) for row in table.rows)
     short += " narrow" if short and width <= _HALF_OF_A_PAGE else ""
     caption = "" if table.caption == below else f"<caption>{escape(table.caption)}</caption>"
     return (
@@ -273,14 +273,11 @@ def _table(table: Table, below: str = "") -> str:
     )
 
 
-def _unbroken(cell: str) -> str:
-    return cell.replace(" ", "\N{NO-BREAK SPACE}") if len(cell) <= _SHORT else cell
-
-
-def _row(entries: Iterable[str], marks: Sequence[str]) -> str:
-    row = tuple(entries)
-    cells = "".join(f"<td{m}>{escape(cell)}</td>" for m, cell in zip(marks[1:], row[1:], strict=True))
-    return f'<tr><th scope="row"{marks[0]}>{escape(row[0])}</th>{cells}</tr>'
+def _row(row: Sequence[str], marks: Sequence[str], joined: bool) -> str:
+    """Write a row, whose short cells are not broken where they are `joined`."""
+    kept = [m or ' class="w"' * (joined and len(cell) <= _SHORT) for m, cell in zip(marks, row, strict=True)]
+    cells = "".join(f"<td{m}>{escape(cell)}</td>" for m, cell in zip(kept[1:], row[1:], strict=True))
+    return f'<tr><th scope="row"{kept[0]}>{escape(row[0])}</th>{cells}</tr>'
 
 
 def numeric_columns(table: Table) -> list[bool]:
