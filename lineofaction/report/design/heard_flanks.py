@@ -11,9 +11,12 @@ from lineofaction.gearbox.convert.errors import boundary_name
 from lineofaction.gearbox.studies.optimize.result import HeardOptimization
 from lineofaction.gearbox.units import UM, factor
 from lineofaction.report.drawing import palette
-from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table, number
+from lineofaction.report.drawing.figure import Axis, Bars, Figure, Panel, Table, number
 from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.presentation import Presentation
+
+_WIDTH = 0.32
+"""Of a bar, two of which stand at an order."""
 
 
 def _loads(result: HeardOptimization) -> tuple[str, ...]:
@@ -25,8 +28,8 @@ def _levels_figure(result: HeardOptimization) -> Figure:
     return Figure(
         key="heard",
         title="Levels before and after optimization",
-        caption=f"{result.quantity.replace('_', ' ').capitalize()} by order, {over} over the speeds. Order "
-        "0: all of them.",
+        caption=f"{result.quantity.replace('_', ' ').capitalize()} by order, {over} over the speeds; from "
+        "bottom to top of the pale bars by their errors.",
         alternative=result.reason,
         content=tuple(_panel(result, load) for load in range(result.torque.size)),
         table=_levels_table(result),
@@ -34,13 +37,16 @@ def _levels_figure(result: HeardOptimization) -> Figure:
 
 
 def _panel(result: HeardOptimization, load: int) -> Panel:
-    order = np.arange(len(result.lines), dtype=float)
+    order, bars = np.arange(len(result.lines), dtype=float), []
     designs = ("before", result.start, palette.VERMILLION), ("after", result.optimum, palette.BLUE)
-    lines = tuple(
-        Line(name, order, design.level[load], color, "solid", 1.6, markers=True)
-        for name, design, color in designs
-    )
-    return Panel(Axis("order of the mesh, 0: all"), Axis(result.unit), lines, title=_loads(result)[load])
+    least = min(float(np.min(design.level[load] - design.level_error[load])) for _, design, _ in designs)
+    floor = 5.0 * np.floor(least / 5.0 - 0.5)
+    for side, (name, design, color) in zip((-0.5, 0.5), designs, strict=True):
+        at, level, error = order + side * _WIDTH, design.level[load], design.level_error[load]
+        bars.append(Bars(name, at, level, floor, _WIDTH, color))
+        bars.append(Bars("error", at, level + error, level - error, 0.4 * _WIDTH, palette.INK, veiled=True))
+    names = [line if line == "all" else f"order {line}" for line in result.lines]
+    return Panel(Axis.of_names(names), Axis(result.unit), bars=tuple(bars), title=_loads(result)[load])
 
 
 def _levels_table(result: HeardOptimization) -> Table:

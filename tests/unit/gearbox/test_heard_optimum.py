@@ -33,6 +33,7 @@ from lineofaction.gearbox.studies.optimize.heard_search import LINEARIZED, heard
 from lineofaction.gearbox.studies.optimize.result import HeardOptimization
 from lineofaction.gearbox.studies.optimize.run import RUN, request_of
 from lineofaction.gearbox.workbench import tabled
+from lineofaction.report.design.optimize import PAGE
 from model_studies.spread import quantiles
 from model_studies.workers import InProcess
 
@@ -288,6 +289,20 @@ def test_velocity_and_pressure_are_heard_as_the_comparison_has_them(heard: Json)
     for design, side in ((own.start, compared.before), (own.optimum, compared.after)):
         loud = side.nominal > side.nominal.max() - 25.0
         np.testing.assert_allclose(design.level[loud], side.nominal[loud], atol=0.3)
+
+
+def test_levels_are_drawn_as_bars_with_their_errors_from_a_floor_below_all() -> None:
+    result = found()
+    for load, panel in enumerate(PAGE.figure(result).content):
+        before, first, after, second = panel.bars
+        assert [own.name for own in panel.bars] == ["before", "error", "after", "error"]
+        drawn = (before, first, result.start), (after, second, result.optimum)
+        for bar, error, design in drawn:
+            level, band = design.level[load], design.level_error[load]
+            assert np.array_equal(bar.top, level) and bar.base < (level - band).min()
+            np.testing.assert_allclose([error.base, error.top], [level - band, level + band])
+        assert panel.x.names[0] == (0.0, "all") and len(panel.x.names) == len(result.lines)
+        assert before.x[0] + 0.5 * before.width == pytest.approx(after.x[0] - 0.5 * after.width)
 
 
 def test_what_gets_worse_is_said_first() -> None:
