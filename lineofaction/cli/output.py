@@ -98,7 +98,7 @@ def table(
     """
     width = console().width
     cells = [[row[k] for row in rows] for k in range(len(columns))]
-    cells = [own if name in words else _aligned(own) for name, own in zip(columns, cells, strict=True)]
+    cells = [own if name in words else aligned(own) for name, own in zip(columns, cells, strict=True)]
     least = [_least(name, own, text=name in words) for name, own in zip(columns, cells, strict=True)]
     keys = max(1, next((k for k, name in enumerate(columns) if name not in words), 1))
     grids: list[Table | str] = []
@@ -123,7 +123,7 @@ _FIGURE = re.compile(r"([+-]?\d+)(\.\d+)?( ?[^\d.e].*)?")
 """A number and what stands behind it: a unit, its error."""
 
 
-def _aligned(cells: Sequence[str]) -> list[str]:
+def aligned(cells: Sequence[str]) -> list[str]:
     """Return cells of a column with blanks for the decimals that they lack of others."""
     figures = [_FIGURE.fullmatch(cell) for cell in cells]
     parts = [figure.groups("") for figure in figures if figure]

@@ -13,14 +13,14 @@ import numpy as np
 from bounds import engineering
 from fe_contact.ste import SteDatabase
 from lineofaction.cli.guard import warn
-from lineofaction.cli.output import FOUND, console, csv_text, print_json, table
+from lineofaction.cli.output import FOUND, aligned, console, csv_text, print_json, table
 from lineofaction.gearbox.convert.answers import curve_json, teeth_words
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import only, tables_in
 
 _FARTHEST = 1e6
 _SHOWN_ORDERS = 8
-_NAME, _NUMBER, _DECIMALS, _BAR, _SPARKS = 17, 9, 4, 16, 24
+_NAME, _DECIMALS, _BAR, _SPARKS = 17, 4, 16, 24
 _BLOCKS = "▁▂▃▄▅▆▇█"
 
 
@@ -118,14 +118,18 @@ def _answer(database: SteDatabase, file: Path, curve: dict[str, Any]) -> Iterato
         ("peak to peak", *_with_error(curve, "peak_to_peak_um")),
     ]
     known, unknown = _orders(curve)
-    errors = [error for _, _, error in (*figures, *known) if error]
-    decimals = max(map(_decimals, errors)) if errors else _DECIMALS
+    shown = (*figures, *known)
+    cells = aligned([_figure(value, error) for _, value, error in shown])
+    width = max(map(len, cells))
+    mean, ripple, *levels = (
+        f"  {name:<{_NAME}} {cell:>{width}}" for (name, *_), cell in zip(shown, cells, strict=True)
+    )
     largest = max((amplitude for _, amplitude, _ in known), default=1.0)
-    yield _figure(*figures[0], decimals).rstrip()
-    yield f"{_figure(*figures[1], decimals)}  {_sparkline(curve['ste_um'])}  two periods"
-    for line in known:
+    yield mean.rstrip()
+    yield f"{ripple}  {_sparkline(curve['ste_um'])}  two periods"
+    for words, line in zip(levels, known, strict=True):
         level, bar = 20.0 * math.log10(line[1]), "█" * round(_BAR * line[1] / largest)
-        yield f"{_figure(*line, decimals)}   {level:6.1f} dB re 1 µm  {bar}".rstrip()
+        yield f"{words}   {level:6.1f} dB re 1 µm  {bar}".rstrip()
     if unknown:
         orders = ", ".join(name for name, _, _ in unknown)
         below = max(error for _, _, error in unknown if error)
@@ -151,17 +155,12 @@ def _with_error(curve: dict[str, Any], name: str) -> tuple[Any, Any]:
     return curve[name], curve.get(name.replace("_um", "_error_um"))
 
 
-def _decimals(error: float) -> int:
-    """Return the decimals of the two digits that an error has."""
-    return max(1 - math.floor(math.log10(error)), 0)
-
-
-def _figure(name: str, value: float, error: float | None, most: int) -> str:
-    """Write a figure to the digits of its error, below those with the `most` decimals."""
-    own = _decimals(error) if error else most
-    room = most - own + (own == 0 < most)
-    band = "(error not estimated)" if error is None else f"± {error:.{own}f} µm{' ' * room}"
-    return f"  {name:<{_NAME}} {value:{_NUMBER - room}.{own}f}{' ' * room} {band}"
+def _figure(value: float, error: float | None) -> str:
+    """Write a figure to the digits of its error."""
+    if error is None:
+        return f"{value:.{_DECIMALS}f} (error not estimated)"
+    places = max(1 - math.floor(math.log10(error)), 0) if error else _DECIMALS
+    return f"{value:.{places}f} ± {error:.{places}f} µm"
 
 
 def _orders(curve: dict[str, Any]) -> tuple[list[_Line], list[_Line]]:
