@@ -237,7 +237,6 @@ def load_distribution(
     misalignment: float = 0.0,
     center_distance_change: float = 0.0,
     metadata: Metadata | None = None,
-    pressed: tuple[FloatArray, BoolArray] | None = None,
 ) -> LoadDistribution:
     """Lay out a contact solution by pair and place along the face.
 
@@ -253,15 +252,12 @@ def load_distribution(
         What the solution was made for, m; kept in the scene.
     metadata : Metadata, optional
         Kept as it is.
-    pressed : (ndarray, ndarray), shapes (P, L, n), optional
-        The `contact_pressure` of the solution, if it is known.
     """
     candidates = problem.candidates
     face = candidates.face_position[candidates.pair == candidates.pair[0]]
     shape = (candidates.position.size, -1, face.size)
     force = solution.force[:, load]
-    known = None if pressed is None else (pressed[0][:, load], pressed[1][:, load])
-    pressure, edge = known or contact_pressure(problem, force[:, None])
+    pressure, edge = contact_pressure(problem, force[:, None])
     gap = _loaded_gap(problem, force, solution.deflection[:, load])
     phase = candidates.position - np.floor(candidates.position)
     nominal, _ = pair.roll_lengths(phase[:, None], candidates.pair)

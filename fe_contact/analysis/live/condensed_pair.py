@@ -162,6 +162,11 @@ KEPT_DISTANCES = 2
 """Changes of the center distance at which the compliance stays assembled."""
 
 
+@dataclass
+class _Latest:
+    preview: SolvedOperatingPoint | None = None
+
+
 @dataclass(frozen=True)
 class CondensedPair:
     """Gears with their compliance, as a table had them.
@@ -180,7 +185,7 @@ class CondensedPair:
     contacts: CondensedContacts
     neglected: Mapping[str, str] = field(default_factory=dict)
     _apart: OrderedDict[float, CondensedContacts] = field(default_factory=OrderedDict, repr=False)
-    _previews: dict[str, SolvedOperatingPoint] = field(default_factory=dict, repr=False)
+    _latest: _Latest = field(default_factory=_Latest, repr=False)
 
     @property
     def contact(self) -> PairContact:
@@ -256,10 +261,10 @@ class CondensedPair:
         with clock.stage("contact"):
             contacts.touch(model, sample)
             # what stays is solved from the beginning: it does not depend on what came before
-            solved = _solved(checked, plan, points, nodes, self._previews.get("last") if preview else None)
+            solved = _solved(checked, plan, points, nodes, self._latest.preview if preview else None)
             if preview:
-                self._previews["last"] = solved
-            kept = KeptContact.of(solved.pair, solved.problem, solved.solution, solved.pressed)
+                self._latest.preview = solved
+            kept = KeptContact.of(solved.pair, solved.problem, solved.solution)
             table = assembled_table(checked.request, points, nodes, [kept], [])
         with clock.stage("error estimate"):
             stated = unassessed_table(table, points, plan) if preview else None

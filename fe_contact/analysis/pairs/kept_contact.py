@@ -62,15 +62,9 @@ class KeptContact:
     edge_depth: FloatArray
 
     @classmethod
-    def of(
-        cls,
-        pair: ParallelAxes,
-        problem: ContactProblem,
-        solution: ContactSolution,
-        pressed: tuple[FloatArray, BoolArray] | None = None,
-    ) -> KeptContact:
+    def of(cls, pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> KeptContact:
         """Return all that there is of a solution, edges left aside; see `contact_fields`."""
-        fields = contact_fields(pair, problem, solution, pressed)
+        fields = contact_fields(pair, problem, solution)
         return cls(problem, solution, fields, np.zeros(solution.load.size))
 
 

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 from fe_contact.analysis.pairs.pair_contact import OperatingPoints, PairContact
 from fe_contact.analysis.pairs.tip_edges import edge_depth
 from fe_contact.analysis.request.request import Checked
-from fe_contact.contact import ContactProblem, ContactSolution, contact_pressure
+from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.plan import Plan
-from fe_contact.types import BoolArray, FloatArray
+from fe_contact.types import FloatArray
 
 Solved = list[tuple[ContactProblem, ContactSolution]]
 """Of every place; of several base pitches of a table the problem and the forces are those of the first."""
@@ -67,8 +66,3 @@ class SolvedOperatingPoint(SolvedRun):
     def solution(self) -> ContactSolution:
         """Its solution at all positions and loads."""
         return self.solved[0][1]
-
-    @cached_property
-    def pressed(self) -> tuple[FloatArray, BoolArray]:
-        """Its `contact_pressure`."""
-        return contact_pressure(self.problem, self.solution.force)

@@ -288,7 +288,7 @@ def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput) -> Jso
 
     @cache
     def loaded(k: int) -> LoadDistribution:
-        return load_distribution(solved.pair, solved.problem, solved.solution, k, pressed=solved.pressed)
+        return load_distribution(solved.pair, solved.problem, solved.solution, k)
 
     def on_flanks() -> Iterator[Json]:
         return (_flanks_json(loaded(k)) for k in range(table.force.size))

@@ -107,7 +107,7 @@ def test_a_preview_is_every_other_position_of_the_table_without_errors(cache: Pa
 @pytest.mark.parametrize("model", ["plane_strain", "3d"])
 def test_a_preview_is_found_from_the_one_before_but_does_not_depend_on_it(cache: Path, model: str) -> None:
     pair, relieved = condensed(PAIR, cache, model), with_flank(PAIR, RELIEF)
-    pair._previews.clear()
+    pair._latest.preview = None
     _, alone = pair.solve_table(relieved, TORQUES, preview=True)
     pair.solve_table(PAIR, 0.9 * np.array(TORQUES), preview=True)
     _, after = pair.solve_table(relieved, TORQUES, preview=True)
@@ -118,7 +118,7 @@ def test_a_preview_is_found_from_the_one_before_but_does_not_depend_on_it(cache:
 
 def test_a_preview_after_one_of_almost_the_same_flanks_takes_fewer_iterations(cache: Path) -> None:
     pair, relieved = condensed(PAIR, cache, "3d"), with_flank(PAIR, RELIEF)
-    pair._previews.clear()
+    pair._latest.preview = None
     _, alone = pair.solve_table(relieved, TORQUES, preview=True)
     near = with_flank(PAIR, replace(RELIEF, tip_relief=1.05 * RELIEF.tip_relief))
     pair.solve_table(near, TORQUES, preview=True)
