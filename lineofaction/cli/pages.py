@@ -264,6 +264,6 @@ def run_compare(
         found = {line.name: {"difference": line.value, "finding": line.remark} for line in page.headlines}
         print_json({"file": str(output), "differences": found})
         return
-    for line in page.headlines:
-        console().print(f"{line.name}: {line.value}: {line.remark}", soft_wrap=True)
-    console().print(f"written to {output}", soft_wrap=True)
+    said = (f"{line.name}: {line.value}: {line.remark}" for line in page.headlines)
+    for line in (*said, page.lead, f"written to {output}"):
+        console().print(line, soft_wrap=True)

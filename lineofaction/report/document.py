@@ -173,7 +173,8 @@ def file_attributes(file: Path) -> dict[str, str]:
     Raises `BadInput`: the file is missing or no netCDF-4 file.
     """
     if not file.is_file():
-        raise BadInput.of("file", str(file), _BOUND, "There is no such file. Check the path.")
+        what = "It is a folder" if file.is_dir() else "There is no such file"
+        raise BadInput.of("file", str(file), _BOUND, f"{what}. Check the path.")
     if file.suffix == ".json":
         advice = "JSON is for programs. Name the netCDF file: the verb writes it with -o FILE.nc."
         raise BadInput.of("file", str(file), _BOUND, advice)

@@ -440,8 +440,9 @@ def _compare(
     files: Annotated[
         list[Path],
         typer.Argument(
-            help="Two STE databases, two runs, or one of them and a measurement (CSV, UFF); with --scene the "
-            "case files of the flanks before and after, or after alone: before are the scene's."
+            help="Two STE databases, two runs, or one of them and a measurement (CSV, UFF); two folders: the "
+            "databases and runs that both have by name; with --scene the case files of the flanks before and "
+            "after, or after alone: before are the scene's."
         ),
     ],
     output: Annotated[Path, to_file("Page to write.")] = Path("comparison.html"),

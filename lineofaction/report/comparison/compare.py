@@ -17,7 +17,9 @@ from dynamics.results import RunResult
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.project import results_in
 from lineofaction.gearbox.result_files import stamped
+from lineofaction.report.binding import bound
 from lineofaction.report.comparison.measured import (
     COLORS,
     Difference,
@@ -29,7 +31,13 @@ from lineofaction.report.comparison.measured import (
     read_measured,
 )
 from lineofaction.report.comparison.of_tables import compare_tables
-from lineofaction.report.document import of_the_store, page_json, read_result
+from lineofaction.report.document import (
+    file_attributes,
+    of_the_store,
+    page_json,
+    read_result,
+    stored_study,
+)
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
     Axis,
@@ -235,21 +243,52 @@ def _values(function: Dataset, scale: Dataset) -> FloatArray:
     return np.asarray(function["data"]) * (per_si / own)
 
 
-_BOUND = "two results of one kind, or one and a measurement (CSV, universal file)"
+_BOUND = "two results of one kind, two folders, or one result and a measurement (CSV, universal file)"
 _ADVICE = "For example: loa compare before.nc after.nc, or loa compare ste.nc measured.csv"
 
 
 def compare(files: Sequence[Path], view: RunView, torque: float | None = None) -> Page:
     """Compare one or two tables or runs, and what was measured where one of them is a measurement.
 
-    Raises `BadInput`: the files are not one or two of a kind with at most one measurement, are damaged, or do
-    not hold what is to be compared.
+    Of two folders the tables and runs that both have by name. Raises `BadInput`: the files are not one or two
+    of a kind with at most one measurement, are damaged, or do not hold what is to be compared.
     """
+    folders = [file for file in files if file.is_dir()]
+    if folders == list(files) and len(files) == 2:
+        return _compare_folders(folders, view, torque)
+    if folders:
+        advice = f"Of a folder name the file: {', '.join(map(str, results_in(folders[0]))) or _ADVICE}."
+        raise BadInput.of("files", ", ".join(map(str, files)), _BOUND, advice)
     measured = [file for file in files if file.suffix.lower() in (".csv", *ENDINGS)]
     results = dict(named_files([file for file in files if file not in measured]))
     if len(measured) > 1 or not results or not len(results) + len(measured) >= 2 or len(results) > 2:
         raise BadInput.of("files", ", ".join(map(str, files)) or None, _BOUND, _ADVICE)
     return _compare_results(results, view, measured, torque)
+
+
+def _compare_folders(folders: Sequence[Path], view: RunView, torque: float | None) -> Page:
+    held = {name: _comparable(folder) for name, folder in named_files(folders)}
+    first, second = held.values()
+    if not (shared := [name for name in first if name in second]):
+        what = "; ".join(f"{folder} has {', '.join(own) or 'none'}" for folder, own in held.items())
+        kind = "two folders with an STE database or a run of one name"
+        raise BadInput.of("files", what, kind, f"Name two files. {_ADVICE}")
+    pages = {
+        name.replace("_", " "): _compare_results(
+            {folder: own[name] for folder, own in held.items()}, view, torque=torque
+        )
+        for name in shared
+    }
+    alone = sorted(first.keys() ^ second.keys())
+    rest = f"; in one folder alone: {', '.join(alone)}" if alone else ""
+    page = bound(pages)
+    return replace(page, title=f"{' and '.join(held)} compared", lead=f"{page.lead}{rest}")
+
+
+def _comparable(folder: Path) -> dict[str, Path]:
+    """Return the tables and runs in a folder by their names."""
+    own = {file.relative_to(folder).with_suffix("").as_posix(): file for file in results_in(folder)}
+    return {name: file for name, file in own.items() if stored_study(file_attributes(file)) is None}
 
 
 def _compare_results(
@@ -297,7 +336,7 @@ def named_files(files: Sequence[Path]) -> list[tuple[str, Path]]:
     """Name results by their files: as short as tells them apart."""
     stems = [file.stem for file in files]
     short = len(set(stems)) == len(stems)
-    return [(file.stem if short else str(file), file) for file in files]
+    return [((short and file.stem) or str(file), file) for file in files]
 
 
 NAMES = ("first", "second")

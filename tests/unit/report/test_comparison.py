@@ -30,6 +30,7 @@ from lineofaction.report.comparison.measured import (
     read_measured,
 )
 from lineofaction.report.comparison.of_tables import compare_tables
+from lineofaction.report.document import read_result
 from lineofaction.report.run.view import RunView
 
 X = np.arange(PER_PITCH) / PER_PITCH
@@ -171,6 +172,40 @@ def test_files_are_compared_by_what_they_hold(database: SteDatabase, run: RunRes
     for files in ([ste], [ste, motion], [measured], [ste, ste, ste], [motion, measured]):
         with pytest.raises(BadInput):
             compare(files, RunView())
+
+
+def test_of_two_folders_what_both_have_by_name_is_compared(
+    database: SteDatabase, run: RunResult, tmp_path: Path
+) -> None:
+    before, after = tmp_path / "before", tmp_path / "after"
+    for folder in (before, after):
+        folder.mkdir()
+        database.to_netcdf(folder / "first_stage.nc")
+        run.to_netcdf(folder / "run.nc")
+    database.to_netcdf(before / "second_stage.nc")
+    louder = replace(run, bearing_force=2.0 * run.bearing_force)
+    louder.to_netcdf(after / "run.nc")
+    page = compare([before, after], RunView())
+    assert page.title == "before and after compared"
+    assert page.lead.endswith("in one folder alone: second_stage")
+    said = {line.name: line.remark for line in page.headlines}
+    assert said["peak to peak at 100 N m, first stage"] == "not shown to differ"
+    assert "overall, run" in said
+    alone = compare([before / "run.nc", after / "run.nc"], RunView())
+    assert [line.value for line in alone.headlines] == [
+        line.value for line in page.headlines if line.name.endswith(", run")
+    ]
+    (after / "first_stage.nc").rename(after / "stage.nc")
+    (after / "run.nc").unlink()
+    with pytest.raises(
+        BadInput, match=r"before has first_stage, run, second_stage; after has stage.*one name"
+    ):
+        compare([before, after], RunView())
+    for files in ([before], [before, after / "stage.nc"], [before, before, after]):
+        with pytest.raises(BadInput, match=r"two folders.*Of a folder name the file: .*first_stage\.nc"):
+            compare(files, RunView())
+    with pytest.raises(BadInput, match="It is a folder"):
+        read_result(before)
 
 
 with warnings.catch_warnings():
