@@ -20,6 +20,7 @@ from page_visit import (
     moved,
     opened,
     other_browser,
+    refused,
     shown,
     tab,
 )
@@ -459,3 +460,25 @@ def test_a_complaint_that_is_typed_while_a_unit_opens_is_kept(visit: Visit) -> N
     expect(page.locator("#f-complaint-frequency_hz")).to_have_value("933")
     page.locator("#bar-frequency_hz").fill("1300")
     expect(page.locator("#unit-heard")).to_contain_text("at 933.3 Hz: no harmonic near")
+
+
+@pytest.mark.law
+def test_what_another_mesh_of_a_unit_makes_is_not_submitted_with_the_open_pair(visit: Visit) -> None:
+    """The plan, Analyze and studies of the pair are as without it; the bar and the address keep it."""
+    page = visit.page
+    page.locator("#import-file").set_input_files(UNIT)
+    expect(page.locator("#f-pair-pinion-teeth")).to_have_value("20")
+    for frequency, submitted in (("1300", False), ("933", True)):  # 20 teeth at 2800 rpm: 933 Hz
+        typed(page, frequency_hz=frequency, speed_rpm="2800")
+        expect(page.locator("#unit-heard")).to_contain_text(re.compile(rf"^At {frequency}\b"))
+        for _ in range(2):
+            expect(page.locator("#plan")).to_contain_text("of one processor")
+            expect(page.locator("#form-errors")).to_be_hidden()
+            for process, name in (("analyze", "Analyze"), ("optimize", "Search better flanks")):
+                with refused(page, process) as sent:
+                    page.get_by_role("button", name=name).first.press("Enter")
+                    until(lambda sent=sent: page.wait_for_timeout(20) or sent)
+                assert ("complaint" in sent[0]["case"]) == submitted
+            until(lambda frequency=frequency: bar(page)["frequency_hz"] == frequency)
+            page.reload()
+            page.wait_for_selector("html[data-ready=yes]")

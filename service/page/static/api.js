@@ -62,11 +62,13 @@ export async function get(path) {
   return read(await answer(await asked(path)));
 }
 
-/** @param {AbortSignal} [signal] gives the request up */
-export async function post(path, body, signal) {
-  const headers = { "Content-Type": "application/json" };
-  return read(await answer(await asked(path, { method: "POST", headers, body: JSON.stringify(body), signal })));
-}
+/** @returns {(path: string, body: object, signal?: AbortSignal) => Promise<any>} a request with a body, which the signal gives up */
+const sending = (method) => async (path, body, signal) => read(await answer(await asked(path, {
+  method, headers: { "Content-Type": "application/json" }, body: JSON.stringify(body), signal,
+})));
+
+export const post = sending("POST");
+export const patch = sending("PATCH");
 
 /**
  * Ask about what is being typed: `outline`, `to-toml`, `as-made`, `plan`, `HASH/ste`. What is wrong with it is an answer of the service,
@@ -76,11 +78,6 @@ export async function ask(question, body, signal) {
   const found = await post(`/v1/drafts/${question}`, body, signal);
   if (found.faults) throw new Problem({ detail: found.detail, errors: found.faults });
   return found;
-}
-
-export async function patch(path, body) {
-  const headers = { "Content-Type": "application/json" };
-  return read(await answer(await asked(path, { method: "PATCH", headers, body: JSON.stringify(body) })));
 }
 
 export async function dismiss(path) {

@@ -3,6 +3,7 @@
 
 import { ask, guarded } from "./api.js";
 import { differences } from "./comparison.js";
+import { heardIn } from "./complaint.js";
 import { retype } from "./controls.js";
 import { Drawing } from "./drawing.js";
 import { button, byId, make } from "./elements.js";
@@ -11,7 +12,7 @@ import { noPlan, showPlan } from "./plan.js";
 import { View } from "./view.js";
 
 export const SETTLED = 350; // milliseconds without an edit after which the case is planned and drawn
-const EMPTY = { name: "empty", title: "Empty fields, to type a pair", note: "", case: {} };
+export const EMPTY = { name: "empty", title: "Empty fields, to type a pair", note: "", case: {} };
 const PLANE = /^plane/;
 const BESIDE = ["complaint", "report"]; // no curve depends on them
 
@@ -46,6 +47,13 @@ export class Design {
 
   get case() {
     return this.form.case;
+  }
+
+  /** A case as it is submitted: of the pair of a unit without a complaint that another mesh is heard by. @param {any} [content] left out: as typed */
+  submitted(content = this.case) {
+    const { order, harmonic } = heardIn(content);
+    const elsewhere = this.address.views.has("unit") && Number.isFinite(order) && !harmonic;
+    return elsewhere ? { ...content, complaint: undefined } : content;
   }
 
   /** What it is called. */
@@ -88,16 +96,8 @@ export class Design {
     return this.examples[0];
   }
 
-  begin() {
-    this.offered(this.example);
-  }
-
-  /** No design: there is none for what the address names. */
-  empty() {
-    this.offered(EMPTY);
-  }
-
-  offered({ name, note, case: content }) {
+  /** Begin with a pair of the list. */
+  begin({ name, note, case: content } = this.example) {
     this.show(content, { example: name, note });
   }
 
@@ -179,7 +179,7 @@ export class Design {
     clearTimeout(this.timer);
     this.looking?.abort();
     const { signal } = (this.looking = new AbortController());
-    const body = { inputs: { case: this.form.case } };
+    const body = { inputs: { case: this.submitted() } };
     let drawn = false;
     await guarded(async () => {
       const outline = await ask("outline", body, signal);

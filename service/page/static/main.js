@@ -8,7 +8,7 @@ import { layOut } from "./bench.js";
 import { CaseFiles } from "./case_files.js";
 import { typedIn } from "./controls.js";
 import { Complaint } from "./complaint.js";
-import { Design } from "./design.js";
+import { Design, EMPTY } from "./design.js";
 import { byId } from "./elements.js";
 import { referenceOf } from "./job.js";
 import { Jobs } from "./jobs.js";
@@ -147,7 +147,7 @@ class Page {
     else if (pair) this.design.show(pair, { example: "", note: "The pair of this address." });
     else if (!names.size && !faults.length) this.design.begin();
     else {
-      this.design.empty();
+      this.design.begin(EMPTY); // there is no design for what the address names
       if (!orders.length) sayMissing("The fields of the gear pair are left empty.");
     }
   }
@@ -241,7 +241,7 @@ class Page {
   }
 
   analyze() {
-    this.analysis.submit("analyze", { case: this.design.case }, { expected: this.design.expected });
+    this.analysis.submit("analyze", { case: this.design.submitted() }, { expected: this.design.expected });
   }
 
   /** A job has ended with a table: that is what the address names in its place from now on. */

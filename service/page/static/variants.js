@@ -175,7 +175,7 @@ export class Variants {
       if (!signal.aborted) await this.page.results.live.restored();
     }, (problem) => signal.aborted || showFailure(node, problem));
     const analyze = async () => {
-      const { jobID } = await submitted(node, "analyze", { inputs: { case: content }, title: this.address.views.get("name") ?? "" });
+      const { jobID } = await submitted(node, "analyze", { inputs: { case: this.design.submitted(content) }, title: this.address.views.get("name") ?? "" });
       if (!signal.aborted) this.address.look(name, jobID);
     };
     if (job) again(() => followed(node, job, { signal }));
