@@ -243,9 +243,10 @@ class NodeRule:
 
     def for_tolerance(self, allowed: AllowedError) -> NodeRule:
         """Return the rule by which positions take their share of a tolerance, and no more than usual."""
-        closer = min(max(POSITION_SHARE * allowed.relative / self.tolerance, CLOSEST), 1.0)
+        asked = POSITION_SHARE * allowed.relative / self.tolerance
+        closer = min(max(asked, CLOSEST), 1.0)
         most = round(self.most / math.sqrt(closer))
-        least = FLOOR_SHARE * allowed.least_scale
+        least = FLOOR_SHARE * allowed.least_scale * asked / closer  # the floor is as asked, however close
         return replace(self, tolerance=closer * self.tolerance, most=most, least_ripple=least)
 
     def ripple(self, curves: FloatArray) -> FloatArray:

@@ -239,6 +239,14 @@ def test_positions_are_placed_by_the_floor_of_the_tolerance():
     )
 
 
+def test_positions_leave_the_same_part_of_a_floor_by_every_tolerance():
+    """A looser tolerance with the same floor asks for no more positions of a quiet pair."""
+    for usual in (PLANE_NODES, FACE_NODES):
+        rules = [usual.for_tolerance(AllowedError(t, 20 * NM)) for t in (0.2, 0.03, 0.01, 3e-3, 1e-4)]
+        left = [rule.tolerance * rule.least_ripple for rule in rules]
+        assert left == pytest.approx([FLOOR_SHARE * POSITION_SHARE * 20 * NM] * 5)
+
+
 def test_the_receipt_holds_the_measured_errors_against_it(tmp_path):
     """Met is what every stated error keeps, and not what was expected of the mesh."""
     spur = GearPair(*[Gear(20, 2e-3, 12e-3, 20e-3)] * 2, 40e-3)
