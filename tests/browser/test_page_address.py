@@ -27,7 +27,7 @@ from lineofaction.gearbox.schemas import Case, validated
 
 LONG = CASE | {"accuracy": {"level": "fine", "model": "3d", "positions": 512}}
 NOWHERE = "11111111-1111-4111-8111-111111111111"
-EDITED = "Edited since: pinion tip relief 0 µm → 7 µm"
+EDITED = "Edited since: pinion tip relief 0 → 7 µm"
 
 
 def type_relief(page: Page) -> None:

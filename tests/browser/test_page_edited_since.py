@@ -22,14 +22,14 @@ EDITED = """async ([typed, completed]) => {
   const [{ leaves, at, put }, { Field }, { differences }] = await Promise.all(
     ["schema", "field", "comparison"].map((name) => import(`/page/${name}.js`)));
   const { schema } = (await (await fetch("/v1/processes/analyze")).json()).inputs.case;
-  const fields = leaves(schema, schema).map((leaf) => new Field(leaf, leaf.path.at(-1)));
+  const fields = leaves(schema, schema).map((leaf) => new Field(leaf));
   const content = {};
   for (const field of fields) {
     field.value = at(typed, field.path);
     if (field.value !== undefined) put(content, field.path, field.value);
   }
   const found = differences(fields, completed, content);
-  return [content, found.map(({ field, before, now }) => [field.key, before, now])];
+  return [content, found.map(({ field, text }) => [field.key, text])];
 }"""
 
 

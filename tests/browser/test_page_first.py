@@ -42,7 +42,7 @@ def test_the_first_example_stands_there_with_its_errors_when_the_page_opens(
     assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)
     assert [line for line in visit.console if line.startswith("error")] == [], "nothing was refused either"
     control(page, "#f-pair-pinion-tip_relief_um").fill("12")
-    expect(page.locator("#results-design")).to_contain_text("pinion tip relief 8 µm → 12 µm")
+    expect(page.locator("#results-design")).to_contain_text("pinion tip relief 8 → 12 µm")
     expect(page).to_have_url(re.compile("#case="))
     tab(page, "Flank")
     expect(page.locator("[data-figure=live_pressure] .plot")).to_have_attribute("data-drawn", "yes")

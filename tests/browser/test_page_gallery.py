@@ -6,6 +6,7 @@ import json
 import math
 import re
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 from page_visit import CASE, Visit, found_inaccessible, opened, served, tab
@@ -62,16 +63,39 @@ def test_a_card_has_the_ripple_and_the_figures_of_its_table(
     assert not [url for url in seen.requests if "/v1/results/" in url or url.endswith("/results")]
 
 
+LABELLED = """async (differences) => {
+  const { label } = await import("/page/job_label.js");
+  return label({ title: "", subject: "", processID: "flank", tags: [], differences })[1]?.textContent;
+}"""
+CALLED = """() => [...document.querySelectorAll("#case-form :is(input, select)[name]")].map(
+  (control) => [control.name, control.labels[0]?.textContent ?? control.ariaLabel])"""
+
+
+def labelled(seen: Visit, *first: dict[str, Any]) -> str:
+    said: str = seen.page.evaluate(LABELLED, {"since": "x", "first": list(first), "number": len(first)})
+    return said
+
+
 def test_differences_that_read_alike_are_counted_only(seen: Visit) -> None:
-    labelled = """async (differences) => {
-      const { label } = await import("/page/job_label.js");
-      return label({ title: "", subject: "", processID: "flank", tags: [], differences })[1]?.textContent;
-    }"""
     alike = {"field": "scene.housings[0].step_file", "before": "text of 9 bytes", "value": "text of 9 bytes"}
     other = {"field": "case.load.torque_n_m", "before": [80], "value": [20, 80]}
-    for first, said in (([alike, other], "load.torque_n_m 80 → 20, 80; 1 more"), ([alike], "1 more")):
-        facts = {"since": "x", "first": first, "number": len(first)}
-        assert seen.page.evaluate(labelled, facts) == said
+    assert labelled(seen, alike, other) == "torque 80 → 20, 80 N m; 1 more"
+    assert labelled(seen, alike) == "1 more"
+
+
+@pytest.mark.law
+def test_a_card_calls_a_field_as_the_form_does(seen: Visit) -> None:
+    fields = seen.page.evaluate(CALLED)
+    assert len(fields) > 100
+    for name, text in fields:
+        words, *more = text.split(", ")
+        gear = f"{more.pop()} " if more[-1:] in (["pinion"], ["wheel"]) else ""
+        said = f"{gear}{words[0].lower()}{words[1:]} 1 → 1.9 {''.join(more)}".strip()
+        assert labelled(seen, {"field": f"case.{name}", "before": 1, "value": 1.9}) == said
+    module = {"field": "case.pair.normal_module_mm", "before": 1, "value": None}
+    assert labelled(seen, module) == "normal module 1 mm → not set"
+    shaft = {"field": "scene.shafts[0].length_mm", "before": None, "value": 90}
+    assert labelled(seen, shaft) == "shafts 1 length not set → 90 mm"
 
 
 def test_a_design_that_was_computed_twice_is_shown_once(

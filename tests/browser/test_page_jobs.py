@@ -49,7 +49,7 @@ def test_the_jobs_of_a_batch_are_shown_beneath_it(visit: Visit, address: str) ->
     row.get_by_role("button", name=re.compile("^Show jobs")).press("Enter")
     inner = page.locator("#jobs-rows .inner")
     expect(inner).to_have_count(2)
-    expect(inner.nth(1)).to_contain_text("load.torque_n_m 0.5 → 0.75")
+    expect(inner.nth(1)).to_contain_text("torque 0.5 → 0.75 N m")
     assert not (told := found_inaccessible(page, "#jobs")), json.dumps(told, indent=1)
     inner.nth(1).get_by_role("button", name=re.compile("^Open analyze")).press("Enter")
     expect(page).to_have_url(re.compile("#database="))
@@ -109,7 +109,7 @@ def test_a_job_tells_what_sets_it_apart(visit: Visit, address: str) -> None:
         for torques in ([0.5, 1.0], [0.5]):
             client.submit("analyze", {"case": CASE | {"load": {"torque_n_m": torques}}})
     page.reload()
-    expect(page.locator("#jobs-rows li").first).to_contain_text("load.torque_n_m 0.5, 1 → 0.5")
+    expect(page.locator("#jobs-rows li").first).to_contain_text("torque 0.5, 1 → 0.5 N m")
 
 
 def test_a_job_under_way_outlasts_a_service_that_is_away(visit: Visit, address: str, tmp_path: Path) -> None:

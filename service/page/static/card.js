@@ -13,7 +13,7 @@ import { at, put, resolved, same } from "./schema.js";
 function fieldsOf({ title, fields }) {
   const part = `study-${title.replaceAll(" ", "-")}`;
   return Object.entries(fields).map(([name, schema]) => (
-    new Field({ path: name.split("."), ...resolved(schema, schema) }, schema.title, part)));
+    new Field({ path: name.split("."), label: schema.title, ...resolved(schema, schema) }, part)));
 }
 
 /** A field under its label. @param {Field} field */

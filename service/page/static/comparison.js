@@ -4,7 +4,7 @@
 import { at } from "./schema.js";
 
 /** @typedef {import("./field.js").Field} Field */
-/** @typedef {{field: Field, words: string, before: string, now: string}} Difference */
+/** @typedef {{field: Field, text: string}} Difference in words, none where they read alike */
 
 /** What a field has in a case; left out, what the service takes. @param {Field} field @param {object} content */
 function valueIn({ path, schema }, content) {
@@ -23,7 +23,6 @@ function valueIn({ path, schema }, content) {
  */
 export function differences(fields, before, now) {
   const textIn = (field, content) => field.textOf(valueIn(field, content)); // of tables as they are typed, without what is left out
-  return [...fields].filter((field) => textIn(field, before) !== textIn(field, now)).map((field) => ({
-    field, words: field.words, before: field.wordsFor(at(before, field.path)), now: field.wordsFor(at(now, field.path)),
-  }));
+  return [...fields].filter((field) => textIn(field, before) !== textIn(field, now)).map((field) => (
+    { field, text: field.change(at(before, field.path), at(now, field.path)) }));
 }

@@ -115,7 +115,7 @@ export class Design {
     if (another) byId("name").value = name;
     this.left();
     const replaced = differences(this.fields, this.case, content).filter(({ field }) => field.path[0] !== "pair");
-    const changes = replaced.filter(({ before, now }) => before !== now).map(({ words, before, now }) => `${words} ${before} → ${now}`);
+    const changes = replaced.map(({ text }) => text).filter(Boolean);
     this.show(content, { example, note, replaced: changes.length ? `Settings replaced with it: ${changes.join(", ")}.` : "" });
     this.settled();
     this.address.keep(this.address.typed());

@@ -39,8 +39,8 @@ export class DesignNote {
 
 /** @param {any} content @param {import("./comparison.js").Difference[]} changes */
 function sentence({ pair }, changes) {
-  const shown = changes.slice(0, MOST).map(({ words, before, now }) => `${words} ${before} → ${now}`);
-  const more = changes.length > MOST ? `, and ${changes.length - MOST} more` : "";
+  const shown = changes.map(({ text }) => text).filter(Boolean).slice(0, MOST);
+  const more = changes.length > shown.length ? `, and ${changes.length - shown.length} more` : "";
   return `Of the design ${pair.pinion.teeth}/${pair.wheel.teeth}, module ${pair.normal_module_mm} mm, as it was computed. `
     + `Edited since: ${shown.join(", ")}${more}.`;
 }

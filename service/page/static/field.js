@@ -9,18 +9,31 @@ const UNITS = [
   ["_g_mm", "g mm"], ["_mm", "mm"], ["_nm", "nm"],
   ["_um", "µm"], ["_rpm", "rpm"], ["_km_h", "km/h"], ["_hz", "Hz"], ["_percent", "%"], ["_n", "N"], ["_s", "s"],
 ];
-const NONE = "not set";
+export const GEARS = ["pinion", "wheel"];
+export const NONE = "not set";
 const READ = 40; // characters of a list in a sentence
 
-export function unitOf(name) {
-  return (UNITS.find(([suffix]) => name.endsWith(suffix)) || ["", ""])[1];
-}
+const endOf = (name) => UNITS.find(([suffix]) => name.endsWith(suffix)) ?? ["", ""];
+export const unitOf = (name) => endOf(name)[1];
 
 export function wordsOf(name) {
-  const suffix = (UNITS.find(([ending]) => name.endsWith(ending)) || [""])[0];
-  const bare = suffix ? name.slice(0, -suffix.length) : name;
-  const text = bare.replaceAll("_", " ");
+  const text = name.slice(0, name.length - endOf(name)[0].length).replaceAll("_", " ");
   return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
+/** A change in a sentence, its unit once; empty where both texts are the same. @param {string} words @param {string} unit @param {string[]} texts */
+export function changeIn(words, unit, before, now) {
+  const of = (text) => (text === NONE ? text : `${spokenChoice(text)} ${unit}`.trim());
+  return before === now ? "" : `${words} ${now === NONE ? of(before) : spokenChoice(before)} → ${of(now)}`;
+}
+
+/** What a field of a case is called. @param {string[]} path */
+const labelOf = (path) => (GEARS.includes(path[1]) ? path.slice(2).map(wordsOf).join(" · ") : wordsOf(path.at(-1)));
+
+/** The same in a sentence, with the gear that it belongs to. @param {string[]} path */
+export function wordsIn(path) {
+  const label = labelOf(path);
+  return `${GEARS.includes(path[1]) ? `${path[1]} ` : ""}${label.charAt(0).toLowerCase()}${label.slice(1)}`;
 }
 
 const spokenChoice = (text) => ({ true: "yes", false: "no" })[text] ?? text.replaceAll("_", " ");
@@ -50,14 +63,13 @@ const rowsIn = (text, columns) => text.split(";").filter((row) => row.trim()).ma
   (row) => Object.fromEntries(numbersIn(row).map((value, k) => [Object.keys(columns)[k] ?? `number ${k + 1}`, value])));
 
 export class Field {
-  /** @param {object} leaf of a schema @param {string} label @param {string} [part] of the page, in the id of the control */
-  constructor(leaf, label, part = "f") {
-    Object.assign(this, leaf);
+  /** @param {object} leaf of a schema, and its label if its path does not say it @param {string} [part] of the page, in the id of the control */
+  constructor(leaf, part = "f") {
+    Object.assign(this, { label: labelOf(leaf.path) }, leaf);
     this.key = leaf.path.join(".");
     this.id = `${part}-${this.key.replaceAll(".", "-")}`;
     this.name = leaf.path.at(-1);
     this.kind = kindOf(leaf.schema);
-    this.label = label;
     this.input = this.control();
     this.views = [this.input]; // controls that show it
     this.message = make("p", { class: "fault", id: `${this.id}-fault`, hidden: true });
@@ -71,12 +83,6 @@ export class Field {
     const full = this.schema.description || "";
     const text = full.replace(/,? in (mm|µm|deg|degrees|N m|GPa)\b/, "");
     return text.toLowerCase() === this.label.toLowerCase() ? "" : text;
-  }
-
-  /** The field's name in a sentence, with the gear that it belongs to. */
-  get words() {
-    const gear = ["pinion", "wheel"].includes(this.path[1]) ? `${this.path[1]} ` : "";
-    return `${gear}${this.label.charAt(0).toLowerCase()}${this.label.slice(1)}`;
   }
 
   get spoken() {
@@ -119,12 +125,10 @@ export class Field {
     return rows ?? (["rows", "json"].includes(this.kind) ? JSON.stringify(value) : String(value));
   }
 
-  /** A value as it is read in a sentence. */
-  wordsFor(value) {
-    const whole = this.textOf(value) || this.defaultText || NONE;
-    const text = whole.length > READ ? `${whole.slice(0, READ)}…` : whole;
-    const unit = unitOf(this.name);
-    return unit && text !== NONE ? `${text} ${unit}` : spokenChoice(text);
+  /** A change of its value in a sentence. */
+  change(...values) {
+    const texts = values.map((value) => this.textOf(value) || this.defaultText || NONE);
+    return changeIn(wordsIn(this.path), unitOf(this.name), ...texts.map((text) => (text.length > READ ? `${text.slice(0, READ)}…` : text)));
   }
 
   get value() {

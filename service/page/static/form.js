@@ -2,7 +2,7 @@
 
 import { ask, guarded } from "./api.js";
 import { byId, folded, make } from "./elements.js";
-import { Field, unitOf, wordsOf } from "./field.js";
+import { Field, GEARS, unitOf, wordsIn } from "./field.js";
 import { StartSwitch, isStart } from "./relief_start.js";
 import { at, leaves, ofFlank, put, resolved } from "./schema.js";
 import { reveal } from "./tabs.js";
@@ -12,7 +12,6 @@ const MAIN = new Set([
   "teeth", "face_width_mm", "bore_diameter_mm", "rim_diameter_mm", "profile_shift_coefficient", "tip_relief_um",
   "tip_relief_length_mm", "helix_crowning_um", "internal",
 ]);
-const GEARS = ["pinion", "wheel"];
 const TEETH = /^(addendum|dedendum|root_radius|tip_diameter|thickness|cutter)/;
 const AS_MADE = /^(single_pitch|pitch_deviation|run_out|waves|tooth_flanks)/;
 const GROUPS = {
@@ -55,8 +54,8 @@ export class CaseForm {
     document.addEventListener("typed", () => this.switches.forEach((one) => one.sync()));
   }
 
-  add(leaf, label) {
-    const field = new Field(leaf, label);
+  add(leaf) {
+    const field = new Field(leaf);
     this.fields.set(field.key, field);
     return field;
   }
@@ -73,7 +72,7 @@ export class CaseForm {
   }
 
   plain(title, name, schema, root, main = null) {
-    const found = leaves(schema, root, [name]).map((leaf) => this.add(leaf, wordsOf(leaf.path.at(-1))));
+    const found = leaves(schema, root, [name]).map((leaf) => this.add(leaf));
     const shown = main ? found.filter((field) => main.includes(field.name)) : found;
     const rest = found.filter((field) => !shown.includes(field));
     const grid = (fields) => make("div", { class: "fields" }, ...fields.map((field) => this.block(field)));
@@ -81,12 +80,10 @@ export class CaseForm {
   }
 
   pair(schema, root) {
-    const shared = Object.entries(schema.properties).filter(([name]) => !["pinion", "wheel"].includes(name));
-    const fields = shared.map(([name, inner]) => {
-      const leaf = { path: ["pair", name], ...resolved(inner, root), required: schema.required.includes(name) };
-      return this.block(this.add(leaf, wordsOf(name)));
-    });
-    const gears = ["pinion", "wheel"].map((gear) => new Map(
+    const shared = Object.entries(schema.properties).filter(([name]) => !GEARS.includes(name));
+    const fields = shared.map(([name, inner]) => (
+      this.block(this.add({ path: ["pair", name], ...resolved(inner, root), required: schema.required.includes(name) }))));
+    const gears = GEARS.map((gear) => new Map(
       leaves(schema.properties[gear], root, ["pair", gear]).map((leaf) => [leaf.path.slice(2).join("."), leaf]),
     ));
     const leaf = (name) => gears[0].get(name) ?? gears[1].get(name);
@@ -139,20 +136,15 @@ export class CaseForm {
   }
 
   ofGear(leaf, gear) {
-    const field = this.add(leaf, leaf.path.slice(2).map(wordsOf).join(" · "));
+    const field = this.add(leaf);
     field.input.setAttribute("aria-label", `${field.spoken}, ${gear}`);
     return field;
   }
 
   effects(effects) {
-    const fields = effects.map((effect) => {
-      const leaf = {
-        path: ["effects", effect.name],
-        schema: { enum: ["auto", "on", "off"], default: "auto", description: `Costs ${effect.cost}` },
-        nullable: false,
-      };
-      return this.block(this.add(leaf, wordsOf(effect.name)));
-    });
+    const fields = effects.map(({ name, cost }) => this.block(this.add({
+      path: ["effects", name], schema: { enum: ["auto", "on", "off"], default: "auto", description: `Costs ${cost}` }, nullable: false,
+    })));
     const note = make("p", { class: "hint" }, "auto: on where the case calls for it and the accuracy asked for needs it.");
     return node("Effects", make("div", { class: "fields" }, note, ...fields));
   }
@@ -219,7 +211,7 @@ export class CaseForm {
   }
 
   linked(fields) {
-    return fields.flatMap((field, k) => [k ? ", " : "", this.link(field, field.words)]);
+    return fields.flatMap((field, k) => [k ? ", " : "", this.link(field, wordsIn(field.path))]);
   }
 
   link(field, text) {

@@ -3,6 +3,7 @@
 
 import { patch, saidIn } from "./api.js";
 import { make } from "./elements.js";
+import { NONE, changeIn, unitOf, wordsIn, wordsOf } from "./field.js";
 
 /** @typedef {{field: string, before: unknown, value: unknown}} Difference */
 /** @typedef {{since: string | null, first: Difference[], number: number}} Differences */
@@ -22,14 +23,18 @@ export function label(job) {
 /** The differences from the job before in a line; those from the defaults are what the job is about. @param {Differences | null} differences */
 function apart(differences) {
   if (!differences?.since || !differences.number) return "";
-  const legible = differences.first.filter(({ before, value }) => written(before) !== written(value)); // not that a long text is another of its length
-  const shown = legible.slice(0, MOST).map(({ field, before, value }) => `${field.replace(/^(case|scene)\./, "")} ${written(before)} → ${written(value)}`);
+  const shown = differences.first.map(change).filter(Boolean).slice(0, MOST); // not that a long text is another of its length
   const more = differences.number - shown.length;
   return [...shown, ...(more ? [`${more} more`] : [])].join("; ");
 }
 
-/** @param {unknown} value */
-const written = (value) => (value === null ? "not set" : Array.isArray(value) ? value.join(", ") : String(value));
+/** A difference in the words of the form; of what it has no field for, in those of its path. @param {Difference} difference */
+function change({ field, before, value }) {
+  const [root, ...path] = field.replaceAll(/\[(\d+)\]/g, (_, k) => ` ${Number(k) + 1}`).split(".");
+  const words = root === "case" ? wordsIn(path) : [root, ...path].filter((name) => name !== "scene").map(wordsOf).join(" ").toLowerCase();
+  const texts = [before, value].map((each) => (each === null ? NONE : [each].flat().join(", ")));
+  return changeIn(words, unitOf(field), ...texts);
+}
 
 /** Ask for a title and give it to a job; what goes wrong is said in `line`. @param {Named} job @param {HTMLElement} line */
 export async function renamed(job, line) {

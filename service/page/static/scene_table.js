@@ -60,7 +60,7 @@ export class SceneTable {
     const used = (name) => required.includes(name) || this.opened.has(`${kind}.${name}`) || rows.some((row) => (row[name] ?? null) !== null);
     const names = Object.keys(properties).filter(used);
     const title = wordsOf(kind);
-    const heads = names.map((name) => make("th", { scope: "col", title: properties[name].description }, new Field(this.leaf([kind, 0, name]), wordsOf(name)).spoken));
+    const heads = names.map((name) => make("th", { scope: "col", title: properties[name].description }, new Field(this.leaf([kind, 0, name])).spoken));
     const body = rows.map((row, k) => make("tr", {}, ...names.map((name) => this.cell(listed ? [kind, k, name] : [kind, name], `${row.name ?? title}`)),
       listed ? make("td", { class: "buttons" }, ...this.buttons(kind, k)) : null));
     const left = Object.keys(properties).filter((name) => !used(name) && TYPED.includes(kindOf(this.leaf([kind, 0, name]).schema)));
@@ -75,7 +75,7 @@ export class SceneTable {
     const value = at(this.scene, path);
     const kind = kindOf(leaf.schema);
     if (!TYPED.includes(kind) || (kind === "list" && value?.length > SHORT)) return make("td", { class: "hint" }, inWords(path.at(-1), value));
-    const field = new Field(leaf, wordsOf(path.at(-1)), "scene");
+    const field = new Field(leaf, "scene");
     field.value = value;
     field.input.ariaLabel = `${field.spoken}, ${of}`;
     field.input.dataset.unkept = "";
