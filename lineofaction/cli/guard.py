@@ -106,12 +106,13 @@ _WHOLE = "\u00a0N\u00a0m"
 """A unit of two words, and the number before it, where lines break."""
 
 
-def in_lines(text: str, stream: IO[str]) -> str:
-    """Break a text for a terminal between words; a word longer than a line, as a path, and N m stay whole."""
-    width = get_terminal_size().columns if stream.isatty() else sys.maxsize
-    fitted = TextWrapper(width, break_long_words=False, break_on_hyphens=False)
+def in_lines(text: str, room: IO[str] | int) -> str:
+    """Break a text between words for a terminal or a width; a longer word, as a path, and N m stay whole."""
+    if not isinstance(room, int):
+        room = get_terminal_size().columns if room.isatty() else sys.maxsize
+    fitted = TextWrapper(room, break_long_words=False, break_on_hyphens=False)
     lines = (line.replace(" N m", _WHOLE) for line in text.splitlines())
-    broken = (line if len(line) <= width else fitted.fill(line) for line in lines)
+    broken = (line if len(line) <= room else fitted.fill(line) for line in lines)
     return "\n".join(broken).replace(_WHOLE, " N m")
 
 

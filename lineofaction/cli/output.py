@@ -10,8 +10,9 @@ import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from rich.console import Console, Group
 from rich.highlighter import RegexHighlighter
@@ -23,7 +24,6 @@ from rich.progress import (
     TimeElapsedColumn,
     TimeRemainingColumn,
 )
-from rich.table import Table
 from rich.text import Text
 from rich.theme import Theme
 
@@ -84,8 +84,41 @@ def console() -> Console:
     )
 
 
-_WIDEST, _GAP = 24, 2
-"""Columns that a text takes before it wraps; between two columns of a table."""
+_WIDEST, _GAP, _INDENT, _MOST_LINES = 24, 2, 2, 2
+"""Columns that a text takes before it wraps; between two columns of a table; before what stands below a row.
+
+The last: lines that a text in the last column takes beside its row.
+"""
+
+
+@dataclass(frozen=True)
+class _Column:
+    """A column of a table, of text or of numbers."""
+
+    head: str
+    cells: Sequence[str]
+    text: bool
+
+    @property
+    def whole(self) -> int:
+        """Width in which nothing wraps."""
+        return max(len(line) for part in (self.head, *self.cells) for line in part.split("\n"))
+
+    def least(self, widest: int) -> int:
+        """Return the width in which no word of the head and no cell is cut; a wider text may wrap."""
+        parts = (self.head, *self.cells) if self.text else (self.head,)
+        longest = max(len(word) for part in parts for word in in_lines(part, 1).split("\n"))
+        own = replace(self, head="").whole
+        return max(longest, min(own, widest) if self.text else own)
+
+    def lines(self, part: str, width: int) -> list[str]:
+        """Return the head or a cell as lines of a width."""
+        side = str.ljust if self.text else str.rjust
+        return [side(line, width) for line in in_lines(part, width).split("\n")]
+
+
+_Block = list[tuple[_Column, int]]
+"""Columns beside each other, with their widths."""
 
 
 def table(
@@ -94,29 +127,37 @@ def table(
     """Return a table of numbers, one decimal point below another; columns of `words` are aligned left.
 
     One that is wider than the terminal stands in blocks, each with the first columns of words, or the first
-    one: nothing is cut within a word or a number.
+    one: nothing is cut within a word or a number. A long text in the last column stands below its row.
     """
-    width = console().width
-    cells = [[row[k] for row in rows] for k in range(len(columns))]
-    cells = [own if name in words else aligned(own) for name, own in zip(columns, cells, strict=True)]
-    least = [_least(name, own, text=name in words) for name, own in zip(columns, cells, strict=True)]
-    keys = max(1, next((k for k, name in enumerate(columns) if name not in words), 1))
-    grids: list[Table | str] = []
-    for block in _blocks(least, keys, width):
-        head = None if grids else title or None
-        grid = Table(box=None, pad_edge=False, title_justify="left", title=head, highlight=True)
-        room = width - sum(least[k] + _GAP for k in block) + _GAP
-        for k in block:
-            grown = min(max(map(len, (columns[k], *cells[k]))), least[k] + max(room, 0))
-            room -= grown - least[k]
-            side: Literal["left", "right"] = "left" if columns[k] in words else "right"
-            grid.add_column(Text(columns[k], justify=side), overflow="fold", width=max(grown, least[k]))
-            if side == "right":  # by hand: a column justified right loses what stands for missing decimals
-                cells[k] = [cell.rjust(max(grown, least[k])) for cell in cells[k]]
-        for index in range(len(rows)):
-            grid.add_row(*(cells[k][index] for k in block))
-        grids += ["", grid] if grids else [grid]
-    return Group(*grids)
+    width, shown = console().width, list[_Column]()
+    for k, name in enumerate(columns):
+        cells, text = [row[k] for row in rows], name in words
+        shown.append(_Column(name, cells if text else aligned(cells), text))
+    below = shown.pop().cells if _is_long(shown, width) else ()
+    lines: list[Text | str] = [Text(title, "italic")] if title else []
+    blocks = _blocks(shown, width)
+    for block in blocks:
+        head = _beside([own.lines(own.head, wide)[::-1] for own, wide in block])
+        lines += [*([""] if block is not blocks[0] else []), *(Text(line, "bold") for line in head[::-1])]
+        for row in range(len(rows)):
+            lines += _beside([own.lines(own.cells[row], wide) for own, wide in block])
+            if below and block is blocks[-1]:
+                lines += (" " * _INDENT + line for line in in_lines(below[row], width - _INDENT).split("\n"))
+    return Group(*lines)
+
+
+def _beside(cells: Sequence[list[str]]) -> list[str]:
+    """Return cells, each its lines, beside each other."""
+    high = max(map(len, cells))
+    filled = [[*lines, *[" " * len(lines[0])] * (high - len(lines))] for lines in cells]
+    return [(" " * _GAP).join(parts).rstrip() for parts in zip(*filled, strict=True)]
+
+
+def _is_long(shown: Sequence[_Column], width: int) -> bool:
+    """Whether the last column is a text that would wrap into many lines beside the others."""
+    *others, last = shown
+    left = width - sum(own.whole + _GAP for own in others)
+    return bool(others) and last.text and last.whole > max(_WIDEST, _MOST_LINES * left)
 
 
 _FIGURE = re.compile(r"([+-]?\d+)(\.\d+)?( ?[^\d.e].*)?")
@@ -134,23 +175,41 @@ def aligned(cells: Sequence[str]) -> list[str]:
     ]
 
 
-def _least(head: str, cells: Sequence[str], *, text: bool) -> int:
-    """Return the columns in which no word of the head and no cell is cut; a long text may wrap."""
-    parts = (head, *cells) if text else (head,)
-    longest = max((len(word) for part in parts for word in part.split()), default=1)
-    whole = max(map(len, cells), default=1)
-    return max(longest, min(whole, _WIDEST) if text else whole)
+def _blocks(shown: Sequence[_Column], width: int) -> list[_Block]:
+    """Return the columns of each block: the keys, and as many others as there is room for.
+
+    A text wraps where that saves a block, or where nothing else fits.
+    """
+    keys = max(1, next((k for k, own in enumerate(shown) if not own.text), 1))
+    tried = [
+        _divided([(own, own.least(widest)) for own in shown], keys, width) for widest in (width, _WIDEST)
+    ]
+    blocks = min(tried, key=lambda blocks: (max(0, *(_wide(block) - width for block in blocks)), len(blocks)))
+    return [_grown(block, width) for block in blocks]
 
 
-def _blocks(least: Sequence[int], keys: int, width: int) -> list[list[int]]:
-    """Return the columns of each block: the first `keys`, and as many others as there is room for."""
-    first = list(range(keys))
-    blocks = [first.copy()]
-    for k in range(keys, len(least)):
-        if sum(least[own] + _GAP for own in (*blocks[-1], k)) - _GAP > width and len(blocks[-1]) > keys:
-            blocks.append(first.copy())
-        blocks[-1].append(k)
+def _divided(columns: _Block, keys: int, width: int) -> list[_Block]:
+    blocks = [columns[:keys]]
+    for column in columns[keys:]:
+        if _wide([*blocks[-1], column]) > width and len(blocks[-1]) > keys:
+            blocks.append(columns[:keys])
+        blocks[-1].append(column)
     return blocks
+
+
+def _wide(block: _Block) -> int:
+    return sum(wide + _GAP for _, wide in block) - _GAP
+
+
+def _grown(block: _Block, width: int) -> _Block:
+    """Return the columns as wide as they are whole, as far as there is room."""
+    room = max(width - _wide(block), 0)
+    grown = []
+    for own, wide in block:
+        more = min(max(own.whole - wide, 0), room)
+        grown.append((own, wide + more))
+        room -= more
+    return grown
 
 
 def print_headlines(headlines: Sequence[Headline]) -> None:

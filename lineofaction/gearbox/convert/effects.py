@@ -116,10 +116,7 @@ def effect_size(ledger: Json, effect: str) -> str:
 
 
 class SceneEffect(NamedTuple):
-    """A decision about an effect and the parts that share it.
-
-    The first decision about an effect has its name, and its size and freedoms in all parts.
-    """
+    """A decision about an effect and the parts that share it; the first has size and freedoms in all parts."""
 
     name: str
     on: bool
@@ -147,18 +144,19 @@ def scene_effects(ledger: Json) -> tuple[list[SceneEffect], list[SceneEffect]]:
 
 
 def scene_table(ledger: Json) -> tuple[list[str], list[list[str]], str]:
-    """Return columns and a row for each decision on an effect of a scene, and what is said of the trifles.
+    """Return columns and a row for each effect of a scene, on or off, and what is said of the trifles.
 
-    Where a level is estimated, it alone is the size.
+    Where a level is estimated, it alone is the size. Parts of one reason have a line of the row.
     """
     shown, trifles = scene_effects(ledger)
     columns = ["effect", "on", "without it", "freedoms", "where and why"]
-    rows = [
-        [one.name, "yes" if one.on else "no", one.size, one.freedoms, f"{one.parts}: {one.reason}"]
-        for one in shown
-    ]
-    names = [one.name for one in trifles if one.name and one.possible]
-    return columns, rows, f"{trifles_title(names)}: {', '.join(names)}" if names else ""
+    rows = dict[tuple[str, bool], list[str]]()
+    for one in shown:
+        cells = [one.name, "yes" if one.on else "no", one.size, one.freedoms, ""]
+        row = rows.setdefault((one.name, one.on), cells)
+        row[-1] = f"{row[-1]}\n{one.parts}: {one.reason}".lstrip()
+    names = dict.fromkeys(one.name for one in trifles if one.possible)
+    return columns, [*rows.values()], f"{trifles_title(names)}: {', '.join(names)}" if names else ""
 
 
 def beyond_lines(ledger: Json) -> Iterator[str]:
@@ -191,8 +189,8 @@ def _decisions(effect: tuple[str, str, str], entries: list[Json]) -> Iterator[Sc
         price = f"; price: {entry['price']}" if entry["on"] and entry.get("price") else ""
         shared.setdefault((entry["on"], f"{entry['reason']}{price}"), []).append(entry)
     possible = any(entry.get("possible", True) for entry in entries)
+    name, size, freedoms = effect
     for (on, reason), same in shared.items():
-        name, size, freedoms = effect
         parts = ", ".join(entry["part"] for entry in same)
         yield SceneEffect(name, on, size, freedoms, parts, reason, possible)
-        effect = ("", "", "")
+        size = freedoms = ""

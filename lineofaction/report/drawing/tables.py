@@ -117,7 +117,7 @@ def ledger_section(ledger: Mapping[str, Any]) -> Section:
         [(one.name, one.parts, one.on, one.size, one.reason) for one in effects]
         for effects in scene_effects(ledger)
     )
-    small = effect_table(trifles_title({row[0] for row in trifles} - {""}), trifles)
+    small = effect_table(trifles_title({row[0] for row in trifles}), trifles)
     left_out = facts("Not in the model", ledger.get("left_out", {}))
     return effects_section("", rows, (*((small,) if trifles else ()), left_out))
 

@@ -144,7 +144,7 @@ def _peak_table(response: ForcedResponse, most: int = SHOWN_PEAKS) -> Table:
         for peak in [peak for peak in every if peak.quantity == quantity][:most]
     ]
     columns = {
-        "peak of": lambda peak: f"{peak.quantity.replace('_', ' ')}, {peak.name}",
+        "force of": lambda peak: f"{peak.quantity.removesuffix('_force')} {peak.name}",
         "order": lambda peak: order_words(peak.order, response.facts),
         "speed, rpm": lambda peak: number(peak.speed / RPM, 5),
         "frequency, Hz": lambda peak: number(peak.frequency, 5),

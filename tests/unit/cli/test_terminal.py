@@ -18,9 +18,10 @@ from spur_case import spur_case
 
 from lineofaction.cli.commands import app
 from lineofaction.cli.guard import in_lines
-from lineofaction.cli.output import FOUND, console, table
+from lineofaction.cli.output import FOUND, console, print_parts, table
 from lineofaction.cli.verbs import of_imports
 from lineofaction.cli.verbs.of_studies import GROUPS, StudyGroup
+from lineofaction.report.presentation import effect_text
 
 COLUMNS = (80, 120)
 FIRST = 14
@@ -92,6 +93,48 @@ def test_a_wide_table_stands_in_blocks_and_no_word_is_broken(
     assert len(blocks) > 1 and all("second stage" in block and "load case 1" in block for block in blocks)
     assert [cell for cell in rows[0][2:] if cell not in printed] == []
     assert [k for k in range(12) if f"quantity-{k}," not in printed] == []
+
+
+REASON = "the nominal force bends and twists the shaft by 19.1 µm along the line of action"
+EFFECTS = {
+    "entries": [
+        {"effect": effect, "part": part, "on": True, "reason": f"{REASON} of {part}", "influence_um": 19.1}
+        for effect in ("flexible_shafts", "moving_application_point")
+        for part in ("input", "intermediate")
+    ]
+}
+
+
+@pytest.mark.parametrize("columns", COLUMNS)
+def test_effects_stand_once_named_and_with_their_reasons_below(
+    columns: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A reason took 24 columns of 80 beside a second table of the same rows, some without a name."""
+    monkeypatch.setenv("COLUMNS", str(columns))
+    print_parts(effect_text(EFFECTS))
+    title, head, *lines = capsys.readouterr().out.splitlines()
+    assert (title, head.split()[:2]) == ("Effects: change without each", ["effect", "on"])
+    named = [line.partition("  ")[0] for line in lines if not line.startswith("  ")]
+    assert named == ["flexible shafts", "moving application point"]
+    below = " ".join(line.strip() for line in lines if line.startswith("  "))
+    assert below.count("input: the nominal force") == below.count("intermediate: the nominal") == 2
+    assert max(map(len, (head, *lines))) <= columns
+    assert len(lines) <= 2 * (2 + 2 * 2)
+
+
+def test_a_text_wraps_only_where_that_saves_a_block(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    name, head = (
+        "bearing of the output, motor side",
+        ["force of", "order", *(f"number {k}" for k in range(6))],
+    )
+    console().print(table(head, [[name, "0.3333 (stage 1)", *["1234567"] * 6]], words=head[:2]))
+    assert capsys.readouterr().out.count(name) == 2
+    console().print(table(head[:6], [[name, "0.3333 (stage 1)", *["1234567"] * 4]], words=head[:2]))
+    (line, wrapped) = capsys.readouterr().out.splitlines()[-2:]
+    assert line.split()[-4:] == ["1234567"] * 4 and wrapped in name
 
 
 def test_decimal_points_of_a_column_stand_below_each_other(capsys: pytest.CaptureFixture[str]) -> None:
