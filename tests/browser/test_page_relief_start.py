@@ -18,7 +18,7 @@ WAYS = {
     "mm ⌀": "tip_relief_start_diameter_mm",
     "° roll": "tip_relief_start_roll_angle_deg",
     "mm roll": "tip_relief_start_roll_length_mm",
-    "mm long": "tip_relief_length_mm",
+    "mm": "tip_relief_length_mm",
 }
 
 
@@ -50,7 +50,7 @@ def test_the_switch_leaves_the_flank_as_it_is(browser: Browser, address: str, tm
     for way, field in WAYS.items():
         assert length_of(**{field: float(turn(page, way))}) == pytest.approx(0.4e-3, rel=1e-7)
     assert turn(page, "mm ⌀") == "21.2"
-    assert turn(page, "mm long") == "0.4"
+    assert turn(page, "mm") == "0.4"
     page.wait_for_selector("#plan dl")
     expect(page.locator("#form-errors")).to_be_hidden()
     assert seen.complaints == []

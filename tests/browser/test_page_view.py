@@ -54,6 +54,10 @@ def test_the_pair_is_drawn_turns_by_keyboard_and_sleeps(view: Visit) -> None:
     until(lambda: frames(page) > count + 2)
     canvas.press(" ")
     assert different(before, picture(page)) > 0.002  # it has rolled on
+    stands = page.locator("#roll-value").inner_text()
+    assert 0.0 < float(stands) < 1.0
+    expect(page).to_have_url(re.compile(rf"\bat={stands}\b"))
+    expect(page.locator("#roll")).to_have_value(re.compile(rf"^{float(stands)}$"))
     assert view.complaints == []
 
 

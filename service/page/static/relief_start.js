@@ -13,7 +13,7 @@ const DIGITS = 9; // of a converted value
 const rolled = (radius, base) => Math.sqrt(Math.max(radius ** 2 - base ** 2, 0));
 const WAYS = [ // the radius of a value, and the value of a radius; a relief runs from `other` towards `end`
   {
-    ending: "length_mm", words: "mm long", title: "length along the radius",
+    ending: "length_mm", words: "mm", title: "length along the radius",
     radius: (value, { end, other }) => end + Math.sign(other - end) * value, value: (radius, { end }) => Math.abs(end - radius),
   },
   {

@@ -40,12 +40,13 @@ export class View {
     this.stopped = false;
     this.stage.canvas.addEventListener("rolls", () => {
       this.stopped = !this.stage.rolls;
+      if (this.stopped && Number(this.at) % 1 !== Number(byId("roll").value) % 1) this.stand(this.at);
       say();
       document.dispatchEvent(new Event("typed")); // the address says where it stands
     });
     say();
     byId("roll").addEventListener("input", () => {
-      this.stage.subject.position = this.pair.position = Number(byId("roll").value);
+      this.stage.subject.position = this.pair.position = Math.floor(this.stage.subject.position) + Number(byId("roll").value);
       this.stage.roll(false);
     });
     const choice = (text, checked, changed) => make("label", {}, make("input", { type: "checkbox", checked, "data-unkept": true, onchange: (event) => {
