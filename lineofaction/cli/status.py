@@ -30,14 +30,16 @@ from lineofaction.gearbox.subjects import scene_of
 def result_costs(states: Iterable[ResultState], project: Path) -> dict[str, StudyCost | BadInput]:
     """Return the predicted cost by the name of the result, as its verb would run without options.
 
-    Of what the verb would refuse its reason. What nothing predicts is left out.
+    Of what the verb would refuse its reason, unless it is fresh, with options that are not known here. What
+    nothing predicts is left out.
     """
     costs: dict[str, StudyCost | BadInput] = {}
     for state in states:
         try:
             own = None if state.source is None else _result_cost(state.verb, state.source, project)
         except BadInput as refused:
-            costs[state.name] = refused
+            if state.state != "fresh":
+                costs[state.name] = refused
             continue
         if own is not None:
             costs[state.name] = own
@@ -59,7 +61,9 @@ def _result_cost(verb: str, source: Path, project: Path) -> StudyCost | None:
     else:
         subject = CASES.of(read_model(Case, source))
     inputs = inputs_of_study(study, subject, project, {})
-    return study_cost(study, study.run.narrowed(subject, inputs), project, inputs)
+    narrowed = study.run.narrowed(subject, inputs)
+    study.run.check(narrowed, inputs)
+    return study_cost(study, narrowed, project, inputs)
 
 
 def scene_tables_cost(project: Path) -> StudyCost:

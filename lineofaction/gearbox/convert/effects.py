@@ -116,7 +116,7 @@ def effect_size(ledger: Json, effect: str) -> str:
 
 
 class SceneEffect(NamedTuple):
-    """A decision about an effect and the parts that share it; the first has size and freedoms in all parts."""
+    """A decision about an effect and the parts that share it; the first has the size in all parts."""
 
     name: str
     on: bool

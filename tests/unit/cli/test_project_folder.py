@@ -136,7 +136,8 @@ def test_without_a_folder_an_output_is_asked_for(verb: str) -> None:
 
 def test_the_status_is_json_too_and_a_folder_of_nothing_says_so(rotor: Path, tmp_path: Path) -> None:
     rows = json.loads(loa("status", rotor, "--json").stdout)["results"]
-    assert {"name": "noise.nc", "verb": "noise", "state": "missing", "cpu_seconds": None} in rows
+    (noise,) = (row for row in rows if row["verb"] == "noise")
+    assert (noise["name"], noise["state"], noise["cpu_seconds"]) == ("noise.nc", "missing", None)
     (steady,) = (row["cpu_seconds"] for row in rows if row["verb"] == "steady")
     assert steady > 0.0
     empty = tmp_path / "empty"
@@ -145,6 +146,18 @@ def test_the_status_is_json_too_and_a_folder_of_nothing_says_so(rotor: Path, tmp
         done = loa("status", folder)
         assert done.exit_code == EXIT_BAD_INPUT
         assert f"must be {bound}" in done.output
+
+
+def test_the_status_refuses_nothing_that_is_there_and_says_what_lacks(rotor: Path) -> None:
+    """A complaint that options stated was fresh and refused, noise without a surface not predicted."""
+    (rotor / "complaint.nc").touch()
+    lines = loa("status", rotor).stdout.splitlines()
+    of_verb = {line.partition("loa ")[2].split(" ")[0]: line.split() for line in lines if ".nc  " in line}
+    assert (of_verb["complaint"][0], of_verb["complaint"][-1]) == ("fresh", "-")
+    assert of_verb["noise"][-1] == of_verb["vibration"][-1] == "refused"
+    assert "refused by loa noise: housings = []: must be at least one with a surface" in lines
+    os.utime(rotor / "complaint.nc", (1.0, 1.0))
+    assert "refused by loa complaint: complaint = nothing: must be given" in loa("status", rotor).stdout
 
 
 @pytest.fixture
