@@ -27,7 +27,7 @@ from lineofaction.cli.output import (
     progress_bar,
     table,
 )
-from lineofaction.cli.subjects import assessed_case
+from lineofaction.cli.subjects import KeptTables, assessed_case
 from lineofaction.gearbox.convert.answers import draft_line, source_rows, summary_json
 from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.convert.effects import (
@@ -124,6 +124,7 @@ def run_analyze(
     check_netcdf_output(output)
     with open_executor(*executor) as workers, progress_bar() as report:
         database = analyzed(case, report, workers)
+    KeptTables(lambda _: database).table(case.case)  # for verbs that take it
     warn([*database.metadata.warnings, *_tolerance_warnings(database.metadata.receipt)])
     database.to_netcdf(output)
     summary = {"file": str(output), **summary_json(database)}

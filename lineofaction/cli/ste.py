@@ -14,9 +14,11 @@ from bounds import engineering
 from fe_contact.ste import SteDatabase
 from lineofaction.cli.guard import warn
 from lineofaction.cli.output import FOUND, aligned, console, csv_text, print_json, table
+from lineofaction.cli.subjects import KeptTables
 from lineofaction.gearbox.convert.answers import curve_json, teeth_words
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import only, tables_in
+from lineofaction.gearbox.schemas import Case, read_model
 
 _FARTHEST = 1e6
 _SHOWN_ORDERS = 8
@@ -34,15 +36,23 @@ def run_ste(
     as_json: bool,
 ) -> None:
     """Read, evaluate, print each table; `point` holds the options of load and alignment by their names."""
-    files = tables_in(named)
+    files = tables_in(named, lambda case: KeptTables.file(read_model(Case, case)))
     if as_csv or as_json:
         only(files, named, "table")
     for file in files:
-        _show(file, point, at, as_table=as_table, as_csv=as_csv, as_json=as_json)
+        following = f"analyze {named}" if named.is_dir() and file.parent != named else f"report {file}"
+        _show(file, point, at, following, as_table=as_table, as_csv=as_csv, as_json=as_json)
 
 
 def _show(
-    file: Path, point: dict[str, float | None], at: str | None, *, as_table: bool, as_csv: bool, as_json: bool
+    file: Path,
+    point: dict[str, float | None],
+    at: str | None,
+    following: str,
+    *,
+    as_table: bool,
+    as_csv: bool,
+    as_json: bool,
 ) -> None:
     database = open_ste(file)
     warn(database.metadata.warnings)
@@ -54,7 +64,7 @@ def _show(
     elif as_table or at is not None:
         console().print(table(_columns(curve), [_typed(row) for row in _rows(curve)]))
     else:
-        for number, line in enumerate(_answer(database, file, curve)):
+        for number, line in enumerate(_answer(database, following, curve)):
             console().print(line, soft_wrap=True, style=None if number else FOUND)
 
 
@@ -108,8 +118,8 @@ def _columns(curve: dict[str, Any]) -> list[str]:
     return ["position", "ste_um", *(f"load_share_{pair:+d}" for pair in curve["pair"])]
 
 
-def _answer(database: SteDatabase, file: Path, curve: dict[str, Any]) -> Iterator[str]:
-    """Yield what a curve says: figures with their errors, harmonics, load sharing, what is next."""
+def _answer(database: SteDatabase, following: str, curve: dict[str, Any]) -> Iterator[str]:
+    """Yield what a curve says: figures with their errors, harmonics, load sharing, the verb that follows."""
     one, other = database.facts.teeth
     yield f"gear pair {one}/{other} at {curve['torque_n_m']:.6g} N m ({curve['normal_force_n']:.0f} N)"
     yield ""
@@ -145,7 +155,7 @@ def _answer(database: SteDatabase, file: Path, curve: dict[str, Any]) -> Iterato
         if worst := own["most_pressed"]:
             yield f"  {gear}: largest pressure on {teeth_words(worst)}, {own['pressure_mpa']:.0f} MPa"
     yield ""
-    yield f"next: loa report {file}     all positions: --table, --csv"
+    yield f"next: loa {following}     all positions: --table, --csv"
 
 
 _Line = tuple[str, float, float | None]

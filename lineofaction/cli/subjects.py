@@ -115,7 +115,9 @@ def tables_cost(scene: SceneInput, folder: Path) -> StudyCost:
     """Return the predicted cost of the tables of a scene that are not kept."""
     written = (mesh.case for mesh in with_own_cases(scene, folder).meshes if isinstance(mesh.case, Case))
     cases = {case.model_dump_json(): case for case in written}
-    return sum((table_cost(case) for case in cases.values() if not is_kept(case)), StudyCost(()))
+    return sum(
+        (table_cost(case) for case in cases.values() if not KeptTables.file(case).is_file()), StudyCost(())
+    )
 
 
 def simulation_cost(scene: SceneInput, folder: Path) -> StudyCost | None:
@@ -145,33 +147,29 @@ def announce_cost(verb: str, costs: Sequence[StudyCost | None]) -> None:
 # Tables of cases are kept in the cache, under the name of all that decides them: this very program included.
 
 
-def is_kept(case: Case) -> bool:
-    """Return whether the table of a case is in the cache."""
-    return _kept_file(case).is_file()
-
-
-def _kept_file(case: Case) -> Path:
-    content = {"case": case_json(case), "program": program_tag(), "packages": software_versions()}
-    return cache_home() / "tables" / f"{content_hash(content, SOLVER_VERSION, SCHEMA_VERSION)}.nc"
-
-
 @dataclass(frozen=True)
-class _KeptTables:
-    """The tables of the cases of a scene: those of runs before, and those that are computed now."""
+class KeptTables:
+    """The tables of cases: those of runs before, and those that are computed now."""
 
     compute: Callable[[Case], SteDatabase]
+
+    @staticmethod
+    def file(case: Case) -> Path:
+        """Return where the table of a case is kept, if it is."""
+        content = {"case": case_json(case), "program": program_tag(), "packages": software_versions()}
+        return cache_home() / "tables" / f"{content_hash(content, SOLVER_VERSION, SCHEMA_VERSION)}.nc"
 
     def find(self, case: Case) -> SteDatabase | None:
         """Return the table of a case, if it is here and undamaged."""
         try:
-            return SteDatabase.from_netcdf(_kept_file(case))
+            return SteDatabase.from_netcdf(self.file(case))
         except DatabaseError:
             return None
 
     def table(self, case: Case) -> SteDatabase:
         """Return the table of a case; one that is computed is kept, unless points of it failed."""
         return kept_in(
-            _kept_file(case),
+            self.file(case),
             SteDatabase.from_netcdf,
             lambda: self.compute(case),
             SteDatabase.to_netcdf,
@@ -214,7 +212,7 @@ def tabled_scene(
 
             client = stack.enter_context(LineOfActionClient(service, progress=watch))
             source, run = ServiceTables(client), client.driver.run
-        here = _KeptTables(lambda case: _analyzed(cases.of(case), report, workers))
+        here = KeptTables(lambda case: _analyzed(cases.of(case), report, workers))
         tables = MeshTables(folder, source or ComputedTables(here.table))
 
         def table_of(index: int, mesh: MeshInput) -> SteDatabase:

@@ -6,7 +6,7 @@ nothing but fields of that study. Files of other content are left alone.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -110,15 +110,16 @@ def results_by_part(project: Path) -> dict[str, list[Path]]:
     return {part: paths for part, paths in by_part.items() if paths}
 
 
-def tables_in(named: Path) -> list[Path]:
-    """Return a table as it is named, of a folder those of its cases.
+def tables_in(named: Path, kept: Callable[[Path], Path]) -> list[Path]:
+    """Return a table as it is named, of a folder those of its cases, where it lacks one the `kept` one.
 
-    Raises `BadInput`: the folder has none.
+    Raises `BadInput`: there is neither.
     """
     if not named.is_dir():
         return [named]
     cases = _chosen(dict(_tables(named)), "case")
-    tables = [table for case in cases if (table := named / f"{case.stem}{SUFFIX}").is_file()]
+    own = [path if (path := named / f"{case.stem}{SUFFIX}").is_file() else kept(case) for case in cases]
+    tables = [table for table in own if table.is_file()]
     if not tables:
         advice = f"Make them with: loa analyze {named}"
         raise BadInput.of("file", str(named), "a folder with an STE database in it", advice)

@@ -7,13 +7,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import loa, printed
 from small_table import small_table
+from spur_case import spur_case
 
 from fe_contact.ste import SteDatabase
 from host.directories import cache_home
 from lineofaction.cli import subjects
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import JobFailed
+from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.gearbox.subjects import scene_of
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_scene.toml"
@@ -84,3 +87,22 @@ def test_a_table_with_failed_points_is_not_kept(monkeypatch: pytest.MonkeyPatch)
     with pytest.raises(JobFailed):
         tabled()
     assert not files()
+
+
+def test_what_one_verb_computes_another_finds(computed: list[SteDatabase], tmp_path: Path) -> None:
+    """`loa ste` of a unit asked for tables that a scene had made, a scene for those of `loa analyze`."""
+    unit = tmp_path / "unit"
+    unit.mkdir()
+    (unit / "spur.toml").write_text(spur_case(torques=[1.0]))
+    (unit / "other.toml").write_text(spur_case(torques=[2.0]))
+    assert "Make them with: loa analyze" in loa("ste", unit).stderr
+    mesh = {"case": read_model(Case, unit / "spur.toml"), "case_file": None}
+    tabled(**mesh)
+    said = loa("ste", unit, "--torque", "1").stdout
+    assert said.count("gear pair") == 1 and f"next: loa analyze {unit}" in said
+    for name in ("spur", "other"):
+        printed("analyze", unit / f"{name}.toml", "-o", unit / f"{name}.nc")
+    assert f"next: loa report {unit / 'spur.nc'}" in loa("ste", unit, "--torque", "1").stdout
+    assert len(computed) == 3 and len(files()) == 2
+    tabled(**mesh | {"case": read_model(Case, unit / "other.toml")})
+    assert len(computed) == 3

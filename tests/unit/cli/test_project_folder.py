@@ -236,7 +236,9 @@ def test_results_are_told_apart_by_the_case_whose_name_they_bear(unit: Path) -> 
         "first": ["first", "first_flank"],
         "second": ["second_flank"],
     }
-    assert tables_in(unit) == [unit / "first.nc"]
+    assert tables_in(unit, lambda case: case.with_suffix(".nc")) == [unit / "first.nc"]
+    kept = unit / "modes.nc"
+    assert tables_in(unit, lambda _: kept) == [unit / "first.nc", kept]
 
 
 def test_the_status_says_what_a_result_would_cost_or_that_nothing_predicts_it(unit: Path) -> None:

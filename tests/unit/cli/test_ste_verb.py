@@ -37,7 +37,7 @@ def curve(file: Path) -> Json:
 
 @pytest.fixture(scope="module")
 def answer(file: Path, curve: Json) -> list[str]:
-    return list(_answer(SteDatabase.from_netcdf(file), file, curve))
+    return list(_answer(SteDatabase.from_netcdf(file), f"report {file}", curve))
 
 
 def test_the_answer_is_one_look(file: Path, answer: list[str]) -> None:
