@@ -15,6 +15,16 @@ from running_service import until
 
 UNIT = Path(__file__).parents[2] / "examples" / "two_stage" / "two_stage.rexs"
 
+MADE = """() => {
+  window.made = { contexts: 0, programs: 0 };
+  const counted = (of, name, key) => {
+    const own = of.prototype[name];
+    of.prototype[name] = function (...all) { made[key] += all[0] !== "2d"; return own.apply(this, all); };
+  };
+  counted(HTMLCanvasElement, "getContext", "contexts");
+  counted(WebGL2RenderingContext, "createProgram", "programs");
+}"""
+
 
 @pytest.fixture(scope="module")
 def view(drawing_browser: Browser, address: str, analyzed: str) -> Visit:
@@ -33,6 +43,21 @@ def test_a_small_window_has_room_for_the_picture(
     page.goto(address)
     page.wait_for_selector(f"{CANVAS}[data-frames]", state="attached")
     until(lambda: (page.locator(CANVAS).bounding_box() or {"height": 0.0})["height"] > 120.0)
+    page.close()
+
+
+@pytest.mark.law
+def test_the_first_picture_waits_for_nothing_that_is_asked_of_the_form(
+    drawing_browser: Browser, address: str
+) -> None:
+    """Its pressure and its figures came with the program; the shaders are those that draw them."""
+    page = drawing_browser.new_page()
+    page.add_init_script(f"({MADE})()")
+    page.route("**/v1/drafts/**", lambda _: None)  # none is answered
+    page.goto(address)
+    expect(page.locator(f"{CANVAS}[data-pressed]:not([data-pressed='0'])[data-frames]")).to_have_count(1)
+    expect(page.locator("#live-figures")).to_contain_text("peak to peak")
+    assert page.evaluate("made") == {"contexts": 1, "programs": 2}
     page.close()
 
 

@@ -66,13 +66,11 @@ export class Live {
     if (known && !known.long) this.plots();
   }
 
-  /** Show a curve that came with the program. @param {object} content its case @param {any} curve */
-  async still(content, curve) {
+  /** Show a curve that came with the program, on its pair. @param {any} curve @param {any} outline */
+  async still(curve, outline) {
+    this.design.view.press(curve, outline);
     this.plots();
-    await Promise.all([
-      this.plot([{ ...STYLES.now, curve }], NOTHING, { still: true }),
-      post("/v1/cases/outline", { inputs: { case: content } }).then((outline) => this.design.view.press(curve, outline)),
-    ]);
+    await this.plot([{ ...STYLES.now, curve }], NOTHING, { still: true });
   }
 
   /** The sliders stand where the address left them: draw that. */

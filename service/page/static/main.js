@@ -2,7 +2,7 @@
 /** The page: what its address says is shown, what is typed is kept with it. */
 
 import { Address, OF_DESIGN } from "./address.js";
-import { get, patiently } from "./api.js";
+import { get, patiently, post } from "./api.js";
 import { watchService } from "./away.js";
 import { layOut } from "./bench.js";
 import { CaseFiles } from "./case_files.js";
@@ -35,9 +35,18 @@ const USUAL_TAB = "ripple";
 const MOST = 1_500_000; // characters of a design that an address carries
 const RESTING = 150; // milliseconds between two writings of what is typed
 
+/** What a page without an address shows: the result of the first example, if the service has it by now, or what came with the program. */
+const opening = () => patiently(async () => {
+  const [{ hash, stored }] = await get(EXAMPLES);
+  if (stored) return { hash };
+  const came = await get("/page/first.json");
+  return { ...came, outline: await post("/v1/cases/outline", { inputs: { case: came.case } }) };
+});
+
 class Page {
   async begin() {
     watchService(() => this.back());
+    this.opening = location.hash ? null : opening();
     const starts = await patiently(() => Promise.all(STARTS.map(get)));
     const [examples, analyze, effects, { processes }, landing] = starts;
     byId("version").textContent = landing.version;
@@ -186,14 +195,13 @@ class Page {
 
   /** The pair that a page without an address begins with: there is a result with nothing to press. */
   async first() {
-    const [{ hash, stored }] = await patiently(() => get(EXAMPLES)); // another page may have computed it since
+    const { hash, ...came } = await (this.opening ?? opening());
+    this.opening = null;
     if (!this.address.empty) return;
-    if (stored) {
+    if (hash) {
       this.address.replace({ database: hash });
       await this.results.show(hash);
-      return;
-    }
-    await this.results.still();
+    } else if (this.results.key === null) await this.results.still(came);
   }
 
   /** Keep what is typed with the entry of the history that it is typed in: at once, and no more often than browsers allow. */

@@ -130,15 +130,13 @@ export class Results {
     byId("dock-words").append(` Over ${period} base pitches curves are as analyzed: sliders take at most ${LONGEST}.`);
   }
 
-  /** Show what the first example gave when the program was made: nothing is computed. */
-  async still() {
-    const { title, curve, case: content } = await patiently(() => get("/page/first.json"));
-    if (this.key !== null || !this.address.empty) return;
+  /** Show what the first example gave when the program was made: nothing is computed. @param {{title: string, curve: any, case: object, outline: any}} came */
+  async still({ title, curve, case: content, outline }) {
     byId("results-none").hidden = true;
     byId("dock-words").textContent = `${title}. It came with the program; Analyze computes it here and frees the sliders.`;
     this.key = ""; // it has none
     this.note.of(content);
-    await this.live.still(content, curve);
+    await this.live.still(curve, outline);
   }
 
   unreport() {

@@ -3,10 +3,11 @@
 
 import { saidIn } from "./api.js";
 import { button, byId, make } from "./elements.js";
+import { context } from "./view_gl.js";
 import { isHoused, surfaceOf } from "./view_housing.js";
 import { MOVING, Motions } from "./view_motion.js";
 import { most, RollingPair } from "./view_pair.js";
-import { drawable, Stage } from "./view_stage.js";
+import { Stage } from "./view_stage.js";
 import { STILL, stillOf } from "./view_still.js";
 import { Gearbox, gearboxOf } from "./view_unit.js";
 
@@ -29,7 +30,7 @@ export class View {
     this.ofUnit = button("See the pair", back, { class: "small", hidden: true });
     /** @type {string | null} the motion of the result, by its number, as a word of the address */
     this.motion = null;
-    target.hidden = !drawable();
+    target.hidden = !context;
     if (target.hidden) return;
     this.pair = new RollingPair();
     this.stage = new Stage(target, this.pair);
@@ -163,6 +164,7 @@ export class View {
    */
   press(curve, outline = null) {
     if (!this.stage) return;
+    if (outline && !this.pair.outline) this.show(outline);
     if (outline && outlined(outline) !== outlined(this.of)) this.pair.top = 0;
     Object.assign(this, { curve, of: outline });
     this.draw();

@@ -26,15 +26,13 @@ function scaleOf(value) {
   return size * (STEPS.find((step) => step * size >= value) ?? 10);
 }
 
-/** By whether teeth bend or move, and by what is drawn. @param {WebGL2RenderingContext} gl */
+const TEETH = { straight: TOOTH, bent: BENDING + TOOTH, moved: MOVED + TOOTH, hull: HULL };
+const PARTS = { STEEL, SMOOTH: STEEL, FLANK, PICK, LEVELS };
+
+/** By how teeth stand and what is drawn of them; each is made when it draws for the first time. @param {WebGL2RenderingContext} gl */
 export function programsOf(gl) {
-  const made = (define) => Object.fromEntries(Object.entries({ STEEL, FLANK, PICK }).map(([name, source]) => [name, program(gl, define + TOOTH, source)]));
-  let [moved, hull] = [null, null];
-  return {
-    straight: made(""), bent: made(BENDING),
-    get moved() { return (moved ??= made(MOVED)); },
-    get hull() { return (hull ??= program(gl, HULL, LEVELS)); },
-  };
+  const made = {};
+  return (teeth, part) => (made[`${teeth} ${part}`] ??= program(gl, TEETH[teeth], PARTS[part]));
 }
 
 /** Let a program move what it draws. @param {WebGL2RenderingContext} gl @param {import("./view_motion.js").Moved} moved */
@@ -53,7 +51,7 @@ export class RollingPair {
     this.top = 0;
     this.bent = 0;
     this.through = true;
-    this.meshes = null;
+    this.meshes = {};
     this.colors = COLORS;
     /** @type {Record<string, import("./view_motion.js").Moved> | null} how its gears move as discs */
     this.moved = null;
@@ -64,22 +62,22 @@ export class RollingPair {
   begin(gl, programs) {
     this.programs = programs;
     this.texture = gl.createTexture();
-    this.meshes = null;
+    this.meshes = {};
     this.press(gl, this.curve);
   }
 
   /** Let go of what it holds. @param {WebGL2RenderingContext} gl */
   end(gl) {
-    freed(gl, Object.values(this.meshes ?? {}));
+    this.show(gl, this.outline);
     gl.deleteTexture(this.texture);
-    this.meshes = this.texture = null;
+    this.texture = null;
   }
 
   /** @param {any} outline answer of /v1/cases/outline */
   show(gl, outline) {
     this.outline = outline;
-    freed(gl, Object.values(this.meshes ?? {}));
-    this.meshes = null;
+    freed(gl, Object.values(this.meshes));
+    this.meshes = {};
   }
 
   /** @param {WebGL2RenderingContext} gl @param {Curve | null} curve */
@@ -106,7 +104,6 @@ export class RollingPair {
 
   draw(gl, frame) {
     if (!this.outline) return;
-    this.meshes ??= this.made(gl);
     gl.bindTexture(gl.TEXTURE_2D, this.texture);
     gl.enable(gl.CULL_FACE);
     if (frame.picking) {
@@ -126,21 +123,21 @@ export class RollingPair {
     this.gear(gl, "pinion", [flank], frame, 1); // last: not behind what is seen through
   }
 
-  made(gl) {
-    const mesh = (name, coarse) => held(gl, toothMesh(this.outline[name], this.outline.internal && name === "wheel", coarse));
-    return Object.fromEntries(GEARS.flatMap((name) => [[name, mesh(name, false)], [`${name} moving`, mesh(name, true)]]));
+  /** A tooth of a gear, coarse where it moves. */
+  mesh(gl, name, moving) {
+    return (this.meshes[`${name} ${moving}`] ??= held(gl, toothMesh(this.outline[name], this.outline.internal && name === "wheel", moving)));
   }
 
   /** Parts of a gear: FLANK or SMOOTH, its flanks that carry; STEEL, all else; PICK, both. */
   gear(gl, name, parts, { view, back, moving, code = 1 }, opacity) {
-    const programs = this.programs[this.moved ? "moved" : this.bent && this.curve ? "bent" : "straight"];
+    const stands = this.moved ? "moved" : this.bent && this.curve ? "bent" : "straight";
     const { teeth } = this.outline[name];
-    const { array, count, marked } = this.meshes[moving ? `${name} moving` : name];
+    const { array, count, marked } = this.mesh(gl, name, moving);
     const rest = count - marked;
     const ranges = { FLANK: [rest, marked], SMOOTH: [rest, marked], STEEL: [0, rest], PICK: [0, count] };
     gl.bindVertexArray(array);
     for (const part of parts) {
-      const { program: used, at } = programs[part] ?? programs.STEEL;
+      const { program: used, at } = this.programs(stands, part);
       const [from, length] = ranges[part];
       gl.useProgram(used);
       gl.uniformMatrix4fv(at.view, false, view);

@@ -1,8 +1,8 @@
 // @ts-check
 /** The canvas of the three-dimensional views: one subject at a time, drawn when something moves and only then. */
 
-import { make } from "./elements.js";
 import { Camera } from "./view_camera.js";
+import { context } from "./view_gl.js";
 import { programsOf } from "./view_pair.js";
 
 const SLOW = 40; // ms a frame, beyond which fewer pixels are drawn while it moves
@@ -25,23 +25,19 @@ const CALM = matchMedia("(prefers-reduced-motion: reduce)");
  * @property {number[] | null} [middle] of that part; null: it has no place on a shaft
  */
 
-/** @returns {boolean} whether this browser has WebGL2 */
-export function drawable() {
-  return Boolean(document.createElement("canvas").getContext("webgl2"));
-}
-
 export class Stage {
   /** @param {HTMLElement} target @param {Subject} subject */
   constructor(target, subject) {
     this.subject = subject;
     this.camera = new Camera();
-    this.canvas = /** @type {HTMLCanvasElement} */ (make("canvas", { class: "view", tabindex: "0", role: "img" }));
+    this.gl = context;
+    this.canvas = /** @type {HTMLCanvasElement} */ (this.gl.canvas);
+    Object.assign(this.canvas, { className: "view", tabIndex: 0, role: "img" });
     this.rolls = !CALM.matches;
     this.moving = false;
     this.seen = false;
-    this.part = 1;
+    this.part = LEAST; // the first frames wait for what the browser makes of the shaders
     target.append(this.canvas);
-    this.gl = /** @type {WebGL2RenderingContext} */ (this.canvas.getContext("webgl2", { antialias: false, powerPreference: "low-power" }));
     this.canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
     this.canvas.addEventListener("webglcontextrestored", () => this.begin());
     this.canvas.addEventListener("keydown", (event) => this.key(event));

@@ -257,7 +257,6 @@ export class Gearbox {
       const moved = (name) => [name, this.motion.ofDisc(on[name].shaft, on[name].position_mm, middleOf(pair.outline[name]), angle) ?? STILL];
       pair.moved = this.motion && Object.fromEntries(GEARS.map(moved));
       pair.position = ratio * this.position;
-      pair.meshes ??= pair.made(gl);
       const own = (name) => ({ ...frame, view: product(frame.view, place[name]), code: 8 * k + 1 });
       const gear = (name) => pair.gear(gl, name, frame.picking ? ["PICK"] : ["SMOOTH", "STEEL"], own(name), 1);
       if (frame.picking !== "marked") GEARS.forEach(gear);
@@ -272,7 +271,7 @@ export class Gearbox {
 
   /** Draw the surface of a housing by its levels; what moves with it, or stands in it, is seen through it. */
   surface(gl, frame) {
-    const [{ program, at }, { mesh, parts, levels }] = [this.programs.hull, this.drawnHousing];
+    const [{ program, at }, { mesh, parts, levels }] = [this.programs("hull", "LEVELS"), this.drawnHousing];
     const { phase, part, factor } = this.motion ?? { phase: 0, part: 0, factor: 0 };
     this.hull ??= held(gl, mesh, parts);
     gl.useProgram(program);
@@ -297,7 +296,7 @@ export class Gearbox {
 
   /** Draw shafts and bearings. */
   revolved(gl, frame, bodies) {
-    const { program, at } = this.programs[this.motion ? "moved" : "straight"].STEEL;
+    const { program, at } = this.programs(this.motion ? "moved" : "straight", "STEEL");
     gl.useProgram(program);
     gl.uniform3fv(at.back, frame.back);
     gl.uniform4f(at.center, 0, 0, 0, 0);
