@@ -6,6 +6,7 @@ import functools
 import importlib
 import inspect
 import os
+import re
 import signal
 import sys
 import threading
@@ -102,18 +103,18 @@ def _begin(form: str) -> _Warned:
     return warned
 
 
-_WHOLE = "\u00a0N\u00a0m"
-"""A unit of two words, and the number before it, where lines break."""
+_UNIT = re.compile(r"(?: |\b)(?:N|kg|CPU) [ms](?![a-z])")
+"""A unit of two words, and what is before it: lines break neither."""
 
 
 def in_lines(text: str, room: IO[str] | int) -> str:
-    """Break a text between words for a terminal or a width; a longer word, as a path, and N m stay whole."""
+    """Break a text between words for a terminal or a width; longer words, as paths, and units stay whole."""
     if not isinstance(room, int):
         room = get_terminal_size().columns if room.isatty() else sys.maxsize
     fitted = TextWrapper(room, break_long_words=False, break_on_hyphens=False)
-    lines = (line.replace(" N m", _WHOLE) for line in text.splitlines())
+    lines = _UNIT.sub(lambda unit: unit[0].replace(" ", "\u00a0"), text).splitlines()
     broken = (line if len(line) <= room else fitted.fill(line) for line in lines)
-    return "\n".join(broken).replace(_WHOLE, " N m")
+    return "\n".join(broken).replace("\u00a0", " ")
 
 
 def warn(warnings: Iterable[Json]) -> None:

@@ -122,6 +122,19 @@ def test_effects_stand_once_named_and_with_their_reasons_below(
     assert len(lines) <= 2 * (2 + 2 * 2)
 
 
+@pytest.mark.parametrize("unit", ["N m", "CPU s", "kg m²", "N s/m", "N m/rad"])
+def test_a_unit_is_not_parted(
+    unit: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Neither in a head nor in a sentence, at any width: "torque N" stood above "m"."""
+    for columns in range(20, 120):
+        monkeypatch.setenv("COLUMNS", str(columns))
+        words = f"largest of all over {unit}"
+        console().print(table(["mesh", words, f"{words} and at rest"], [["one", "1.5", "3"]], words=["mesh"]))
+        assert capsys.readouterr().out.count(unit) == 2
+        assert f"12 {unit}" in in_lines(f"at rest the gear has 12 {unit} in its first mesh", columns)
+
+
 def test_a_text_wraps_only_where_that_saves_a_block(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
