@@ -74,6 +74,47 @@ def test_an_order_of_the_map_is_heard_at_its_frequency_and_level(visit: Visit) -
     assert np.count_nonzero(np.diff(np.sign(loudest)) > 0.0) == pytest.approx(200, abs=1)
 
 
+FOLLOWED = """async () => {
+  const { orderTone } = await import("/page/order_tone.js");
+  const set = [];
+  const own = AudioParam.prototype.setTargetAtTime;
+  AudioParam.prototype.setTargetAtTime = function (value, ...how) {
+    set.push(value);
+    return own.call(this, value, ...how);
+  };
+  const node = document.createElement("div");
+  node.innerHTML = '<div class="nsewdrag"></div>';
+  const place = { position: "fixed", left: "50px", top: "60px", width: "400px", height: "200px" };
+  Object.assign(node.firstChild.style, place);
+  document.body.append(node);
+  node.data = [{ x: [0, 3000, 6000], y: [1, 2, 3], z: [[9, 9, 9], [9, 9, 9], [9, 9, 9]], zmax: 9 }];
+  const title = { text: "speed, rpm" };
+  node.layout = { xaxis: { range: [1000, 5000], title }, yaxis: { range: [0.5, 3.5] } };
+  const sound = { tracks: [{ along: [6000, 2000, 6000], mesh_hz: [2000, 2000 / 3, 2000] }] };
+  const row = orderTone(node, { title: "map", sound });
+  row.querySelector("button").click();
+  const heard = [[0, 0.5], [0.25, 0.5], [0.5, 0.25], [0.9, 0.9]].map(([across, up]) => {
+    set.length = 0;
+    const [clientX, clientY] = [50 + 400 * across, 260 - 200 * up];
+    node.dispatchEvent(new PointerEvent("pointermove", { clientX, clientY }));
+    return [1000 + 4000 * across, 0.5 + 3 * up, ...set, row.querySelector("output").textContent];
+  });
+  AudioParam.prototype.setTargetAtTime = own;
+  row.querySelector("button").click();
+  node.remove();
+  return heard;
+}"""
+
+
+@pytest.mark.law
+def test_the_tone_follows_the_cursor_over_speed_and_order(visit: Visit) -> None:
+    """A run down and up again: speeds below its least one sound as that one."""
+    for speed, order, frequency, level, said in visit.page.evaluate(FOLLOWED):
+        assert frequency == pytest.approx(order * max(speed, 2000.0) / 3.0)
+        assert level == pytest.approx(0.5)
+        assert f"at {speed:.0f}" in said.replace(".0", "")
+
+
 def test_the_sound_tab_plays_what_is_shown(visit: Visit) -> None:
     visit.page.get_by_role("tab", name="Sound", exact=True).click()
     for name in ("Play as analyzed", "Play now"):

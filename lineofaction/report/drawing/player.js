@@ -6,14 +6,17 @@ const STILL = 4; // pixels between press and release of a click: a longer way zo
 /** @typedef {{name: string, query: Record<string, string>, time: number[], along: number[], mesh_hz: number[] | null}} Track */
 /** @typedef {{caption: string, tracks: Track[]}} Sound */
 
+/** Where a value is that is nearest to another. @param {number[]} values @param {number} value */
+export const nearest = (values, value) => values.reduce((best, each, k) => (Math.abs(each - value) < Math.abs(values[best] - value) ? k : best), 0);
+
 /**
- * A piecewise linear function of places that rise or fall, held beyond its ends.
+ * A piecewise linear function of places that rise and fall, beyond all of them that of the nearest.
  * @param {number[]} places @param {number[]} values @param {number} x
  */
 export function linear(places, values, x) {
   const last = places.length - 1;
   const k = places.findIndex((place, n) => n < last && (place - x) * (places[n + 1] - x) <= 0);
-  if (k < 0) return values[Math.abs(places[0] - x) < Math.abs(places[last] - x) ? 0 : last];
+  if (k < 0) return values[nearest(places, x)];
   const step = places[k + 1] - places[k];
   return values[k] + (step ? (x - places[k]) / step : 0) * (values[k + 1] - values[k]);
 }

@@ -3,14 +3,12 @@
 
 import { button, make, number } from "./elements.js";
 import { Tone } from "./live_sound.js";
-import { linear } from "./player.js";
+import { linear, nearest } from "./player.js";
 
 const STEP = 0.02; // of the axis by one key
 const KEYS = { ArrowLeft: [-STEP, 0], ArrowRight: [STEP, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 /** @typedef {{x: number, order: number}} Place on the axes of a map */
-
-const nearest = (values, value) => values.reduce((best, each, k) => (Math.abs(each - value) < Math.abs(values[best] - value) ? k : best), 0);
 
 /**
  * What is heard at a place: frequency in Hz, and level in dB below the largest of the map; lower than its depth is silent.
