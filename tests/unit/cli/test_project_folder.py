@@ -249,4 +249,8 @@ def test_the_status_says_what_a_result_would_cost_or_that_nothing_predicts_it(un
     assert seconds["first.nc"] > seconds["first_flank.nc"] > 0.0
     assert seconds["first_scatter.nc"] > seconds["first.nc"]
     assert seconds["first_ablate.nc"] > 0.0
+    first = {name for name in seconds if name.startswith("first")}
+    assert {name.replace("first", "second") for name in first} == {
+        n for n in seconds if n.startswith("second")
+    }
     assert {name for name, cost in seconds.items() if cost is None}

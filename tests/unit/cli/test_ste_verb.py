@@ -31,7 +31,7 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def curve(file: Path) -> Json:
     """A curve whose errors are small enough for some of its harmonics to be above them."""
     found = curve_json(SteDatabase.from_netcdf(file), torque_n_m=TORQUE)
-    smaller = {name: 0.01 * np.array(value) for name, value in found.items() if "error" in name}
+    smaller = {name: 1e-3 * np.array(value) for name, value in found.items() if "error" in name}
     return found | {name: value.tolist() for name, value in smaller.items()}
 
 
@@ -67,7 +67,7 @@ def test_harmonics_above_their_errors_are_in_decibels_and_the_others_are_named(
 ) -> None:
     sizes, errors = (dict(enumerate(curve[name][:8], 1)) for name in ("harmonics_um", "harmonics_error_um"))
     sure = {order for order, size in sizes.items() if size > errors[order]}
-    assert 0 < len(sure) < 8
+    assert 1 < len(sure) < 8
     pattern = r"  harmonic (\d) +([\d.]+) +± [\d.]+ µm +(-?[\d.]+) dB re 1 µm  ?(█*)"
     found = {int(line[1]): line for line in (re.match(pattern, line) for line in answer) if line}
     assert set(found) == sure
@@ -76,6 +76,15 @@ def test_harmonics_above_their_errors_are_in_decibels_and_the_others_are_named(
         assert len(line[4]) == round(16 * sizes[order] / max(sizes[k] for k in sure))
     (rest,) = (line for line in answer if "their error" in line)
     assert {int(order) for order in re.findall(r"\d+", rest.partition(":")[0])} == set(sizes) - sure
+
+
+def test_the_ripple_is_drawn_over_two_periods(answer: list[str], curve: Json) -> None:
+    (line,) = (line for line in answer if line.endswith("two periods"))
+    drawn = line.removesuffix("two periods").split()[-1]
+    half, ste = len(drawn) // 2, np.array(curve["ste_um"])
+    assert drawn[:half] == drawn[half:]
+    assert {drawn[0], drawn[ste.argmax() * half // ste.size]} == {"█"} == {max(drawn)}
+    assert drawn[round(ste.argmin() * half / ste.size)] == min(drawn) == "▁"
 
 
 def test_positions_are_printed_where_they_are_requested(file: Path) -> None:

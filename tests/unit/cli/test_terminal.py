@@ -206,14 +206,12 @@ def seen_on_a_terminal(arguments: list[str], **environment: str) -> str:
     own = {name: value for name, value in os.environ.items() if name not in ("NO_COLOR", "FORCE_COLOR")}
     own |= {"TERM": "xterm-256color", "COLUMNS": "100"} | environment
     command = [sys.executable, "-m", "lineofaction.cli", *arguments]
-    done = subprocess.run(
-        command, stdout=writer, stderr=writer, stdin=subprocess.DEVNULL, env=own, check=False
-    )
-    os.close(writer)
-    text = b""
-    with contextlib.suppress(OSError):  # the end of a terminal that nobody writes to
-        while part := os.read(reader, 65536):
-            text += part
+    with subprocess.Popen(command, stdout=writer, stderr=writer, stdin=subprocess.DEVNULL, env=own) as done:
+        os.close(writer)
+        text = b""
+        with contextlib.suppress(OSError):  # the end of a terminal that nobody writes to
+            while part := os.read(reader, 65536):
+                text += part
     os.close(reader)
     assert done.returncode == 0, text.decode()
     return text.decode().replace("\r\n", "\n")
@@ -234,6 +232,16 @@ def test_the_finding_is_bold_errors_are_colored_and_what_is_beside_is_grey(files
     assert "\x1b" not in plain
     assert re.sub(r"\x1b\[[\d;]*m", "", shown).split() == plain.split()  # a long path breaks its line
     assert "\x1b[3" not in seen_on_a_terminal(arguments, NO_COLOR="1")
+    study = ["complaint", str(SCENE), "--order", "20", "--speed-rpm", "600"]
+    assert f"{BOLD}complaint: harmonic 1" in seen_on_a_terminal(study)
+
+
+def test_a_table_in_a_pipe_is_as_wide_as_it_needs(capsys: pytest.CaptureFixture[str]) -> None:
+    names = [f"column_{k:02}" for k in range(15)]
+    console().print(table(names, [["1"] * 15]))
+    head, row = capsys.readouterr().out.splitlines()
+    assert (head.split(), row.split()) == (names, ["1"] * 15)
+    assert len(head) > 120
 
 
 # The help: every verb once, under its group, and whole.
