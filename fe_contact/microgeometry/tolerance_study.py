@@ -24,7 +24,14 @@ from fe_contact.microgeometry.order_limit import (
     as_spread,
     mesh_order_above,
 )
-from fe_contact.microgeometry.scatter import MISALIGNMENT, ONE_NODE, Scatter, ScatterNodes, SobolSample
+from fe_contact.microgeometry.scatter import (
+    MISALIGNMENT,
+    ONE_NODE,
+    GaussHermite,
+    Scatter,
+    ScatterNodes,
+    SobolSample,
+)
 from fe_contact.microgeometry.sidebands_above import MadePairs, sidebands_above
 from fe_contact.microgeometry.tangent_model import TangentModel
 from fe_contact.microgeometry.tolerances import Tolerances
@@ -239,7 +246,8 @@ class ToleranceRequest:
     @property
     def space(self) -> DesignSpace:
         """The pairs that the tolerances allow, as designs: everything deviates that may."""
-        deviations = Scatter(self.tolerances.misalignment, self.tolerances.modification, ACTING)
+        rule = ACTING if self.tolerances.misalignment else GaussHermite(1)  # draws nothing
+        deviations = Scatter(self.tolerances.misalignment, self.tolerances.modification, rule)
         return DesignSpace(
             self.pair, {}, deviations, self.misalignment, self.sampling.positions, self.options
         )

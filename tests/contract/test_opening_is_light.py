@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from rexs_unit import place, two_stages
+from spur_case import spur_case
 
 from lineofaction.gearbox.rexs.files import serialized
 
@@ -78,6 +79,14 @@ def test_what_every_study_would_cost_is_said_without_statistics() -> None:
     )
     assert "dynamics.orders.resampling" in loaded and "fe_contact.microgeometry.order_limit" in loaded
     assert not {"scipy.stats", "scipy.signal", "xarray"} & loaded
+
+
+def test_the_state_of_a_folder_is_said_without_statistics(tmp_path: Path) -> None:
+    """What pairs within tolerances cost needs their number, no draw of them."""
+    (tmp_path / "case.toml").write_text(spur_case(torques=[100.0]))
+    code = "from lineofaction.cli.status import result_costs as costs, status_of"
+    code += f"; from pathlib import Path; folder = Path({str(tmp_path)!r})"
+    assert not {"scipy.stats", "scipy.signal"} & modules_of(f"{code}; costs(status_of(folder), folder)")
 
 
 def modules_of(code: str) -> set[str]:

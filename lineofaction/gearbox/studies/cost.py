@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
@@ -95,6 +96,14 @@ def panels_work(housings: int) -> Work:
 # Scenes before their tables are computed: what they have of freedoms follows without.
 
 
+@dataclass(frozen=True)
+class _Written:
+    """A scene by its text: what is made of the last ones is kept, since several verbs are of the same."""
+
+    text: str
+    scene: SceneInput = field(compare=False)
+
+
 def _pairs(scene: SceneInput) -> dict[str, ParallelAxes] | None:
     cases = {mesh.name: mesh.case for _, mesh in scene.with_database}
     if not all(isinstance(case, Case) for case in cases.values()):
@@ -110,6 +119,12 @@ def scene_before_tables(scene: SceneInput) -> Scene | None:
 
 def moving_before_tables(scene: SceneInput) -> Scene | None:
     """Return a scene as `scene_before_tables` does, in the motion of its run."""
+    return _moving(_Written(scene.model_dump_json(), scene))
+
+
+@lru_cache(2)
+def _moving(written: _Written) -> Scene | None:
+    scene = written.scene
     pairs = _pairs(scene)
     if pairs is None:
         return None
@@ -137,9 +152,16 @@ def _usual_table(pair: ParallelAxes) -> PlainTable:
     return stiffness_table(PeriodicCurve.tabulated(position.tolist(), stiffness.tolist()))
 
 
-def sized(scene: Scene, highest_hz: float | None = None) -> System:
-    """Return the system of a scene, shafts that bend resolved to a frequency if one is named."""
-    return assemble(scene if highest_hz is None else replace(scene, highest_frequency=highest_hz))
+def sized(scene: SceneInput, highest_hz: float | None = None) -> System:
+    """Return the system of a scene before its tables, its shafts resolved to a frequency if one is named."""
+    return _system(_Written(scene.model_dump_json(), scene), highest_hz)
+
+
+@lru_cache(4)
+def _system(written: _Written, highest_hz: float | None) -> System:
+    before = scene_before_tables(written.scene)
+    assert before is not None  # its callers have asked
+    return assemble(before if highest_hz is None else replace(before, highest_frequency=highest_hz))
 
 
 Receipt = Literal["minimal", "full"]
@@ -174,20 +196,20 @@ def run_cost(scene: SceneInput, runs: int = 1, receipt: Receipt | None = None) -
         before = moving_before_tables(scene)
     if before is None:
         return None
-    written, full = scene.model_dump_json(), (receipt or before.outputs.receipt) == "full"
+    full = (receipt or before.outputs.receipt) == "full"
     try:
-        if written not in _PROBED:
-            from dynamics.simulation.run_cost import probe_run  # noqa: PLC0415 (start-up time)
-
-            own = probe_run(before)
-            _PROBED.clear()
-            _PROBED[written] = own
+        probed = _probed(_Written(scene.model_dump_json(), scene))
     except (InputError, SolveError):
         return None  # it will be said by the run, on its own tables
     with_errors = full and bool(before.meshes)
-    seconds = _PROBED[written].seconds(runs, with_errors=with_errors)
+    seconds = probed.seconds(runs, with_errors=with_errors)
     return StudyCost((Work("run" if runs == 1 else "runs", seconds / runs, runs),))
 
 
-_PROBED: dict[str, ProbedRun] = {}
-"""The scene whose run was probed last: several verbs are of its runs."""
+@lru_cache(1)
+def _probed(written: _Written) -> ProbedRun:
+    from dynamics.simulation.run_cost import probe_run  # noqa: PLC0415 (start-up time)
+
+    before = _moving(written)
+    assert before is not None  # its caller has asked
+    return probe_run(before)

@@ -138,10 +138,7 @@ def predicted_response(
         return None
     speed = np.array(inputs.speed_rpm) * RPM
     try:
-        sized(before)  # loads what it needs
-        began = cpu_seconds()
-        system = sized(before)
-        assembly = cpu_seconds() - began
+        system = sized(scene)
         cost = response_cost(system, speed, inputs.orders)
     except (InputError, SolveError):
         return None  # the study says it, on its own tables
@@ -149,9 +146,10 @@ def predicted_response(
     parts = Work("speeds", cost.speed, speed.size), systems
     if further is None:
         return StudyCost(parts)
-    return StudyCost(
-        (*parts, Work("responses of the band", assembly + speed.size * cost.speed, further(before)))
-    )
+    began = cpu_seconds()
+    assemble(before)
+    each = cpu_seconds() - began + speed.size * cost.speed
+    return StudyCost((*parts, Work("responses of the band", each, further(before))))
 
 
 def predicted_forces(

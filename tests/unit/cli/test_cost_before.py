@@ -16,7 +16,9 @@ from housing_solid import write_housed_scene
 from spur_case import spur_case
 
 from dynamics.acoustics import BoundaryElements, ElementalRadiators
+from dynamics.assembly.assemble import System, assemble
 from dynamics.influence import neglected_check
+from dynamics.scene import Scene
 from host.directories import cache_home
 from lineofaction.cli import run_study, simulate
 from lineofaction.cli.status import run_status
@@ -305,6 +307,22 @@ def test_a_change_costs_two_contacts_a_pair_and_two_of_the_designs() -> None:
         cost = study_cost(study, scene, folder, inputs)
         assert cost is not None
         assert [part.pieces for part in cost.parts] == [1, 2 * samples + 2]
+
+
+def test_a_scene_is_assembled_once_for_all_verbs_that_ask_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, folder = scene_of(EXAMPLES / "palermo_scene.toml")
+    scene = scene.model_copy(update={"run": scene.run.model_copy(update={"duration_s": 0.0123})})
+    resolved: list[float | None] = []
+
+    def counted(own: Scene) -> System:
+        resolved.append(own.highest_frequency)
+        return assemble(own)
+
+    monkeypatch.setattr("lineofaction.gearbox.studies.cost.assemble", counted)
+    for verb in ("modes", "response", "steady", "response"):
+        inputs = validated(STUDIES[verb].inputs, {"speed_rpm": SPEEDS[:2]})
+        assert study_cost(STUDIES[verb], scene, folder, inputs) is not None
+    assert len(resolved) == len(set(resolved))
 
 
 def test_a_study_whose_runs_nobody_predicts_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:

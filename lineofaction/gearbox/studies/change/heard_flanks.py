@@ -235,7 +235,7 @@ def levels_cost(scene: SceneInput, mesh: str, question: HeardQuestion) -> Levels
         return None
     cases, speed = len(question.load_cases), np.array(question.speed_rpm) * RPM
     try:
-        system = sized(before)
+        system = sized(scene)
         transfer = cases * transfer_seconds(system, speed, orders_heard(system, mesh, question.orders))
     except (DynamicsError, InputError):
         return None  # the study says it, on its own tables

@@ -135,8 +135,9 @@ class _ComplaintStudy(
         complaint = complaint_of(subject, before)
         speed, highest = _leading_speed(complaint, before), _highest_order(complaint)
         with boundary_errors():
+            system = sized(subject, _reach(complaint))
             began = cpu_seconds()
-            system = sized(before, _reach(complaint))
+            assemble(before)
             assembly = Work("assembly", cpu_seconds() - began, _ASSEMBLED)
             cost = StudyCost((assembly,)) + modes_cost(system, len(speed))
         if speed and highest <= MOST_ORDERS:

@@ -51,12 +51,11 @@ class _ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
         Modes that a solid housing keeps are not known before and do not count.
         """
         with boundary_errors():
-            before = scene_before_tables(scene)
-            if before is None:
+            if scene_before_tables(scene) is None:
                 return None
             speeds = np.array(inputs.speed_rpm) * RPM
-            highest = resolved_to(sized(before), speeds, inputs.orders, inputs.highest_frequency_hz)
-            system = sized(before, highest or None)
+            highest = resolved_to(sized(scene), speeds, inputs.orders, inputs.highest_frequency_hz)
+            system = sized(scene, highest or None)
         return modes_cost(system, len(speeds))
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> ModalAnalysis:

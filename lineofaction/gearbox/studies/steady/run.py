@@ -42,7 +42,7 @@ class _SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
         speeds = np.array(inputs.speed_rpm) * RPM
         how: Json = {"branch": inputs.branch, "repeat": inputs.repeat, "periods": inputs.settling_periods}
         try:
-            cost = steady_cost(sized(before), speeds, **how)
+            cost = steady_cost(sized(scene), speeds, **how)
         except (InputError, SolveError):
             return None  # the study says it, on its own tables
         motions = Work("motions", cost.motion, cost.motions)
