@@ -137,6 +137,10 @@ def test_a_phone_has_slider_and_curve_together_and_labels_within_plots(visit: Vi
     curve, slider = (page.locator(name).bounding_box() for name in ("#live-ripple .plot", "#quick .slider"))
     assert curve is not None and slider is not None
     assert curve["height"] > 140.0
+    for title in page.locator("#tabs [role=tab]").all_inner_texts():
+        tab(page, title)
+        assert page.evaluate("document.documentElement.scrollHeight") <= 660, title
+    tab(page, "Ripple")
     assert curve["y"] + curve["height"] <= slider["y"] <= 660.0 - slider["height"]
     page.set_viewport_size({"width": 400, "height": 900})
     expect(page.locator("#results-body[aria-busy=false]")).to_have_count(1)

@@ -6,7 +6,7 @@ import { edgeWords } from "./live_numbers.js";
 import { figureBlock, plot } from "./plots.js";
 
 const FACE = "face position, mm (0 = mid-face of the pinion)";
-const ROLL = "roll length of the pinion, mm";
+const ROLL = "roll length, mm (of the pinion)";
 const ISOLINES = 6;
 
 /** @typedef {import("./live_figures.js").Shown} Shown */

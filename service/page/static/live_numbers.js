@@ -41,7 +41,7 @@ export const minus = (value) => value.toFixed(1).replace("-", "−");
 function levelsOf({ harmonic, curves }) {
   const [first, ...others] = curves.map(({ name, curve }) => ({ name, coming: curve.preview, ...levelOf(curve, harmonic) }));
   const changed = ({ level, band, coming }) => (
-    band + first.band === Infinity ? "within the errors" : `${signed(level - first.level, 2)} ${plusMinus(band + first.band, coming)}`.trim());
+    level === first.level ? "" : band + first.band === Infinity ? "within the errors" : `${signed(level - first.level, 2)} ${plusMinus(band + first.band, coming)}`.trim());
   return [{ ...first, change: "" }, ...others.map((own) => ({ ...own, change: changed(own) }))];
 }
 

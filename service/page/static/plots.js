@@ -120,8 +120,7 @@ function fitted({ data, layout }, width) {
   const narrow = { ...layout, font: { ...layout.font, size: 11 }, margin: { ...layout.margin, l: Math.min(layout.margin.l, 52), r } };
   for (const [name, axis] of Object.entries(narrow)) {
     if (/^[xy]axis/.test(name) && axis.title) {
-      const text = name.startsWith("x") ? axis.title.text.replace(/ \(.*/, "") : axis.title.text;
-      narrow[name] = { ...axis, title: { ...axis.title, text, font: { size: 11 } } };
+      narrow[name] = { ...axis, title: { ...axis.title, text: axis.title.text.replace(/ \(.*/, ""), font: { size: 11 } } };
     }
   }
   narrow.annotations = layout.annotations?.map((one) => ({ ...one, text: one.showarrow ? one.text.split(":")[0] : wrapped(one.text) }));
