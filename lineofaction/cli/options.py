@@ -123,6 +123,7 @@ def overridable(argument: str, subject: str = "case") -> Callable[[Callable[...,
         @functools.wraps(verb)
         def run(**options: Any) -> R:
             typed = {option.name: options.pop(option.name, None) for option in added}
+            from lineofaction.cli.output import FOUND, console  # noqa: PLC0415 (start-up time)
             from lineofaction.gearbox.project import files_of, only  # noqa: PLC0415 (start-up time)
 
             named, overrides = options[argument], _overrides(typed)
@@ -133,10 +134,11 @@ def overridable(argument: str, subject: str = "case") -> Callable[[Callable[...,
                 return verb(**options | {argument: read})
             if any(options.get(name) for name in _OF_ONE):
                 only(read, named.path, subject)
-            *others, last = read  # of a folder each of its cases
-            for file in others:
-                verb(**options | {argument: file})
-            return verb(**options | {argument: last})
+            for file in read:  # of a folder each of its cases
+                if file.part:
+                    console().print(f"\n{file.part}", style=FOUND)
+                answer = verb(**options | {argument: file})
+            return answer
 
         return with_parameters(run, [*own, *added])
 

@@ -84,7 +84,7 @@ def console() -> Console:
     )
 
 
-_WIDEST, _GAP, _INDENT, _MOST_LINES = 24, 2, 2, 2
+_WIDEST, _GAP, _INDENT, _MOST_LINES = 24, 2, "  ", 2
 """Columns that a text takes before it wraps; between two columns of a table; before what stands below a row.
 
 The last: lines that a text in the last column takes beside its row.
@@ -133,16 +133,18 @@ def table(
     for k, name in enumerate(columns):
         cells, text = [row[k] for row in rows], name in words
         shown.append(_Column(name, cells if text else aligned(cells), text))
-    below = shown.pop().cells if _is_long(shown, width) else ()
+    below = shown.pop() if _is_long(shown, width) else None
     lines: list[Text | str] = [Text(title, "italic")] if title else []
-    blocks = _blocks(shown, width)
-    for block in blocks:
-        head = _beside([own.lines(own.head, wide)[::-1] for own, wide in block])
-        lines += [*([""] if block is not blocks[0] else []), *(Text(line, "bold") for line in head[::-1])]
+    for block in (blocks := _blocks(shown, width)):
+        foot = below if block is blocks[-1] else None
+        head = _beside([own.lines(own.head, wide)[::-1] for own, wide in block])[::-1]
+        head += [] if foot is None else [f"{_INDENT}{foot.head}"]
+        lines += [*([] if block is blocks[0] else [""]), *(Text(line, "bold") for line in head)]
         for row in range(len(rows)):
             lines += _beside([own.lines(own.cells[row], wide) for own, wide in block])
-            if below and block is blocks[-1]:
-                lines += (" " * _INDENT + line for line in in_lines(below[row], width - _INDENT).split("\n"))
+            if foot is not None:
+                text = in_lines(foot.cells[row], width - len(_INDENT))
+                lines += (f"{_INDENT}{line}" for line in text.split("\n"))
     return Group(*lines)
 
 

@@ -36,10 +36,12 @@ def run_ste(
     as_json: bool,
 ) -> None:
     """Read, evaluate, print each table; `point` holds the options of load and alignment by their names."""
-    files = tables_in(named, lambda case: KeptTables.file(read_model(Case, case)))
+    tables = tables_in(named, lambda case: KeptTables.file(read_model(Case, case)))
     if as_csv or as_json:
-        only(files, named, "table")
-    for file in files:
+        only([*tables.values()], named, "table")
+    for name, file in tables.items():
+        if len(tables) > 1:
+            console().print(f"\n{name}", style=FOUND)
         following = f"analyze {named}" if named.is_dir() and file.parent != named else f"report {file}"
         _show(file, point, at, following, as_table=as_table, as_csv=as_csv, as_json=as_json)
 

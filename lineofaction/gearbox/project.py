@@ -110,16 +110,16 @@ def results_by_part(project: Path) -> dict[str, list[Path]]:
     return {part: paths for part, paths in by_part.items() if paths}
 
 
-def tables_in(named: Path, kept: Callable[[Path], Path]) -> list[Path]:
-    """Return a table as it is named, of a folder those of its cases, where it lacks one the `kept` one.
+def tables_in(named: Path, kept: Callable[[Path], Path]) -> dict[str, Path]:
+    """Return a table as it is named, of a folder those of its cases by name: its own, else the `kept` one.
 
     Raises `BadInput`: there is neither.
     """
     if not named.is_dir():
-        return [named]
-    cases = _chosen(dict(_tables(named)), "case")
-    own = [path if (path := named / f"{case.stem}{SUFFIX}").is_file() else kept(case) for case in cases]
-    tables = [table for table in own if table.is_file()]
+        return {"": named}
+    own = {case: named / f"{case.stem}{SUFFIX}" for case in _chosen(dict(_tables(named)), "case")}
+    found = {case.stem: table if table.is_file() else kept(case) for case, table in own.items()}
+    tables = {name: table for name, table in found.items() if table.is_file()}
     if not tables:
         advice = f"Make them with: loa analyze {named}"
         raise BadInput.of("file", str(named), "a folder with an STE database in it", advice)

@@ -188,7 +188,7 @@ def _largest_parts(shares: Sequence[Mapping[str, float]]) -> list[str]:
 
 ALIKE = 1e-3  # of a frequency or a speed: nearer ones share a line of the tables
 SHOWN_PARTS = 2
-SHOWN_MODES = 10
+SHOWN_MODES, PRINTED_MODES = 10, 20
 HEADROOM = 1.15  # of the highest mode or order: modes that no order reaches are only in the table
 LEAST_TOP = 1.0  # Hz
 ROOM = 0.03  # of the width, for the name of an order; orders that leave closer stay without
@@ -322,8 +322,8 @@ def _energy_words(names: list[str], shares: list[dict[str, float]], energy: str)
     return f"The lowest mode, {names[0]}, has {number(100.0 * share, 2)} % of its {energy} energy in {part}."
 
 
-def _modes_table(modes: ModalAnalysis) -> Table:
-    """List the natural modes at rest; those of one frequency are still one line each."""
+def _modes_table(modes: ModalAnalysis, most: int | None = None) -> Table:
+    """List so many natural modes at rest; those of one frequency are still one line each."""
     strain, kinetic = modes.natural_strain_energy, modes.natural_kinetic_energy
     columns = {
         "mode": lambda mode: str(mode + 1),
@@ -334,7 +334,7 @@ def _modes_table(modes: ModalAnalysis) -> Table:
         "kinetic energy in": lambda mode: _shares(modes.moved(kinetic[mode])),
     }
     caption = "Natural modes about the static equilibrium, at rest"
-    return Table.of(caption, range(modes.natural_frequency.size), columns)
+    return Table.of(caption, range(modes.natural_frequency.size)[:most], columns)
 
 
 def _shares(parts: dict[str, float]) -> str:
@@ -418,7 +418,10 @@ def _text(modes: ModalAnalysis) -> Iterator[Table | str]:
     start = modes.facts["equilibrium"]
     forces = ", ".join(f"{name} {force:.5g} N" for name, force in start["mesh_force"].items())
     yield f"static equilibrium {start['status'].lower()}, {leftover(start['residual'])} N left; {forces}"
-    yield _modes_table(modes)
+    yield _modes_table(modes, PRINTED_MODES)
+    if (more := modes.natural_frequency.size - PRINTED_MODES) > 0:
+        highest = number(1e-3 * float(modes.natural_frequency[-1]), 3)
+        yield f"{more} more up to {highest} kHz: in the report, with --json"
     if modes.speed.size:
         yield ""
         yield _critical_table(modes)

@@ -197,8 +197,10 @@ def test_a_verb_takes_a_folder_and_does_each_of_its_cases(
     (function, expected), (verb, *options) = VERBS[words], words.split()
     done: list[str] = []
     monkeypatch.setattr(f"lineofaction.cli.{function}", lambda file, *_, **__: done.append(file.path.name))
-    assert loa(verb, unit, *options).exit_code == 0
+    said = loa(verb, unit, *options)
+    assert said.exit_code == 0
     assert done == expected
+    assert said.stdout.split() == ([name.removesuffix(".toml") for name in expected] if expected[1:] else [])
 
 
 @pytest.mark.parametrize("words", STUDIED)
@@ -236,9 +238,9 @@ def test_results_are_told_apart_by_the_case_whose_name_they_bear(unit: Path) -> 
         "first": ["first", "first_flank"],
         "second": ["second_flank"],
     }
-    assert tables_in(unit, lambda case: case.with_suffix(".nc")) == [unit / "first.nc"]
+    assert tables_in(unit, lambda case: case.with_suffix(".nc")) == {"first": unit / "first.nc"}
     kept = unit / "modes.nc"
-    assert tables_in(unit, lambda _: kept) == [unit / "first.nc", kept]
+    assert tables_in(unit, lambda _: kept) == {"first": unit / "first.nc", "second": kept}
 
 
 def test_the_status_says_what_a_result_would_cost_or_that_nothing_predicts_it(unit: Path) -> None:

@@ -47,6 +47,13 @@ def test_modes_cross_the_orders_of_the_mesh_at_critical_speeds(scene: Path) -> N
     assert "Campbell diagram: whirl modes over speed" in page and "Critical speeds" in page
 
 
+def test_of_many_modes_the_lowest_are_printed(scene: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("lineofaction.report.response.modes.PRINTED_MODES", 2)
+    shown = loa("modes", scene).stdout
+    assert re.findall(r"^ +(\d+) +[\d.]+ ", shown, re.MULTILINE) == ["1", "2"]
+    assert re.search(r"^\d+ more up to [\d.]+ kHz: in the report, with --json$", shown, re.MULTILINE)
+
+
 def test_a_load_that_parts_the_flanks_is_refused_by_name(scene: Path) -> None:
     scene.write_text(scene.read_text().replace("torque_n_m = [100.0]", "torque_n_m = [-100.0]"))
     result = loa("modes", scene, "--json")

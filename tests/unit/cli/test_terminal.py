@@ -112,8 +112,9 @@ def test_effects_stand_once_named_and_with_their_reasons_below(
     """A reason took 24 columns of 80 beside a second table of the same rows, some without a name."""
     monkeypatch.setenv("COLUMNS", str(columns))
     print_parts(effect_text(EFFECTS))
-    title, head, *lines = capsys.readouterr().out.splitlines()
+    title, head, beside, *lines = capsys.readouterr().out.splitlines()
     assert (title, head.split()[:2]) == ("Effects: change without each", ["effect", "on"])
+    assert beside == "  where and why"
     named = [line.partition("  ")[0] for line in lines if not line.startswith("  ")]
     assert named == ["flexible shafts", "moving application point"]
     below = " ".join(line.strip() for line in lines if line.startswith("  "))
