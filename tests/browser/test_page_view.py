@@ -58,6 +58,11 @@ def test_the_first_picture_waits_for_nothing_that_is_asked_of_the_form(
     expect(page.locator(f"{CANVAS}[data-pressed]:not([data-pressed='0'])[data-frames]")).to_have_count(1)
     expect(page.locator("#live-figures")).to_contain_text("peak to peak")
     assert page.evaluate("made") == {"contexts": 1, "programs": 2}
+    page.locator("#example").select_option("palermo_spur_20_20")
+    expect(page.locator(f"{CANVAS}[data-pressed='0']")).to_have_count(1)
+    count = frames(page)
+    until(lambda: frames(page) > count + 2)
+    assert page.evaluate("made.programs") == 2, "flanks without pressure are of steel"
     page.close()
 
 

@@ -27,7 +27,7 @@ function scaleOf(value) {
 }
 
 const TEETH = { straight: TOOTH, bent: BENDING + TOOTH, moved: MOVED + TOOTH, hull: HULL };
-const PARTS = { STEEL, SMOOTH: STEEL, FLANK, PICK, LEVELS };
+const PARTS = { STEEL, FLANK, PICK, LEVELS };
 
 /** By how teeth stand and what is drawn of them; each is made when it draws for the first time. @param {WebGL2RenderingContext} gl */
 export function programsOf(gl) {
@@ -137,7 +137,7 @@ export class RollingPair {
     const ranges = { FLANK: [rest, marked], SMOOTH: [rest, marked], STEEL: [0, rest], PICK: [0, count] };
     gl.bindVertexArray(array);
     for (const part of parts) {
-      const { program: used, at } = this.programs(stands, part);
+      const { program: used, at } = this.programs(stands, part === "SMOOTH" ? "STEEL" : part);
       const [from, length] = ranges[part];
       gl.useProgram(used);
       gl.uniformMatrix4fv(at.view, false, view);
