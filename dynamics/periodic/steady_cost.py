@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.assembly.assemble import System
+from dynamics.linearize import natural_modes
 from dynamics.linearize.operating_speeds import leading_law
 from dynamics.periodic.continuation import LARGEST_STEP, MOST_POINTS
 from dynamics.periodic.period_map import PeriodicProblem, PeriodMap, periodic_problem
-from dynamics.periodic.shooting import SETTLING, settled
+from dynamics.periodic.shooting import RESIDUAL_LIMIT, SETTLING, settled
 from dynamics.types import FloatArray
 from host import cpu_seconds
 
@@ -19,21 +20,42 @@ ENOUGH, LEAST_STEPS, TIMES = 0.01, 16, 3
 the machine only slows it. All stretches of a probe take at most six times as long, where steps are cheap."""
 PROBED, AFFORDED = 9, 0.5
 """Speeds at which motions settle, and CPU s that this may take: where it takes more, no flank lifts off."""
-SWEEP_ITERATIONS, BRANCH_ITERATIONS = 0, 2
-"""Newton iterations behind settling, and of a point of a branch: on average 0 to 0.5 and 1 to 2.7."""
+CHANGE = 5e-3
+"""Of the size of a state: what a period changes of it after a step of a sweep, 2e-3 to 1e-2."""
+BRANCH_ITERATIONS = 2
+"""Newton iterations of a point of a branch: on average 1 to 2.7."""
 
 
 @dataclass(frozen=True)
 class SteadyCost:
-    """Motions of both sweeps and points of the branch: how many, and CPU seconds of each."""
+    """Motions of both sweeps and points of the branch: how many, and CPU seconds of each.
+
+    `pitches` are those of each mesh in a period of a motion, `freedoms` what its derivatives are by.
+    """
 
     motions: int
     motion: float
     points: int
     point: float
+    pitches: tuple[int, ...]
+    freedoms: int
 
 
-def motion_periods(freedoms: int, settling: int, iterations: int = SWEEP_ITERATIONS) -> int:
+def expected_iterations(problem: PeriodicProblem, speed: float, settling: int) -> int:
+    """Return the Newton iterations at a speed behind settling: each squares what that leaves of the change.
+
+    It falls as the mode does that is damped least, and ends below `RESIDUAL_LIMIT`.
+    """
+    modes = natural_modes(problem.system, problem.time)
+    damping = 2.0 * np.pi * modes.frequency * modes.damping_ratio
+    slowest = float(np.min(damping[modes.frequency > 0.0], initial=np.inf))
+    duration = problem.repeat * problem.period.duration(speed)
+    left = np.log(CHANGE) - (slowest * settling * duration if settling else 0.0)
+    limit = np.log(RESIDUAL_LIMIT)
+    return 0 if left <= limit else int(np.ceil(np.log2(limit / left)))
+
+
+def motion_periods(freedoms: int, settling: int, iterations: int) -> int:
     """Return the periods that are integrated for a motion of a sweep, in units of that of the motion.
 
     Settling, the residual, the derivatives by central differences in 2 n states, and the error of the steps,
@@ -61,15 +83,19 @@ def steady_cost(
     """
     sense = float(np.sign(system.scene.references[leading_law(system)].speed.extreme))
     problem = periodic_problem(system, sense * float(speed[0]), repeat)
-    each = float(np.mean([period_seconds(problem, sense * float(at)) for at in (speed[0], speed[-1])]))
+    ends = [sense * float(at) for at in (speed[0], speed[-1])]
+    each = float(np.mean([period_seconds(problem, at) for at in ends]))
     freedoms, several, points = problem.rest.size // 2, speed.size > 1, branch_points(speed)
     if several and branch and PROBED * SETTLING * each < AFFORDED:
         each, points = _settling(problem, sense * speed)
+    whole = [motion_periods(freedoms, periods, expected_iterations(problem, at, periods)) for at in ends]
     return SteadyCost(
         speed.size * (2 if several else 1),
-        motion_periods(freedoms, periods) * each,
+        float(np.mean(whole)) * each,
         points if branch and several else 0,
         point_periods(freedoms) * each,
+        tuple(repeat * abs(count) for count in problem.period.pitches),
+        freedoms,
     )
 
 

@@ -16,7 +16,7 @@ from dynamics.motion.observation import observe, static_deflections
 from dynamics.periodic.continuation import Branch, follow_branch
 from dynamics.periodic.period_map import PeriodicProblem, PeriodMap, periodic_problem
 from dynamics.periodic.shooting import SETTLING, Instability, Orbit, find_orbit, settled
-from dynamics.periodic.steady_cost import motion_periods, period_seconds
+from dynamics.periodic.steady_cost import expected_iterations, motion_periods, period_seconds
 from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.run_checks import checked_ledger
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
@@ -359,8 +359,9 @@ def _swept(shared: tuple[PeriodicProblem, int], speeds: FloatArray) -> tuple[Orb
 
 
 def _sweep_seconds(problem: PeriodicProblem, courses: Sequence[FloatArray], periods: int) -> float:
-    each = period_seconds(problem, float(courses[0][0]))
-    return each * motion_periods(problem.rest.size // 2, periods) * sum(map(len, courses))
+    first = float(courses[0][0])
+    whole = motion_periods(problem.rest.size // 2, periods, expected_iterations(problem, first, periods))
+    return period_seconds(problem, first) * whole * sum(map(len, courses))
 
 
 def _study(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
@@ -16,9 +15,11 @@ from fe_contact.errors import positive
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import LEVELS, AnalysisOptions, TableAxes
 from fe_contact.planning.cost_model import Prediction, predict_run, unit_work
+from fe_contact.planning.cost_of_derivatives import ContactWork
 from fe_contact.planning.plan import Plan
 from fe_contact.planning.planned import ExpectedCurves, ExpectedError, MeshChoice, expected_error
 from fe_contact.types import Json
+from model_studies.host_speed import host_slowness
 
 
 @dataclass(frozen=True)
@@ -148,8 +149,10 @@ class PredictedDesigns(NamedTuple):
         Whether the gears are those of three dimensions.
     bytes : float
         Largest resident memory of the process.
-    in_pitches : callable
-        Those of so many rows of positions at sets of so many loads in so many base pitches that differ.
+    table : float
+        A whole one at one alignment, its errors included.
+    work : ContactWork
+        Of which the contact of a design is made.
     """
 
     bodies: float
@@ -158,7 +161,8 @@ class PredictedDesigns(NamedTuple):
     positions: int
     across_face: bool
     bytes: float
-    in_pitches: Callable[[float, Sequence[float], int], float]
+    table: float
+    work: ContactWork
 
 
 def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
@@ -178,11 +182,12 @@ def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
     bodies = parts["compliance"]["bodies"] + parts["error estimate"]["bodies"]
     design = _DESIGN * parts["contact"]["table"]
     errors = parts["error estimate"]["solutions"]
-    work = unit_work(pair, decided.plan, decided.plan.discretization.slices)
+    table = whole.stages["contact"] + whole.correction["error estimate"] * errors
+    slowness = host_slowness(cache)
+    unit = unit_work(pair, decided.plan, decided.plan.discretization.slices)
+    work = ContactWork(*(slowness * each for each in unit))
     memory = float(whole.memory_bytes)
-    return PredictedDesigns(
-        bodies, design, errors, whole.positions, model.across_face, memory, work.in_pitches
-    )
+    return PredictedDesigns(bodies, design, errors, whole.positions, model.across_face, memory, table, work)
 
 
 def _decided(decided: Decided, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:

@@ -10,7 +10,7 @@ Everything is then multiplied by how slow the host is and by what earlier runs s
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -20,7 +20,7 @@ from fe_contact.contact import ContactModel, teeth_in_reach
 from fe_contact.contact.problem import POINTS
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
-from fe_contact.planning.cost_of_derivatives import CycleSeconds, solved_pitches
+from fe_contact.planning.cost_of_derivatives import ContactWork, CycleSeconds, solved_pitches
 from fe_contact.planning.plan import FaceDiscretization, Plan, PlaneDiscretization
 from fe_contact.sampled import ALIGNMENTS, LOADS, WIDE_INTERVALS, WIDE_PROBES, some_positions
 from fe_contact.types import Json
@@ -38,6 +38,8 @@ _FACE_POSITION, _FACE_SLICE = 0.4e-6, 2.2e-5
 _FACE_CANDIDATE = 2e-6
 _TOOTH_POINT, _BEGUN = 0.4e-6, 10e-6
 """In pitches that differ: gaps of a touching point; first load of a set per carrying slice, beside others."""
+_TOUCHED = 14e-6
+"""Where a candidate of other flanks touches. Pairs of class 6, in the plane and not: within 0.8 to 1.4."""
 _FACE_TILT = 2.7
 """Assembly with the change of the compliance along sloping flanks, over that without."""
 _PLANE_EXPECTED, _FACE_EXPECTED = (86.0, 0.37), (76.0, 0.25)
@@ -73,28 +75,6 @@ _HELD_POSITIONS, _HELD_PART = 320, 2.5
 """Positions whose compliance is held at once: of a search that begins with 64, and in parts of fixed ones."""
 _POINT_NUMBERS = 25
 """Numbers that are kept of a touching point."""
-
-
-class _Work(NamedTuple):
-    """CPU seconds to assemble a position, to solve one load at it, and of every pitch of a longer period.
-
-    In each pitch the gaps of its teeth are found (`pitch`), and the first of a set of loads is solved from a
-    guess (`begun` beside `point`).
-    """
-
-    position: float
-    point: float
-    pitch: float
-    begun: float
-
-    def of(self, positions: float, points: float) -> float:
-        """Return the CPU seconds of so many positions and points."""
-        return positions * self.position + points * self.point
-
-    def in_pitches(self, rows: float, sets: Sequence[float], pitches: float) -> float:
-        """Return the CPU seconds of rows of positions in so many pitches, at sets of so many loads."""
-        beside = self.pitch + len(sets) * self.begun if pitches > 1 else 0.0
-        return rows * pitches * (sum(sets) * self.point + beside)
 
 
 def contact_seconds(
@@ -186,18 +166,19 @@ def _candidates(pair: ParallelAxes, slices: int) -> float:
     return float((pair.transverse_contact_ratio + pair.overlap_ratio + 1.0) * slices)
 
 
-def unit_work(pair: ParallelAxes, plan: Plan, slices: int) -> _Work:
+def unit_work(pair: ParallelAxes, plan: Plan, slices: int) -> ContactWork:
     """Return what one position and one point of it cost in so many slices."""
     made = plan.discretization
     count, begun = _candidates(pair, slices), _BEGUN * pair.transverse_contact_ratio * slices
     if not isinstance(made, FaceDiscretization):
         point = _PLANE_POINT + _PLANE_CANDIDATE * count
-        return _Work(_PLANE_POSITION, point, _TOOTH_POINT * count, begun)
+        return ContactWork(_PLANE_POSITION, point, _TOOTH_POINT * count, begun, _TOUCHED * count)
     elements = max(pair.pinion.normal_module / recipe.flank_size for recipe in made.recipes)
     position = (_FACE_POSITION * elements**2 + _FACE_SLICE) * count
     tilted = _FACE_TILT * position if _with_tilt(pair, plan) else position
     at_once = 1.0 + _AT_ONCE * max(1.0 - pair.overlap_ratio, 0.0)
-    return _Work(tilted, at_once * _FACE_CANDIDATE * count, _TOOTH_POINT * POINTS * count, begun)
+    point, pitch = at_once * _FACE_CANDIDATE * count, _TOOTH_POINT * POINTS * count
+    return ContactWork(tilted, point, pitch, begun, _TOUCHED * count)
 
 
 def expected_tries(pair: ParallelAxes, plan: Plan, period: int, alignments: int) -> int:

@@ -1,10 +1,10 @@
-"""Cost of a long cycle, its pitches solved or by derivatives: by this it is decided which."""
+"""Cost of contact by its pieces, and of a long cycle: by it pitches are solved or told by derivatives."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from fe_contact.geometry import ParallelAxes
 
@@ -20,6 +20,8 @@ TABLE_SAVES = 2.0
 """CPU seconds that derivatives save at least where a table takes them: a cheaper one is solved whole."""
 _TANGENT = 0.4
 """CPU time of the tangents about a pitch over that of its solution."""
+FLANKS = 9e-3
+"""CPU seconds of the model of other flanks on the same compliance."""
 _ADDED = 6e-9
 """CPU seconds to add what one tooth of one pair does to one point."""
 
@@ -34,15 +36,31 @@ def solved_pitches(period: int, *, in_table: bool) -> tuple[int, int]:
     return min(fewest, period), min(fewest + _FURTHER * BATCH, period)
 
 
-class PitchWork(Protocol):
-    """CPU seconds of the contact in base pitches."""
+class ContactWork(NamedTuple):
+    """CPU seconds to assemble a position, to solve one load at it, and of every pitch of a longer period.
 
-    @property
-    def pitch(self) -> float:
-        """Of the gaps of teeth at a position."""
+    In each pitch the gaps of its teeth are found (`pitch`), and the first of a set of loads is solved from a
+    guess (`begun` beside `point`). Where other flanks touch is looked for at every position (`touch`).
+    """
+
+    position: float
+    point: float
+    pitch: float
+    begun: float
+    touch: float
+
+    def of(self, positions: float, points: float) -> float:
+        """Return the CPU seconds of so many positions and points."""
+        return positions * self.position + points * self.point
 
     def in_pitches(self, rows: float, sets: Sequence[float], pitches: float) -> float:
-        """Of rows of positions in so many pitches, at sets of so many loads."""
+        """Return the CPU seconds of rows of positions in so many pitches, at sets of so many loads."""
+        beside = self.pitch + len(sets) * self.begun if pitches > 1 else 0.0
+        return rows * pitches * (sum(sets) * self.point + beside)
+
+    def of_flanks(self, positions: float, loads: float) -> float:
+        """Return the CPU seconds of other flanks at positions that are assembled, at so many loads each."""
+        return FLANKS + positions * (self.touch + loads * self.point)
 
 
 class CycleSeconds(NamedTuple):
@@ -57,7 +75,7 @@ class CycleSeconds(NamedTuple):
 
     @classmethod
     def of(
-        cls, work: PitchWork, pair: ParallelAxes, period: int, rows: float, sets: Sequence[float]
+        cls, work: ContactWork, pair: ParallelAxes, period: int, rows: float, sets: Sequence[float]
     ) -> CycleSeconds:
         """Predict them of rows of positions at sets of so many loads, of a table two, on condensed bodies."""
         teeth = 0.5 * (pair.pinion.teeth + pair.wheel.teeth) * rows * work.pitch

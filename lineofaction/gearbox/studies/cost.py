@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 _SMALL = 0.02
 """Share of the whole below which a part is not named."""
+LONG = 3600.0
+"""CPU seconds from which on a cost is said in hours too, and comes with advice."""
 CASES = CheckedCases(16)
 """Cases whose costs were predicted last: those of a scene and of several verbs are checked once."""
 
@@ -53,10 +55,14 @@ class Work(NamedTuple):
 
 @dataclass(frozen=True)
 class StudyCost:
-    """Predicted cost of a study: its parts in the order of the work, the largest memory if it is known."""
+    """Predicted cost of a study: its parts in the order of the work, the largest memory if it is known.
+
+    `advice` says why it is as much, and what to try instead; empty of a cost that can be afforded.
+    """
 
     parts: tuple[Work, ...]
     bytes: float = 0.0
+    advice: str = ""
 
     @property
     def seconds(self) -> float:
@@ -69,7 +75,10 @@ class StudyCost:
         whole = self.seconds
         memory = f", {engineering(self.bytes / 2**30, 2)} GiB" if self.bytes else ""
         parts = ", ".join(part.words for part in self._by_name if part.seconds > _SMALL * whole)
-        return f"about {engineering(whole, 2)} CPU s{memory}: {parts}"
+        hours = f" ({engineering(whole / 3600.0, 2)} h)" if whole > LONG else ""
+        return (
+            f"about {engineering(whole, 2)} CPU s{hours}{memory}: {parts}{self.advice and f'. {self.advice}'}"
+        )
 
     @property
     def _by_name(self) -> Iterator[Work]:
@@ -81,7 +90,8 @@ class StudyCost:
 
     def __add__(self, later: StudyCost) -> StudyCost:
         """Return the cost of this work and another after it."""
-        return StudyCost((*self.parts, *later.parts), max(self.bytes, later.bytes))
+        advice = " ".join(filter(None, (self.advice, later.advice)))
+        return StudyCost((*self.parts, *later.parts), max(self.bytes, later.bytes), advice)
 
 
 _PANELS = 6.0

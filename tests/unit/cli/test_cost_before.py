@@ -15,10 +15,17 @@ from command_line import loa
 from housing_solid import write_housed_scene
 from spur_case import spur_case
 
+from bounds import engineering
 from dynamics.acoustics import BoundaryElements, ElementalRadiators
 from dynamics.assembly.assemble import System, assemble
 from dynamics.influence import neglected_check
 from dynamics.scene import Scene
+from fe_contact.analysis.pairs.pair_contact import PairContact
+from fe_contact.microgeometry import evaluator
+from fe_contact.microgeometry.confirmation import design_study
+from fe_contact.microgeometry.tolerance_study import curves_of_samples
+from fe_contact.options import Run
+from fe_contact.planning.cost_of_derivatives import ContactWork
 from host.directories import cache_home
 from lineofaction.cli import run_study, simulate
 from lineofaction.cli.status import run_status
@@ -29,12 +36,15 @@ from lineofaction.gearbox.convert.live import plan_of
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.studies.computation import Means
-from lineofaction.gearbox.studies.cost import CASES, StudyCost, Work
+from lineofaction.gearbox.studies.cost import CASES, LONG, StudyCost, Work
 from lineofaction.gearbox.studies.noise.run import USUAL_LINE
+from lineofaction.gearbox.studies.scatter import run as scatter
 from lineofaction.gearbox.studies.study import run
 from lineofaction.gearbox.subjects import scene_of
+from model_studies.stage_clock import StageClock
 
 sound_band_module = import_module("dynamics.noise.sound_band")
+steady_cost_module = import_module("dynamics.periodic.steady_cost")
 EXAMPLES = Path(__file__).parents[3] / "examples"
 SPEEDS = [100.0 * k for k in range(1, 61)]
 CHANGE: dict[str, Any] = {
@@ -83,6 +93,26 @@ def test_a_prediction_is_made_and_grows_with_the_work(verb: str, case: CheckedCa
     assert less.seconds == pytest.approx(sum(part.seconds for part in less.parts))
 
 
+def test_what_is_not_afforded_says_why_and_what_one_motion_takes(
+    case: CheckedCase, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By the same count: as long a period and as many states, of the highest speed alone."""
+    study, (scene, folder) = STUDIES["steady"], scene_of(EXAMPLES / "palermo_scene.toml")
+    monkeypatch.setattr(steady_cost_module, "period_seconds", lambda *_: 1.0)
+    monkeypatch.setattr(steady_cost_module, "AFFORDED", 0.0)
+    costs = {}
+    for count in (1, 30):
+        speeds = [100.0 * (30 - count + k) for k in range(1, count + 1)]
+        cost = study_cost(study, scene, folder, validated(study.inputs, {"speed_rpm": speeds}))
+        assert cost is not None
+        costs[count] = cost
+    one, many = costs[1], costs[30]
+    assert one.seconds < LONG < many.seconds and one.advice == ""
+    assert f"at 3000 rpm takes {engineering(one.seconds, 2)} CPU s" in many.advice
+    assert f"({engineering(many.seconds / 3600.0, 2)} h)" in many.words and many.words.endswith(many.advice)
+    assert (StudyCost(()) + many).words == many.words
+
+
 def test_of_a_usual_search_a_scatter_costs_by_its_nodes(case: CheckedCase) -> None:
     alone = predicted("optimize", {"torque_n_m": [100.0]}, case)
     scatter = {"pinion": {"profile_slope_um": 2.0}, "points": 5}
@@ -104,6 +134,42 @@ def test_drawn_teeth_cost_each_solved_pair_a_revolution_of_their_gear() -> None:
     assert {work.pieces for work in by_gear.values()} == {12}
     assert by_gear["wheel"].each / by_gear["pinion"].each == pytest.approx(59 / 21)
     assert revolutions("1-pinion=60nm", 4096) == [by_gear["pinion"]]
+
+
+def test_pairs_of_scatter_are_solved_on_one_compliance(
+    case: CheckedCase, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Told are the positions that are assembled once, and the points of every pair, as they are counted."""
+    inputs = validated(STUDIES["scatter"].inputs, {"samples": 5, "exact": 5})
+    request, counts = case.request(scatter.scatter_request, inputs), Counter[str]()
+    study = design_study(request.space, request.torques, [], StageClock(), Run(), request.checked)
+    assembled, solved = PairContact._assembled, evaluator.solve_contact
+
+    def counted_positions(own: PairContact, candidates: Any, couple: bool) -> Any:
+        counts["compliance"] += candidates.position.size
+        return assembled(own, candidates, couple)
+
+    def counted_points(problem: Any, load: Any) -> Any:
+        counts["pairs"] += problem.candidates.position.size * load.size
+        return solved(problem, load)
+
+    monkeypatch.setattr(PairContact, "_assembled", counted_positions)
+    monkeypatch.setattr(evaluator, "solve_contact", counted_points)
+    names = tuple(request.tolerances.widths)
+    curves_of_samples((study.evaluator, names), (False, request.tolerances.sample(5, 0)))
+    monkeypatch.setattr(ContactWork, "of", lambda _, positions, __: positions)
+    monkeypatch.setattr(ContactWork, "of_flanks", lambda _, positions, loads: positions * loads)
+    told = {part.name: part for part in predicted("scatter", {"samples": 5, "exact": 5}, case).parts}
+    assert told["pairs"].pieces == 5 + scatter._TANGENT
+    assert counts == {"pairs": 5 * told["pairs"].each, "compliance": told["compliance"].seconds}
+
+
+@pytest.mark.parametrize("misalignment", [0.0, 10.0])
+def test_a_pair_of_scatter_is_solved_once_however_it_is_misaligned(misalignment: float) -> None:
+    case = CheckedCase(read_model(Case, EXAMPLES / "helical_ev_23_67.toml"))
+    inputs = {"samples": 40, "exact": 40, "misalignment_um": misalignment}
+    (pairs,) = (part for part in predicted("scatter", inputs, case).parts if part.name == "pairs")
+    assert pairs.pieces == pytest.approx(40 + 10 * scatter._TANGENT)
 
 
 def test_the_cost_is_said_as_parts_of_a_whole() -> None:

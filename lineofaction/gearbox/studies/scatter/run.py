@@ -51,23 +51,25 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
         return super().normalized(case, inputs)
 
     def predicted(self, case: CheckedCase, inputs: Inputs, cache: Path | None) -> StudyCost:
-        """Return what the bodies, the pairs analyzed whole and the model of the others take."""
+        """Return what the bodies, the pairs analyzed whole, the model of the others and the table take."""
         with boundary_errors():
             request = case.request(scatter_request, inputs)
             predicted = predicted_designs(request.checked, cache)
         sampling = request.sampling
-        alignments = request.checked.request.misalignment.size
-        solved = (sampling.solved + _TANGENT * sampling.tangents) / alignments
-        points = (
-            sampling.positions * len(request.torques) * sampling.tangents * len(request.tolerances.widths)
-        )
-        each = predicted.design * sampling.positions / predicted.positions
-        pairs = [Work("pairs", each, solved), Work("samples", _ADDED * points, sampling.samples)]
+        solved = sampling.solved + _TANGENT * sampling.tangents
+        work, loads = predicted.work, len(request.torques)
+        points = sampling.positions * loads * sampling.tangents * len(request.tolerances.widths)
+        parts = [
+            Work("gears", predicted.bodies),
+            Work("compliance", work.of(sampling.positions, 0)),  # all pairs share it
+            Work("pairs", work.of_flanks(sampling.positions, loads), solved),
+            Work("samples", _ADDED * points, sampling.samples),
+            Work("table", predicted.table),
+        ]
         if request.teeth is not None:
-            loads = (len(request.torques),)
-            revolution = predicted.in_pitches(sampling.positions, loads, request.teeth.teeth)
-            pairs.append(Work("revolutions", _DRAWN_TEETH * revolution, sampling.solved))
-        return StudyCost((Work("gears", predicted.bodies), *pairs), predicted.bytes)
+            revolution = work.in_pitches(sampling.positions, (loads,), request.teeth.teeth)
+            parts.append(Work("revolutions", _DRAWN_TEETH * revolution, sampling.solved))
+        return StudyCost(tuple(parts), predicted.bytes)
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> ToleranceStudy:
         """Sample the pairs of a case; in a plane model helix slopes do not deviate."""

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from bounds import engineering
 from bounds.types import Json
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError, SolveError
 from dynamics.periodic import OrbitStatus, SteadyStates, steady_states
-from dynamics.periodic.steady_cost import steady_cost
+from dynamics.periodic.steady_cost import SteadyCost, steady_cost
 from dynamics.periodic.steady_states import BRANCH, CURVES, UP
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
-from lineofaction.gearbox.studies.cost import StudyCost, Work, scene_before_tables, sized
+from lineofaction.gearbox.studies.cost import LONG, StudyCost, Work, scene_before_tables, sized
 from lineofaction.gearbox.studies.excitations import with_facts_of_scene
 from lineofaction.gearbox.studies.figures import Row, rows
 from lineofaction.gearbox.studies.steady import Inputs, SteadyFigures
@@ -42,11 +44,13 @@ class _SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
         speeds = np.array(inputs.speed_rpm) * RPM
         how: Json = {"branch": inputs.branch, "repeat": inputs.repeat, "periods": inputs.settling_periods}
         try:
-            cost = steady_cost(sized(scene), speeds, **how)
+            cost = _study_cost(steady_cost(sized(scene), speeds, **how))
+            if cost.seconds <= LONG:
+                return cost
+            single = steady_cost(sized(scene), speeds[-1:], **how)
         except (InputError, SolveError):
             return None  # the study says it, on its own tables
-        motions = Work("motions", cost.motion, cost.motions)
-        return StudyCost((motions, Work("points of the branch", cost.point, cost.points)))
+        return replace(cost, advice=_advice(single, inputs.speed_rpm[-1]))
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> SteadyStates:
         with boundary_errors():
@@ -110,6 +114,22 @@ def _motion(states: SteadyStates, index: int) -> tuple[Any, ...]:
             },
         }
     return point, own
+
+
+def _study_cost(cost: SteadyCost) -> StudyCost:
+    motions = Work("motions", cost.motion, cost.motions)
+    return StudyCost((motions, Work("points of the branch", cost.point, cost.points)))
+
+
+def _advice(single: SteadyCost, rpm: float) -> str:
+    """Say what a motion that is not afforded at many speeds takes at one, and what else answers."""
+    pitches = " and ".join(map(str, single.pitches))
+    repeats = f"repeats after {pitches} base pitches of the meshes and " if pitches else ""
+    return (
+        f"A motion {repeats}is derived by {2 * single.freedoms} states. One at {rpm:.6g} rpm takes "
+        f"{engineering(single.motion, 2)} CPU s: name few speeds, without the branch (--no-branch). Or try "
+        "loa response, which is linear, or loa simulate through the speeds."
+    )
 
 
 RUN = _SteadyStudy()

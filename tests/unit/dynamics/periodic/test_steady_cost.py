@@ -5,13 +5,14 @@ from collections import Counter
 import numpy as np
 import pytest
 from backlash_oscillator import oscillator
-from geared_scenes import RPM, gear_pair_scene, spring_table, with_bushings
+from geared_scenes import RPM, gear_pair_scene, spring_table, with_bushings, with_mesh
 
 from dynamics.assembly.assemble import assemble
 from dynamics.periodic import find_orbit, follow_branch, periodic_problem, steady_states
 from dynamics.periodic.period_map import PeriodMap
 from dynamics.periodic.steady_cost import (
     branch_points,
+    expected_iterations,
     motion_periods,
     period_seconds,
     point_periods,
@@ -76,12 +77,26 @@ def test_the_points_of_a_branch_are_within_twice_those_expected(span, monkeypatc
     assert 0.5 < expected / len(branch.orbits) < 2.0, (expected, len(branch.orbits), branch_points(speeds))
 
 
+@pytest.mark.parametrize(("damping", "settling"), [(0.05, 2), (0.05, 64), (0.002, 20), (0.002, 64)])
+def test_iterations_are_expected_where_settling_leaves_something(damping, settling):
+    """By the mode that is damped least; at most one more than they are, as contact may not be linear."""
+    scene = with_bushings(gear_pair_scene(spring_table(4e8, 1e-7)), damping_ratio=damping)
+    system = assemble(with_mesh(scene, damping_ratio=2.0 * damping))
+    states = steady_states(system, SPEEDS, branch=False, periods=settling)
+    problem = periodic_problem(system, SPEEDS[0])
+    expected = np.array([expected_iterations(problem, speed, settling) for speed in states.speed])
+    assert np.all(states.status == 0)
+    assert np.array_equal(expected > 0, states.iterations > 0)
+    assert np.all(np.abs(expected - states.iterations) <= 1)
+
+
 def test_a_prediction_is_linear_in_speeds_settling_and_repetitions(pair, monkeypatch):
     monkeypatch.setattr("dynamics.periodic.steady_cost.period_seconds", lambda problem, _: problem.repeat)
+    monkeypatch.setattr("dynamics.periodic.steady_cost.expected_iterations", lambda *_: 2)
     n = periodic_problem(pair, SPEEDS[0]).rest.size // 2
     few = steady_cost(pair, SPEEDS, periods=SETTLING)
     assert few.motions == 2 * SPEEDS.size
-    assert few.motion == motion_periods(n, SETTLING)
+    assert few.motion == motion_periods(n, SETTLING, 2)
     assert (few.points, few.point) == (branch_points(SPEEDS), point_periods(n))
     many = steady_cost(pair, np.linspace(SPEEDS[0], SPEEDS[-1], 30), periods=SETTLING + 7, repeat=3)
     assert many.motions == 60
