@@ -9,7 +9,7 @@ import numpy as np
 
 from bounds.types import Json
 from dynamics.vibration import SurfaceShape
-from lineofaction.gearbox.convert.drawn_housing import node_normals, packed, packed_surface
+from lineofaction.gearbox.convert.drawn_housing import packed, packed_surface
 from lineofaction.gearbox.problems import BadInput, DamagedFile, NotFound
 from lineofaction.gearbox.registry import study_of
 from lineofaction.gearbox.studies.motion import OfferedMotion, UnitMotion
@@ -76,6 +76,8 @@ def motion_json(motion: UnitMotion) -> Json:
 
 def _surface_json(surface: SurfaceShape, is_velocity: bool) -> Json:
     """Return nodes and facets of a surface with its motion; a large one by its corners alone."""
+    from dynamics.housings.drawn_surface import node_normals  # noqa: PLC0415 (start-up time)
+
     facets = surface.facets if len(surface.facets) <= MOST_FACETS else surface.triangles[:, :3]
     used, facets = np.unique(facets, return_inverse=True)
     points, motion, facets = surface.points[used], surface.motion[used], facets.reshape(-1, 3)

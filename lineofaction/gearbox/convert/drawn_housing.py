@@ -64,21 +64,13 @@ def _drawn(index: int, housing: HousingInput, folder: Path, most: int) -> tuple[
 
 def packed_surface(points: FloatArray, facets: IntArray) -> Json:
     """Return nodes (m), their normals and facets as the page takes them: 32 bits each, in Base64."""
+    from dynamics.housings.drawn_surface import node_normals  # noqa: PLC0415 (start-up time)
+
     return {
         "place_mm": packed(points / MM),
         "normal": packed(node_normals(points, facets)),
         "facets": base64.b64encode(facets.astype("<u4").tobytes()).decode(),
     }
-
-
-def node_normals(points: FloatArray, facets: IntArray) -> FloatArray:
-    """Return the normals of length 1 of nodes, in the mean of the facets at each by their areas."""
-    corners = np.moveaxis(points[facets], 1, 0)
-    across = np.cross(corners[1] - corners[0], corners[2] - corners[0])
-    normals = np.zeros_like(points)
-    for corner in facets.T:
-        np.add.at(normals, corner, across)
-    return np.asarray(normals / np.maximum(np.linalg.norm(normals, axis=1), np.finfo(float).tiny)[:, None])
 
 
 def packed(values: FloatArray) -> str:

@@ -408,9 +408,7 @@ def test_a_coarse_surface_of_a_box_keeps_its_edges_and_its_volume() -> None:
     assert 200 < len(drawn.facets) <= 1000
     np.testing.assert_array_equal(drawn.points, fine.points[kept])
     np.testing.assert_allclose(np.ptp(drawn.points, axis=0), sides, rtol=1e-12)
-    corners = np.moveaxis(drawn.points[drawn.facets], 1, 0)
-    volume = np.sum(np.cross(corners[0], corners[1]) * corners[2]) / 6.0
-    assert volume == pytest.approx(np.prod(sides), rel=1e-9)
+    assert volume_of(drawn) == pytest.approx(np.prod(sides), rel=1e-9)
 
 
 def test_no_facet_of_a_coarse_surface_is_a_line() -> None:
@@ -426,17 +424,41 @@ def test_no_facet_of_a_coarse_surface_is_a_line() -> None:
         assert np.linalg.norm(np.cross(two - one, three - one), axis=1).min() > 1e-12, "m^2"
 
 
-def test_a_thin_wall_is_seen_from_outside() -> None:
-    """Both its sides become one, which is that away from the middle, whichever comes first."""
-    sides, wall = np.array([0.2, 0.1, 0.06]), 2e-3
+@pytest.fixture
+def thin_wall() -> tuple[DrawnSurface, int]:
+    """A closed case with a wall of 2 mm, and how many of its points are on the outside."""
     outer, inner = box((0.2, 0.1, 0.06), (40, 20, 12)), box((0.196, 0.096, 0.056), (41, 21, 13))
-    points = np.concatenate([outer.points, inner.points + wall])
-    facets = [outer.surface[:, :3], inner.surface[:, :3][:, ::-1] + len(outer.points)]
+    on_outside, facets = np.unique(outer.surface[:, :3], return_inverse=True)
+    on_inside, turned = np.unique(inner.surface[:, :3][:, ::-1], return_inverse=True)
+    points = np.concatenate([outer.points[on_outside], inner.points[on_inside] + 2e-3])
+    every = np.concatenate([facets.ravel(), turned.ravel() + len(on_outside)])
+    return DrawnSurface(points, every.reshape(-1, 3)), len(on_outside)
+
+
+def volume_of(surface: DrawnSurface) -> float:
+    one, two, three = np.moveaxis(surface.points[surface.facets], 1, 0)
+    return float(np.sum(np.cross(one, two) * three) / 6.0)
+
+
+@pytest.mark.parametrize("most", [600, 1000, 2000])
+def test_both_skins_of_a_thin_wall_are_kept_apart(thin_wall: tuple[DrawnSurface, int], most: int) -> None:
+    """Cells are 3 to 8 times as wide as the wall: no facet joins its skins, nor does it thicken."""
+    fine, outside = thin_wall
+    drawn, kept = fine.of_at_most(most)
+    assert 0.7 * most < len(drawn.facets) <= most < len(fine.facets)
+    within = (kept >= outside)[drawn.facets]
+    assert np.array_equal(within.any(axis=1), within.all(axis=1))
+    assert volume_of(drawn) == pytest.approx(volume_of(fine), rel=0.05)
+
+
+def test_a_thin_wall_is_seen_from_outside(thin_wall: tuple[DrawnSurface, int]) -> None:
+    """Whichever of its sides comes first."""
+    (fine, _), sides, wall = thin_wall, np.array([0.2, 0.1, 0.06]), 2e-3
     for order in (1, -1):
-        drawn, _ = DrawnSurface(points, np.concatenate(facets[::order])).of_at_most(1500)
+        drawn, _ = DrawnSurface(fine.points, fine.facets[::order]).of_at_most(1500)
         one, two, three = np.moveaxis(drawn.points[drawn.facets], 1, 0)
         across = 0.5 * np.cross(two - one, three - one)
         for axis in range(3):
-            at_end = np.all(drawn.points[drawn.facets][..., axis] > sides[axis] - 1.5 * wall, axis=1)
+            at_end = np.all(drawn.points[drawn.facets][..., axis] > sides[axis] - 0.5 * wall, axis=1)
             outwards = across[at_end, axis]
             assert outwards[outwards > 0.0].sum() > 0.8 * np.prod(np.delete(sides, axis))
