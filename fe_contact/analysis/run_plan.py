@@ -175,7 +175,7 @@ def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
     cache : Path, optional
         Of flank compliances: what is in it costs nothing.
     """
-    decided = decide(checked, cache, tried=True)
+    decided = decide(checked, cache)
     pair, model = decided.checked.request.pair, decided.checked.model
     whole = predict_run(pair, decided.plan, model, (1, 1), cache)
     parts = whole.parts

@@ -20,7 +20,7 @@ from host.directories import cache_home
 from lineofaction.cli.guard import in_lines, warn
 from lineofaction.cli.output import Report
 from lineofaction.gearbox.convert.case import CheckedCase, CheckedCases, case_at, case_json
-from lineofaction.gearbox.convert.live import cost_of
+from lineofaction.gearbox.convert.live import costs_of
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.input_file import InputFile
@@ -106,9 +106,10 @@ def study_cost(
 
 
 def table_cost(case: Case) -> StudyCost:
-    """Return the predicted cost of the table of a case."""
-    cost = cost_of(CASES.of(case), cache_home() / "compliance")
-    return StudyCost((Work("tables", cost.cpu_seconds),), cost.memory_bytes)
+    """Return the predicted cost of the table of a case, in all passes that are expected."""
+    passes = costs_of(CASES.of(case), cache_home() / "compliance")
+    seconds = sum(each.cpu_seconds for each in passes)
+    return StudyCost((Work("tables", seconds),), max(each.memory_bytes for each in passes))
 
 
 def tables_cost(scene: SceneInput, folder: Path) -> StudyCost:

@@ -85,12 +85,15 @@ class Decided:
         With the chosen model, and a ledger that says why.
     wished : Decided, optional
         What the tolerance needs, where the time does not allow it.
+    behind : Decided, optional
+        What is expected to follow, where a mesh that is expected to miss the tolerance is tried first.
     """
 
     checked: Checked
     mesh: MeshChoice
     plan: Plan
     wished: Decided | None = None
+    behind: Decided | None = None
 
     def in_slices(self, count: int) -> Decided:
         """Return the same model and mesh in another number of slices; itself in the plane."""
@@ -179,7 +182,8 @@ def decide(
             among = models if trial.models else [chosen[0]]
             first = _best(_meshes(among, curves, cache, trial.error))
             if first[1].met and first[1].option.effort <= trial.work * chosen[1].option.effort:
-                return _planned(first[0], _said_tried(*chosen, first[1]))
+                said = _planned(first[0], _said_tried(*chosen, first[1]))
+                return replace(said, behind=_planned(*chosen))
     return _planned(*chosen)
 
 

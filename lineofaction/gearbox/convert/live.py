@@ -50,14 +50,14 @@ def plan_of(case: CheckedCase, time_budget_s: float | None, cache: Path | None) 
         return plan_run(checked, time_budget=time_budget_s, cache=cache)
 
 
-def cost_of(case: CheckedCase, cache: Path | None) -> Prediction:
-    """Return the cost of the table of a case: that of its plan, whose other levels are not predicted.
+def costs_of(case: CheckedCase, cache: Path | None) -> list[Prediction]:
+    """Return the cost of each pass of the table of a case that is expected: no other levels are predicted.
 
     Raises `BadInput`: no such pair, or a request that no plan can meet.
     """
     decided = case.request(_decided, cache)
     with boundary_errors():
-        return decided.predicted(cache)
+        return [own.predicted(cache) for own in (decided, decided.behind) if own is not None]
 
 
 def _decided(case: CheckedCase, cache: Path | None) -> Decided:

@@ -6,6 +6,7 @@ import json
 import re
 import tomllib
 from collections import Counter, OrderedDict
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -456,6 +457,19 @@ def test_a_table_costs_what_its_plan_says(case: CheckedCase) -> None:
     planned = plan_of(case, None, cache_home() / "compliance").chosen.cost
     assert cost.seconds == pytest.approx(planned.cpu_seconds)
     assert cost.bytes == planned.memory_bytes
+
+
+def test_a_table_costs_every_pass_that_is_expected(
+    case: CheckedCase, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A mesh that is expected to miss the tolerance is tried first: another is expected to follow."""
+    decided, alone = live._decided(case, None), table_cost(case.case)
+    behind = replace(decided, plan=decided.checked.plan("fine"))
+    monkeypatch.setattr(live, "_decided", lambda *_: replace(decided, behind=behind))
+    finer = behind.predicted(cache_home() / "compliance")
+    both = table_cost(case.case)
+    assert both.seconds == pytest.approx(alone.seconds + finer.cpu_seconds)
+    assert both.bytes == max(alone.bytes, finer.memory_bytes)
 
 
 def test_the_status_checks_each_case_of_a_unit_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

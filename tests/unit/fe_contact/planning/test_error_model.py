@@ -12,7 +12,7 @@ from analysis_requests import table_request
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, Material, SteDatabase, analyze
 from fe_contact.analysis.request.model_choice import TRIED, decide
 from fe_contact.analysis.request.request_check import check_request
-from fe_contact.analysis.run_plan import plan_run
+from fe_contact.analysis.run_plan import plan_run, predicted_designs
 from fe_contact.analysis.tables import _adaptive_nodes
 from fe_contact.geometry import InternalGearPair
 from fe_contact.geometry.ring_gear import RingGear
@@ -145,8 +145,12 @@ def test_what_costs_much_less_is_tried_first():
     assert any(error <= trial.error and work <= trial.work for trial in TRIED if trial.models)
     assert tried.mesh.met is promised.mesh.met
     assert "tried first" in tried.mesh.reason
+    assert tried.behind is not None and tried.behind.mesh == promised.mesh
+    assert promised.behind is None
+    assert predicted_designs(asked, None).across_face, "designs are solved on the mesh that is promised"
     loose = check_request(pair(), TableAxes(torques=[40.0]), AnalysisOptions(tolerance=AllowedError(0.01)))
     assert decide(loose, tried=True).mesh == decide(loose).mesh
+    assert decide(loose, tried=True).behind is None
 
 
 def test_a_mesh_of_a_fifth_of_the_work_is_measured_before_a_fine_one():
