@@ -91,6 +91,7 @@ def test_what_is_missing_is_listed_with_the_plan_and_no_field_is_blamed(visit: V
     assert found_inaccessible(page) == {}
     missing.get_by_role("link", name="wheel teeth").press("Enter")
     assert page.evaluate("document.activeElement.id") == "f-pair-wheel-teeth"
+    assert page.get_by_label(re.compile("^(Young|Poisson)'s ")).count() >= 2
 
 
 def test_a_field_that_is_being_typed_into_is_not_blamed_before_it_is_finished(visit: Visit) -> None:

@@ -17,7 +17,7 @@ const endOf = (name) => UNITS.find(([suffix]) => name.endsWith(suffix)) ?? ["", 
 export const unitOf = (name) => endOf(name)[1];
 
 export function wordsOf(name) {
-  const text = name.slice(0, name.length - endOf(name)[0].length).replaceAll("_", " ");
+  const text = name.slice(0, name.length - endOf(name)[0].length).replaceAll("_", " ").replace(/^(young|poisson)s /, "$1's ");
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
 
