@@ -143,8 +143,8 @@ def table(
         for row in range(len(rows)):
             lines += _beside([own.lines(own.cells[row], wide) for own, wide in block])
             if foot is not None:
-                text = in_lines(foot.cells[row], width - len(_INDENT))
-                lines += (f"{_INDENT}{line}" for line in text.split("\n"))
+                told = in_lines(foot.cells[row], width - len(_INDENT))
+                lines += (f"{_INDENT}{line}" for line in told.split("\n"))
     return Group(*lines)
 
 

@@ -38,10 +38,13 @@ def run_ste(
     """Read, evaluate, print each table; `point` holds the options of load and alignment by their names."""
     tables = tables_in(named, lambda case: KeptTables.file(read_model(Case, case)))
     if as_csv or as_json:
-        only([*tables.values()], named, "table")
+        tables = {"": only([*filter(None, tables.values())], named, "table")}
     for name, file in tables.items():
         if len(tables) > 1:
             console().print(f"\n{name}", style=FOUND)
+        if file is None:
+            console().print(f"no table: make it with loa analyze {named}", soft_wrap=True)
+            continue
         following = f"analyze {named}" if named.is_dir() and file.parent != named else f"report {file}"
         _show(file, point, at, following, as_table=as_table, as_csv=as_csv, as_json=as_json)
 

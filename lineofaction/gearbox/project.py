@@ -110,17 +110,17 @@ def results_by_part(project: Path) -> dict[str, list[Path]]:
     return {part: paths for part, paths in by_part.items() if paths}
 
 
-def tables_in(named: Path, kept: Callable[[Path], Path]) -> dict[str, Path]:
-    """Return a table as it is named, of a folder those of its cases by name: its own, else the `kept` one.
+def tables_in(named: Path, kept: Callable[[Path], Path]) -> dict[str, Path | None]:
+    """Return a table as it is named, of a folder that of each case by its name: its own, else the `kept` one.
 
-    Raises `BadInput`: there is neither.
+    None where there is neither. Raises `BadInput`: there is none at all.
     """
     if not named.is_dir():
         return {"": named}
-    own = {case: named / f"{case.stem}{SUFFIX}" for case in _chosen(dict(_tables(named)), "case")}
-    found = {case.stem: table if table.is_file() else kept(case) for case, table in own.items()}
-    tables = {name: table for name, table in found.items() if table.is_file()}
-    if not tables:
+    cases = {case: named / f"{case.stem}{SUFFIX}" for case in _chosen(dict(_tables(named)), "case")}
+    found = {case.stem: own if own.is_file() else kept(case) for case, own in cases.items()}
+    tables = {name: table if table.is_file() else None for name, table in found.items()}
+    if not any(tables.values()):
         advice = f"Make them with: loa analyze {named}"
         raise BadInput.of("file", str(named), "a folder with an STE database in it", advice)
     return tables

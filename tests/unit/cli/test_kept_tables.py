@@ -100,6 +100,7 @@ def test_what_one_verb_computes_another_finds(computed: list[SteDatabase], tmp_p
     tabled(**mesh)
     said = loa("ste", unit, "--torque", "1").stdout
     assert said.count("gear pair") == 1 and f"next: loa analyze {unit}" in said
+    assert f"other\nno table: make it with loa analyze {unit}" in said
     for name in ("spur", "other"):
         printed("analyze", unit / f"{name}.toml", "-o", unit / f"{name}.nc")
     assert f"next: loa report {unit / 'spur.nc'}" in loa("ste", unit, "--torque", "1").stdout
