@@ -150,7 +150,7 @@ def _peak_table(response: ForcedResponse, most: int = SHOWN_PEAKS) -> Table:
         "frequency, Hz": lambda peak: number(peak.frequency, 5),
         "nearest mode, Hz": lambda peak: number(peak.natural_frequency, 5),
         "amplitude, N": lambda peak: number(peak.amplitude, 4),
-        "dynamic over static": lambda peak: number(peak.amplification, 3),
+        "dynamic over static": lambda peak: number(peak.amplification, 3) if peak.amplification else "-",
     }
     return Table.of("Peaks over speed, the largest first", listed, columns)
 

@@ -54,6 +54,16 @@ def test_of_many_modes_the_lowest_are_printed(scene: Path, monkeypatch: pytest.M
     assert re.search(r"^\d+ more up to [\d.]+ kHz: in the report, with --json$", shown, re.MULTILINE)
 
 
+def test_an_order_that_a_mesh_does_not_excite_has_no_static_error_to_compare(
+    scene: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It was 0 times the static one, as if it vanished."""
+    own = "lineofaction.report.response.response.peaks"
+    monkeypatch.setattr(own, lambda found: [replace(peak, amplification=0.0) for peak in peaks(found)])
+    shown = loa("response", scene, "--speed-rpm", "500:9000:500", "--orders", 2).stdout
+    assert re.search(r"^mesh mesh .* -$", shown, re.MULTILINE)
+
+
 def test_a_load_that_parts_the_flanks_is_refused_by_name(scene: Path) -> None:
     scene.write_text(scene.read_text().replace("torque_n_m = [100.0]", "torque_n_m = [-100.0]"))
     result = loa("modes", scene, "--json")
