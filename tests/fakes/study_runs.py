@@ -154,7 +154,8 @@ class StudyRuns:
         if ending not in self._files:
             output = self.folder / ("out" if self.study.folder else f"result{ending}")
             done = self.verb("-o", output)
-            assert (done.exit_code, done.stderr) == (0, ""), done.output
+            said = re.sub(rf"loa {self.study.name}: about .*\n", "", done.stderr)  # an announced cost
+            assert (done.exit_code, said) == (0, ""), done.output
             for each in self.study.endings if self.study.folder else (ending,):
                 file = output / f"{self.study.folder}{each}" if self.study.folder else output
                 self._files[each], self._texts[each] = file, done
