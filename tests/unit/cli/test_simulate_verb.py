@@ -67,8 +67,7 @@ def test_a_run_says_which_effects_are_on_and_what_the_others_change():
     assert columns == ["effect", "on", "without it", "freedoms", "where and why"]
     assert rows == [
         ["flexible shafts", "no", "2 µm along the line of action at rest", "", "input: switched off"],
-        ["lateral", "yes", "17 % of all", "+4", "input, output: pushed aside"],
-        ["", "yes", "", "", "idler: left alone"],
+        ["lateral", "yes", "17 % of all", "+4", "input, output: pushed aside\nidler: left alone"],
     ]
     assert trifles == "1 effect below 0.1 %: tilt"
 
