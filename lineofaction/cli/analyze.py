@@ -48,14 +48,14 @@ from model_studies.workers import InProcess, Workers
 # Lines of `loa analyze` about a tolerance: drafts while it refines, its passes, and whether it is met.
 
 _AXES = {
-    "force": ("loads", 1.0, "N"),
+    "force": ("torques", 1.0, "N m"),
     "misalignment": ("misalignments", UM, "µm"),
     "center_distance_change": ("center distance changes", MM, "mm"),
 }
 
 
-def _tolerance_lines(receipt: Json) -> Iterator[str]:
-    """Yield whether the tolerance is met by the errors as measured, why not, and the passes if several."""
+def _tolerance_lines(receipt: Json, newton_metre: float = 1.0) -> Iterator[str]:
+    """Yield whether the tolerance is met as measured, why not, and passes; `newton_metre`: its force, N."""
     kept = receipt.get("tolerance")
     if not kept:
         return
@@ -65,11 +65,11 @@ def _tolerance_lines(receipt: Json) -> Iterator[str]:
         yield from (_pass(number, entry) for number, entry in enumerate(passes, 1))
     for beyond in kept.get("between_nodes", ()):
         name, unit, symbol = _AXES[beyond["axis"]]
-        low, high = (f"{value / unit:.6g}" for value in beyond["between"])
+        own = newton_metre if beyond["axis"] == "force" else unit
+        low, high = (f"{value / own:.6g}" for value in beyond["between"])
         yield (
-            f"between the {name} {low} and {high} {symbol} "
-            f"interpolation uses {engineering(beyond['used'], 2)} of it: "
-            "add a value there"
+            f"between the {name} {low} and {high} {symbol} interpolation errs by "
+            f"{engineering(beyond['used'], 2)} times the tolerance: add a value there"
         )
 
 
@@ -168,9 +168,9 @@ def _show(summary: dict[str, Any]) -> None:
         head = ["source", "mean µm", "p-p µm", "harm. 1 µm"]
         out.print(table(head, rows, f"Errors by source at {load['torque_n_m']:.6g} N m"))
     _show_effects(out, summary["effect_ledger"])
-    for line in assumption_lines(summary["receipt"]):
+    for line in assumption_lines(receipt):
         out.print(line)
-    out.print(_cost(summary["receipt"]))
+    out.print(_cost(receipt, load["normal_force_n"] / load["torque_n_m"]))
     out.print(f"points {summary['points']}, failed {summary['failed_points']}")
     out.print(f"content hash {summary['content_hash']}")
 
@@ -199,7 +199,7 @@ def _of_cycle(cycle: dict[str, Any]) -> str:
     )
 
 
-def _cost(receipt: dict[str, Any]) -> str:
+def _cost(receipt: dict[str, Any], newton_metre: float) -> str:
     """Return time by stage and memory in one line, and what there is to say of the table in others."""
     seconds = {name: spent["cpu_seconds"] for name, spent in receipt["stages"].items()}
     stages = ", ".join(f"{name} {engineering(spent, 2)}" for name, spent in seconds.items())
@@ -221,7 +221,7 @@ def _cost(receipt: dict[str, Any]) -> str:
         text += f"\nlargest error at held-out points between the nodes: {held_out} (in the errors there)"
     if allowed := receipt.get("misalignment_range"):
         text += f"\n{allowed}"
-    for line in _tolerance_lines(receipt):
+    for line in _tolerance_lines(receipt, newton_metre):
         text += f"\n{line}"
     outgrown = receipt.get("patch_outgrown_points", 0)
     if outgrown:

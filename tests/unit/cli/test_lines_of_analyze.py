@@ -233,7 +233,11 @@ def test_passes_are_listed_where_there_are_several() -> None:
 def test_what_is_missed_between_loads_says_where_a_value_is_wanted() -> None:
     beyond = {"axis": "misalignment", "used": 2.0, "between": [0.0, 3e-5]}
     (_, line) = _tolerance_lines({"tolerance": KEPT | {"between_nodes": [beyond]}})
-    assert line == "between the misalignments 0 and 30 µm interpolation uses 2 of it: add a value there"
+    what = "interpolation errs by 2 times the tolerance: add a value there"
+    assert line == f"between the misalignments 0 and 30 µm {what}"
+    beyond = {"axis": "force", "used": 2.0, "between": [400.0, 1200.0]}
+    (_, line) = _tolerance_lines({"tolerance": KEPT | {"between_nodes": [beyond]}}, 40.0)
+    assert line == f"between the torques 10 and 30 N m {what}"
 
 
 def test_errors_that_were_not_estimated_are_no_warning() -> None:
