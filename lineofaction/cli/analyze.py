@@ -199,7 +199,7 @@ def _of_cycle(cycle: dict[str, Any]) -> str:
     )
 
 
-def _cost(receipt: dict[str, Any], newton_metre: float) -> str:
+def _cost(receipt: dict[str, Any], newton_metre: float = 1.0) -> str:
     """Return time by stage and memory in one line, and what there is to say of the table in others."""
     seconds = {name: spent["cpu_seconds"] for name, spent in receipt["stages"].items()}
     stages = ", ".join(f"{name} {engineering(spent, 2)}" for name, spent in seconds.items())
