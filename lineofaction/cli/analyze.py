@@ -48,7 +48,6 @@ from model_studies.workers import InProcess, Workers
 # Lines of `loa analyze` about a tolerance: drafts while it refines, its passes, and whether it is met.
 
 _AXES = {
-    "force": ("torques", 1.0, "N m"),
     "misalignment": ("misalignments", UM, "µm"),
     "center_distance_change": ("center distance changes", MM, "mm"),
 }
@@ -63,10 +62,10 @@ def _tolerance_lines(receipt: Json, newton_metre: float = 1.0) -> Iterator[str]:
     passes = receipt.get("passes", ())
     if len(passes) > 1:
         yield from (_pass(number, entry) for number, entry in enumerate(passes, 1))
+    axes = _AXES | {"force": ("torques", newton_metre, "N m")}
     for beyond in kept.get("between_nodes", ()):
-        name, unit, symbol = _AXES[beyond["axis"]]
-        own = newton_metre if beyond["axis"] == "force" else unit
-        low, high = (f"{value / own:.6g}" for value in beyond["between"])
+        name, unit, symbol = axes[beyond["axis"]]
+        low, high = (f"{value / unit:.6g}" for value in beyond["between"])
         yield (
             f"between the {name} {low} and {high} {symbol} interpolation errs by "
             f"{engineering(beyond['used'], 2)} times the tolerance: add a value there"
