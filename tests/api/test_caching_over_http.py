@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import socket
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
@@ -156,22 +157,21 @@ def cached(tmp_path: Path) -> Iterator[httpx2.Client]:
         command = [str(NGINX), "-c", str(tmp_path / "nginx.conf"), "-e", str(tmp_path / "error.log")]
         proxy = subprocess.Popen(command)
         try:
+            until(lambda: _listens(tmp_path / "socket"))
             transport = httpx2.HTTPTransport(uds=str(tmp_path / "socket"))
             with httpx2.Client(
                 base_url="http://localhost", transport=transport, headers={"Accept": NETCDF}
             ) as client:
-                until(lambda: _answers(client))
                 yield client
         finally:
             proxy.terminate()
             proxy.wait()
 
 
-def _answers(client: httpx2.Client) -> bool:
-    try:
-        return client.get("/health").status_code == 200
-    except httpx2.TransportError:
-        return False
+def _listens(path: Path) -> bool:
+    """Whether a server accepts at a path. httpx2 leaves open the socket of a refused connection."""
+    with socket.socket(socket.AF_UNIX) as caller:
+        return caller.connect_ex(str(path)) == 0
 
 
 def test_a_cache_keeps_results_of_an_open_service(cached: httpx2.Client) -> None:
