@@ -162,17 +162,17 @@ def _is_long(shown: Sequence[_Column], width: int) -> bool:
     return bool(others) and last.text and last.whole > max(_WIDEST, _MOST_LINES * left)
 
 
-_FIGURE = re.compile(r"([+-]?\d+)(\.\d+)?( ?[^\d.e].*)?")
-"""A number and what stands behind it: a unit, its error."""
+_FIGURE = re.compile(r"([+-]?\d+)((?:\.\d+)?(?: ?[^\d.e±].*?)?)( ?±.*)?")
+"""A number: what is before its decimal point, its decimals with its unit, and its error."""
 
 
 def aligned(cells: Sequence[str]) -> list[str]:
-    """Return cells of a column with blanks for the decimals that they lack of others."""
+    """Return cells of a column, one decimal point and one error below another, units at their numbers."""
     figures = [_FIGURE.fullmatch(cell) for cell in cells]
     parts = [figure.groups("") for figure in figures if figure]
-    decimals, behind = (max((len(part[k]) for part in parts), default=0) for k in (1, 2))
+    decimals, error = (max((len(part[k]) for part in parts), default=0) for k in (1, 2))
     return [
-        figure[1] + (figure[2] or "").ljust(decimals) + (figure[3] or "").ljust(behind) if figure else cell
+        figure[1] + figure[2].ljust(decimals) + (figure[3] or "").ljust(error) if figure else cell
         for cell, figure in zip(cells, figures, strict=True)
     ]
 
