@@ -39,6 +39,10 @@ def test_the_first_example_stands_there_with_its_errors_when_the_page_opens(
     assert page.evaluate(BEYOND) == [], "on the first screen, which does not scroll"
     assert [url for url in visit.requests if "/execution" in url] == [], "no job"
     assert page.locator(".design-note").count() == 0
+    expect(page.locator("#live-ripple figcaption")).to_contain_text(
+        "Gray, once it is analyzed here: as analyzed"
+    )
+    expect(page.locator(".made-band")).to_be_hidden()
     assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)
     assert [line for line in visit.console if line.startswith("error")] == [], "nothing was refused either"
     control(page, "#f-pair-pinion-tip_relief_um").fill("12")
@@ -69,6 +73,7 @@ def test_no_figure_of_a_result_stands_under_the_title_of_another(
     expect(figures).to_contain_text("mean STE")
     page.unroute("**/ste", hold)  # lets go what was held
     expect(figures).to_contain_text("first harmonic")
+    expect(page.locator("#live-ripple figcaption")).to_contain_text("Gray: as analyzed, at the same torque")
     page.close()
 
 

@@ -8,8 +8,9 @@ from collections.abc import Iterator
 from contextlib import suppress
 
 import pytest
-from page_visit import Visit, control, found_inaccessible, opened
+from page_visit import Visit, control, found_inaccessible, opened, refused
 from playwright.sync_api import Browser, Error, Page, Route, expect
+from running_service import until
 
 PAIR = {
     "pair-normal_module_mm": "2.5",
@@ -197,6 +198,39 @@ def test_an_opened_case_keeps_its_complaint_and_its_title_block(visit: Visit) ->
     kept, given = tomllib.loads(text), tomllib.loads(OPENED)
     assert (kept["complaint"], kept["report"]) == (given["complaint"], given["report"])
     assert visit.complaints == []
+
+
+@pytest.mark.law
+def test_jobs_wait_for_a_file_that_is_read_and_are_given_up_with_it(visit: Visit) -> None:
+    """The pair that the file replaces was analyzed."""
+    page, waiting = visit.page, list[Route]()
+    page.route("**/v1/cases/from-toml", lambda route: waiting.append(route))  # noqa: PLW0108 (no builtin)
+    own = {"name": "own.toml", "mimeType": "application/toml", "buffer": OPENED.encode()}
+    search = page.get_by_role("button", name="Search better flanks").first
+    unread = {"title": "No case", "status": 422, "detail": "It is none."}
+    buttons = {"analyze": page.locator("#analyze"), "optimize": search}
+    for process, button in buttons.items():
+        with refused(page, process) as sent:
+            for refusal in (None, unread):
+                waiting.clear()
+                page.locator("#import-file").set_input_files(own)
+                until(lambda: page.wait_for_timeout(20) or waiting)
+                button.press("Enter")
+                expect(button).to_be_disabled()
+                expect(page.get_by_text("Waits for the file that is read.")).to_have_count(1)
+                assert len(sent) == (refusal is not None)
+                if refusal:
+                    waiting[0].fulfill(status=422, json=refusal)
+                else:
+                    waiting[0].continue_()
+                expect(button).to_be_enabled()
+                expect(page.get_by_text("Waits for the file that is read.")).to_have_count(0)
+            (job,) = sent
+            assert job["case"]["report"] == tomllib.loads(OPENED)["report"]
+            control(page, "#f-report-title").fill("")
+            button.press("Enter")
+            until(lambda sent=sent: page.wait_for_timeout(20) or len(sent) == 2)
+            assert "title" not in sent[1]["case"]["report"], "nothing is waited for any more"
 
 
 def test_a_backlash_of_rounding_is_none(visit: Visit) -> None:

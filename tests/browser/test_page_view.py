@@ -91,6 +91,45 @@ def test_the_pair_is_drawn_turns_by_keyboard_and_sleeps(view: Visit) -> None:
     assert view.complaints == []
 
 
+SAID = """() => {
+  const [view, roll] = [document.querySelector("canvas.view"), document.getElementById("roll")];
+  window.said = { times: 0, places: new Set() };
+  const own = Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value");
+  Object.defineProperty(roll, "value", { configurable: true, get: () => own.get.call(roll), set: (value) => {
+    said.times += 1;
+    said.places.add(value);
+    own.set.call(roll, value);
+  } });
+  return Number(view.dataset.frames);
+}"""
+
+
+@pytest.mark.law
+def test_the_slider_follows_the_pair_that_rolls_a_few_times_a_second(view: Visit) -> None:
+    """Nothing is requested, what has the focus keeps it, and a hand stops the pair where it is put."""
+    page, slider = view.page, view.page.locator("#roll")
+    page.locator("#name").focus()
+    asked, address = [url for url in view.requests if "/v1/" in url], page.url
+    before, begin = page.evaluate(SAID), page.evaluate("performance.now()")
+    page.get_by_role("button", name="Roll", exact=True).evaluate("(node) => node.click()")
+    until(lambda: page.wait_for_timeout(100) or page.evaluate("said.places.size") > 4)
+    passed, times = page.evaluate("[performance.now(), said.times]")
+    assert times <= 1 + (passed - begin) / 250.0
+    expect(slider).not_to_have_value("0")
+    value = float(slider.input_value())
+    assert float(page.locator("#roll-value").inner_text()) == pytest.approx(value, abs=0.3)
+    assert frames(page) > before
+    assert [url for url in view.requests if "/v1/" in url] == asked
+    assert page.url == re.sub(r"&at=[\d.]+", "", address), "where it rolls is no place"
+    assert page.evaluate("document.activeElement.id") == "name"
+    page.evaluate("delete document.getElementById('roll').value")
+    slider.fill("0.4")
+    expect(page.get_by_role("button", name="Roll", exact=True)).to_be_visible()
+    expect(page).to_have_url(re.compile("at=0.40"))
+    rest(page)
+    expect(slider).to_have_value("0.4")
+
+
 @pytest.mark.law
 def test_a_phone_has_room_beside_variants_and_a_complaint(
     drawing_browser: Browser, address: str, analyzed: str

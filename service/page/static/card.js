@@ -32,7 +32,7 @@ function valuesOf(fields) {
 /**
  * @param {Study} study
  * @param {{slot: Function, show: Function}} page
- * @param {(values: any) => {process?: string, inputs: object | (() => Promise<object>)}} job of what was typed
+ * @param {(values: any) => {process?: string, inputs: object | (() => object | Promise<object>)}} job of what was typed
  * @param {{typed?: (order: {processID: string, inputs: any}) => any, more?: Node[]}} [own] what was typed for a job; what stands above the fields
  */
 export function card(study, { slot, show }, job, { typed = ({ inputs }) => inputs, more = [] } = {}) {

@@ -19,7 +19,10 @@ export class CaseFiles {
       save(toml, `${design.name || "case"}.toml`, "application/toml");
     }));
     offerAsMade(design, (action) => this.careful(action));
-    byId("import-file").addEventListener("change", (event) => this.careful(() => this.open(event.target)));
+    byId("import-file").addEventListener("change", ({ target }) => this.careful(() => {
+      const reading = this.open(target).finally(() => { if (design.reading === reading) design.reading = null; });
+      return (design.reading = reading);
+    }));
   }
 
   /** @param {any} chosen the control that a file was chosen with */

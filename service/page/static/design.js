@@ -31,6 +31,8 @@ export class Design {
     this.settled = () => {}; // called when nobody has typed for a moment
     this.left = () => {}; // called when another design is put into the form
     this.stands = false; // whether the form holds what the address says, or what was typed since
+    /** @type {Promise<void> | null} of a file that is read into the form: jobs wait for it */
+    this.reading = null;
     this.drawing = new Drawing();
     this.view = new View(byId("view"), () => {
       address.look("see", null);

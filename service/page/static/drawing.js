@@ -62,15 +62,15 @@ function words(found) {
 export class Drawing {
   constructor() {
     this.turning = [];
-    byId("roll").addEventListener("input", () => this.roll());
+    for (const name of ["input", "followed"]) byId("roll").addEventListener(name, () => this.roll());
   }
 
   /** @param {object} found answer of /v1/drafts/outline */
   show(found) {
     this.mark("");
     this.gears = [found.pinion, found.wheel];
-    const [C, tip] = [found.path_of_contact.points_mm.C, found.pinion.radius_mm];
-    const size = Math.max(2.6 * (tip.tip - tip.root), 1.25 * this.reach(found.path_of_contact.points_mm)) * 2;
+    const [{ A, C, E }, tip] = [found.path_of_contact.points_mm, found.pinion.radius_mm];
+    const size = Math.max(2.6 * (tip.tip - tip.root), 1.25 * Math.hypot(E[0] - A[0], E[1] - A[1])) * 2;
     this.turning = [
       this.scene("mesh-drawing", found, [C[0] - 0.75 * size, -C[1] - size / 2, 1.5 * size, size], size, true),
       this.scene("whole-drawing", found, ...this.whole(found)),
@@ -95,10 +95,6 @@ export class Drawing {
   mark(text) {
     byId("drawing-state").textContent = text;
     byId("thing").classList.toggle("stale", Boolean(text));
-  }
-
-  reach(points) {
-    return Math.hypot(points.E[0] - points.A[0], points.E[1] - points.A[1]);
   }
 
   whole(found) {

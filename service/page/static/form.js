@@ -201,17 +201,13 @@ export class CaseForm {
     const missing = [...new Set([...this.missing, ...named])];
     const items = faults.map((fault) => this.item(fault, focus ? 0 : TYPING));
     const parts = [];
-    if (missing.length) parts.push(make("p", {}, make("strong", {}, "Still to fill in: "), ...this.linked(missing), "."));
+    if (missing.length) parts.push(make("p", {}, make("strong", {}, "Still to fill in: "), ...missing.flatMap((field, k) => [k ? ", " : "", this.link(field, wordsIn(field.path))]), "."));
     if (items.length) parts.push(make("strong", {}, "This case cannot be computed:"), make("ul", {}, ...items));
     const box = byId("form-errors");
     box.replaceChildren(...(parts.length ? parts : [make("strong", {}, problem.message)]));
     box.classList.toggle("alarm", faults.length > 0 || !missing.length);
     box.hidden = false;
     if (focus) box.focus();
-  }
-
-  linked(fields) {
-    return fields.flatMap((field, k) => [k ? ", " : "", this.link(field, wordsIn(field.path))]);
   }
 
   link(field, text) {

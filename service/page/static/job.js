@@ -65,6 +65,12 @@ async function watched(target, id, expected, signal) {
 
 export const WORDS = { accepted: "waits for its turn", running: "runs", successful: "done", failed: "failed", dismissed: "cancelled" };
 
+/** How long a job took that has ended. */
+export function spent({ started, finished }, atOnce = "") {
+  const seconds = (new Date(finished) - new Date(started)) / 1000;
+  return !started || !finished ? "" : seconds < 0.5 ? atOnce : ` after ${duration(seconds)}`;
+}
+
 class JobCard {
   constructor(target, status, expected) {
     const process = status.processID;
@@ -83,7 +89,7 @@ class JobCard {
     this.bar.value = now.status === "successful" ? 100 : now.progress ?? 0;
     this.cancel.hidden = ended;
     this.bar.hidden = ended;
-    this.line.textContent = `${this.process} ${WORDS[now.status]}${ended ? this.spent(now) : `, ${Math.round(now.progress ?? 0)} %`}`;
+    this.line.textContent = `${this.process} ${WORDS[now.status]}${ended ? spent(now, " (from the store)") : `, ${Math.round(now.progress ?? 0)} %`}`;
     const remaining = this.remaining(now);
     const text = ended ? "" : [now.stage ? `stage: ${now.stage}` : "", remaining].filter(Boolean).join("; ");
     if (text !== this.said) this.spoken.textContent = text; // a screen reader hears changes only
@@ -94,12 +100,6 @@ class JobCard {
   waits(problem) {
     if (problem) this.spoken.textContent = `${problem.message} ${AGAIN}`;
     else if (this.spoken.textContent !== this.said) this.spoken.textContent = this.said;
-  }
-
-  spent(now) {
-    if (!now.started || !now.finished) return "";
-    const seconds = (new Date(now.finished) - new Date(now.started)) / 1000;
-    return seconds < 0.5 ? " (from the store)" : ` after ${duration(seconds)}`;
   }
 
   /** Seconds that remain: the service's own figure, else by what is done, else by the plan. */

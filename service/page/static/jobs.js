@@ -1,8 +1,8 @@
 /** The jobs of the service as a gallery, newest first: their ripple, how far they are, reopened or cancelled. */
 
 import { Problem, get, pause, saidIn } from "./api.js";
-import { button, byId, duration, make } from "./elements.js";
-import { ENDED, WORDS, cancelled } from "./job.js";
+import { button, byId, make } from "./elements.js";
+import { ENDED, WORDS, cancelled, spent } from "./job.js";
 import { headline } from "./job_headline.js";
 import { called, label, renamed, search } from "./job_label.js";
 
@@ -88,10 +88,10 @@ export class Jobs {
     const alone = !job.children;
     const buttons = [
       !alone && offered(this.unfolded.has(job.jobID) ? "Hide jobs" : "Show jobs", () => this.fold(job)),
-      !ENDED.has(status) && offered("Cancel", () => this.cancel(job)),
+      !ENDED.has(status) && offered("Cancel", () => this.done(cancelled(job.jobID, this.line))),
       alone && status in OPENED && offered(OPENED[status], () => this.open(job)),
       alone && status === "successful" && COMPARED.has(job.processID) && offered("Compare", () => this.choose(job)),
-      offered("Rename", () => this.rename(job)),
+      offered("Rename", () => this.done(renamed(job, this.line))),
     ].filter(Boolean);
     const what = job.children ? `${job.processID}, ${job.children} jobs` : job.processID;
     const facts = [what, state(job), when].join(", ");
@@ -110,20 +110,11 @@ export class Jobs {
     if (fits) await saidIn(this.line, () => this.compare(first, job));
   }
 
-  async rename(job) {
-    await renamed(job, this.line);
-    await this.refresh();
-  }
-
-  async cancel(job) {
-    await cancelled(job.jobID, this.line);
+  /** Look again once something was done. @param {Promise<void>} action */
+  async done(action) {
+    await action;
     await this.refresh();
   }
 }
 
-function state(job) {
-  if (job.status === "running") return `runs, ${Math.round(job.progress ?? 0)} %`;
-  if (!job.started || !job.finished) return WORDS[job.status];
-  const seconds = (new Date(job.finished) - new Date(job.started)) / 1000;
-  return seconds < 0.5 ? WORDS[job.status] : `${WORDS[job.status]} after ${duration(seconds)}`;
-}
+const state = (job) => (job.status === "running" ? `runs, ${Math.round(job.progress ?? 0)} %` : WORDS[job.status] + spent(job));

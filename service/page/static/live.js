@@ -227,13 +227,13 @@ export class Live {
 
   plots() {
     this.blocks = {
-      ste: liveBlock("live_ste", "Transmission error", "Gray, once it is analyzed here: as analyzed, at the same torque and aligned."),
+      ste: liveBlock("live_ste", "Transmission error", `Gray${this.known ? "" : ", once it is analyzed here"}: as analyzed, at the same torque and aligned.`),
       harmonics: liveBlock("live_harmonics", "Mesh harmonics", "Amplitudes of the mesh frequency and its multiples."),
       sharing: liveBlock("live_load_share", "Load sharing", "Part of the load on each pair of teeth."),
     };
     this.numbers = folded("Numbers");
     this.made = new MadeBand(this.known?.case, this.caller, () => this.again());
-    this.made.node.hidden = this.known === null;
+    this.made.node.hidden = !this.known;
     this.blocks.ste.block.append(this.made.node, this.numbers);
     this.flanks = new LiveFlanks();
     this.sound = new LiveSound();
@@ -272,8 +272,7 @@ export class Live {
 
   /** The curves, in front of the bands of pairs as made. */
   ripple(shown) {
-    const { data, layout } = steFigure(shown);
-    return { data: [...this.made.traces(shown), ...data], layout };
+    return steFigure(shown, this.made.traces(shown));
   }
 
   /** Say over how many pitches a curve goes, and which orders it has. */

@@ -1,12 +1,14 @@
 /** The plots of the live flanks: curves, harmonics and load sharing, several results on one pair of axes. */
 
-const FONT = { family: "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', sans-serif", size: 13 };
+import { rangeOf } from "./lines.js";
+
 const PAIRS = [ // by index, as in the report (drawing/palette.py)
   "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9",
 ];
 export const SHOWN_HARMONICS = 8;
 const [STRONGEST, LABELED, HIGHEST] = [60, 16, 4.2]; // lines drawn and named, mesh order
 const APART = 0.09; // mesh orders between names
+const [PARTS, ROOM] = [8, 0.4]; // of an axis: steps of the grid that it ends on at least, steps beyond its values
 
 /**
  * @typedef {{name: string, curve: object, color: string, width: number, dash: string}} Shown a curve as it is drawn
@@ -26,21 +28,31 @@ export function layout(x, y, more = {}) {
     tickcolor: "#59636E", automargin: true,
   });
   return {
-    font: { ...FONT, color: "#1B1F24" }, margin: { l: 60, r: 12, t: 28, b: 44 }, xaxis: axis(x), yaxis: axis(y),
+    font: { family: "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', sans-serif", size: 13, color: "#1B1F24" }, margin: { l: 60, r: 12, t: 28, b: 44 }, xaxis: axis(x), yaxis: axis(y),
     legend: { orientation: "h", x: 0, y: 1, yref: "container", yanchor: "top" }, hovermode: "x unified", ...more,
   };
 }
 
+/** Ends of an axis on a coarse grid, so that it stands while a slider moves: plotly.js keeps every label by its place. @param {number[][]} rows */
+export function endsOf(rows) {
+  const ends = rangeOf(rows);
+  const step = 2 ** Math.floor(Math.log2(ends[1] - ends[0] || 1)) / PARTS;
+  return ends.map((end, k) => end && step * (k ? Math.ceil(end / step + ROOM) : Math.floor(end / step - ROOM)));
+}
+
 /**
  * Curves less their means: designs of unlike stiffness would else lie apart, their ripples flat.
- * @param {Shown[]} shown
+ * @param {Shown[]} shown @param {any[]} bands behind them
  */
-export function steFigure(shown) {
-  const data = shown.map(({ name, curve, color, width, dash }) => ({
+export function steFigure(shown, bands) {
+  const curves = shown.map(({ name, curve, color, width, dash }) => ({
     ...over(curve, curve.ste_um.map((value) => value - curve.mean_um)), type: "scatter", mode: "lines", name,
     line: { color, width, dash },
   }));
-  return { data, layout: layout("position, base pitches", "error less its mean, µm") };
+  const data = [...bands, ...curves];
+  const made = layout("position, base pitches", "error less its mean, µm");
+  made.yaxis.range = endsOf(data.map(({ y }) => y));
+  return { data, layout: made };
 }
 
 /** The strongest orders of a curve up to the fourth of the mesh, by name: of the mesh, of a shaft, or beside the mesh. @param {any} curve */
@@ -71,7 +83,7 @@ function ordersFigure(shown) {
       hovertemplate: "%{customdata}: %{y:.3g} µm",
     };
   });
-  const top = Math.log10(Math.max(...data.flatMap(({ y }) => y)));
+  const top = Math.ceil(PARTS * Math.log10(Math.max(...data.flatMap(({ y }) => y)))) / PARTS;
   const made = layout("order of the mesh", "amplitude, µm", { barmode: "overlay", hovermode: "closest" });
   Object.assign(made.yaxis, { type: "log", range: [top - 3.5, top + 1.2], dtick: 1 });
   Object.assign(made.xaxis, { range: [-0.05, HIGHEST], dtick: 1 });
@@ -87,6 +99,7 @@ export function harmonicsFigure(shown, count) {
   }));
   const made = layout("harmonic of the mesh", "amplitude, µm", { bargap: 0.25 });
   made.xaxis.dtick = 1;
+  made.yaxis.range = endsOf([[0], ...data.map(({ y }) => y)]);
   return { data, layout: made };
 }
 

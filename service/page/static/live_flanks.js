@@ -1,7 +1,7 @@
 /** The plots of what happens on the live flanks: pressure over the driving gear's flank, load over the face. */
 
 import { number } from "./elements.js";
-import { layout } from "./live_figures.js";
+import { endsOf, layout } from "./live_figures.js";
 import { edgeWords } from "./live_numbers.js";
 import { figureBlock, plot } from "./plots.js";
 
@@ -30,7 +30,7 @@ function pressureFigure(flanks) {
   const largest = largestOf(z);
   const size = isolineStep(largest);
   const map = {
-    type: "contour", x, y, z: z.map((row) => row.map((value) => (value > 0.01 * largest ? value : null))), zmin: 0, zmax: largest,
+    type: "contour", x, y, z: z.map((row) => row.map((value) => (value > 0.01 * largest ? value : null))), zmin: 0, zmax: endsOf([[0, largest]])[1],
     colorscale: "Cividis", colorbar: { title: { text: "MPa", side: "top" }, thickness: 14 }, line: { color: "#FFFFFF", width: 1 },
     contours: { coloring: "heatmap", start: size, end: 0.92 * largest, size, showlabels: true, labelfont: { size: 11, color: "#FFFFFF" } },
     hovertemplate: "face %{x:.3g} mm<br>roll length %{y:.3g} mm<br>%{z:.4g} MPa<extra></extra>",
@@ -46,7 +46,7 @@ function faceLoadFigure(shown) {
   const { curve: { flanks }, name } = shown.at(-1);
   const worst = line(`${name}, worst position`, flanks.face_position_mm, flanks.worst_load_n_per_mm, { color: "#56B4E9", width: 1.5, dash: "solid" });
   const made = layout(FACE, "load per face width, N/mm");
-  made.yaxis.rangemode = "tozero";
+  made.yaxis.range = endsOf([[0], ...shown.map(({ curve }) => curve.flanks.mean_load_n_per_mm), flanks.worst_load_n_per_mm]);
   return { data: [...means, worst], layout: made };
 }
 

@@ -249,7 +249,7 @@ class Page {
   }
 
   analyze() {
-    this.analysis.submit("analyze", { case: this.design.submitted() }, { expected: this.design.expected });
+    this.analysis.submit("analyze", () => ({ case: this.design.submitted() }), { expected: this.design.expected });
   }
 
   /** A job has ended with a table: that is what the address names in its place from now on. */

@@ -32,7 +32,7 @@ export class SceneEditor {
    * @param {{slot: Function, show: Function, design: import("./design.js").Design, unit: import("./unit.js").OpenedUnit}} page
    */
   constructor(studies, { slot, show, design, unit }) {
-    Object.assign(this, { design, unit });
+    Object.assign(this, { design, unit, name: "", cases: [] });
     /** @type {any} the scene that is edited, null: none; never changed in place */
     this.scene = null;
     /** Texts with their files by the scene that they were read or written for. @type {WeakMap<object, {toml: string, files: object[]}>} */
@@ -57,8 +57,6 @@ export class SceneEditor {
     this.faults = make("div", { role: "status" });
     this.spectrum = make("p", { class: "hint", role: "status" });
     this.chosen = make("p", { class: "hint", role: "status" });
-    this.name = "";
-    this.cases = [];
     /** Hash of the run that was shown last, whose sound is heard. */
     this.run = undefined;
     /** Files that the scene names, as they go with its text. */

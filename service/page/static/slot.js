@@ -20,7 +20,7 @@ export class Slot {
    * @param {(target: HTMLElement, reference: object, signal: AbortSignal, inputs: any) => Promise<void>} show
    */
   constructor(name, { address, design }, { progress, result, button }, show) {
-    Object.assign(this, { name, address, progress, result, button, show });
+    Object.assign(this, { name, address, design, progress, result, button, show });
     this.job = null;
     this.stopping = new AbortController();
     const words = make("div");
@@ -31,12 +31,14 @@ export class Slot {
   /**
    * Submit a job, which becomes part of the address.
    * @param {string} process
-   * @param {object | (() => Promise<object>)} inputs
+   * @param {object | (() => object | Promise<object>)} inputs
    * @param {{expected?: number}} [facts] seconds that the plan predicts
    */
   async submit(process, inputs, { expected } = {}) {
     const { signal } = this.begin(null);
     await this.guarded(signal, async () => {
+      if (this.design.reading) this.progress.append(make("p", { class: "hint", role: "status" }, "Waits for the file that is read."));
+      await this.design.reading?.finally(() => this.progress.replaceChildren());
       const title = this.address.views.get("name") ?? "";
       const status = await submitted(this.progress, process, { inputs: typeof inputs === "function" ? await inputs() : inputs, title });
       if (signal.aborted) return;

@@ -38,7 +38,7 @@ export async function showResult(target, reference, { take, signal }) {
 export function showStudies(studies, page) {
   for (const study of studies) {
     byId(TABS[study.process] ?? "tolerance").append(
-      card(study, page, (values) => ({ inputs: { case: page.design.submitted(), ...values } })),
+      card(study, page, (values) => ({ inputs: () => ({ case: page.design.submitted(), ...values }) })),
     );
   }
 }

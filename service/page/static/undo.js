@@ -42,9 +42,9 @@ export class Undo {
     clearTimeout(this.timer);
     if (this.going) return;
     const [before, now] = [this.shown, this.now()];
+    for (const [part, value] of Object.entries(now)) if (value === before[part] || same(value, before[part])) now[part] = before[part]; // held once
     this.shown = now;
-    const edited = (part) => before[part]?.key === now[part]?.key && before[part] !== now[part] && !same(before[part], now[part]);
-    if (same(before.case, now.case) && !["ofResult", "ofScene"].some(edited)) return;
+    if (!["case", "ofResult", "ofScene"].some((part) => before[part]?.key === now[part]?.key && before[part] !== now[part])) return;
     this.states = [[...this.states[0].slice(1 - MOST), before], []];
     this.offer();
   }

@@ -46,6 +46,10 @@ export class View {
       document.dispatchEvent(new Event("typed")); // the address says where it stands
     });
     say();
+    this.stage.canvas.addEventListener("rolled", () => {
+      byId("roll").value = String(this.stage.subject.position % 1);
+      byId("roll").dispatchEvent(new Event("followed"));
+    });
     byId("roll").addEventListener("input", () => {
       this.stage.subject.position = this.pair.position = Math.floor(this.stage.subject.position) + Number(byId("roll").value);
       this.stage.roll(false);

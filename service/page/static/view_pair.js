@@ -195,11 +195,7 @@ export class RollingPair {
 
   /** @param {Uint8Array | null} texel */
   picked(texel) {
-    if (!texel) this.told("");
-    else {
-      const [words, map] = this.flank(texel);
-      this.told(words, map);
-    }
+    this.told(...(texel ? this.flank(texel) : [""]));
   }
 
   /** Both ends of the face over which pressure is known: of a plane model, where the faces meet. */

@@ -11,6 +11,7 @@ const QUICK = 20; // ms a frame, below which a still picture may be fine
 const FINE = 2; // pixels drawn a pixel shown where nothing moves: edges are smooth
 const SLIDES = { ArrowLeft: -1, ArrowRight: 1 }; // mm
 const FINEST = 0.1; // mm of a drag
+const SAID = 250; // ms between two sayings of where it rolls
 const CALM = matchMedia("(prefers-reduced-motion: reduce)");
 
 /**
@@ -131,7 +132,11 @@ export class Stage {
     this.adapt(passed);
     this.paint(false);
     this.canvas.dataset.frames = String(Number(this.canvas.dataset.frames ?? 0) + 1);
-    if (this.rolls) this.wake();
+    if (!this.rolls) return;
+    this.wake();
+    if (now - (this.said ?? 0) < SAID) return;
+    this.said = now;
+    this.canvas.dispatchEvent(new Event("rolled"));
   }
 
   /** Fewer pixels where a frame takes long, all of them where nothing moves. @param {number} passed ms */

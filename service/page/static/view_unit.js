@@ -283,13 +283,11 @@ export class Gearbox {
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     gl.depthMask(Boolean(levels));
     gl.bindVertexArray(this.hull.array);
-    gl.depthFunc(gl.LEQUAL);
     if (levels) gl.disable(gl.CULL_FACE); // coarse facets of a thin wall are of either side
     for (const seen of levels ? [false, true] : [true]) { // with levels its nearest walls alone are seen
       gl.colorMask(seen, seen, seen, seen);
       gl.drawElements(gl.TRIANGLES, this.hull.count, gl.UNSIGNED_INT, 0);
     }
-    gl.depthFunc(gl.LESS);
     gl.depthMask(true);
     gl.disable(gl.BLEND);
   }
