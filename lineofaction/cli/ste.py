@@ -14,7 +14,6 @@ from bounds import engineering
 from fe_contact.ste import SteDatabase
 from lineofaction.cli.guard import warn
 from lineofaction.cli.output import FOUND, aligned, console, csv_text, print_json, table
-from lineofaction.cli.subjects import KeptTables
 from lineofaction.gearbox.convert.answers import curve_json, teeth_words
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import only, tables_in
@@ -36,7 +35,7 @@ def run_ste(
     as_json: bool,
 ) -> None:
     """Read, evaluate, print each table; `point` holds the options of load and alignment by their names."""
-    tables = tables_in(named, lambda case: KeptTables.file(read_model(Case, case)))
+    tables = tables_in(named, _kept)
     if as_csv or as_json:
         tables = {"": only([*filter(None, tables.values())], named, "table")}
     for name, file in tables.items():
@@ -47,6 +46,13 @@ def run_ste(
             continue
         following = f"analyze {named}" if named.is_dir() and file.parent != named else f"report {file}"
         _show(file, point, at, following, as_table=as_table, as_csv=as_csv, as_json=as_json)
+
+
+def _kept(case: Path) -> Path:
+    """Return where the table of a case is kept, if it is."""
+    from lineofaction.cli.subjects import KeptTables  # noqa: PLC0415 (the base reads tables)
+
+    return KeptTables.file(read_model(Case, case))
 
 
 def _show(
