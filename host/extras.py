@@ -26,7 +26,16 @@ class Unavailable(OSError):
 
 MODULES = {
     "dask": ("distributed",),
-    "analysis": ("gmsh", "matplotlib", "meshlane", "numba", "plotly", "pymetis", "skfem"),
+    "analysis": (
+        "gmsh",
+        "fast_simplification",
+        "matplotlib",
+        "meshlane",
+        "numba",
+        "plotly",
+        "pymetis",
+        "skfem",
+    ),
     "service": (
         "alembic",
         "cbor2",

@@ -9,10 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from fast_simplification import simplify
 from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
-from bounds import from_to
+from bounds import at_most, from_to
 from dynamics.checks import one_of
 from dynamics.errors import InputError
 from dynamics.housings.mesh_files import SIZE, TEXTS, UNITS
@@ -26,11 +27,10 @@ MOST_TRIANGLES = 20_000
 WANTED_TRIANGLES = 6_000
 """Of a solid without small faces."""
 _FARTHEST = from_to(0.0, 1e3, "m")
-_FINEST, _COARSER, _LEAST_AREA = 0.8, 1.08, 1e-9
-"""Size of cells in which points are put together, over that of as many facets as are allowed; how much larger
-they are next; least area of a facet over theirs."""
-_AGAINST, _BESIDE = -0.3, 1e-3
-"""Normal of another skin along that of the outermost one; weight of the middle of a cell among its points."""
+_AGGRESSIVENESS = 3.0, 5.0, 7.0
+"""Of the reduction, in turn: the first keeps shapes best, the last closes bores where there are too many."""
+_OF_NORMALS, _LEAST_AREA = 0.2, 1e-6
+"""What normals count beside places, over the size of facets; least area of a facet over the mean of all."""
 
 
 @dataclass(frozen=True)
@@ -40,60 +40,26 @@ class DrawnSurface:
     points: FloatArray
     facets: IntArray
 
-    def of_at_most(self, most: int) -> tuple[DrawnSurface, IntArray]:
+    def reduced(self, most: int) -> tuple[DrawnSurface, IntArray]:
         """Return it with at most so many triangles, and which of its points that one has.
 
-        Points near each other are put together, of a thin wall those of either skin.
-        """
-        kept, facets = np.arange(len(self.points)), self.facets
-        size = _FINEST * float(np.sqrt(np.linalg.norm(_across(self.points[facets]), axis=1).sum() / most))
-        while len(facets) > most:
-            kept, facets = self._together(size)
-            size *= _COARSER
-        return DrawnSurface(self.points[kept], facets), kept
-
-    def _together(self, size: float) -> tuple[IntArray, IntArray]:
-        """Put points of one skin in a cell of a grid together in that which is least off all their facets.
-
-        So edges stay, and sides stay flat. Of one skin is what hangs together in the cell and has no normal
-        against that of its outermost point. Facets without area go. Returns the points that are kept and the
-        facets between them.
-        """
-        points, facets = self.points, self.facets
-        low, high = points.min(axis=0), points.max(axis=0)
-        cells = np.floor((points - low) / size).astype(np.int64)
-        one, two = facets.ravel(), np.roll(facets, -1, axis=1).ravel()
-        within = np.all(cells[one] == cells[two], axis=1)
-        links = csr_array((within[within], (one[within], two[within])), shape=(len(points), len(points)))
-        part = connected_components(links, directed=False)[1].astype(np.int64)
-        outermost = _least(-np.linalg.norm(points - 0.5 * (low + high), axis=1), part)
-        normal = node_normals(points, facets)
-        against = np.sum(normal * normal[outermost], axis=1) < _AGAINST
-        _, skin = np.unique(2 * part + against, return_inverse=True)
-        kept, skin = np.unique(_least(self._off(skin), skin), return_inverse=True)
-        corners = skin[facets]
-        whole = np.linalg.norm(_across(points[kept][corners]), axis=1) > _LEAST_AREA * size**2
-        _, first = np.unique(np.sort(corners[whole], axis=1), axis=0, return_index=True)
-        return kept, corners[whole][np.sort(first)]
-
-    def _off(self, group: IntArray) -> FloatArray:
-        """Return how far points (p,) are off the planes of all facets of their group, squares by areas [1]_.
-
-        In a plane all are as far: that in the middle counts as nearest.
+        Edges are collapsed to where all planes about them are least far off [1]_; the nearest points of the
+        same skin stand there. More triangles are left of what hangs together in no surface.
 
         .. [1] Garland, Heckbert: "Surface simplification using quadric error metrics", SIGGRAPH 1997.
         """
-        points, across, count = self.points, _across(self.points[self.facets]), int(group.max()) + 1
-        area = np.linalg.norm(across, axis=1)
-        normal = across / np.maximum(area, np.finfo(float).tiny)[:, None]
-        plane = np.column_stack([normal, -np.sum(normal * points[self.facets[:, 0]], axis=1)])
-        squares = area[:, None, None] * plane[:, :, None] * plane[:, None, :]
-        square = _at_corners(group[self.facets], squares.reshape(-1, 16), count).reshape(-1, 4, 4)[group]
-        ahead = np.column_stack([points, np.ones(len(points))])
-        whole = _at_corners(group[:, None], ahead, count)[group]
-        beside = np.sum((points - whole[:, :3] / whole[:, 3:]) ** 2, axis=1)
-        off = np.einsum("pi,pij,pj->p", ahead, square, ahead)
-        return np.asarray(off + _BESIDE * np.trace(square[:, :3, :3], axis1=1, axis2=2) * beside)
+        corners = self.facets
+        for aggressiveness in _AGGRESSIVENESS:
+            if len(corners) <= most:
+                break
+            points, facets = simplify(self.points, self.facets, target_count=most, agg=aggressiveness)
+            weight = _OF_NORMALS * float(np.linalg.norm(_across(points[facets]), axis=1).mean() ** 0.5)
+            there = np.hstack([points, weight * node_normals(points, facets)])
+            own = np.hstack([self.points, weight * node_normals(self.points, self.facets)])
+            corners = np.asarray(cKDTree(own).query(there)[1])[facets]
+        area = np.linalg.norm(_across(self.points[corners]), axis=1)
+        kept, facets = np.unique(corners[area > _LEAST_AREA * area.mean()], return_inverse=True)
+        return DrawnSurface(self.points[kept], facets.reshape(-1, 3)), kept
 
 
 def node_normals(points: FloatArray, facets: IntArray) -> FloatArray:
@@ -111,13 +77,6 @@ def _at_corners(corners: IntArray, values: FloatArray, count: int) -> FloatArray
     """Return the sums (g, k) of the values (t, k) of all that have a corner (t, c) at each of so many."""
     rows, columns = corners.ravel(), np.repeat(np.arange(len(corners)), corners.shape[1])
     return np.asarray(csr_array((np.ones(rows.size), (rows, columns)), shape=(count, len(corners))) @ values)
-
-
-def _least(value: FloatArray, group: IntArray) -> IntArray:
-    """Return for each point (p,) that of its group whose value is least."""
-    order = np.lexsort((value, group))
-    first = np.flatnonzero(np.diff(group[order], prepend=-1))
-    return np.asarray(order[first][group])
 
 
 def drawn_step(file: Path, most: int = MOST_TRIANGLES) -> DrawnSurface:
@@ -184,4 +143,7 @@ def _drawn(points: FloatArray, facets: IntArray, most: int, field: str) -> Drawn
         raise InputError(f"{field}.place", farthest, _FARTHEST, "Move the solid to its origin.")
     if not SIZE.holds(extent):
         raise InputError(f"{field}.size", extent, SIZE, "Check its unit.")
-    return DrawnSurface(points, facets).of_at_most(most)[0]
+    drawn, _ = DrawnSurface(points, facets).reduced(most)
+    if len(drawn.facets) > most:
+        raise InputError(f"{field}.facets", len(drawn.facets), at_most(most), "Leave out small parts.")
+    return drawn

@@ -19,7 +19,7 @@ BUDGETS = {
     ("lineofaction.client",): (2_944, 55),
     ("lineofaction.cli",): (5_985, 88),
     ("lineofaction.hardcases",): (3_841, 35),
-    ("bounds", "host", "model_studies"): (4_540, 157),
+    ("bounds", "host", "model_studies"): (4_549, 157),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 PAGE = 8_280

@@ -54,7 +54,7 @@ def _hulls(subject: TabledScene) -> Iterator[tuple[Hull, IntArray]]:
         if (surface := housing.surface) is not None:
             used, corners = np.unique(surface.triangles[:, :3], return_inverse=True)
             fine = DrawnSurface(surface.points[used], corners.reshape(-1, 3))
-            drawn, kept = fine.of_at_most(MOST_FACETS)
+            drawn, kept = fine.reduced(MOST_FACETS)
             yield Hull(name, drawn.points, drawn.facets), used[kept]
 
 
