@@ -35,7 +35,7 @@ def run_ste(
     as_json: bool,
 ) -> None:
     """Read, evaluate, print each table; `point` holds the options of load and alignment by their names."""
-    tables = tables_in(named, _kept)
+    tables = tables_in(named, _kept_table)
     if as_csv or as_json:
         tables = {"": only([*filter(None, tables.values())], named, "table")}
     for name, file in tables.items():
@@ -48,8 +48,7 @@ def run_ste(
         _show(file, point, at, following, as_table=as_table, as_csv=as_csv, as_json=as_json)
 
 
-def _kept(case: Path) -> Path:
-    """Return where the table of a case is kept, if it is."""
+def _kept_table(case: Path) -> Path:
     from lineofaction.cli.subjects import KeptTables  # noqa: PLC0415 (the base reads tables)
 
     return KeptTables.file(read_model(Case, case))
