@@ -21,14 +21,15 @@ from dynamics.periodic.shooting import (
 )
 from dynamics.types import FloatArray
 
-ITERATION_LIMIT = 8
-EASY = 4  # iterations: with fewer the step along the branch grows
+ITERATION_LIMIT = 16
+FALLING = 0.3  # of the residual: where an iteration leaves more, derivatives are taken anew
+EASY = 1  # derivations on the way to a motion: with no more the step along the branch grows
 SMALLEST_STEP = 1e-5  # of the largest
 LARGEST_STEP = 0.02  # between neighboring motions, of the larger speed or of the size of the state
 MOST_POINTS = 500
-FOLD_LIMIT = 1e-5  # of the tangent: where its part along the speed counts as zero
+FOLD_LIMIT = 1e-6  # of the largest speed: by how much a fold may lie beyond the motions found
 FOLD_ITERATIONS = 20
-FOLD_SHARE = 0.3  # of a bracket that each iteration takes off at least
+FOLD_SHARE = 0.1  # of a bracket that each iteration takes off at least
 
 
 class BranchStatus(IntEnum):
@@ -85,11 +86,17 @@ class Branch:
 
 @dataclass(frozen=True)
 class _Point:
-    """A point z = (state / size, speed / scale) on the branch with its unit tangent."""
+    """A point z = (state / size, speed / scale) on the branch with its unit tangent.
+
+    `jacobian` (2n, 2n + 1): derivative of (map - identity) / size in z; `renewed`: how often it was taken on
+    the way.
+    """
 
     z: FloatArray
     tangent: FloatArray
     orbit: Orbit
+    jacobian: FloatArray
+    renewed: int
 
 
 def follow_branch(
@@ -168,7 +175,7 @@ def _continue(
         trail.append(arrived)
         if progress is not None:
             progress(min(max(abs(p.orbit.speed - first) for p in trail) / abs(last - first), 1.0))
-        if arrived.orbit.iterations < EASY:
+        if arrived.renewed <= EASY:
             step = min(1.5 * step, largest_step)
         if not low <= arrived.orbit.speed <= high:
             status = BranchStatus.COMPLETED
@@ -176,12 +183,14 @@ def _continue(
     return Branch(status, tuple(point.orbit for point in trail), tuple(bifurcations))
 
 
-def _point_on_branch(problem: PeriodicProblem, scale: float, orbit: Orbit, along: FloatArray) -> _Point:
+def _point_on_branch(
+    problem: PeriodicProblem, scale: float, orbit: Orbit, along: FloatArray, renewed: int = 0
+) -> _Point:
     """Return the point of `orbit` with its tangent turned to the side of `along` (2n + 1,)."""
     z = np.append(orbit.state / problem.size, orbit.speed / scale)
     jacobian = _jacobian(problem, scale, PeriodMap(problem, orbit.speed), orbit.state, orbit.monodromy)
     tangent = np.linalg.svd(jacobian)[2][-1]
-    return _Point(z, tangent if tangent @ along >= 0.0 else -tangent, orbit)
+    return _Point(z, tangent if tangent @ along >= 0.0 else -tangent, orbit, jacobian, renewed)
 
 
 def _jacobian(
@@ -193,9 +202,14 @@ def _jacobian(
 
 
 def _step(problem: PeriodicProblem, scale: float, point: _Point, step: float) -> _Point | None:
-    """Return the motion at the arclength `step` behind `point`, or None if Newton fails."""
+    """Return the motion at the arclength `step` behind `point`, or None if Newton fails.
+
+    It begins with the derivatives at `point`, and Broyden's update follows them: an iteration integrates one
+    period instead of 4 n. They are taken anew where the residual falls by too little.
+    """
     aim = point.z + step * point.tangent
-    z = aim.copy()
+    z, moved, matrix = aim.copy(), aim, np.vstack([point.jacobian, point.tangent])
+    before, renewed = np.inf, 0
     for iteration in range(ITERATION_LIMIT + 1):
         y, speed = z[:-1] * problem.size, float(z[-1] * scale)
         if speed * point.orbit.speed <= 0.0:
@@ -204,16 +218,21 @@ def _step(problem: PeriodicProblem, scale: float, point: _Point, step: float) ->
         left = over_period(y) - y
         if not np.all(np.isfinite(left)):
             return None
-        monodromy = over_period.monodromy(y)
         if np.max(np.abs(left)) <= RESIDUAL_LIMIT * problem.size:
+            monodromy = over_period.monodromy(y)
             orbit = Orbit.of(over_period, OrbitStatus.CONVERGED, y, left, monodromy, iteration)
-            return _point_on_branch(problem, scale, orbit, point.tangent)
-        jacobian = _jacobian(problem, scale, over_period, y, monodromy)
-        matrix = np.concatenate([jacobian, point.tangent[None, :]])
+            return _point_on_branch(problem, scale, orbit, point.tangent, renewed)
         right = np.append(left / problem.size, point.tangent @ (z - aim))
+        if np.linalg.norm(right) > FALLING * before:
+            jacobian = _jacobian(problem, scale, over_period, y, over_period.monodromy(y))
+            matrix, renewed = np.vstack([jacobian, point.tangent]), renewed + 1
+        elif iteration:
+            matrix = matrix + np.outer(right, moved / (moved @ moved))
         if not np.all(np.isfinite(matrix)):
             return None
-        z = z - np.linalg.lstsq(matrix, right, rcond=None)[0]
+        before = float(np.linalg.norm(right))
+        moved = np.asarray(-np.linalg.lstsq(matrix, right, rcond=None)[0])
+        z = z + moved
     return None
 
 
@@ -242,16 +261,16 @@ def _fold(problem: PeriodicProblem, scale: float, before: _Point, behind: _Point
     at_low, at_high = before.tangent[-1], behind.tangent[-1]
     speeds = [before.orbit.speed, behind.orbit.speed]
     for _ in range(FOLD_ITERATIONS):
+        if min(abs(at_low), abs(at_high)) * (high - low) < FOLD_LIMIT:
+            break
         weight = min(max(at_low / (at_low - at_high), FOLD_SHARE), 1.0 - FOLD_SHARE)
         inside = low + weight * (high - low)
         middle = _step(problem, scale, before, inside)
         if middle is None:
             break
         speeds.append(middle.orbit.speed)
-        if abs(middle.tangent[-1]) < FOLD_LIMIT:
-            break
         if middle.tangent[-1] * at_low > 0.0:
-            low, at_low = inside, middle.tangent[-1]
+            low, at_low, at_high = inside, middle.tangent[-1], 0.5 * at_high
         else:
-            high, at_high = inside, middle.tangent[-1]
+            high, at_high, at_low = inside, middle.tangent[-1], 0.5 * at_low
     return max(speeds) if before.tangent[-1] > 0.0 else min(speeds)

@@ -8,7 +8,10 @@ import numpy as np
 
 from dynamics.assembly.assemble import System
 from dynamics.linearize import natural_modes
+from dynamics.linearize.harmonic_response import excited_lines
+from dynamics.linearize.load_harmonics import load_harmonics
 from dynamics.linearize.operating_speeds import leading_law
+from dynamics.linearize.steady_vibration import flank_forces
 from dynamics.periodic.continuation import LARGEST_STEP, MOST_POINTS
 from dynamics.periodic.period_map import PeriodicProblem, PeriodMap, periodic_problem
 from dynamics.periodic.shooting import RESIDUAL_LIMIT, SETTLING, settled
@@ -20,10 +23,13 @@ ENOUGH, LEAST_STEPS, TIMES = 0.01, 16, 3
 the machine only slows it. All stretches of a probe take at most six times as long, where steps are cheap."""
 PROBED, AFFORDED = 9, 0.5
 """Speeds at which motions settle, and CPU s that this may take: where it takes more, no flank lifts off."""
+RESPONSES, ORDERS = 400, 10
+"""Speeds of the linear response, and orders of the meshes in it."""
 CHANGE = 5e-3
 """Of the size of a state: what a period changes of it after a step of a sweep, 2e-3 to 1e-2."""
-BRANCH_ITERATIONS = 2
-"""Newton iterations of a point of a branch: on average 1 to 2.7."""
+BRANCH_ITERATIONS, BRANCH_DERIVATIONS, BRANCH_MAPS = 5, 1.25, 10
+"""Iterations of a point of a branch, on average 3.5 to 5.4, how often it is derived, 1 to 1.4, and how many
+maps are laid out for that: one a speed, and one of half the steps."""
 
 
 @dataclass(frozen=True)
@@ -64,14 +70,11 @@ def motion_periods(freedoms: int, settling: int, iterations: int) -> int:
     return settling + 4 + 4 * freedoms + iterations * (4 * freedoms + 1)
 
 
-def point_periods(freedoms: int, iterations: int = BRANCH_ITERATIONS) -> int:
+def point_periods(
+    freedoms: int, iterations: float = BRANCH_ITERATIONS, derivations: float = BRANCH_DERIVATIONS
+) -> float:
     """Return the periods that are integrated for a point of a branch, derived in the speed too."""
-    return 4 * freedoms + 6 + iterations * (4 * freedoms + 3)
-
-
-def branch_points(speed: FloatArray) -> int:
-    """Return how many points a branch has over speeds without a fold: its steps are shares of the highest."""
-    return int(np.ceil((1.0 - float(speed[0] / speed[-1])) / LARGEST_STEP)) + 1
+    return derivations * (4 * freedoms + 2) + iterations + 4
 
 
 def steady_cost(
@@ -85,32 +88,66 @@ def steady_cost(
     problem = periodic_problem(system, sense * float(speed[0]), repeat)
     ends = [sense * float(at) for at in (speed[0], speed[-1])]
     each = float(np.mean([period_seconds(problem, at) for at in ends]))
-    freedoms, several, points = problem.rest.size // 2, speed.size > 1, branch_points(speed)
-    if several and branch and PROBED * SETTLING * each < AFFORDED:
-        each, points = _settling(problem, sense * speed)
-    whole = [motion_periods(freedoms, periods, expected_iterations(problem, at, periods)) for at in ends]
+    freedoms, points, making = problem.rest.size // 2, 0, 0.0
+    if branch and speed.size > 1:
+        at, states = _response_states(problem, sense * speed)
+        affords = PROBED * SETTLING * each < AFFORDED
+        seconds, length = _settling(problem, at, states) if affords else (each, _lengths(states).sum())
+        each, points = seconds, min(int(np.ceil(length / LARGEST_STEP)) + 1, MOST_POINTS)
+        making = min(_taken(PeriodMap(problem, end), problem.rest, 1) for end in ends)
+    whole = [motion_periods(freedoms, periods, expected_iterations(problem, end, periods)) for end in ends]
     return SteadyCost(
-        speed.size * (2 if several else 1),
+        speed.size * (2 if speed.size > 1 else 1),
         float(np.mean(whole)) * each,
-        points if branch and several else 0,
-        point_periods(freedoms) * each,
+        points,
+        point_periods(freedoms) * each + BRANCH_MAPS * making,
         tuple(repeat * abs(count) for count in problem.period.pitches),
         freedoms,
     )
 
 
-def _settling(problem: PeriodicProblem, speed: FloatArray) -> tuple[float, int]:
-    """Return the CPU seconds of a period of settling motions, and how many points a branch through them has.
+def _response_states(problem: PeriodicProblem, speed: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return speeds (S,) and what a branch would have there if no flank lifted off, (S, 2n + 1).
 
-    Where flanks lift off steps are halved, and states change more than speeds: the arclength counts both.
+    States over their size and the speed over the highest, as the arclength of a branch has them: the linear
+    response at the start of a period, by modes with their own damping.
     """
+    at = np.linspace(speed[0], speed[-1], RESPONSES)
+    about, lines = excited_lines(problem.system, ORDERS, problem.time, at)
+    modes = natural_modes(about.linear)
+    force = flank_forces(about, lines.harmonics)[1]
+    force = force.T @ about.system.arrays.direction[: len(force)]
+    force = force + load_harmonics(about.system, about.period, at, lines.harmonics, problem.time)
+    own = 2.0 * np.pi * modes.frequency
+    displacement, velocity = np.zeros((2, at.size, own.size))
+    for harmonic, line in zip(lines.harmonics, np.moveaxis(force @ modes.shape.T, 1, 0), strict=True):
+        w = (2.0 * np.pi * harmonic / np.array([about.period.duration(speed) for speed in at]))[:, None]
+        amplitude = line / (own**2 - w**2 + 2j * modes.damping_ratio * own * w)
+        displacement += amplitude.real
+        velocity -= w * amplitude.imag
+    state = np.concatenate([displacement @ modes.shape, velocity @ modes.shape], axis=1) * problem.scale
+    return at, np.column_stack([state / problem.size, at / at[-1]])
+
+
+def _lengths(states: FloatArray) -> FloatArray:
+    """Return the distances of neighbors of states (S, 2n + 1); none of what is not finite."""
+    return np.asarray(np.nan_to_num(np.linalg.norm(np.diff(states, axis=0), axis=1)))
+
+
+def _settling(problem: PeriodicProblem, speed: FloatArray, states: FloatArray) -> tuple[float, float]:
+    """Return the CPU seconds of a period of settling motions, and the length of a branch through them.
+
+    They settle where the linear response has gone equal ways, at falling speeds: as resonances bend to lower
+    ones where flanks lift off, the larger motions follow. A way is at least that of the linear response.
+    """
+    along = np.append(0.0, np.cumsum(_lengths(states)))
+    ways = np.linspace(along[-1], 0.0, PROBED)
     began, state, passed = cpu_seconds(), problem.rest, []
-    for at in np.linspace(speed[0], speed[-1], PROBED).tolist():
+    for at in np.interp(ways, along, speed).tolist():
         state = settled(problem, at, state)
         passed.append(np.append(state / problem.size, at / speed[-1]))
     seconds = (cpu_seconds() - began) / (PROBED * SETTLING)
-    length = float(np.nan_to_num(np.linalg.norm(np.diff(passed, axis=0), axis=1)).sum())
-    return seconds, min(int(np.ceil(length / LARGEST_STEP)) + 1, MOST_POINTS)
+    return seconds, float(np.maximum(_lengths(np.array(passed)), -np.diff(ways)).sum())
 
 
 def period_seconds(problem: PeriodicProblem, speed: float) -> float:
