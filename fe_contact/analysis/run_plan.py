@@ -34,13 +34,7 @@ class PlannedLevel:
 
     def to_json(self) -> Json:
         """Return plain JSON."""
-        return {
-            "model": self.model,
-            "level": self.level,
-            "slices": self.slices,
-            "cost": self.cost.to_json(),
-            "error": self.error.to_json(),
-        }
+        return vars(self) | {"cost": self.cost.to_json(), "error": self.error.to_json()}
 
 
 @dataclass(frozen=True)
@@ -53,8 +47,8 @@ class RunPlan:
         The request with its model and its ledger of effects.
     choice : MeshChoice
         The mesh that would be taken.
-    chosen : PlannedLevel
-        The prediction for the mesh that would be taken.
+    passes : tuple of PlannedLevel
+        Predictions for the mesh that would be taken and, where it is tried first, for the one behind it.
     levels : tuple of PlannedLevel
         That and the other mesh levels of the same model; and what the tolerance needs, where the time does
         not allow it.
@@ -67,10 +61,15 @@ class RunPlan:
     checked: Checked
     choice: MeshChoice
     plan: Plan
-    chosen: PlannedLevel
+    passes: tuple[PlannedLevel, ...]
     levels: tuple[PlannedLevel, ...]
     conflict: str
     cache: Path | None = None
+
+    @property
+    def chosen(self) -> PlannedLevel:
+        """The prediction for the mesh that would be taken."""
+        return self.passes[0]
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -79,6 +78,7 @@ class RunPlan:
             "prediction": self.chosen.cost.to_json(),
             "error": self.chosen.error.to_json(),
             "levels": [entry.to_json() for entry in self.levels],
+            "passes": [entry.to_json() for entry in self.passes],
             "conflict": self.conflict,
             "plan": self.plan.to_json(),
             "warnings": [finding.to_json() for finding in self.checked.request.findings],
@@ -117,15 +117,15 @@ def plan_run(
     decided = decide(checked, cache, tried=True)
     checked, choice = decided.checked, decided.mesh
     curves = expected_curves(checked)
-    chosen = _decided(decided, curves, cache)
     others = [_planned(checked, name, curves, cache) for name in LEVELS if name != choice.level]
-    needed = [] if decided.wished is None else [_decided(decided.wished, curves, cache)]
-    rows = {(row.model, row.level, row.slices): row for row in (chosen, *others, *needed)}
+    needed = () if decided.wished is None else (_decided(decided.wished, curves, cache),)
+    passes = tuple(_decided(own, curves, cache) for own in decided.passes)
+    rows = {(row.model, row.level, row.slices): row for row in (*others, *needed, *passes)}
     levels = sorted(rows.values(), key=lambda row: LEVELS.index(row.level))
     conflict = ""
     if budget is not None and (options.tolerance is not None or options.level is not None):
         conflict = _conflict(decided, positive("time_budget", budget, "Seconds."), cache)
-    return RunPlan(checked, choice, decided.plan, chosen, tuple(levels), conflict, cache)
+    return RunPlan(checked, choice, decided.plan, passes, tuple(levels), conflict, cache)
 
 
 _DESIGN = 0.75
@@ -192,12 +192,11 @@ def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
 
 def _decided(decided: Decided, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:
     """Predict what was decided; its error is the one by which it was, where it was by an error."""
-    request, option = decided.checked.request, decided.mesh.option
+    checked, option = decided.checked, decided.mesh.option
     error = option.error
     if not error.mean:
-        error = expected_error(request.pair, decided.plan, curves, bound=request.model_chosen)
-    cost = decided.predicted(cache)
-    return PlannedLevel(decided.checked.model_name, option.level, option.slices, cost, error)
+        error = expected_error(checked.request.pair, decided.plan, curves, bound=checked.request.model_chosen)
+    return PlannedLevel(checked.model_name, option.level, option.slices, decided.predicted(cache), error)
 
 
 def _planned(checked: Checked, level: str, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:
@@ -209,14 +208,10 @@ def _planned(checked: Checked, level: str, curves: ExpectedCurves | None, cache:
 
 
 def _conflict(decided: Decided, time_budget: float, cache: Path | None) -> str:
-    within = f"within {time_budget:.3g} CPU s"
     tolerance = decided.checked.request.options.tolerance
     goal = f"level {decided.mesh.level}" if tolerance is None else tolerance.words
+    refusal = f"{goal} within {time_budget:.3g} CPU s cannot be had"
     if not decided.mesh.met:
-        return f"{goal} {within} cannot be had: {decided.mesh.reason}"
+        return f"{refusal}: {decided.mesh.reason}"
     seconds = decided.predicted(cache).cpu_seconds
-    return (
-        ""
-        if seconds <= time_budget
-        else (f"{goal} {within} cannot be had: it needs {engineering(seconds, 2)} CPU s")
-    )
+    return f"{refusal}: it needs {engineering(seconds, 2)} CPU s" if seconds > time_budget else ""

@@ -209,21 +209,18 @@ def _cost(receipt: dict[str, Any], newton_metre: float = 1.0) -> str:
         text += (
             f"\nof these {engineering(others['cpu_seconds'], 3)} CPU s in {others['tasks']} tasks of workers"
         )
-    predicted = receipt.get("predicted")
-    if predicted:
+    if predicted := receipt.get("predicted"):
         pitches, seconds = predicted["pitches"], predicted["cpu_seconds"]
         text += f"\nperiod {pitches} base pitches; contact predicted {engineering(seconds, 2)} CPU s"
     if cycle := receipt.get("cycle"):
         text += f"\n{_of_cycle(cycle)}"
-    held_out = _held_out(receipt.get("held_out", {}))
-    if held_out:
+    if held_out := _held_out(receipt.get("held_out", {})):
         text += f"\nlargest error at held-out points between the nodes: {held_out} (in the errors there)"
     if allowed := receipt.get("misalignment_range"):
         text += f"\n{allowed}"
     for line in _tolerance_lines(receipt, newton_metre):
         text += f"\n{line}"
-    outgrown = receipt.get("patch_outgrown_points", 0)
-    if outgrown:
+    if outgrown := receipt.get("patch_outgrown_points", 0):
         text += f"\ncontact outgrew its load patch at {outgrown} points: the load is far above usual loads"
     missing = receipt.get("not_estimated", [])
     if missing:
@@ -267,8 +264,11 @@ def _show_plan(plan: RunPlan) -> None:
     out, cost = console(), plan.chosen.cost
     model = plan.plan.discretization.to_json()["model"].replace("_", " ")
     positions = plan.plan.positions or f"about {cost.positions}, placed where the curve bends"
-    size = f"{engineering(cost.cpu_seconds, 2)} CPU s, {engineering(cost.memory_bytes / 2**30, 2)} GiB"
-    out.print(f"{_mesh(plan.chosen, plan.chosen)}: {size}; nothing is computed yet", style=FOUND)
+    seconds = sum(entry.cost.cpu_seconds for entry in plan.passes)
+    memory = max(entry.cost.memory_bytes for entry in plan.passes)
+    size = f"{engineering(seconds, 2)} CPU s, {engineering(memory / 2**30, 2)} GiB"
+    meshes = ", then ".join(_mesh(entry, plan.chosen) for entry in plan.passes)
+    out.print(f"{meshes}: {size}; nothing is computed yet", style=FOUND)
     out.print(f"model {model}; positions {positions}; mesh {plan.choice.option.name}: {plan.choice.reason}")
     if plan.conflict or not plan.choice.met:
         out.print(plan.conflict or f"cannot be had: {plan.choice.reason}")
@@ -278,7 +278,7 @@ def _show_plan(plan: RunPlan) -> None:
     head = ["mesh", "CPU s", "GiB", "numerical", "plane", "method", "mean µm", "p-p µm"]
     rows = [
         [
-            f"{'> ' if entry is plan.chosen else ''}{_mesh(entry, plan.chosen)}",
+            f"{'> ' if entry in plan.passes else ''}{_mesh(entry, plan.chosen)}",
             engineering(entry.cost.cpu_seconds, 2),
             f"{entry.cost.memory_bytes / 2**30:.1f}",
             engineering(100.0 * error.numerical, 2),

@@ -312,17 +312,14 @@ _EFFECT: Json = {
     "checked": "no; toggling it measures it (ablation)",
     "holds": None,
 }
+_MESH: Json = {"model": "plane strain", "level": "standard", "slices": 1}
+_LEVEL = _MESH | {"cost": _COST, "error": _ERROR}
 _PLAN: Json = {
-    "choice": {
-        "model": "plane strain",
-        "level": "standard",
-        "slices": 1,
-        "met": True,
-        "reason": "the cheapest that meets the tolerance",
-    },
+    "choice": _MESH | {"met": True, "reason": "the cheapest that meets the tolerance"},
     "prediction": _COST,
     "error": _ERROR,
-    "levels": [{"model": "plane strain", "level": "standard", "slices": 1, "cost": _COST, "error": _ERROR}],
+    "levels": [_LEVEL],
+    "passes": [_LEVEL],
     "conflict": "",
     "plan": {
         "model": "plane_strain",

@@ -95,6 +95,11 @@ class Decided:
     wished: Decided | None = None
     behind: Decided | None = None
 
+    @property
+    def passes(self) -> tuple[Decided, ...]:
+        """The request and what is expected to follow it."""
+        return (self,) if self.behind is None else (self, self.behind)
+
     def in_slices(self, count: int) -> Decided:
         """Return the same model and mesh in another number of slices; itself in the plane."""
         if not isinstance(self.plan.discretization, FaceDiscretization):

@@ -57,7 +57,7 @@ def costs_of(case: CheckedCase, cache: Path | None) -> list[Prediction]:
     """
     decided = case.request(_decided, cache)
     with boundary_errors():
-        return [own.predicted(cache) for own in (decided, decided.behind) if own is not None]
+        return [own.predicted(cache) for own in decided.passes]
 
 
 def _decided(case: CheckedCase, cache: Path | None) -> Decided:

@@ -141,9 +141,7 @@ class PlanBody(BaseModel):
         finite_width: list[Recipe] | None = Field(
             default=None, description="Meshes that correct a plane model for the finite width"
         )
-        slices: int | None = Field(
-            default=None, description="Of the common face width; plane models have none"
-        )
+        slices: int | None = Field(default=None, description="Of the common face width; none in the plane")
         patch: dict[str, float] = Field(description="Sizes of the load patches in m, and their load")
         positions: int | Literal["adaptive"] = Field(description="In one base pitch")
         load: list[float] = Field(description="Normal forces in N")
@@ -153,6 +151,7 @@ class PlanBody(BaseModel):
     prediction: PlannedCost
     error: PlannedError
     levels: list[PlannedLevel]
+    passes: list[PlannedLevel] = Field(description="The mesh, and the one expected to follow if it is tried")
     conflict: str = Field(description="Why tolerance and time cannot both be had; empty if they can")
     plan: PlannedRun = Field(description="Meshes, patches, positions and loads")
     warnings: list[InputWarning]

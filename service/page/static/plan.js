@@ -7,11 +7,12 @@ const percent = (share) => number(100 * share, 2);
 /** @param {object} found answer of /v1/drafts/plan */
 export function showPlan(found) {
   const head = make("dl", { class: "headline" });
-  const { choice, prediction, error } = found;
+  const { choice, error, passes } = found;
+  const seconds = passes.reduce((sum, { cost }) => sum + cost.cpu_seconds, 0);
   figures(head, [
-    ["model", choice.model, choice.level],
-    ["time", duration(prediction.cpu_seconds), "of one processor"],
-    ["memory", `${Math.round(prediction.memory_bytes / 2 ** 20)} MiB`],
+    ["model", choice.model, passes.map(({ level }) => level).join(", then ")],
+    ["time", duration(seconds), "of one processor"],
+    ["memory", `${Math.round(Math.max(...passes.map(({ cost }) => cost.memory_bytes)) / 2 ** 20)} MiB`],
     ["expected error", `${percent(error.numerical)} %`, `numerical; ${error.bias ? "" : `plane ${percent(error.plane)} %, `}method ${percent(error.method)} %`],
   ]);
   const stages = Object.keys(found.levels[0].cost.stages);
@@ -26,18 +27,17 @@ export function showPlan(found) {
     ]),
   };
   const said = [choice.reason, error.bias?.words, found.conflict].filter(Boolean).join("; ");
-  const same = (entry) => ["model", "level", "slices"].every((key) => entry[key] === choice[key]);
-  const chosen = found.levels.findIndex(same);
+  const taken = (entry) => passes.some((own) => ["model", "level", "slices"].every((key) => entry[key] === own[key]));
   byId("plan").replaceChildren(
     ...found.warnings.map(({ message }) => make("p", { class: "alarm", role: "alert" }, `Warning: ${message}`)),
     head,
     make("p", { class: choice.met && !found.conflict ? "hint" : "alarm" }, `Mesh ${choice.level}: ${said}.`),
   );
   byId("plan-tables").replaceChildren(
-    folded("All meshes: what each is predicted to take", dataTable(levels, (row) => row === chosen)),
+    folded("All meshes: what each is predicted to take", dataTable(levels, (row) => taken(found.levels[row]))),
     folded("Effect ledger: which physics is in, why, and its influence", dataTable(ledger(found.effect_ledger))),
   );
-  return prediction.cpu_seconds;
+  return seconds;
 }
 
 function ledger(entries) {

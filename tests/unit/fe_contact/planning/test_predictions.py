@@ -167,6 +167,18 @@ def test_time_and_error_are_the_same_in_the_reason_and_in_the_levels(tolerance, 
     assert plan.chosen in plan.levels
 
 
+def test_a_mesh_that_is_tried_first_is_planned_with_the_one_that_is_expected_to_follow():
+    options = AnalysisOptions(tolerance=AllowedError(2e-3, 1e-9))
+    plan = plan_run(pair(0.15), TableAxes(torques=[40.0]), options)
+    assert "tried first" in plan.choice.reason and plan.passes[0] == plan.chosen
+    assert [entry.level for entry in plan.passes] == ["standard", "fine"]
+    assert all(entry in plan.levels for entry in plan.passes)
+    expected = decide(plan.checked, None).predicted(None)
+    assert plan.to_json()["passes"][1]["cost"]["cpu_seconds"] == pytest.approx(expected.cpu_seconds)
+    alone = plan_run(pair(0.15), TableAxes(torques=[40.0]), AnalysisOptions(level="standard"))
+    assert alone.passes == (alone.chosen,)
+
+
 def test_a_run_keeps_what_was_predicted_beside_what_happened(tmp_path):
     """Also in the log; compliances that are in the cache are predicted to cost nothing."""
     asked = {"normal_forces": [500.0], "model": "plane_strain", "level": "draft", "positions": 8}
