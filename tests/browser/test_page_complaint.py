@@ -36,6 +36,10 @@ PAIR = CASE["pair"] | {"center_distance_mm": 22.0, "wheel": GEAR | {"teeth": 24}
 FIELDS = ("frequency_hz", "speed_rpm", "torque_n_m")
 RESTED = 600  # milliseconds after which an edit is a step to undo, and in the address
 HEARD = """async (content) => (await import("/page/complaint.js")).heardIn(content)"""
+AXES = """async (content) => {
+  const { axesOf, heardIn } = await import("/page/complaint.js");
+  return axesOf(heardIn(content));
+}"""
 AT_40 = {"road_speed_km_h": 40.0, "tire_radius_mm": 310.0, "final_ratio": 3.2}
 
 
@@ -105,6 +109,20 @@ def test_the_order_is_that_of_the_service(scripts: Page, complaint: dict[str, An
     assert heard["order"] == pytest.approx(known.order * known.per_pitch)
     assert heard["harmonic"] == known.within[0].harmonic
     assert heard["torque"] == known.torques["pair"]
+
+
+@pytest.mark.law
+def test_axes_have_the_complaint_as_it_is_stated(scripts: Page) -> None:
+    stated = {"frequency_hz": 1412.0, "speed_rpm": 1765.0, "shaft": "wheel", "torque_n_m": 0.7}
+    orders = dict.fromkeys(("harmonic of the mesh", "order of the mesh", "mesh order"), 2.0)
+    others = {
+        "frequency, Hz": 1412.0,
+        "speed of the driving gear, rpm": 1765.0 * 24 / 20,
+        "torque on the driving gear, N m": 0.7,
+    }
+    axes = scripts.evaluate(AXES, CASE | {"pair": PAIR, "complaint": stated})
+    assert axes == pytest.approx(orders | others, rel=1e-12)
+    assert scripts.evaluate(AXES, CASE) == {}
 
 
 @pytest.mark.parametrize(

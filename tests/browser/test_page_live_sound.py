@@ -36,6 +36,8 @@ def test_levels_of_live_sounds_are_in_the_ratio_of_what_excites_them(visit: Visi
     assert level[1] / level[0] == pytest.approx(2.0, rel=1e-3)
     assert level[2] / level[0] == pytest.approx(2.0, rel=0.02)  # twice the frequency: twice the velocity
     assert 0.4 < np.abs(double).max() <= 0.501
+    together = rendered(visit.page, [0.1] * 6, [0.1])[0]
+    assert 0.2 < np.abs(together).max() <= 0.501, "harmonics together stay within the scale"
 
 
 @pytest.mark.law
