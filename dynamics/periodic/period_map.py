@@ -194,16 +194,20 @@ def _knots(system: System, period: CommonPeriod) -> FloatArray:
     return phase
 
 
-def _at_constant_speed(system: System, period: CommonPeriod, speed: float, time: float) -> SystemArrays:
-    """Return the arrays with the drives at `speed` (rad/s, of the leading law) for ever.
-
-    Loads by time keep the values that they have at `time`. A speed of 0 or of the other sense, in which other
-    flanks carry, is refused.
-    """
+def _check_speed(system: System, period: CommonPeriod, speed: float) -> None:
+    """Refuse a speed of 0 or of the other sense, in which other flanks carry."""
     extreme = system.scene.drives[period.law].speed.extreme
     if not np.isfinite(speed) or speed * extreme <= 0.0:
         bound = (above if extreme > 0.0 else below)(0.0, note=", the sense in which the scene turns")
         raise InputError("speed", speed, bound, "Reverse the scene's drive for the other flanks.")
+
+
+def _at_constant_speed(system: System, period: CommonPeriod, speed: float, time: float) -> SystemArrays:
+    """Return the arrays with the drives at `speed` (rad/s, of the leading law) for ever.
+
+    Loads by time keep the values that they have at `time`.
+    """
+    _check_speed(system, period, speed)
     speeds = _constant(speed * period.proportion)
     none = np.zeros(period.proportion.size)
     torque = np.array([float(load.torque(time)) for load in system.scene.loads])
@@ -269,6 +273,8 @@ class PeriodicProblem:
     ----------
     grid : PeriodGrid
         Steps of one period, the same at all speeds, so that the map depends smoothly on speed.
+    rate, least : float
+        Steps that a period has at least: so many a second, and so many in all.
     repeat : int
         Common periods after which the motion is to repeat; 2 finds what period doubling leads to.
     time : float
@@ -284,6 +290,8 @@ class PeriodicProblem:
     system: System
     period: CommonPeriod
     grid: _PeriodGrid
+    rate: float
+    least: float
     repeat: int
     time: float
     rest: FloatArray
@@ -294,6 +302,15 @@ class PeriodicProblem:
     def scale(self) -> FloatArray:
         """Meters per unit of q and q', (2n,)."""
         return np.concatenate([self.system.arrays.scale, self.system.arrays.rate_scale])
+
+    def at(self, speed: float) -> PeriodicProblem:
+        """Return the problem with the steps that a speed takes by itself, fewer than a lower one.
+
+        Raises `InputError`: the speed is zero or of the other sense.
+        """
+        _check_speed(self.system, self.period, speed)
+        largest = 1.0 / max(self.rate * self.period.duration(speed), self.least)
+        return replace(self, grid=_PeriodGrid.of(self.system, self.period, largest))
 
 
 def periodic_problem(
@@ -314,12 +331,12 @@ def periodic_problem(
     period, start = common_period(system), static_equilibrium(about_running(system), time)
     if not start.status.usable:
         raise SolveError(f"no static equilibrium: {start.status.name.lower()}, {start.residual:.3g} N left")
-    _at_constant_speed(system, period, slowest, time)  # checks the speed
+    _check_speed(system, period, slowest)
     system = with_static_reference(system, start.displacement, time)
     modes = natural_modes(system, time)
-    cycles = _highest(system, modes.frequency) * period.duration(slowest)
+    rate = steps_per_cycle * _highest(system, modes.frequency)
     pitches = max((abs(count) for count in period.pitches), default=0)
-    waves = max(pitches, load_cycles(system, period))
+    least = float(STEPS_PER_PITCH * max(pitches, load_cycles(system, period)))
     rest = start.displacement * system.arrays.scale
     force, stiff = _largest_force(system, start.mesh_force), _stiffest(system)
     size = max(float(np.max(np.abs(rest))), _resonant_gain(system, modes) * force / stiff)
@@ -330,7 +347,9 @@ def periodic_problem(
     return PeriodicProblem(
         system,
         period,
-        _PeriodGrid.of(system, period, 1.0 / max(steps_per_cycle * cycles, STEPS_PER_PITCH * waves)),
+        _PeriodGrid.of(system, period, 1.0 / max(rate * period.duration(slowest), least)),
+        rate,
+        least,
         repeat,
         time,
         np.concatenate([rest, np.zeros(rest.size)]),

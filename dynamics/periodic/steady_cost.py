@@ -25,6 +25,8 @@ PROBED, AFFORDED = 9, 0.5
 """Speeds at which motions settle, and CPU s that this may take: where it takes more, no flank lifts off."""
 RESPONSES, ORDERS = 400, 10
 """Speeds of the linear response, and orders of the meshes in it."""
+SOME = 30
+"""Speeds at most whose steps are counted."""
 CHANGE = 5e-3
 """Of the size of a state: what a period changes of it after a step of a sweep, 2e-3 to 1e-2."""
 BRANCH_ITERATIONS, BRANCH_DERIVATIONS, BRANCH_MAPS = 5, 1.25, 10
@@ -77,6 +79,12 @@ def point_periods(
     return derivations * (4 * freedoms + 2) + iterations + 4
 
 
+def steps_share(problem: PeriodicProblem, speed: FloatArray) -> float:
+    """Return how many steps motions at speeds take on average, of those of the problem."""
+    some = speed[np.linspace(0, speed.size - 1, min(speed.size, SOME)).astype(int)]
+    return float(np.mean([problem.at(float(w)).grid.level.size for w in some])) / problem.grid.level.size
+
+
 def steady_cost(
     system: System, speed: FloatArray, *, branch: bool = True, repeat: int = 1, periods: int
 ) -> SteadyCost:
@@ -98,7 +106,7 @@ def steady_cost(
     whole = [motion_periods(freedoms, periods, expected_iterations(problem, end, periods)) for end in ends]
     return SteadyCost(
         speed.size * (2 if speed.size > 1 else 1),
-        float(np.mean(whole)) * each,
+        float(np.mean(whole)) * each * steps_share(problem, sense * speed),
         points,
         point_periods(freedoms) * each + BRANCH_MAPS * making,
         tuple(repeat * abs(count) for count in problem.period.pitches),

@@ -16,7 +16,7 @@ from dynamics.motion.observation import observe, static_deflections
 from dynamics.periodic.continuation import Branch, follow_branch
 from dynamics.periodic.period_map import PeriodicProblem, PeriodMap, periodic_problem
 from dynamics.periodic.shooting import SETTLING, Instability, Orbit, find_orbit, settled
-from dynamics.periodic.steady_cost import expected_iterations, motion_periods, period_seconds
+from dynamics.periodic.steady_cost import expected_iterations, motion_periods, period_seconds, steps_share
 from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.run_checks import checked_ledger
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
@@ -122,14 +122,18 @@ PER_MESH = (
 KINDS = (Instability.NONE, Instability.FOLD, Instability.PERIOD_DOUBLING, Instability.NEIMARK_SACKER)
 
 
-def _figures_of(problem: PeriodicProblem, orbits: Sequence[Orbit]) -> dict[str, Any]:
-    """Return the figures of all `orbits` by the names of `SteadyStates`; NaN where no motion was found."""
+def _figures_of(problem: PeriodicProblem, orbits: Sequence[Orbit], swept: int) -> dict[str, Any]:
+    """Return the figures of all `orbits` by the names of `SteadyStates`; NaN where no motion was found.
+
+    The first `swept` of them are of sweeps, with the steps of their own speeds.
+    """
     meshes, bearings = len(problem.system.scene.meshes), len(problem.system.supports.name)
     per_mesh = np.full((len(PER_MESH), len(orbits), meshes), np.nan)
     on_bearing = np.full((len(orbits), bearings), np.nan)
     for index, orbit in enumerate(orbits):
         if orbit.status.usable:
-            per_mesh[:, index], on_bearing[index] = _figures(problem, orbit)
+            own = problem.at(orbit.speed) if index < swept else problem
+            per_mesh[:, index], on_bearing[index] = _figures(own, orbit)
     return {
         "speed": np.array([abs(orbit.speed) for orbit in orbits]),
         "status": np.array([int(orbit.status) for orbit in orbits], dtype=np.int64),
@@ -169,7 +173,7 @@ def sweep(
     periods: int = SETTLING,
     progress: Callable[[float], None] | None = None,
 ) -> tuple[Orbit, ...]:
-    """Return the motion at each of `speeds` (rad/s) in turn, each settled from the one before.
+    """Return the motion at each of `speeds` (rad/s) in turn, settled from the one before, with its own steps.
 
     It stays on its branch up to the fold and jumps there, as a slow run does: rising and falling speeds give
     the two sides of a hysteresis. Where it settles on no motion of the period sought (a longer period, chaos)
@@ -177,9 +181,10 @@ def sweep(
     raises ends the sweep. Raises `InputError`: a speed is zero or of the other sense.
     """
     state, orbits = problem.rest, []
-    for speed in speeds:
-        state = settled(problem, float(speed), state, periods)
-        orbits.append(find_orbit(problem, float(speed), state))
+    for speed in map(float, speeds):
+        own = problem.at(speed)
+        state = settled(own, speed, state, periods)
+        orbits.append(find_orbit(own, speed, state))
         if orbits[-1].status.usable and orbits[-1].stable:
             state = orbits[-1].state
         if progress is not None:
@@ -315,7 +320,7 @@ def steady_states(
     seconds["branch"] = cpu_seconds() - began
     began = cpu_seconds()
     curves = (up, down, followed.orbits if followed is not None else ())
-    figures = _figures_of(problem, [orbit for orbits in curves for orbit in orbits])
+    figures = _figures_of(problem, [orbit for orbits in curves for orbit in orbits], len(up) + len(down))
     seconds["figures"] = cpu_seconds() - began
     return _study(problem, curves, followed, figures, seconds)
 
@@ -361,7 +366,7 @@ def _swept(shared: tuple[PeriodicProblem, int], speeds: FloatArray) -> tuple[Orb
 def _sweep_seconds(problem: PeriodicProblem, courses: Sequence[FloatArray], periods: int) -> float:
     first = float(courses[0][0])
     whole = motion_periods(problem.rest.size // 2, periods, expected_iterations(problem, first, periods))
-    return period_seconds(problem, first) * whole * sum(map(len, courses))
+    return period_seconds(problem, first) * steps_share(problem, courses[0]) * whole * sum(map(len, courses))
 
 
 def _study(

@@ -17,6 +17,7 @@ from dynamics.periodic.steady_cost import (
     period_seconds,
     point_periods,
     steady_cost,
+    steps_share,
 )
 
 SPEEDS = np.array([600.0, 750.0, 900.0]) * RPM
@@ -48,9 +49,12 @@ def test_the_periods_of_sweeps_are_those_counted(pair, marched, repeat):
     problem = periodic_problem(pair, SPEEDS[0], repeat)
     n = problem.rest.size // 2
     series = 1  # of a motion that was found its figures are taken from one more
-    counted = sum(motion_periods(n, SETTLING, int(own)) + series for own in states.iterations)
+    periods = [motion_periods(n, SETTLING, int(own)) + series for own in states.iterations]
+    steps = [repeat * problem.at(speed).grid.level.size for speed in states.speed]
     assert np.all(states.status == 0)
-    assert marched.total() == repeat * counted * problem.grid.level.size
+    assert marched.total() == np.dot(periods, steps)
+    expected = steps_share(problem, SPEEDS) * repeat * problem.grid.level.size
+    assert np.mean(steps) == pytest.approx(expected, rel=1e-12)
 
 
 def test_the_periods_of_a_branch_are_those_counted(pair, marched, monkeypatch):
@@ -127,12 +131,13 @@ def test_a_prediction_is_linear_in_speeds_settling_and_repetitions(pair, monkeyp
     n = periodic_problem(pair, SPEEDS[0]).rest.size // 2
     few = steady_cost(pair, SPEEDS, periods=SETTLING)
     assert few.motions == 2 * SPEEDS.size
-    assert few.motion == motion_periods(n, SETTLING, 2)
+    problem, speeds = periodic_problem(pair, SPEEDS[0]), np.linspace(SPEEDS[0], SPEEDS[-1], 30)
+    assert few.motion == motion_periods(n, SETTLING, 2) * steps_share(problem, SPEEDS)
     assert few.point == pytest.approx(point_periods(n), rel=0.02)  # beside them maps are laid out
-    many = steady_cost(pair, np.linspace(SPEEDS[0], SPEEDS[-1], 30), periods=SETTLING + 7, repeat=3)
+    many = steady_cost(pair, speeds, periods=SETTLING + 7, repeat=3)
     assert many.motions == 60
     assert many.points == few.points
-    assert many.motion == 3 * (few.motion + 7)
+    assert many.motion == 3 * motion_periods(n, SETTLING + 7, 2) * steps_share(problem, speeds)
     assert steady_cost(pair, SPEEDS[:1], periods=SETTLING).motions == 1
     assert steady_cost(pair, SPEEDS, branch=False, periods=SETTLING).points == 0
 

@@ -14,7 +14,14 @@ from dynamics.errors import InputError, ResultError
 from dynamics.linearize import harmonic_response
 from dynamics.loads import TimeLaw
 from dynamics.meshes import CoastFlank
-from dynamics.periodic import OrbitStatus, SteadyStates, find_orbit, steady_states
+from dynamics.periodic import (
+    OrbitStatus,
+    SteadyStates,
+    find_orbit,
+    periodic_problem,
+    steady_states,
+    sweep,
+)
 from dynamics.periodic.steady_states import BRANCH, DOWN, UP
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
@@ -105,6 +112,21 @@ def test_flanks_that_feel_misalignment_give_the_figures_of_a_long_run():
     assert found.mean_error[0, 0] == pytest.approx(error.mean(), rel=1e-4)
     assert found.largest_force[0, 0] == pytest.approx(run.mesh_force[0, -65:-1].max(), rel=2e-3)
     assert found.coasting[0, 0] == 0.0
+
+
+def test_motions_of_a_sweep_differ_by_their_step_errors_from_those_of_finer_steps():
+    """Each has the steps of its own speed, and its error is stated by them."""
+    speeds = np.array([300.0, 900.0, 2700.0]) * RPM
+    problem = periodic_problem(system := assemble(gear_pair_scene()), speeds[0])
+    swept, fine = sweep(problem, speeds, 8), [find_orbit(problem, speed) for speed in speeds]
+    steps = [problem.at(speed).grid.level.size for speed in speeds]
+    assert steps == [periodic_problem(system, speed).grid.level.size for speed in speeds]
+    assert steps[0] == problem.grid.level.size > steps[1] > steps[2]
+    for orbit, other in zip(swept, fine, strict=True):
+        apart = np.max(np.abs(orbit.state - other.state))
+        assert apart <= 1.5 * orbit.step_error + 1e-8 * problem.size
+    moved = np.max(np.abs(swept[2].state - fine[2].state))
+    assert moved == pytest.approx(swept[2].step_error, rel=0.2, abs=0.0)
 
 
 def test_a_motion_that_is_not_found_has_a_status_and_no_figures(monkeypatch):
