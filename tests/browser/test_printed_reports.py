@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import warnings
 from collections import Counter
@@ -14,7 +15,7 @@ import numpy as np
 import pytest
 from page_visit import opened, tab, to_print
 from playwright.sync_api import Browser
-from printed_pages import Printed
+from printed_pages import Printed, plain
 from small_inputs import small_inputs
 
 from lineofaction.gearbox.registry import STUDIES
@@ -32,7 +33,7 @@ BLOCK = ReportInput(
     author="A. Smith",
     number="23-067",
     revision="A",
-    requirements=["95 % of all pairs below at most 0.7 µm"],
+    requirements=["95 % of all pairs below at most 0.7 µm", "mean STE at most 10 µm"],
 )
 
 
@@ -64,6 +65,12 @@ def of_long_table() -> Page:
     rows = tuple((f"row {index}", words, f"{index}") for index in range(70))
     table = Table("What each row says", ("row", "what it says", "number"), rows)
     return Page("A long table", "Rows of four lines.", (), (Section("Rows", "All.", tables=(table,)),))
+
+
+WIDTH, MARGIN = 210.0, 15.5
+"""Of the paper and beside what is printed on it, mm."""
+ROWS = 40
+"""Of a table that has room on one page."""
 
 
 @dataclass(frozen=True)
@@ -130,6 +137,57 @@ def test_what_the_page_shows_is_printed(report: Report) -> None:
     figures = {figure.title for section in shown for figure in section.figures}
     assert figures <= titles
     assert {table.caption for section in shown for table in section.tables} <= titles
+
+
+def test_what_is_said_of_the_results_is_printed(report: Report) -> None:
+    page, printed = report.page, report.printed
+    assert page.block is not None and (page.block.verdicts or page.alarms)
+    said = [*page.alarms, *page.block.verdicts, *(value for _, value in page.block.rows)]
+    said += [words for one in page.headlines for words in (one.name, one.value, one.remark)]
+    figures = [figure for section in page.sections for figure in section.figures]
+    said += [words for figure in figures for words in (figure.alternative, figure.caption)]
+    whole = printed.words(printed.document).replace(" ", "")  # a line may end within a word
+    assert [words for words in said if plain(words).replace(" ", "") not in whole] == []
+
+
+def test_a_picture_is_on_one_page_with_its_words(report: Report) -> None:
+    figures = [each for each in report.printed.document.all("Figure") if list(each.all("Caption"))]
+    assert len(figures) == sum(len(section.figures) for section in report.page.sections)
+    assert [report.printed.words(figure) for figure in figures if len(figure.pages) > 1] == []
+
+
+def test_a_heading_is_on_the_page_of_what_it_heads(report: Report) -> None:
+    parted = []
+    for section in report.printed.document.all("NonStruct"):
+        head, *rest = section.children or [section]
+        if head.kind == "H2" and rest:
+            first = next(rest[0].all("TR", "P", "Caption"), rest[0])
+            parted += [report.printed.words(head)] * (not head.pages & first.pages)
+    for table in report.printed.document.all("Table"):
+        caption, row = (next(table.all(kind), None) for kind in ("Caption", "TR"))
+        if caption is not None and row is not None:
+            parted += [report.printed.words(caption)] * (not caption.pages <= row.pages)
+    assert parted == []
+
+
+def test_nothing_is_beyond_the_margins(report: Report) -> None:
+    for number, corners in report.printed.corners.items():
+        across = np.array(corners)[:, 0]
+        assert across.min() > MARGIN and across.max() < WIDTH - MARGIN, number
+
+
+def test_a_table_of_few_rows_is_on_one_page(report: Report) -> None:
+    short = [each for each in report.printed.document.all("Table") if len(list(each.all("TR"))) <= ROWS]
+    assert [report.printed.words(table) for table in short if len(table.pages) > 1] == []
+
+
+def test_the_file_in_a_report_says_how_its_results_were_made(report: Report) -> None:
+    if report.page.records:
+        held = json.loads(report.printed.attachments["receipts.json"])
+        assert held == json.loads(json.dumps(report.page.records))
+        assert all(record for record in held.values())
+    else:
+        assert report.printed.attachments == {}
 
 
 def test_no_row_of_a_table_is_cut_by_the_end_of_a_page(report: Report) -> None:

@@ -1,4 +1,7 @@
-"""A printed report as its PDF says it is: pages, titles, pictures and tables, by the tags of its elements."""
+"""A printed report as its PDF says it is: pages, titles, pictures and tables, by the tags of its elements.
+
+Places of what is drawn are in mm from the left and from the lower edge of its page.
+"""
 
 from __future__ import annotations
 
@@ -9,11 +12,14 @@ from dataclasses import dataclass, field
 from io import BytesIO
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
 from pypdf import PdfReader
 from pypdf.generic import ContentStream
 
 Place = tuple[int, int]
 """Number of a page from 0, and of a piece of text on it."""
+_MM = 25.4 / 72.0
 
 
 @dataclass
@@ -49,6 +55,9 @@ class Printed:
         reader = PdfReader(BytesIO(content))
         self._numbers = {page.indirect_reference.idnum: n for n, page in enumerate(reader.pages)}  # type: ignore[union-attr]
         self._texts: dict[Place, str] = {}
+        self.corners: defaultdict[int, list[NDArray[np.float64]]] = defaultdict(list)
+        """By page: two opposite corners of each picture, and where each piece of text begins."""
+        self.attachments = {name: files[0] for name, files in reader.attachments.items()}
         self.pages = [self._read(number, page) for number, page in enumerate(reader.pages)]
         self.pictures = [len(page.images) for page in reader.pages]
         root = reader.trailer["/Root"]["/StructTreeRoot"]  # type: ignore[index]
@@ -72,8 +81,15 @@ class Printed:
         letters: dict[bytes, str] = {}
         pieces: defaultdict[Place, str] = defaultdict(str)
         whole = ""
+        drawn, text_at = [np.eye(3)], np.eye(3)
         for operands, name in ContentStream(page.get_contents(), page.pdf).operations:
-            if name == b"BDC":
+            if name in (b"q", b"Q", b"cm"):
+                _place(drawn, name, operands)
+            elif name == b"Tm":
+                text_at = _matrix(operands)
+            elif name == b"Do":
+                self.corners[number] += [_MM * (end @ drawn[-1])[:2] for end in ([0, 0, 1], [1, 1, 1])]
+            elif name == b"BDC":
                 pieces_open.append(operands[1].get("/MCID", pieces_open[-1]))
             elif name == b"EMC":
                 pieces_open.pop()
@@ -81,6 +97,7 @@ class Printed:
                 letters = fonts[operands[0]]
             elif name == b"Tj":
                 text = _decoded(operands[0].original_bytes, letters)
+                self.corners[number].append(_MM * (text_at @ drawn[-1])[2, :2])
                 whole += text
                 if (piece := pieces_open[-1]) is not None:
                     pieces[number, piece] += text
@@ -108,6 +125,21 @@ class Printed:
             else:
                 element.children.append(self._element(inner, page))
         return element
+
+
+def _place(drawn: list[NDArray[np.float64]], name: bytes, operands: Any) -> None:
+    """Keep, restore or change the matrix by which a page is drawn, the last of those kept."""
+    if name == b"q":
+        drawn.append(drawn[-1])
+    elif name == b"Q":
+        drawn.pop()
+    else:
+        drawn[-1] = _matrix(operands) @ drawn[-1]
+
+
+def _matrix(operands: Any) -> NDArray[np.float64]:
+    """Return the matrix that moves points, as rows, from within to without."""
+    return np.column_stack([np.array(operands, dtype=float).reshape(3, 2), [0.0, 0.0, 1.0]])
 
 
 def _letters(font: Any) -> dict[bytes, str]:

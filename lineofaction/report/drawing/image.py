@@ -146,10 +146,10 @@ def svg(figure: Figure) -> bytes:
 
 def _image(figure: Figure, form: str, metadata: dict[str, str | None], across: int = 1) -> bytes:
     sheet = panel_sheet(rewritten(figure.content, drawable), across)
-    sheet.suptitle(
-        drawable(figure.title), x=0.01, ha="left", fontsize=12, fontweight="bold", color=palette.INK
-    )
+    sheet.suptitle(drawable(figure.title), x=0.01, ha="left", size=12, weight="bold", color=palette.INK)
     FigureCanvasAgg(sheet)
+    if any(panel.equal for panel in figure.content):
+        sheet.draw_without_rendering()  # margins follow from a height that a drawing takes afterwards
     buffer = BytesIO()
     sheet.savefig(buffer, format=form, dpi=_DPI, metadata=metadata)
     return buffer.getvalue()

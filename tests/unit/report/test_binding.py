@@ -75,3 +75,10 @@ def test_the_bound_page_is_written_with_the_plot_library_once(pages: dict[str, P
     text = (tmp_path / "report.html").read_text("utf-8")
     assert text.count('id="library"') == 1
     assert all(f"second stage: {words}" in text for words in ("transverse section", "peak to peak"))
+
+
+def test_what_each_pair_was_made_from_is_kept(pages: dict[str, Page]) -> None:
+    records = bound(pages).records
+    assert len(records) == 2 and records == {
+        name: own for page in pages.values() for name, own in page.records.items()
+    }

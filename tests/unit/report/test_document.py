@@ -6,6 +6,7 @@ import json
 import re
 import tomllib
 import zlib
+from collections.abc import Sequence
 from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
@@ -214,10 +215,25 @@ def test_orders_have_whole_ticks() -> None:
 @pytest.mark.law
 def test_the_first_harmonics_are_told_apart_by_eye(database: SteDatabase) -> None:
     colors = {line.name: line.color for line in ripple_over_torque(database).content[1].lines}
-    parts = [[int(colors[f"{k}"][at : at + 2], 16) for at in (1, 3, 5)] for k in range(1, 9)]
-    apart = [np.abs(np.subtract(a, b)).sum() for i, a in enumerate(parts) for b in parts[:i]]
-    assert min(apart) > 60
-    assert all(max(part) > 80 for part in parts)  # none is near black
+    assert all(max(part) > 80 for part in apart([colors[f"{k}"] for k in range(1, 9)]))  # none is near black
+
+
+def apart(colors: Sequence[str]) -> list[list[int]]:
+    """Return the parts of colors that are told apart by eye, on the screen and in a picture of few colors."""
+    parts = [[int(color[at : at + 2], 16) for at in (1, 3, 5)] for color in colors]
+    assert min(np.abs(np.subtract(a, b)).sum() for i, a in enumerate(parts) for b in parts[:i]) > 60
+    at = np.arange(float(len(colors)))
+    bars = tuple(Bars(f"{k}", at[k : k + 1], np.ones(1), 0.0, 0.8, color) for k, color in enumerate(colors))
+    drawn = Image.open(BytesIO(still(png(figure(Panel(Axis("x"), Axis("y"), bars=bars)))))).convert("RGB")
+    held = np.unique(np.asarray(drawn).reshape(-1, 3), axis=0).astype(int)
+    assert all(np.abs(held - part).sum(axis=1).min() < 16 for part in parts)
+    return parts
+
+
+@pytest.mark.law
+def test_pairs_of_teeth_and_categories_are_told_apart_by_eye() -> None:
+    apart([palette.category(k) for k in range(6)])
+    apart([palette.tooth_pair(k) for k in range(6)])
 
 
 SIMPLE = (

@@ -9,13 +9,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure as Sheet
 from matplotlib.text import Annotation, Text
 
+from fe_contact.geometry import Gear, GearPair
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Note, Panel, legend_names
-from lineofaction.report.drawing.image import panel_sheet
+from lineofaction.report.drawing.image import panel_sheet, png
 from lineofaction.report.drawing.interactive import plotly_figure
 from lineofaction.report.drawing.placing import _spread, line_labels, placed
+from lineofaction.report.pair import pair_drawing
 from lineofaction.report.response.modes import OTHERS, _largest_parts, mode_bars
 
 ENDS = np.array([0.0, 1.0])
@@ -211,3 +214,21 @@ def test_the_largest_parts_have_the_colors() -> None:
     parts = _largest_parts(many)
     assert parts == [f"part {k}" for k in range(len(palette.CATEGORIES))]
     assert [bars.name for bars in mode_bars(["1 Hz"], many, "strain energy").bars][-1] == OTHERS
+
+
+@pytest.mark.parametrize("teeth", [20, 60])
+def test_title_axis_and_legend_of_a_drawing_stand_apart(teeth: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    sheets: list[Sheet] = []
+
+    def laid_out(sheet: Sheet, *_: object, **__: object) -> None:
+        sheet.draw_without_rendering()
+        sheets.append(sheet)
+
+    monkeypatch.setattr(Sheet, "savefig", laid_out)
+    gear = Gear(teeth=teeth, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+    png(pair_drawing(GearPair(gear, gear)))
+    (sheet,) = sheets
+    (title,), (legend,) = sheet.texts, sheet.legends
+    first, last = (sheet.axes[index].get_tightbbox() for index in (0, -1))
+    assert first is not None and first.y1 <= title.get_window_extent().y0
+    assert last is not None and last.y0 >= legend.get_window_extent().y1
