@@ -78,11 +78,10 @@ def test_a_verdict_is_one_sentence_with_value_error_and_limit() -> None:
 
 
 def test_a_requirement_of_nothing_shown_is_an_alarm() -> None:
-    page = titled(PAGE, ReportInput(requirements=["sound power at most 80 dB(A)", "mean STE at most 1 mm"]))
-    assert [text.rpartition(": ")[2] for text in page.alarms] == [
-        "sound power at most 80 dB(A)",
-        "mean STE at most 1 mm",
-    ]
+    """Also of one that is named by the end of its name alone, or in another unit."""
+    stated = ["sound power at most 80 dB(A)", "mean STE at most 1 mm", "STE at 120 N m at most 1 µm"]
+    page = titled(PAGE, ReportInput(requirements=stated))
+    assert [text.rpartition(": ")[2] for text in page.alarms] == stated
 
 
 def test_the_title_block_stands_on_the_first_page_and_its_number_on_all() -> None:
