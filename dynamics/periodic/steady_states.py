@@ -177,18 +177,19 @@ def sweep(
 
     It stays on its branch up to the fold and jumps there, as a slow run does: rising and falling speeds give
     the two sides of a hysteresis. Where it settles on no motion of the period sought (a longer period, chaos)
-    the status says so, and the sweep goes on from there. `progress` is called with the fraction done; what it
-    raises ends the sweep. Raises `InputError`: a speed is zero or of the other sense.
+    the status says so, and the sweep goes on from there. `progress` is called with the fraction of the
+    steps done; what it raises ends the sweep. Raises `InputError`: a speed is zero or of the other sense.
     """
     state, orbits = problem.rest, []
-    for speed in map(float, speeds):
-        own = problem.at(speed)
+    problems = [problem.at(float(speed)) for speed in speeds]
+    steps = np.cumsum([own.grid.level.size for own in problems])
+    for own, speed, done in zip(problems, map(float, speeds), steps, strict=True):
         state = settled(own, speed, state, periods)
         orbits.append(find_orbit(own, speed, state))
         if orbits[-1].status.usable and orbits[-1].stable:
             state = orbits[-1].state
         if progress is not None:
-            progress(len(orbits) / len(speeds))
+            progress(float(done / steps[-1]))
     return tuple(orbits)
 
 

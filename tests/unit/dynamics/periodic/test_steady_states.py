@@ -157,6 +157,15 @@ def test_progress_runs_over_all_curves():
         assert part == sorted(part) and part[-1] == 1.0
 
 
+def test_progress_of_a_sweep_is_that_of_its_steps():
+    speeds, seen = np.array([300.0, 900.0, 2700.0]) * RPM, []
+    problem = periodic_problem(assemble(gear_pair_scene()), speeds[0])
+    sweep(problem, speeds, 0, seen.append)
+    steps = np.cumsum([problem.at(speed).grid.level.size for speed in speeds])
+    np.testing.assert_allclose(seen, steps / steps[-1], rtol=1e-12)
+    assert seen[0] > 0.6  # the slowest motion takes most of the time
+
+
 def test_a_file_gives_back_every_bit(light, tmp_path):
     light.to_netcdf(tmp_path / "steady.nc")
     again = SteadyStates.from_netcdf(tmp_path / "steady.nc")
