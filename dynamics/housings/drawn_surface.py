@@ -1,4 +1,4 @@
-"""Surfaces of housings as a picture shows them: coarse triangles of a STEP file or of a mesh, not reduced.
+"""Surfaces of housings as a picture shows them: coarse triangles of a STEP file or of a mesh.
 
 For a process that is confined already (`host.confine`) and answers once: gmsh and meshlane run in it.
 """
