@@ -270,7 +270,8 @@ def _title(read: Inputs) -> str:
         return pair_title(read.database.facts)
     if not read.pages:
         return "Dynamics of geared shafts"
-    subjects = {study.takes.subject for study in STUDIES.values() if study.kind in read.pages}
+    takes = (study.takes.subject for study in STUDIES.values() if study.kind in read.pages)
+    subjects = {subject for every in takes for subject in every.split(" or ")}
     titles = dict.fromkeys(page.title for page in read.pages.values())
     return next(iter(titles)) if len(titles) == 1 else f"Studies of a {' and a '.join(sorted(subjects))}"
 

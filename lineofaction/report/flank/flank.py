@@ -60,7 +60,7 @@ def contact_lines(flanks: LoadDistribution) -> Figure:
         "but carry no load. "
         f"One stroke is {number(1e3 * flanks.slice_width, 2)} mm of the face, its color the mean there.",
         alternative=f"At most {number(1e-3 * flanks.line_load.max(), 4)} N/mm; at position {at}, the "
-        f"one of the largest pressure, {_carrying(flanks, worst)} tooth pairs carry load.",
+        f"one of the largest pressure, tooth pairs that carry load: {_carrying(flanks, worst)}.",
         content=(
             Panel(x, y, (), _marks(flanks), f"line load at {chosen.size} positions of the cycle", load),
             Panel(x, y, (), _marks(flanks), f"pressure at position {at}, where it is largest", pressure),
@@ -419,10 +419,10 @@ def _text(flanks: LoadDistribution) -> Iterator[str]:
     )
     yield f"largest line load {1e-3 * flanks.line_load.max():.4g} N/mm"
     if flanks.face_position.size > 1:
-        low, high = (1e3 * end for end in (flanks.load_centroid.min(), flanks.load_centroid.max()))
+        ends = (engineering(1e3 * end, 3) for end in (flanks.load_centroid.min(), flanks.load_centroid.max()))
         yield (
             f"K_Hbeta at most {engineering(flanks.face_load_factor.max(), 3)} at one position; "
-            f"load centroid {engineering(low, 3)} to {engineering(high, 3)} mm from mid-face"
+            f"load centroid {' to '.join(dict.fromkeys(ends))} mm from mid-face"
         )
     yield from assumption_lines(receipt)
 
