@@ -14,6 +14,7 @@ from page_visit import (
     choose_case,
     computed,
     control,
+    moved,
     opened,
     other_browser,
     shows_the_same,
@@ -47,6 +48,21 @@ def test_a_reload_shows_what_was_typed_and_moved(visit: Visit) -> None:
     expect(page.locator("#study-Tolerances-samples")).to_have_value("77")
     expect(page.locator("#results-design")).to_contain_text(EDITED)
     assert visit.complaints == []
+
+
+@pytest.mark.law
+def test_flanks_and_torque_that_were_moved_are_sent_with_the_address(visit: Visit, browser: Browser) -> None:
+    page, sliders = visit.page, ("#live-wheel-tip_relief_um", "#live-torque_n_m")
+    for slider in sliders:
+        moved(page, slider, "End")
+    expect(page).to_have_url(re.compile("live="))
+    page.wait_for_timeout(600)  # ms: the address is written when the hand rests
+    with other_browser(browser, page.url) as sent:
+        answered(sent)
+        for slider in sliders:
+            assert (
+                sent.locator(f"{slider}-exact").input_value() == page.locator(f"{slider}-exact").input_value()
+            )
 
 
 def test_the_client_has_the_case_and_the_result_that_an_address_shows(
