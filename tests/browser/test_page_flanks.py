@@ -161,3 +161,24 @@ def test_the_switch_bends_as_many_times_as_it_says(
     assert seen.page.evaluate("window.bent") == times
     expect(seen.page.locator(CANVAS)).to_be_visible()
     seen.page.close()
+
+
+SHARED = """async (curve) => (await import("/page/live_figures.js")).sharingFigure(curve).data.map(
+  ({ name, x, y }) => [name, x, y])"""
+
+
+@pytest.mark.law
+def test_the_share_of_a_pair_goes_on_with_its_place_over_two_pitches(page: Page) -> None:
+    """A pair is a base pitch further with each number and with each pitch of the position."""
+
+    def share(place: np.ndarray) -> np.ndarray:
+        return np.clip((0.8 - np.abs(place)) / 0.6, 0.0, 1.0)
+
+    position, pair = np.arange(0.0, 1.0, 0.125), np.array([-1, 0])
+    curve = {"position": position.tolist(), "period": 1, "pair": pair.tolist()}
+    drawn = page.evaluate(SHARED, curve | {"load_share": share(position[:, None] + pair).tolist()})
+    assert {name for name, _, _ in drawn} == {"pair -2", "pair -1", "pair 0"}
+    for name, x, y in drawn:
+        expected = share(np.array(x) + float(name.split()[1]))
+        np.testing.assert_allclose([value or 0.0 for value in y], expected, atol=1e-9)
+        assert max(x) == 2.0
