@@ -9,9 +9,8 @@ import numpy as np
 from dynamics.assembly.assemble import System
 from dynamics.linearize import natural_modes
 from dynamics.linearize.harmonic_response import excited_lines
-from dynamics.linearize.load_harmonics import load_harmonics
 from dynamics.linearize.operating_speeds import leading_law
-from dynamics.linearize.steady_vibration import flank_forces
+from dynamics.linearize.steady_vibration import steady_vibration
 from dynamics.periodic.continuation import LARGEST_STEP, MOST_POINTS
 from dynamics.periodic.period_map import PeriodicProblem, PeriodMap, periodic_problem
 from dynamics.periodic.shooting import RESIDUAL_LIMIT, SETTLING, settled
@@ -118,22 +117,13 @@ def _response_states(problem: PeriodicProblem, speed: FloatArray) -> tuple[Float
     """Return speeds (S,) and what a branch would have there if no flank lifted off, (S, 2n + 1).
 
     States over their size and the speed over the highest, as the arclength of a branch has them: the linear
-    response at the start of a period, by modes with their own damping.
+    response at the start of a period.
     """
     at = np.linspace(speed[0], speed[-1], RESPONSES)
     about, lines = excited_lines(problem.system, ORDERS, problem.time, at)
-    modes = natural_modes(about.linear)
-    force = flank_forces(about, lines.harmonics)[1]
-    force = force.T @ about.system.arrays.direction[: len(force)]
-    force = force + load_harmonics(about.system, about.period, at, lines.harmonics, problem.time)
-    own = 2.0 * np.pi * modes.frequency
-    displacement, velocity = np.zeros((2, at.size, own.size))
-    for harmonic, line in zip(lines.harmonics, np.moveaxis(force @ modes.shape.T, 1, 0), strict=True):
-        w = (2.0 * np.pi * harmonic / np.array([about.period.duration(speed) for speed in at]))[:, None]
-        amplitude = line / (own**2 - w**2 + 2j * modes.damping_ratio * own * w)
-        displacement += amplitude.real
-        velocity -= w * amplitude.imag
-    state = np.concatenate([displacement @ modes.shape, velocity @ modes.shape], axis=1) * problem.scale
+    steady = steady_vibration(about, at, lines.harmonics)
+    rate = 1j * steady.omega[..., None] * steady.displacement
+    state = np.concatenate([steady.displacement, rate], axis=2).sum(axis=1).real * problem.scale
     return at, np.column_stack([state / problem.size, at / at[-1]])
 
 
