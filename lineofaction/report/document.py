@@ -270,10 +270,9 @@ def _title(read: Inputs) -> str:
         return pair_title(read.database.facts)
     if not read.pages:
         return "Dynamics of geared shafts"
-    takes = (study.takes.subject for study in STUDIES.values() if study.kind in read.pages)
-    subjects = {subject for every in takes for subject in every.split(" or ")}
-    titles = dict.fromkeys(page.title for page in read.pages.values())
-    return next(iter(titles)) if len(titles) == 1 else f"Studies of a {' and a '.join(sorted(subjects))}"
+    of = " or ".join(study.takes.subject for study in STUDIES.values() if study.kind in read.pages)
+    titles = {page.title for page in read.pages.values()}
+    return titles.pop() if len(titles) == 1 else f"Studies of a {' and a '.join(sorted({*of.split(' or ')}))}"
 
 
 def stored_figures(inputs: Json) -> Json:
