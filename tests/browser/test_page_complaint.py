@@ -41,8 +41,6 @@ AXES = """async (content) => {
   return axesOf(heardIn(content));
 }"""
 AT_40 = {"road_speed_km_h": 40.0, "tire_radius_mm": 310.0, "final_ratio": 3.2}
-
-
 LINES = """node => (node.layout?.shapes ?? []).map(({ xref, x0, x1, y0, y1, label }) => (
   [label.text, xref, x0, x1, y0, y1]))"""
 BARS = "node => node.data.at(-1).y.length"
@@ -52,8 +50,6 @@ OF_A_RUN = """async ([mark, figure]) => {
   const { shapes } = marked(figure).layout;
   return (shapes ?? []).map(({ xref, yref, x0, y0 }) => [xref, yref, xref === "x" ? x0 : y0]);
 }"""
-
-
 UNIT = Path(__file__).parents[2] / "examples" / "two_stage_gearbox.rexs"
 
 

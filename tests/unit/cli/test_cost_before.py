@@ -413,26 +413,6 @@ def test_the_status_sums_what_is_due(case: CheckedCase, tmp_path: Path) -> None:
     assert less["due_cpu_seconds"] < facts["due_cpu_seconds"]
 
 
-def test_the_status_says_why_a_verb_would_refuse(tmp_path: Path) -> None:
-    """Once for a case that cannot be used, with its line; that of a file that cannot be read, too."""
-    text = (EXAMPLES / "palermo_spur_20_20.toml").read_text()
-    (tmp_path / "case.toml").write_text(text.replace("teeth = 20", "teeth = 2", 1))
-    (tmp_path / "search.toml").write_text("[variables.pinion\n")
-    lines = loa("status", tmp_path).stdout.splitlines()
-    assert all(line.endswith("refused") for line in lines if line.startswith("missing"))
-    reason = next(line for line in lines if "pair.pinion.teeth = 2: must be" in line)
-    assert reason.startswith("refused by loa analyze and ")
-    assert f"{tmp_path / 'case.toml'}:" in reason
-    assert str(tmp_path / "search.toml") in lines[-1]
-    assert "well-formed TOML" in lines[-1]
-    facts = json.loads(loa("status", tmp_path, "--json").stdout)
-    assert all("pair.pinion.teeth = 2" in row["refused"] for row in facts["results"])
-    (tmp_path / "case.toml").unlink()
-    alone = loa("status", tmp_path)
-    assert alone.exit_code == 2
-    assert "well-formed TOML" in alone.stderr
-
-
 @pytest.mark.parametrize("subject", ["case", "scene"])
 def test_the_status_has_the_cost_of_each_of_these_verbs(
     subject: str,
