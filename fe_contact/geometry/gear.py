@@ -255,11 +255,9 @@ class Gear(Toothing):
             "bore_diameter",
             "normal_pressure_angle",
             "helix_angle",
-            "profile_shift_coefficient",
             "dedendum_coefficient",
             "root_radius_coefficient",
-            "thickness_allowance",
         )
-        lengths_and_angles = {name: float(getattr(self, name)) + 0.0 for name in names}  # -0.0 becomes 0.0
+        counts = {"teeth": int(self.teeth)}
         body = {} if self.web is None else {"web": self.web.content()}
-        return {"teeth": int(self.teeth), "tip_diameter": 2.0 * self.tip_radius} | lengths_and_angles | body
+        return counts | {"tip_diameter": 2.0 * self.tip_radius} | self.generated_shape(names) | body

@@ -237,7 +237,7 @@ def _refuse_shift_sum_of_cutter(gear: Toothing, teeth: int, profile_shift: float
     if involute <= 0.0:
         angle = math.tan(gear.transverse_pressure_angle) - gear.transverse_pressure_angle
         largest = angle * (gear.teeth - teeth) / (2.0 * math.tan(gear.normal_pressure_angle))
-        limit = largest - gear.profile_shift_coefficient
+        limit = largest - gear.generating_shift_coefficient
         raise InfeasibleGeometry(
             "profile shift sum",
             "cutter_profile_shift_coefficient",
@@ -310,8 +310,8 @@ class RingGear(Toothing):
 
     In ISO 21771-1 its teeth, diameters and center distance are negative. Here all of them are positive; the
     profile shift keeps the standard's sign: x > 0 thickens the teeth and moves them inwards, so x_1 + x_2 = 0
-    keeps the center distance; d_f = d + 2 m_n (h_fP - x). It has the hand of its pinion. The tip diameter of
-    the cutter follows from the root circle. Besides what is declared: `modification`, `material` and
+    keeps the center distance; d_f = d + 2 m_n (h_fP - x_E). It has the hand of its pinion. The tip diameter
+    of the cutter follows from the root circle. Besides what is declared: `modification`, `material` and
     `pitch_deviation` (see `Toothing`). Raises `InputError`: a value out of its bounds; `InfeasibleGeometry`:
     no such gear: "rim", "tip diameter", "root radius", "profile shift sum", "interference" and "trimming
     interference" (with the cutter), "pointed tooth".
@@ -358,7 +358,7 @@ class RingGear(Toothing):
         radius = ratio * self.base_radius
         distance = (self.base_radius - radius) / math.cos(pressure)
         shift = 2.0 * self.cutter_profile_shift_coefficient * math.tan(self.normal_pressure_angle)
-        thickness = self.normal_module * (0.5 * math.pi + shift) + self.thickness_allowance
+        thickness = self.normal_module * (0.5 * math.pi + shift) + self.flank_grinding_allowance
         half_angle = thickness / (self.cutter_teeth * self.normal_module)
         return _PinionCutter(
             teeth=self.cutter_teeth,
@@ -374,7 +374,7 @@ class RingGear(Toothing):
     def _generating_pressure_angle(self) -> float:
         """Working pressure angle with the cutter, from the profile shifts, rad."""
         cutter_shift = self.cutter_profile_shift_coefficient
-        shifts = cutter_shift + self.profile_shift_coefficient
+        shifts = cutter_shift + self.generating_shift_coefficient
         involute = involute_function(self.transverse_pressure_angle)
         involute -= 2.0 * math.tan(self.normal_pressure_angle) * shifts / (self.teeth - self.cutter_teeth)
         _refuse_shift_sum_of_cutter(self, self.cutter_teeth, cutter_shift, involute)
@@ -404,12 +404,9 @@ class RingGear(Toothing):
             "rim_diameter",
             "normal_pressure_angle",
             "helix_angle",
-            "profile_shift_coefficient",
             "dedendum_coefficient",
             "root_radius_coefficient",
             "cutter_profile_shift_coefficient",
-            "thickness_allowance",
         )
-        lengths_and_angles = {name: float(getattr(self, name)) + 0.0 for name in names}  # -0.0 becomes 0.0
         counts = {"teeth": -int(self.teeth), "cutter_teeth": int(self.cutter_teeth)}
-        return counts | {"tip_diameter": 2.0 * self.tip_radius} | lengths_and_angles
+        return counts | {"tip_diameter": 2.0 * self.tip_radius} | self.generated_shape(names)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
-from bounds import Declared, Kind, SiNote, between, declared, described, integers, required, up_to
+from bounds import Declared, Kind, SiNote, between, declared, described, integers, one_of, required, up_to
 from fe_contact.body import CLAMPED, BoreSeat
 from fe_contact.errors import InputError, declared_fields, within
 from fe_contact.flank.involute import involute_function, roll_length_at_radius
@@ -168,6 +168,17 @@ _ALLOWANCE = Declared(
     5e-5,
     written="µm",
 )
+GENERATING, FLANK = "generating", "flank"
+_THINNING = Declared(
+    Kind.CHOICE,
+    "",
+    one_of((GENERATING, FLANK)),
+    "What removes the thickness allowance A; generating: the cutter, which stands deeper by"
+    " A / (2 tan alpha_n), and the root with it (x_E of ISO 21771); flank: grinding of the flanks, which"
+    " leaves the root circle",
+    FLANK,
+    later=True,
+)
 
 _OF_AXIS = "Axis of the teeth off the axis of rotation; left out: they are one"
 _RUN_OUT = Declared(Kind.PART, "", None, _OF_AXIS, part=RunOut, later=True)
@@ -180,14 +191,20 @@ MATING = ("normal_module", "normal_pressure_angle", "helix_angle")
 """Fields in which mating gears agree, but for the hand of external ones."""
 
 
+def cutter_infeed(thickness_allowance: float, normal_pressure_angle: float) -> float:
+    """Return how much deeper in m a cutter stands that removes a normal tooth thickness in m."""
+    return 0.5 * thickness_allowance / math.tan(normal_pressure_angle)
+
+
 @described
 @dataclass(frozen=True)
 class Toothing:
     """Data and closed forms of a cylindrical involute gear; use `Gear` or `RingGear`.
 
-    All numbers are positive for both kinds. The tool of a thickness allowance is that much thicker; the root
-    circle stays where it is. `modification`: departures of the flanks from the involute helicoid; `material`:
-    elasticity; `pitch_deviation`: of the loaded flank of every tooth.
+    All numbers are positive for both kinds. The cutter removes the thickness allowance, and stands deeper for
+    it (`generating_shift_coefficient`); the tip circle stays where it is. `modification`: departures of the
+    flanks from the involute helicoid; `material`: elasticity; `pitch_deviation`: of the loaded flank of every
+    tooth.
     """
 
     teeth: int = required(counted(4, 4000))
@@ -202,6 +219,7 @@ class Toothing:
     root_radius_coefficient: float = declared(0.38, ROOT_RADIUS)
     tip_diameter: float | None = declared(None, _TIP)
     thickness_allowance: float = declared(0.0, _ALLOWANCE)
+    tooth_thinning: str = declared(GENERATING, _THINNING)
     modification: FlankModification = UNMODIFIED
     material: Material = STEEL
     pitch_deviation: PitchDeviation = NO_PITCH_DEVIATION
@@ -274,9 +292,38 @@ class Toothing:
         return self.reference_radius + self.sign * self.normal_module * height
 
     @cached_property
+    def generating_shift_coefficient(self) -> float:
+        """Addendum modification for generating x_E (ISO 21771-1), in normal modules.
+
+        Where the cutter removes the thickness allowance A, of either kind of gear: a smaller shift thins the
+        teeth of a ring gear too. x_E = x - A / (2 m_n tan(alpha_n)); where the flanks are ground it is x.
+        """
+        if self.tooth_thinning == FLANK:
+            return self.profile_shift_coefficient
+        infeed = cutter_infeed(self.thickness_allowance, self.normal_pressure_angle)
+        return self.profile_shift_coefficient - infeed / self.normal_module
+
+    @property
+    def flank_grinding_allowance(self) -> float:
+        """Normal tooth thickness in m that grinding of the flanks removes from the generated tooth."""
+        return self.thickness_allowance if self.tooth_thinning == FLANK else 0.0
+
+    def generated_shape(self, names: Collection[str]) -> Json:
+        """Return fields of the gear as plain numbers, shift and allowance as the cutter leaves them.
+
+        Gears of one x_E and one tip circle have one shape, whatever their nominal shift.
+        """
+        cut = {
+            "profile_shift_coefficient": self.generating_shift_coefficient,
+            "thickness_allowance": self.flank_grinding_allowance,
+        }
+        figures = {name: getattr(self, name) for name in names} | cut
+        return {name: float(value) + 0.0 for name, value in figures.items()}  # -0.0 becomes 0.0
+
+    @cached_property
     def root_radius(self) -> float:
-        """d_f / 2: m_n (h_fP - x) below the reference circle (beyond it for an internal gear), m."""
-        depth = self.dedendum_coefficient - self.profile_shift_coefficient
+        """d_f / 2: m_n (h_fP - x_E) below the reference circle (beyond it for an internal gear), m."""
+        depth = self.dedendum_coefficient - self.generating_shift_coefficient
         return self.reference_radius - self.sign * self.normal_module * depth
 
     @property
@@ -358,8 +405,8 @@ class Toothing:
     @cached_property
     def tooth_thickness(self) -> float:
         """Transverse tooth thickness s_t at the reference circle (arc), m."""
-        shift = 2.0 * self.profile_shift_coefficient * math.tan(self.normal_pressure_angle)
-        normal = self.normal_module * (0.5 * math.pi + shift) - self.thickness_allowance
+        shift = 2.0 * self.generating_shift_coefficient * math.tan(self.normal_pressure_angle)
+        normal = self.normal_module * (0.5 * math.pi + shift) - self.flank_grinding_allowance
         return normal / math.cos(self.helix_angle)
 
     @cached_property

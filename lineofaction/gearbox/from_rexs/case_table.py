@@ -133,40 +133,11 @@ def _form_roll_length(pair: ToothedPair, depth: ToothDepth, shifts: Mapping[int,
             dedendum_coefficient=depth.dedendum_coefficient,
             root_radius_coefficient=depth.root_radius_coefficient,
             tip_diameter=depth.tip_diameter,
+            thickness_allowance=depth.thickness_allowance,
+            tooth_thinning=depth.tooth_thinning,
         ).form_roll_length
     except FeContactError as error:
         raise BadInput.of(gear.part.place, gear.part.name, f"a gear that exists: {error}") from None
-
-
-# Tooth thickness allowance of a gear, from the deviations of its span (ISO 21771-1, DIN 3967).
-
-
-_UPPER, _LOWER = (f"{side}_backlash_allowance_referenced_to_span" for side in ("upper", "lower"))
-_SERIES = "tooth_thickness_deviation_tolerance_series_din_3967_1978"
-
-
-def _thickness_allowance(gear: ToothingData) -> float:
-    """Return the normal tooth thickness removed at the reference circle in m: the mean of its limits.
-
-    The span changes by the thickness times cos(alpha_n). A tolerance series (DIN 3967) without deviations is
-    ignored, and so are deviations that thicken the teeth on average: the account says so.
-    """
-    part = gear.part
-    if part.attribute(_SERIES) is not None:
-        part.say(_SERIES, "ignored", "no backlash but that of the center distance, without deviations in µm")
-    upper = part.number(_UPPER, "thickness_allowance_um")
-    lower = part.number(_LOWER, "thickness_allowance_um")
-    if upper is None or lower is None:
-        return 0.0
-    allowance = -0.5 * (upper + lower) / math.cos(gear.pressure_angle)
-    if allowance < 0.0:
-        for item in (_UPPER, _LOWER):
-            part.say(item, "refused", "the mean deviation thickens the teeth: no allowance")
-        return 0.0
-    words = f"thickness_allowance_um {allowance / UM:.6g} = -(A_u + A_l) / (2 cos alpha_n)"
-    for item in (_UPPER, _LOWER):
-        part.say(item, "derived", words)
-    return allowance
 
 
 Table = dict[str, Any]
@@ -275,9 +246,9 @@ def _depth(gear: ToothingData, pairs: Sequence[ToothedPair], shifts: Mapping[int
 
 
 def _gear(gear: ToothingData, depth: ToothDepth, shift: float) -> Table:
-    # d_f = d - 2 m_n (h_fP - x), of a ring gear d + 2 m_n (h_fP - x)
-    height = depth.dedendum_coefficient - shift
-    root = gear.reference_diameter - 2.0 * gear.sign * gear.normal_module * height
+    # d_f = d - 2 m_n (h_fP - x_E), of a ring gear d + 2 m_n (h_fP - x_E)
+    height = gear.normal_module * (depth.dedendum_coefficient - shift) + depth.infeed(gear.pressure_angle)
+    root = gear.reference_diameter - 2.0 * gear.sign * height
     held, diameter = ("rim_diameter_mm", _rim_diameter) if gear.sign < 0 else ("bore_diameter_mm", _bore)
     return {
         "teeth": gear.teeth,
@@ -286,7 +257,8 @@ def _gear(gear: ToothingData, depth: ToothDepth, shift: float) -> Table:
         "tip_diameter_mm": rounded(depth.tip_diameter / MM),
         "dedendum_coefficient": rounded(depth.dedendum_coefficient),
         "root_radius_coefficient": rounded(depth.root_radius_coefficient),
-        "thickness_allowance_um": rounded(_thickness_allowance(gear) / UM),
+        "thickness_allowance_um": rounded(depth.thickness_allowance / UM),
+        "tooth_thinning": depth.tooth_thinning,
         held: rounded(diameter(gear, root) / MM),
         **depth.cutter,
         **_blank(gear),

@@ -8,9 +8,10 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from fe_contact.flank.involute import involute_function
+from fe_contact.geometry.toothing import FLANK, GENERATING, cutter_infeed
 from lineofaction.gearbox.from_rexs.gear_unit import Part, rounded
 from lineofaction.gearbox.from_rexs.meshing import LoadedFlank, Meshing
-from lineofaction.gearbox.units import MM, as_typed
+from lineofaction.gearbox.units import MM, UM, as_typed
 
 _SHIFT = "addendum_modification_coefficient"
 
@@ -202,6 +203,37 @@ def _derive(pair: ToothedPair, shifts: dict[int, float]) -> None:
             )
 
 
+# Tooth thickness allowance of a gear, from the deviations of its span (ISO 21771-1, DIN 3967).
+
+
+_UPPER, _LOWER = (f"{side}_backlash_allowance_referenced_to_span" for side in ("upper", "lower"))
+_SERIES = "tooth_thickness_deviation_tolerance_series_din_3967_1978"
+
+
+def _thickness_allowance(gear: ToothingData) -> float:
+    """Return the normal tooth thickness removed at the reference circle in m: the mean of its limits.
+
+    The span changes by the thickness times cos(alpha_n). A tolerance series (DIN 3967) without deviations is
+    ignored, and so are deviations that thicken the teeth on average: the account says so.
+    """
+    part = gear.part
+    if part.attribute(_SERIES) is not None:
+        part.say(_SERIES, "ignored", "no backlash but that of the center distance, without deviations in µm")
+    upper = part.number(_UPPER, "thickness_allowance_um")
+    lower = part.number(_LOWER, "thickness_allowance_um")
+    if upper is None or lower is None:
+        return 0.0
+    allowance = -0.5 * (upper + lower) / math.cos(gear.pressure_angle)
+    if allowance < 0.0:
+        for item in (_UPPER, _LOWER):
+            part.say(item, "refused", "the mean deviation thickens the teeth: no allowance")
+        return 0.0
+    words = f"thickness_allowance_um {allowance / UM:.6g} = -(A_u + A_l) / (2 cos alpha_n)"
+    for item in (_UPPER, _LOWER):
+        part.say(item, "derived", words)
+    return allowance
+
+
 # Tip and root of a gear: from its diameters, its tool, or the basic rack (ISO 53, ISO 21771-1).
 
 
@@ -218,6 +250,10 @@ class ToothDepth:
     ----------
     tip_stated : bool
         Whether the tip diameter is the file's.
+    thickness_allowance : float
+        Normal tooth thickness removed at the reference circle, m.
+    tooth_thinning : str
+        What removes it: the cutter, or grinding of the flanks.
     cutter : mapping
         Fields of the pinion cutter of a ring gear; none where the file has none.
     """
@@ -226,18 +262,30 @@ class ToothDepth:
     tip_stated: bool
     dedendum_coefficient: float
     root_radius_coefficient: float
+    thickness_allowance: float
+    tooth_thinning: str
     cutter: Mapping[str, int | float] = field(default_factory=dict)
 
     @classmethod
     def of(cls, gear: ToothingData, shift: float, tip_alteration: float) -> ToothDepth:
         """Return tip and root of a gear: x stated or derived, k <= 0 of a tip that the file leaves out."""
         tool, tip = _tool(gear.loaded), _stated_tip(gear, shift)
+        allowance = _thickness_allowance(gear)
+        root = _generated_root(gear, tool, shift, allowance)
         return cls(
             tip_diameter=_computed_tip(gear, shift, tip_alteration) if tip is None else tip,
             tip_stated=tip is not None,
-            dedendum_coefficient=_dedendum(gear, tool, shift),
+            dedendum_coefficient=root.dedendum_coefficient,
             root_radius_coefficient=_root_radius(gear, tool),
+            thickness_allowance=allowance,
+            tooth_thinning=root.tooth_thinning,
             cutter=_cutter(tool, gear.sign),
+        )
+
+    def infeed(self, pressure_angle: float) -> float:
+        """Return how much deeper in m the cutter stands for the allowance."""
+        return (
+            0.0 if self.tooth_thinning == FLANK else cutter_infeed(self.thickness_allowance, pressure_angle)
         )
 
 
@@ -272,23 +320,66 @@ def _computed_tip(gear: ToothingData, shift: float, alteration: float) -> float:
     return computed
 
 
-def _dedendum(gear: ToothingData, tool: Part | None, shift: float) -> float:
-    """Return h_fP: of the root diameter, else the tool's addendum, else 1.25."""
+@dataclass(frozen=True)
+class _GeneratedRoot:
+    """Depth h_fP of the root in normal modules, and what removes the thickness allowance."""
+
+    dedendum_coefficient: float
+    tooth_thinning: str = GENERATING
+
+
+def _generated_root(gear: ToothingData, tool: Part | None, shift: float, allowance: float) -> _GeneratedRoot:
+    """Return the root of a gear: of its root diameter, else of the tool's addendum, else h_fP 1.25."""
     value = gear.part.number("root_diameter", "dedendum_coefficient")
     if value:
-        depth = gear.sign * (gear.reference_diameter - abs(value)) / (2.0 * gear.normal_module) + shift
-        if _DEDENDUM_BOUND[0] <= depth <= _DEDENDUM_BOUND[1]:
-            words = f"dedendum_coefficient {depth:.6g} = (d - d_f) / (2 m_n) + x, of a ring gear (d_f - d)"
-            gear.part.say("root_diameter", "derived", words)
-            return depth
-        gear.part.say("root_diameter", "refused", f"h_fP would be {depth:.4g}, outside 0.1 to 4")
-    items = ("addendum_coefficient_reference_profile", "addendum_reference_profile")
-    words = "dedendum_coefficient: the tool's addendum"
-    depth_of_tool = None if tool is None else _in_modules(gear, tool, items, (words, f"{words} / m_n"))
+        root = _root_at(gear, tool, abs(value), shift, allowance)
+        if _DEDENDUM_BOUND[0] <= root.dedendum_coefficient <= _DEDENDUM_BOUND[1]:
+            gear.part.say("root_diameter", "derived", _words_of_root(root, allowance))
+            return root
+        words = f"h_fP would be {root.dedendum_coefficient:.4g}, outside 0.1 to 4"
+        gear.part.say("root_diameter", "refused", words)
+    depth_of_tool = _addendum_of_tool(gear, tool, "dedendum_coefficient: the tool's addendum")
     if depth_of_tool is not None:
-        return depth_of_tool
+        return _GeneratedRoot(depth_of_tool)
     gear.part.say("dedendum_coefficient", "defaulted", f"{_DEDENDUM} (ISO 53): no root diameter, no tool")
-    return _DEDENDUM
+    return _GeneratedRoot(_DEDENDUM)
+
+
+_DIGIT = 1e-3 * MM
+"""Last digit of root diameters, m: those of one tool at one place differ by half of it at most."""
+
+
+def _root_at(
+    gear: ToothingData, tool: Part | None, diameter: float, shift: float, allowance: float
+) -> _GeneratedRoot:
+    """Return the root at a root diameter in m: h_fP = (d - d_f) / (2 m_n) + x_E, of a ring gear (d_f - d).
+
+    The cutter removes the allowance, unless the tool's addendum gives this diameter without it.
+    """
+    nominal = gear.sign * (gear.reference_diameter - diameter) / (2.0 * gear.normal_module) + shift
+    infeed = cutter_infeed(allowance, gear.pressure_angle) / gear.normal_module
+    digit = 0.5 * _DIGIT / gear.normal_module
+    if infeed > digit:
+        of_tool = _addendum_of_tool(gear, tool, "compared with the root diameter")
+        if of_tool is not None and abs(nominal - of_tool) <= digit:
+            return _GeneratedRoot(nominal, FLANK)
+    return _GeneratedRoot(nominal - infeed)
+
+
+def _words_of_root(root: _GeneratedRoot, allowance: float) -> str:
+    """Return how h_fP follows from the root diameter."""
+    words = f"dedendum_coefficient {root.dedendum_coefficient:.6g} = (d - d_f) / (2 m_n) + "
+    if root.tooth_thinning == FLANK:
+        return f"{words}x: the tool reaches it before the flanks are ground, tooth_thinning {FLANK}"
+    if allowance:
+        return f"{words}x - A_s / (2 m_n tan alpha_n), of a ring gear (d_f - d)"
+    return f"{words}x, of a ring gear (d_f - d)"
+
+
+def _addendum_of_tool(gear: ToothingData, tool: Part | None, words: str) -> float | None:
+    """Return the tool's addendum in normal modules, None where the file has none."""
+    items = ("addendum_coefficient_reference_profile", "addendum_reference_profile")
+    return None if tool is None else _in_modules(gear, tool, items, (words, f"{words} / m_n"))
 
 
 def _in_modules(

@@ -110,6 +110,53 @@ def test_the_tool_makes_the_root() -> None:
     assert said(unit, 40, "addendum_coefficient_reference_profile")[0] == "taken"
 
 
+SPAN = {f"{side}_backlash_allowance_referenced_to_span": -100.0 for side in ("upper", "lower")}
+INFEED = 0.5 * 100e-6 / math.cos(math.radians(20.0)) / math.tan(math.radians(20.0))
+"""m; the cutter of teeth thinned by 100 um of their span stands deeper by it."""
+
+
+def with_root(diameter: float | None, addendum: float | None) -> GearUnit:
+    """Return a unit whose pinion, d 40 mm, has 100 um less span, a root diameter in mm and a tool."""
+    return stage_unit(
+        {
+            PINION: SPAN | {"root_diameter": diameter},
+            40: {"addendum_coefficient_reference_profile": addendum},
+        },
+        {40: "rack_shaped_tool"},
+        [relation(110, "manufacturing_step", 1, workpiece=PINION_RIGHT, tool=40)],
+    )
+
+
+def test_the_tool_stands_deeper_for_the_deviation_of_the_span() -> None:
+    pinion = gear_pair(only(with_root(None, 1.4)).case).pinion
+    assert pinion.tooth_thinning == "generating"
+    assert pinion.dedendum_coefficient == 1.4
+    assert pinion.root_radius == pytest.approx(20e-3 - 1.4 * 2e-3 - INFEED, rel=1e-12)
+
+
+@pytest.mark.parametrize("addendum", [None, 1.4])
+def test_a_stated_root_diameter_is_that_of_the_thinned_teeth(addendum: float | None) -> None:
+    """It wins over the tool, whatever the allowance, as far as the tool does not say that it was not cut."""
+    unit = with_root(34.6, addendum)
+    pinion = gear_pair(only(unit).case).pinion
+    assert pinion.root_radius == pytest.approx(17.3e-3, rel=1e-12)
+    assert pinion.tooth_thinning == "generating"
+    assert pinion.dedendum_coefficient == pytest.approx(1.35 - INFEED / 2e-3, rel=1e-9)
+    assert "x - A_s / (2 m_n tan alpha_n)" in said(unit, PINION, "root_diameter")[1]
+
+
+def test_a_root_that_the_tool_reaches_without_the_allowance_says_that_the_flanks_are_ground() -> None:
+    unit = with_root(34.4, 1.4)
+    pinion = gear_pair(only(unit).case).pinion
+    assert pinion.tooth_thinning == "flank"
+    assert pinion.root_radius == pytest.approx(17.2e-3, rel=1e-12)
+    assert pinion.dedendum_coefficient == pytest.approx(1.4, rel=1e-12)
+    assert "tooth_thinning flank" in said(unit, PINION, "root_diameter")[1]
+    deeper = only(with_root(round(34.4 - 2e3 * INFEED, 3), 1.4)).case.pair.pinion
+    assert deeper.tooth_thinning == "generating"
+    assert deeper.dedendum_coefficient == pytest.approx(1.4, abs=2e-4)
+
+
 @pytest.mark.parametrize("hand", [1, -1])
 def test_the_helix_hand_is_that_of_the_driving_gear(hand: int) -> None:
     changes: dict[int, dict[str, Any]] = {

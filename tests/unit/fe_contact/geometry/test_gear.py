@@ -60,7 +60,8 @@ def test_left_hand_and_allowance_change_what_they_should() -> None:
     assert left.base_helix_angle == -right.base_helix_angle
     for name in ("base_radius", "form_radius", "tip_radius", "base_tooth_thickness", "base_pitch"):
         assert getattr(left, name) == getattr(right, name)
-    nominal, thin = make_gear(helix_angle=0.3), make_gear(helix_angle=0.3, thickness_allowance=8e-5)
+    nominal = make_gear(helix_angle=0.3)
+    thin = make_gear(helix_angle=0.3, thickness_allowance=8e-5, tooth_thinning="flank")
     removed = nominal.tooth_thickness - thin.tooth_thickness
     assert removed * math.cos(0.3) == pytest.approx(8e-5, rel=1e-9)
     assert thin.root_radius == nominal.root_radius
@@ -138,6 +139,7 @@ def test_gear_is_a_value() -> None:
     [
         {},
         {"teeth": 97, "helix_angle": 0.3, "profile_shift_coefficient": -0.4, "thickness_allowance": 5e-5},
+        {"teeth": 97, "helix_angle": 0.3, "thickness_allowance": 5e-5, "tooth_thinning": "flank"},
         {"teeth": 80, "profile_shift_coefficient": 0.2, "addendum_coefficient": 0.7},
     ],
 )
@@ -148,7 +150,9 @@ def test_closed_forms_are_the_standards_with_a_negative_tooth_number(fields: dic
     d = -gear.teeth * module / math.cos(gear.helix_angle)
     d_b = d * math.cos(transverse)
     d_a = d + 2.0 * module * (gear.addendum_coefficient + x)
-    d_f = d - 2.0 * module * (gear.dedendum_coefficient - x)
+    infeed = 0.5 * gear.thickness_allowance / math.tan(gear.normal_pressure_angle)
+    x_e = x if gear.tooth_thinning == "flank" else x - infeed / module
+    d_f = d - 2.0 * module * (gear.dedendum_coefficient - x_e)
     s_t = module * (0.5 * math.pi + 2.0 * x * math.tan(gear.normal_pressure_angle)) - gear.thickness_allowance
     s_t /= math.cos(gear.helix_angle)
     inv_a = math.tan(math.acos(d_b / d_a)) - math.acos(d_b / d_a)

@@ -216,6 +216,8 @@ CASES: list[dict[str, Any]] = [
     {"teeth": 12, "helix_angle": math.radians(-26.0), "root_radius_coefficient": 0.45},
     {"teeth": 11, "root_radius_coefficient": 0.0},  # sharp tool, undercut
     {"teeth": 24, "thickness_allowance": 1e-4},
+    {"teeth": 24, "thickness_allowance": 1e-4, "tooth_thinning": "flank"},
+    {"teeth": 17, "thickness_allowance": 2e-4, "helix_angle": 0.3},
     {
         "teeth": 15,
         "profile_shift_coefficient": 1.1,
@@ -225,7 +227,10 @@ CASES: list[dict[str, Any]] = [
 ]
 
 
-NAMES = [" ".join(f"{key}={value:.3g}" for key, value in case.items()) for case in CASES]
+NAMES = [
+    " ".join(value if isinstance(value, str) else f"{key}={value:.3g}" for key, value in case.items())
+    for case in CASES
+]
 
 
 cases = pytest.mark.parametrize("fields", CASES, ids=NAMES)
@@ -235,12 +240,16 @@ def clearance_to_tool_rounding(gear: Gear, point: np.ndarray) -> float:
     """Smallest distance of a point of the gear to the tool's rounding while the gear rolls past the tool.
 
     From the definition: the gear turns by phi, its reference circle rolling on the tool's pitch line; the
-    rounding is a circle in the normal plane, where distances along the pitch line shrink by cos(beta).
+    rounding is a circle in the normal plane, where distances along the pitch line shrink by cos(beta). The
+    tool is the basic rack, deeper by the infeed of the allowance; before ground flanks it is wider instead.
     """
     rho, reference = gear.root_radius_coefficient * gear.normal_module, gear.reference_radius
     alpha, beta = gear.normal_pressure_angle, gear.helix_angle
-    depth = gear.normal_module * (gear.dedendum_coefficient - gear.profile_shift_coefficient)
-    half_tooth = 0.5 * gear.tooth_thickness * math.cos(beta)
+    ground = gear.thickness_allowance if gear.tooth_thinning == "flank" else 0.0
+    infeed = 0.5 * (gear.thickness_allowance - ground) / math.tan(alpha)
+    shift = gear.normal_module * gear.profile_shift_coefficient - infeed
+    depth = gear.normal_module * gear.dedendum_coefficient - shift
+    half_tooth = 0.25 * math.pi * gear.normal_module + shift * math.tan(alpha) - 0.5 * ground
     center_x = half_tooth + (depth - rho) * math.tan(alpha) + rho / math.cos(alpha)
 
     def distance(turn: Any) -> Any:
