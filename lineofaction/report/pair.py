@@ -374,12 +374,7 @@ def _start_diameters(pair: ParallelAxes) -> list[float]:
 GEARS = (
     Entry("number of teeth", "z", "", _both(lambda gear: gear.teeth)),
     Entry("profile shift coefficient", "x", "", _both(lambda gear: gear.profile_shift_coefficient)),
-    Entry(
-        "profile shift coefficient for generating",
-        "x_E",
-        "",
-        _both(lambda gear: gear.generating_shift_coefficient),
-    ),
+    Entry("generating profile shift", "x_E", "", _both(lambda gear: gear.generating_shift_coefficient)),
     Entry("face width", "b", "mm", _both(lambda gear: gear.face_width)),
     Entry("reference diameter", "d", "mm", _both(lambda gear: 2.0 * gear.reference_radius)),
     Entry("base diameter", "d_b", "mm", _both(lambda gear: 2.0 * gear.base_radius)),
