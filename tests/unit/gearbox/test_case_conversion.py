@@ -112,6 +112,7 @@ def test_every_field_of_the_gear_schema_reaches_the_gear() -> None:
         "root_radius_coefficient": 0.3,
         "tip_diameter_mm": 87.0,
         "thickness_allowance_um": 100.0,
+        "tooth_thinning": "flank",
         "pitch_deviation_um": [1.0] * 20,
         "single_pitch_deviation_um": [1.0, *19 * [0.0]],
         "tooth_flanks": [{"tooth": 3, "profile_slope_um": 2.0}],

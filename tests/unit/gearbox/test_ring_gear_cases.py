@@ -60,6 +60,7 @@ def test_every_field_of_a_ring_gear_reaches_it() -> None:
         "root_radius_coefficient": 0.15,
         "profile_shift_coefficient": 0.02,
         "thickness_allowance_um": 20.0,
+        "tooth_thinning": "flank",
         "tip_relief_um": 10.0,
         "tip_rounding_mm": 0.1,
         "tip_chamfer_mm": 0.1,
