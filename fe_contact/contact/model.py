@@ -8,6 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
+from fe_contact.flank.extent import Extent
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray, IntArray
 
@@ -67,6 +68,9 @@ class GapTerm(Protocol):
         At `face`, as many distances (n,) from the pinion's mid-face in m as there are touching points.
         """
 
+    def extent(self, pair: ParallelAxes) -> Extent:
+        """Return bounds of the gap all over the usable flanks."""
+
     def __call__(
         self, pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
     ) -> FloatArray:
@@ -120,6 +124,9 @@ class ToothGap(Protocol):
     @property
     def largest(self) -> float:
         """Bound of the gap in m, of whichever tooth."""
+
+    def extent(self, pair: ParallelAxes, meeting: IntArray) -> Extent:
+        """Return bounds of the gap all over the usable flanks of the teeth that meet, arrays as `meeting`."""
 
     def __call__(self, teeth: MeetingTeeth) -> FloatArray:
         """Gap in m, > 0 where material is missing."""
@@ -178,6 +185,13 @@ class ContactModel:
     def gap_of_teeth(self, teeth: MeetingTeeth) -> FloatArray:
         """Sum of the gaps that differ from tooth to tooth, m."""
         return np.asarray(sum((term(teeth) for term in self.tooth_gaps), np.zeros(())))
+
+    def extent(self, pair: ParallelAxes, meeting: IntArray) -> Extent:
+        """Return bounds of all gaps of the pairs of teeth that meet, arrays as `meeting`."""
+        alike = sum((term.extent(pair) for term in self.gaps), Extent())
+        of_teeth = sum((term.extent(pair, meeting) for term in self.tooth_gaps), alike)
+        none = np.zeros(meeting.shape)
+        return of_teeth + Extent(none, none, none)
 
     @property
     def period(self) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from fe_contact.contact.model import Break, ContactModel
 from fe_contact.effects.effect import ContactScene, Effect, Verdict
+from fe_contact.flank.extent import Extent
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray
 
@@ -35,6 +37,11 @@ class MisalignmentGap:
         """Gap in m, negative on the side that comes closer."""
         arm = pair.tilt_arm(roll_1, face) - pair.common_face_center
         return np.asarray(self.growth * arm / pair.face_width)
+
+    def extent(self, pair: ParallelAxes) -> Extent:
+        """Largest gap to either side; with the helix it grows along the line of action."""
+        reach = self.reach(pair)
+        return Extent(-reach, reach, abs(self.growth * math.tan(pair.base_helix_angle)) / pair.face_width)
 
     def reach(self, pair: ParallelAxes) -> float:
         """Largest gap in size on the path of contact, m."""

@@ -11,6 +11,7 @@ import numpy as np
 from fe_contact.contact.model import ContactModel, MeetingTeeth
 from fe_contact.effects.effect import ContactScene, Effect, Verdict
 from fe_contact.errors import InputError
+from fe_contact.flank.extent import Extent
 from fe_contact.geometry import (
     NO_RUN_OUT,
     ParallelAxes,
@@ -21,7 +22,7 @@ from fe_contact.geometry import (
     deviations_period,
     flanks_excess,
 )
-from fe_contact.types import FloatArray
+from fe_contact.types import FloatArray, IntArray
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,19 @@ class _TurningGap:
         waves = sum(wave.amplitude for wave in self.waves)
         flanks = max((flank.largest for flank in self.flanks), default=0.0)
         return self.run_out.eccentricity + 0.5 * self.run_out.wobble + waves + flanks
+
+    def extent(self, pair: ParallelAxes, meeting: IntArray) -> Extent:
+        """Return bounds of what turns with the gear, and of the flanks of the teeth that meet."""
+        gear = (pair.pinion, pair.wheel)[self.gear]
+        out = self.run_out.eccentricity + 0.5 * self.run_out.wobble
+        waves = sum(wave.amplitude for wave in self.waves)
+        steep = sum(wave.order * wave.amplitude for wave in self.waves) + out
+        turning = Extent(-out - waves, out + waves, steep / gear.base_radius)
+        low, high, slope = np.zeros((3, gear.teeth))
+        for flank in self.flanks:
+            extent, tooth = flank.extent(gear), flank.tooth - 1
+            low[tooth], high[tooth], slope[tooth] = extent.low, extent.high, extent.slope
+        return turning + Extent(low, high, slope).at(meeting % self.period % gear.teeth)
 
     def __call__(self, teeth: MeetingTeeth) -> FloatArray:
         """Return the gap of pairs of teeth at touching points: that of the gear turned until they touch."""

@@ -13,6 +13,7 @@ from bounds import Finding
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.checks.assumptions import check_assumptions, settled, with_effects
 from fe_contact.analysis.checks.effect_ledger import effect_ledger
+from fe_contact.analysis.checks.table_laws import check_laws, require_laws
 from fe_contact.analysis.estimates.assessed_table import (
     AssessedTable,
     assessed_table,
@@ -177,7 +178,8 @@ def compute_pass(
 ) -> _Computed:
     """Compute the table of a checked request once.
 
-    Raises `SolveError`: an assumption of the run does not hold and `on_violation` is "fail".
+    Raises `SolveError`: an assumption of the run does not hold and `on_violation` is "fail", or the table
+    breaks a law of mechanics; `partial` is then the table.
 
     Parameters
     ----------
@@ -196,6 +198,8 @@ def compute_pass(
         lambda made, needed: solve_table(with_effects(made.checked, needed), clock, run, made),
         clock,
     )
+    laws = check_laws(made.table, made.places.places, made.solved)
+    require_laws(laws, made.table)
     full = _full(made)
     influences = _started_influences(planned, run, before) if full else iter([{}])
     assessed, contact = _assessed(made, clock, run)
@@ -210,6 +214,7 @@ def compute_pass(
     remote = run.workers.cost.since(before)
     receipt = clock.to_json() | assessed.to_json() | contact | _planned(made)
     receipt |= {"assumptions": [assumption.to_json() for assumption in assumptions], "repeated": repeated}
+    receipt["laws"] = [law.to_json() for law in laws]
     if remote.tasks or remote.lost:
         receipt["elsewhere"] = asdict(remote)
     metadata = _metadata(case, made, receipt, ledger)

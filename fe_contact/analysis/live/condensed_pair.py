@@ -16,6 +16,7 @@ import numpy as np
 
 from bounds import at_most
 from fe_contact.analysis.checks.assumptions import Assumption, check_cheaply
+from fe_contact.analysis.checks.table_laws import check_laws, require_laws
 from fe_contact.analysis.database.compute_database import failed_points
 from fe_contact.analysis.estimates.assessed_table import (
     AssessedTable,
@@ -266,6 +267,8 @@ class CondensedPair:
                 self._latest.preview = solved
             kept = KeptContact.of(solved.pair, solved.problem, solved.solution)
             table = assembled_table(checked.request, points, nodes, [kept], [])
+            laws = check_laws(table, points.places, [(kept.problem, kept.solution)])
+            require_laws(laws, table)
         with clock.stage("error estimate"):
             stated = unassessed_table(table, points, plan) if preview else None
             assessed = stated or _condensed_errors(table, solved, contacts, sample)
