@@ -198,7 +198,8 @@ def compute_pass(
         lambda made, needed: solve_table(with_effects(made.checked, needed), clock, run, made),
         clock,
     )
-    laws = check_laws(made.table, made.places.places, made.solved)
+    support = [each.solution for each in made.support]
+    laws = check_laws(made.table, made.places.places, made.solved, support)
     require_laws(laws, made.table)
     full = _full(made)
     influences = _started_influences(planned, run, before) if full else iter([{}])

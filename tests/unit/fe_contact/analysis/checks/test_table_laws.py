@@ -49,7 +49,8 @@ def relieved(cache: Path) -> SolvedTable:
 
 
 def require(made: SolvedTable) -> None:
-    require_laws(check_laws(made.table, made.places.places, made.solved), made.table)
+    support = [each.solution for each in made.support]
+    require_laws(check_laws(made.table, made.places.places, made.solved, support), made.table)
 
 
 @dataclass(frozen=True)
