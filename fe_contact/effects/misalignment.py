@@ -102,6 +102,10 @@ class Misalignment(Effect):
         """Say so where there is any."""
         return "misalignment" if np.any(scene.misalignment != 0.0) else None
 
+    def extent(self, scene: ContactScene) -> Extent:
+        """Return the extent of the largest misalignment."""
+        return MisalignmentGap(scene.largest_misalignment).extent(scene.pair)
+
     def without(self, scene: ContactScene) -> ContactScene:
         """Return the scene with aligned gears."""
         return replace(scene, misalignment=np.zeros_like(scene.misalignment))

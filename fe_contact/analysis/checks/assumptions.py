@@ -20,7 +20,7 @@ from fe_contact.analysis.tables import SolvedTable
 from fe_contact.contact import solve_contact
 from fe_contact.contact.assembly import FLATTEST
 from fe_contact.effects.effect import across_face
-from fe_contact.effects.influence.estimate import estimate_influence
+from fe_contact.effects.influence.estimate import estimate_influence, largest_part
 from fe_contact.effects.misalignment import MisalignmentGap
 from fe_contact.effects.tooth_deviations import sharpest_crest
 from fe_contact.errors import SolveError
@@ -130,15 +130,21 @@ def _at_handovers(point: OperatingPoint, load: FloatArray) -> FloatArray:
 
 
 def _neglected(run: SolvedTable) -> Iterator[Assumption]:
-    """Effects neglected for the tolerance: their influence beside what was computed."""
+    """Effects neglected for the tolerance: estimate and bound of their influence beside what was computed."""
     request = run.checked.request
     for name in request.neglected:
         influence = estimate_influence(*run.checked.assessing(name), name)
         if influence is not None:
             mean = np.abs(influence.mean)[:, None] / _allowed(run).scale(_means(run))
             ripple = np.abs(influence.peak_to_peak)[:, None] / _allowed(run).scale(_ripples(run))
-            change = float(np.max(np.maximum(mean, ripple)))
-            reason = f"estimated at {_allowed(run).part_words(change)} of what was computed"
+            estimate = float(np.max(np.maximum(mean, ripple)))
+            scene, _ = run.checked.assessing(name)
+            sizes = _means(run), _ripples(run)
+            bound = largest_part(scene.effect(name).extent(scene), *sizes, _allowed(run))
+            reason = f"estimated at {_allowed(run).part_words(estimate)} of what was computed"
+            if bound:
+                reason += f"; its gaps change at most {_allowed(run).part_words(bound)}"
+            change = max(estimate, bound)
             holds = change <= _allowed(run).relative
             yield Assumption(name, "neglected effects are negligible", holds, change, reason)
 

@@ -111,9 +111,14 @@ class _Place:
         return np.asarray(~self.table.failed[:, :, self.m, self.d])
 
     @cached_property
-    def _solved(self) -> BoolArray:
-        """Positions (P,) that do not follow from derivatives."""
-        return np.asarray(np.isfinite(self.table.residuals[:, :, self.m, self.d, 0]).any(axis=1))
+    def _exact(self) -> BoolArray:
+        """Positions (P,) that do not follow from derivatives, their strips within the load patches.
+
+        Strips that outgrow these follow a straight law, which is reported as an assumption that is wrong.
+        """
+        solved = np.isfinite(self.table.residuals[:, :, self.m, self.d, 0]).any(axis=1)
+        outgrown = np.any([each.beyond.any(axis=1) for each in self.solutions], axis=0)
+        return np.asarray(solved & ~outgrown)
 
     @cached_property
     def _ste(self) -> FloatArray:
@@ -146,6 +151,8 @@ class _Place:
             yield _RIGID.between(
                 value, low[rigid] - TOUCH, above[rigid] + TOUCH, lambda p: self._at(int(rigid[p]))
             )
+            largest = np.where(self._good, self._ste, self._no_load[:, None]).max(axis=1)
+            alone = alone * (1.0 + self._softening(largest)[:, None])
             bound = (2.0 * high - self._no_load)[:, None] + alone + TOUCH
             bound, ste = np.where(self._good, bound, 1.0)[rigid], np.where(self._good, self._ste, 0.0)[rigid]
             floor = np.where(self._good, (low - TOUCH)[:, None], -1.0)[rigid]
@@ -163,9 +170,10 @@ class _Place:
         force = force[order]
         chord = np.diff(np.concatenate([self._no_load[:, None], ste], axis=1), axis=1)
         chord = chord / np.diff(np.concatenate([[0.0], force]))
-        bent = STRAIGHT + self._lever_change()[:, None]
-        least = np.where(self._solved[:, None], np.maximum(1.0 - bent, ONE_TO_ONE), ONE_TO_ONE) * tangent
-        most = np.where(self._solved[:, None], 1.0 + bent, np.inf) * tangent
+        largest = np.where(np.isfinite(ste), ste, self._no_load[:, None]).max(axis=1)
+        bent, exact = STRAIGHT + self._softening(largest)[:, None], self._exact[:, None]
+        least = np.where(exact, np.maximum(1.0 - bent, ONE_TO_ONE), ONE_TO_ONE) * tangent
+        most = np.where(exact, 1.0 + bent, np.inf) * tangent
 
         def at(position: int, load: int) -> str:
             return place_words(t, position, m, d, float(force[load]))
@@ -180,15 +188,19 @@ class _Place:
                 lambda p, f: at(p, f + 1),
             )
 
-    def _lever_change(self) -> FloatArray:
-        """Return the relative change (P,) of a tangent by forces that move to tip edges.
+    def _softening(self, largest: FloatArray) -> FloatArray:
+        """Return the relative change (P,) that a compliance may have beside gaps that close.
 
-        There the torque has another lever arm than the motion: load and deflection follow no energy.
+        By forces that move to tip edges: there the torque has another lever arm than the motion, so that load
+        and deflection follow no energy. And by flanks that roll as they deflect by the `largest` amounts (P,)
+        in m, over the module.
         """
         count, touch = len(self.problem.compliance), self.problem.candidates.touch
         carries = np.any([each.force[:count].any(axis=1) for each in self.solutions], axis=0)
         off = np.abs(touch.lever_1[:count] / touch.lever_2[:count] - 1.0)
-        return np.tile(LEVERS * np.where(carries, off, 0.0).max(axis=1), len(self._ste) // count)
+        levers = LEVERS * np.where(carries, off, 0.0).max(axis=1)
+        rolled = (largest - self._no_load) / self.point.contact.pair.pinion.normal_module
+        return np.asarray(np.tile(levers, largest.size // count) + rolled)
 
     def _forces(self) -> Iterator[LawCheck]:
         """Bound forces of the first base pitch and residuals of all that were solved."""
@@ -217,7 +229,8 @@ class _Place:
         if t.edge_pressure.size:
             pressure = np.maximum(pressure, t.edge_pressure[:, :, m, d])
         bound = self._least_pressure(share)
-        yield _PRESSURE.above(np.where(self._good, pressure, 1.0), np.where(self._good, bound, 0.0), self._at)
+        known = self._good & self._exact[:, None]
+        yield _PRESSURE.above(np.where(known, pressure, 1.0), np.where(known, bound, 0.0), self._at)
 
     def _least_pressure(self, share: FloatArray) -> FloatArray:
         """Return the pressure (P, F) if each pair carried its share (P, F, N) evenly on flat flanks, Pa.
