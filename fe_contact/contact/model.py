@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from fe_contact.geometry import ParallelAxes
+from fe_contact.geometry import FlankGrid, ParallelAxes
 from fe_contact.types import FloatArray, IntArray
 
 
@@ -60,6 +60,10 @@ class GapTerm(Protocol):
     @property
     def only_removes(self) -> bool:
         """Whether it is nowhere below zero."""
+
+    @property
+    def grids(self) -> tuple[FlankGrid | None, FlankGrid | None]:
+        """Surfaces of pinion and wheel that are in it: they may be rough, and have no breaks."""
 
     def breaks(self, pair: ParallelAxes, face: FloatArray) -> tuple[Break, ...]:
         """Return where the gap's slope or curvature along the profile jumps.
@@ -120,6 +124,18 @@ class ToothGap(Protocol):
     @property
     def largest(self) -> float:
         """Bound of the gap in m, of whichever tooth."""
+
+    def tooth(self, meeting: IntArray) -> IntArray:
+        """Return which of its teeth meet, the first is 0."""
+
+    def bend(self, teeth: MeetingTeeth) -> FloatArray:
+        """Return a bound of its curvature along the flanks at touching points, 1/m."""
+
+    def spread(self, meeting: IntArray) -> FloatArray:
+        """Return a bound of highest less lowest gap along the profiles of teeth that meet, m."""
+
+    def nodes(self, pair: ParallelAxes, tooth: int) -> FloatArray:
+        """Return roll lengths in m, between two of which the profile of a tooth turns back once at most."""
 
     def __call__(self, teeth: MeetingTeeth) -> FloatArray:
         """Gap in m, > 0 where material is missing."""

@@ -8,7 +8,7 @@ from typing import ClassVar
 from fe_contact.contact import Break, flank_coordinate
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects.effect import ContactScene, Effect, Verdict
-from fe_contact.geometry import FlankModification, ParallelAxes
+from fe_contact.geometry import FlankGrid, FlankModification, ParallelAxes
 from fe_contact.types import FloatArray
 
 
@@ -34,6 +34,11 @@ class ModificationGap:
     def only_removes(self) -> bool:
         """Whether neither flank has material added anywhere."""
         return self.pinion.only_removes and self.wheel.only_removes
+
+    @property
+    def grids(self) -> tuple[FlankGrid | None, FlankGrid | None]:
+        """The free-form surfaces of both flanks."""
+        return self.pinion.flank_grid, self.wheel.flank_grid
 
     def breaks(self, pair: ParallelAxes, face: FloatArray) -> tuple[Break, ...]:
         """Roll lengths at which reliefs and the edges of rounded or chamfered tips begin on either flank."""

@@ -24,6 +24,7 @@ class MisalignmentGap:
     growth: float
     along_profile: ClassVar[bool] = False
     only_removes: ClassVar[bool] = False
+    grids: ClassVar[tuple[None, None]] = (None, None)
 
     def breaks(self, pair: ParallelAxes, face: FloatArray) -> tuple[Break, ...]:
         """None: it stays the same as a touching point moves along the profile, across the plane of action."""

@@ -70,7 +70,7 @@ class FlankGrid:
 
     def _refuse_invented(self) -> None:
         """Refuse nodes between which the surface invents material."""
-        beyond = _beyond(self._nodes, np.array(self.roll_length), np.array(self.face_position))
+        beyond = _beyond(self.nodes, np.array(self.roll_length), np.array(self.face_position))
         i, j = np.unravel_index(beyond.argmax(), beyond.shape)
         if beyond[i, j] > LARGEST_INVENTION:
             value = f"{1e6 * beyond[i, j]:.3g} µm beyond the nodes around it"
@@ -93,11 +93,13 @@ class FlankGrid:
         from fe_contact.flank.bicubic import bicubic  # noqa: PLC0415 (loads the compiler)
 
         flat = (np.ascontiguousarray(axis, dtype=float).ravel() for axis in (roll_length, face_position))
-        removed = bicubic(np.array(self.roll_length), np.array(self.face_position), self._nodes, *flat)
+        removed = bicubic(
+            np.array(self.roll_length), np.array(self.face_position), self.nodes.reshape(4, -1), *flat
+        )
         return np.asarray(removed.reshape(roll_length.shape))
 
     @cached_property
-    def _nodes(self) -> FloatArray:
+    def nodes(self) -> FloatArray:
         """Value, slope along the profile, along the face, and mixed slope at the nodes, (4, m, n)."""
         value, roll, face = np.array(self.removed), np.array(self.roll_length), np.array(self.face_position)
         along_roll, along_face = _slope(value, roll, 0), _slope(value, face, 1)

@@ -13,6 +13,7 @@ from bounds import Declared, Kind, between, declared, described, inside, integer
 from fe_contact.errors import InputError, declared_fields
 from fe_contact.flank.flank_grid import FlankGrid
 from fe_contact.flank.over_flank import SURFACE, check_reach
+from fe_contact.geometry.tooth_surfaces import ToothSurfaces
 from fe_contact.types import FloatArray, IntArray
 
 if TYPE_CHECKING:
@@ -143,24 +144,7 @@ def flanks_excess(
     roll_length, face : ndarray
         Where on them, m; `face` from mid-face. All broadcast.
     """
-    tooth, roll_length, face = np.broadcast_arrays(tooth, roll_length, face)
-    u, v = coordinates(gear, roll_length, face)
-    amounts = np.zeros((6, max(int(tooth.max(initial=0)) + 1, *(flank.tooth for flank in flanks))))
-    for flank in flanks:
-        amounts[:, flank.tooth - 1] = (
-            *(flank.profile_slope, flank.profile_form, flank.profile_form_waves),
-            *(flank.helix_slope, flank.helix_form, flank.helix_form_waves),
-        )
-    profile_slope, profile_form, profile_waves, helix_slope, helix_form, helix_waves = amounts[:, tooth]
-    excess = 0.5 * (profile_slope * u + helix_slope * v)
-    excess += _form(profile_form, profile_waves, u) + _form(helix_form, helix_waves, v)
-    for flank in flanks:
-        on = tooth == flank.tooth - 1
-        if flank.flank_grid is not None and on.any():
-            roll = 0.5 * (u[on] * (gear.tip_roll_length - gear.form_roll_length))
-            roll += 0.5 * (gear.tip_roll_length + gear.form_roll_length)
-            excess[on] -= flank.flank_grid.material_removed(roll, face[on])
-    return np.asarray(excess)
+    return ToothSurfaces.of(gear, flanks).excess(tooth, roll_length, face)
 
 
 def _form(height: FloatArray, waves: FloatArray, at: FloatArray) -> FloatArray:

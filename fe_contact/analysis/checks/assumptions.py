@@ -18,7 +18,7 @@ from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.analysis.request.solved_run import SolvedRun
 from fe_contact.analysis.tables import SolvedTable
 from fe_contact.contact import solve_contact
-from fe_contact.contact.assembly import FLATTEST
+from fe_contact.contact.touch import FLATTEST
 from fe_contact.effects.effect import across_face
 from fe_contact.effects.influence.estimate import estimate_influence
 from fe_contact.effects.misalignment import MisalignmentGap
@@ -198,7 +198,7 @@ def _crests(run: SolvedRun) -> Iterator[Assumption]:
     """Waves leave flanks that touch in one place: their troughs are flatter than the mate is curved."""
     point = run.places.places[0]
     if point.model.tooth_gaps and (sharpest := sharpest_crest(point.contact.pair)):
-        reason = f"waves are at most {engineering(sharpest, 2)} times as curved as the flanks"
+        reason = f"waves and traces are at most {engineering(sharpest, 2)} times as curved as the flanks"
         holds = sharpest <= 1.0 - FLATTEST
         yield Assumption("", "flanks touch in one place", holds, float("nan"), reason)
 
