@@ -267,6 +267,8 @@ def modified_touch(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tup
     than the modification on the line of action by R m'^2/2, some tenths of a micrometer. About the touching
     point of plain involutes the modifications are parabolas, from one break of theirs to the next.
 
+    At a tip edge the lag that closes what is removed exceeds it by the lever arm (`docs/theory/contact.md`).
+
     Parameters
     ----------
     touch : Touch
@@ -280,7 +282,36 @@ def modified_touch(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tup
     steady = tuple(term for term in gaps if not term.along_profile)
     moved = _moved(pair, touch, face, moving) if moving else touch
     roll_2 = pair.mating_roll_length(touch.roll_1)
-    return replace(moved, gap=moved.gap + sum(term(pair, touch.roll_1, roll_2, face) for term in steady))
+    gap = moved.gap + sum(term(pair, touch.roll_1, roll_2, face) for term in steady)
+    return replace(moved, gap=gap + _lag_at_edges(pair, moved, face, gaps))
+
+
+def _lag_at_edges(
+    pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]
+) -> FloatArray:
+    """Return by how much the lag (P, n) that closes a depth removed at tip edges exceeds that depth, m.
+
+    The edge of a flank is removed along its normal, which the angle between the flanks takes off the normal
+    of the mate; and of a lag of gear 2 its edge closes the part of the lever arm only.
+    """
+    excess = np.zeros(touch.gap.shape)
+    at = np.nonzero(np.isfinite(touch.gap) & ((touch.lever_1 != 1.0) | (touch.lever_2 != 1.0)))
+    if not at[0].size:
+        return excess
+    roll_1, along = touch.roll_1[at], np.broadcast_to(face, excess.shape)[at]
+    nominal = roll_1, pair.mating_roll_length(roll_1)
+    touching = rolls_at(pair, touch.s_1[at], touch.s_2[at])
+    removed = sum(term(pair, *(touching if term.along_profile else nominal), along) for term in gaps)
+    levers = (pair.pinion, touch.lever_1[at]), (pair.wheel, touch.lever_2[at])
+    angle = sum(_angle_at_edge(gear, lever) for gear, lever in levers)
+    excess[at] = removed * (np.cos(angle) / touch.lever_2[at] - 1.0)
+    return excess
+
+
+def _angle_at_edge(gear: Toothing, lever: FloatArray) -> FloatArray:
+    """Return the angle in rad between the normal of a flank at its tip edge and a force of this lever arm."""
+    arm = gear.base_radius / gear.tip_radius
+    return np.asarray(np.arccos(lever * arm) - np.arccos(arm))
 
 
 def _moved(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> Touch:
