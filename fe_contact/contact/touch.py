@@ -281,9 +281,11 @@ def modified_touch(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tup
     moving = tuple(term for term in gaps if term.along_profile)
     steady = tuple(term for term in gaps if not term.along_profile)
     moved = _moved(pair, touch, face, moving) if moving else touch
+    if moving:
+        moved = replace(moved, gap=moved.gap + _lag_at_edges(pair, moved, face, moving))
     roll_2 = pair.mating_roll_length(touch.roll_1)
     gap = moved.gap + sum(term(pair, touch.roll_1, roll_2, face) for term in steady)
-    return replace(moved, gap=gap + _lag_at_edges(pair, moved, face, gaps))
+    return replace(moved, gap=gap + _lag_at_edges(pair, moved, face, steady) if steady else gap)
 
 
 def _lag_at_edges(
@@ -296,8 +298,6 @@ def _lag_at_edges(
     """
     excess = np.zeros(touch.gap.shape)
     at = np.nonzero(np.isfinite(touch.gap) & ((touch.lever_1 != 1.0) | (touch.lever_2 != 1.0)))
-    if not at[0].size:
-        return excess
     roll_1, along = touch.roll_1[at], np.broadcast_to(face, excess.shape)[at]
     nominal = roll_1, pair.mating_roll_length(roll_1)
     touching = rolls_at(pair, touch.s_1[at], touch.s_2[at])
