@@ -90,7 +90,9 @@ def _biases(receipt: Mapping[str, Any]) -> tuple[str, str]:
 
 def edge_words(pressure: float) -> str:
     """Name the pressure (Pa) of contacts that reach an edge apart from that of the flank; nothing for 0."""
-    return f"; {number(1e-6 * pressure, 3)} MPa at the edges, indicative" if pressure > 0.0 else ""
+    if pressure <= 0.0:
+        return ""
+    return f"; {number(1e-6 * pressure, 3)} MPa at the edges, indicative: the true one is singular"
 
 
 def static_alarms(database: SteDatabase) -> tuple[str, ...]:
