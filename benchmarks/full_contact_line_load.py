@@ -29,8 +29,12 @@ REFERENCE = Path(__file__).parents[1] / "tests" / "reference" / "full_contact_li
 SUBJECT = "line load at free ends against full contact"
 STRETCHES, SLICES = 90, 15
 """Over the face, of flank results in their usual slices: lengths over which a peak is taken."""
-SPUR_MESHES = Resolution(2.0, layers=11, outermost=0.05), Resolution(2.0, layers=6, outermost=0.1)
-HELICAL_MESHES = HelicalMesh(0.15, 8, 11, 57), HelicalMesh(0.2, 6, 11, 57)
+PeerMesh = Resolution | HelicalMesh
+MESHES: tuple[tuple[PeerMesh, PeerMesh], ...] = (
+    (Resolution(2.0, layers=11, outermost=0.05), Resolution(2.0, layers=6, outermost=0.1)),
+    (HelicalMesh(0.15, 8, 11, 57), HelicalMesh(0.2, 6, 11, 57)),
+)
+"""Finer and coarser mesh of the peer of each case."""
 
 
 @dataclass(frozen=True)
@@ -131,9 +135,7 @@ def figures() -> list[Figure]:
     ]
 
 
-def peer_loads(
-    case: LineLoadCase, mesh: Resolution | HelicalMesh
-) -> Iterator[tuple[float, tuple[LineLoad, ...]]]:
+def peer_loads(case: LineLoadCase, mesh: PeerMesh) -> Iterator[tuple[float, tuple[LineLoad, ...]]]:
     """Yield the line loads of the peer at each misalignment, m."""
     at = [case.torque], [case.position], case.misalignments
     tables = (
@@ -155,7 +157,7 @@ def face_load_factor(loads: tuple[LineLoad, ...], face_width: float, length: flo
 
 def publish() -> None:
     """Print the peaks of both meshes of each peer."""
-    for case, meshes in zip(line_load_cases(), (SPUR_MESHES, HELICAL_MESHES), strict=True):
+    for case, meshes in zip(line_load_cases(), MESHES, strict=True):
         for mesh in meshes:
             for misalignment, loads in peer_loads(case, mesh):
                 (own,) = (load for load in loads if load.ahead == 0)

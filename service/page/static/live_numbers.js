@@ -60,6 +60,9 @@ export function heardFigures(heard) {
   return [[heardWords(heard), words, [remark, from].filter(Boolean).join("; ")]];
 }
 
+/** Remark on figures of the flanks: a live answer solves one discretization of them. */
+const UNSTATED = "error not estimated";
+
 /** Main figures of a curve, each with its error and its change from another. */
 export function mainFigures(now, from) {
   const remarks = (...words) => words.filter(Boolean).join("; ");
@@ -73,10 +76,10 @@ export function mainFigures(now, from) {
     entry("peak to peak", now.peak_to_peak_um, now.peak_to_peak_error_um, from.peak_to_peak_um, "peak_to_peak"),
     entry("mean", now.mean_um, now.mean_error_um, from.mean_um, "mean"),
     entry("first harmonic", now.harmonics_um[0], now.harmonics_error_um?.[0], from.harmonics_um[0], "first_harmonic", decibels),
-    ["largest pressure", `${number(pressure, 3)} MPa`, remarks(edges && "on the flank", change(pressure, from.flanks.largest_pressure_mpa))],
+    ["largest pressure", `${number(pressure, 3)} MPa`, remarks(edges && "on the flank", UNSTATED, change(pressure, from.flanks.largest_pressure_mpa))],
     ...(edges ? [["at the edges", edges, "indicative"]] : []),
   ];
-  if (factor !== null) entries.push(["K_Hbeta", number(factor, 4), change(factor, from.flanks.k_h_beta)]);
+  if (factor !== null) entries.push(["K_Hbeta", number(factor, 4), remarks(UNSTATED, change(factor, from.flanks.k_h_beta))]);
   return now.bias ? [...entries, ["bias of the mean", `${signed(100 * now.bias.mean, 2)} %`, now.bias.words]] : entries;
 }
 
