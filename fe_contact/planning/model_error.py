@@ -57,6 +57,8 @@ AT_A_POINT = 2.0
 SPUR_RIPPLE, HELICAL_RIPPLE = 0.43, 0.1
 """Peak-to-peak of pairs without modifications over their mean: of spur pairs 0.42 to 0.44 at contact ratios
 of 1.56 to 1.71, of helical ones the least that is usual."""
+HELICAL_OVERLAP = 0.5
+"""Overlap ratio from which the constants of helical pairs hold alone: theirs was 0.5 and more."""
 HARMONIC_OVER_PEAK, FLAT_HARMONICS = 0.5, 3
 """Harmonics over that peak-to-peak: the first so many alike, since where teeth take over is a step; then
 harmonic k falls with 1/k."""
@@ -96,11 +98,24 @@ def in_small_displacements(
 
 def of_bending(pair: ParallelAxes, own: FloatArray) -> FloatArray:
     """Return of what size the quantities (Q, ...) in m are as far as teeth bend: at least `own`."""
-    ripple = HELICAL_RIPPLE if pair.base_helix_angle else SPUR_RIPPLE
+    ripple = bending_ripple(pair)
     number = np.arange(1, QUANTITIES - FIRST_HARMONIC + 1)
     harmonics = ripple * HARMONIC_OVER_PEAK * np.minimum(1.0, FLAT_HARMONICS / number)
     over_mean = np.array([1.0, ripple, 0.0, *harmonics])
     return np.asarray(np.maximum(own, np.multiply.outer(over_mean[: len(own)], own[MEAN])))
+
+
+def bending_ripple(pair: ParallelAxes) -> float:
+    """Return peak-to-peak over mean of the pair without modifications."""
+    return SPUR_RIPPLE + helical_share(pair) * (HELICAL_RIPPLE - SPUR_RIPPLE)
+
+
+def helical_share(pair: ParallelAxes) -> float:
+    """Return the part that constants of helical pairs have beside those of spur pairs, 0 to 1.
+
+    A helix of next to no overlap leaves the errors of a spur pair.
+    """
+    return min(abs(pair.overlap_ratio) / HELICAL_OVERLAP, 1.0)
 
 
 def point_error(

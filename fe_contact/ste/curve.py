@@ -14,6 +14,7 @@ from fe_contact.ste.curve_quantities import BESIDE_MESH, QUANTITIES, Spectrum, e
 from fe_contact.ste.fields import SteFields
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.ste.mesh_force import MeshForce
+from fe_contact.ste.plane_bias import OverFace, over_face, stored_bias
 from fe_contact.types import Estimate, FloatArray
 
 # The load, misalignment and center distance of a query.
@@ -273,6 +274,9 @@ class Curve:
         mesh harmonics.
     period : int
         Of the table, base pitches.
+    over_face : OverFace, optional
+        Mean and peak-to-peak of the gears of finite width, where the table is of a plane that is not
+        corrected: the errors above are towards the plane model.
     """
 
     point: OperatingPoint
@@ -288,6 +292,7 @@ class Curve:
     harmonic_phases: FloatArray
     spectrum: Spectrum
     period: int
+    over_face: OverFace | None = None
 
 
 def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: ArrayLike | None) -> Curve:
@@ -308,6 +313,9 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
     lowest, highest = int(np.argmin(ste)), int(np.argmax(ste))
     stored = [part[even.size :] for part in (ste, band, below)]
     values, *error_parts = stored if at is None else _evaluate(database, force, point, position)
+    mean = Estimate(float(np.mean(ste[: even.size])), mean_error, "m")
+    ripple = Estimate(float(ste[highest] - ste[lowest]), ripple_error, "m")
+    bias = stored_bias(database.metadata.receipt)
     return Curve(
         point=point,
         torque=point.force * database.facts.base_radius[0] * math.cos(database.facts.base_helix_angle),
@@ -316,8 +324,8 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
         error=sum(error_parts, np.zeros(position.size)),
         pair=_pairs_seen(database, position),
         load_share=_load_share(database, position, point),
-        mean=Estimate(float(np.mean(ste[: even.size])), mean_error, "m"),
-        peak_to_peak=Estimate(float(ste[highest] - ste[lowest]), ripple_error, "m"),
+        mean=mean,
+        peak_to_peak=ripple,
         harmonics=tuple(
             Estimate(float(size), float(error), "m")
             for size, error in zip(orders.amplitude[mesh], orders.error[mesh], strict=True)
@@ -325,6 +333,7 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
         harmonic_phases=orders.phase[mesh],
         spectrum=orders,
         period=database.period,
+        over_face=bias and over_face(bias, mean, ripple),
     )
 
 

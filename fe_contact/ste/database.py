@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from fe_contact.errors import SolveError
 from fe_contact.ste import extraction, netcdf
-from fe_contact.ste.curve import AT_NODES, PLANE, Curve, curve, default_value, operating_point
+from fe_contact.ste.curve import Curve, curve, default_value, operating_point
 from fe_contact.ste.curve_quantities import Spectrum
 from fe_contact.ste.fields import GRID, SteFields
 from fe_contact.ste.force_table import ForceTable, LevelGrid
@@ -130,17 +130,6 @@ def _isotonic(levels: FloatArray, force: FloatArray, least: float) -> FloatArray
     weights = np.ones_like(levels)
     weights[0] = _LIFT_OFF_WEIGHT
     return np.asarray(scipy.optimize.isotonic_regression(levels - tilt, weights=weights).x + tilt)
-
-
-def in_own_model(table: Table) -> Table:
-    """Return a table with its errors towards its own model: without the `bias` of its receipt."""
-    bias = table.metadata.receipt.get("bias")
-    if not bias:
-        return table
-    errors = table.curve_error.copy()
-    errors[AT_NODES.index(PLANE) : AT_NODES.index(PLANE) + 1] = 0.0
-    band = table.error_estimate - bias["stated"] * np.abs(table.static_transmission_error)
-    return replace(table, curve_error=errors, error_estimate=np.maximum(band, 0.0))
 
 
 # The derivatives along all axes of a mesh-force table: plain arrays that make it C1 in every coordinate.

@@ -25,7 +25,7 @@ from fe_contact.effects.misalignment import MisalignmentGap
 from fe_contact.effects.tooth_deviations import sharpest_crest
 from fe_contact.errors import SolveError
 from fe_contact.geometry.printed_data import backlash_rounding
-from fe_contact.planning.plane_bias import PlaneBias
+from fe_contact.planning.plane_bias import plane_bias
 from fe_contact.types import FloatArray, Json
 from model_studies.stage_clock import StageClock
 
@@ -152,7 +152,7 @@ def _plane(run: SolvedRun) -> Iterator[Assumption]:
     reason = "; ".join(reasons) if reasons else "nothing in the scene acts across it"
     face, width = request.model_effects
     yield Assumption(face, "uniform load over the face", not reasons, float("nan"), reason)
-    if bias := PlaneBias.of(run.places.places[0].contact.pair, run.plan.discretization):
+    if bias := plane_bias(run.places.places[0].contact.pair, run.plan.discretization):
         missing = abs(bias.mean)
         reason = f"the finite width changes about {engineering(100 * missing, 2)} % of the mean"
         holds = missing <= _allowed(run).relative

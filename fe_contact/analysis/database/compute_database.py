@@ -33,6 +33,7 @@ from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES, METHOD, PLANE, SOURCES, all_sources
 from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, mean_of_curves
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
+from fe_contact.ste.plane_bias import stored_bias
 from fe_contact.types import FloatArray, Json, Status
 from model_studies.progress import by_cost
 from model_studies.run_log import record
@@ -93,6 +94,9 @@ def _worst_condition(solved: Solved, known: FloatArray | None = None) -> float |
 def error_shares(table: SteDatabase, allowed: AllowedError) -> FloatArray:
     """Return the errors of mean and peak-to-peak by source in parts of what is allowed.
 
+    A plane that the program chose errs by its whole bias; the one of the caller is the model that was
+    requested.
+
     Returns
     -------
     ndarray, shape (9, 2, F, M, D)
@@ -101,7 +105,10 @@ def error_shares(table: SteDatabase, allowed: AllowedError) -> FloatArray:
     """
     ste = table.static_transmission_error
     values = np.stack([mean_of_curves(table.position, ste, table.period), np.ptp(ste, axis=0)])
-    return np.asarray(table.curve_error[:, [MEAN, PEAK_TO_PEAK]] / allowed.of(values))
+    errors = table.curve_error[:, [MEAN, PEAK_TO_PEAK]]
+    if bias := stored_bias(table.metadata.receipt):
+        errors[AT_NODES.index(PLANE)] = bias.largest(*values)
+    return np.asarray(errors / allowed.of(values))
 
 
 def bought_shares(shares: FloatArray, request: Request) -> tuple[FloatArray, FloatArray]:

@@ -23,7 +23,7 @@ from fe_contact.contact import ContactSolution
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.model_error import model_errors, point_error
 from fe_contact.planning.plan import FaceDiscretization, Plan
-from fe_contact.planning.plane_bias import LEFT_OUT, PlaneBias
+from fe_contact.planning.plane_bias import plane_bias
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.curve import (
     AT_NODES,
@@ -46,6 +46,7 @@ from fe_contact.ste.curve_quantities import (
     mean_of_curves,
     quantity_changes,
 )
+from fe_contact.ste.plane_bias import PlaneBias
 from fe_contact.types import FloatArray, Json, Status
 
 # Errors of a table, by source.
@@ -55,8 +56,8 @@ from fe_contact.types import FloatArray, Json, Status
 # which bounds what is left of the difference (`Discretization.remaining`). The table's error is measured
 # at the middles between its nodes. Where the plane stands in for three dimensions, a part of what it was
 # corrected by is its error; it is measured against three-dimensional solutions
-# (docs/effects.md#finite_width). A plane that is not corrected, requested by name or not, errs by what it
-# leaves out of the finite width.
+# (docs/effects.md#finite_width). The errors of a plane that is not corrected are those of its model: what it
+# leaves out of the finite width has a sign, and is a correction (`ste.plane_bias`).
 
 CORRECTION_ERROR = 0.03
 """Error of the correction for a finite width in parts of the correction itself. The largest seen of mean,
@@ -73,8 +74,6 @@ class _ErrorSources:
     discretization, slices, interpolation, contact, plane, method : ndarray
         Finite elements, slices of the face, table beside the node, contact, the plane for a finite width, and
         what the method leaves out.
-    left_out : float
-        Relative part of the mean STE that an uncorrected plane leaves out; it is part of `plane`.
     """
 
     discretization: FloatArray
@@ -83,7 +82,6 @@ class _ErrorSources:
     contact: FloatArray
     plane: FloatArray
     method: FloatArray
-    left_out: float
 
     @property
     def total(self) -> FloatArray:
@@ -92,7 +90,7 @@ class _ErrorSources:
         return np.asarray(sum(parts) + self.method)
 
     def to_json(self) -> Json:
-        """Return the largest of each source by load, m, and the part that the plane leaves out.
+        """Return the largest of each source by load, m.
 
         Beside a failed point errors are unknown and left out; None where that leaves none.
         """
@@ -104,8 +102,7 @@ class _ErrorSources:
             f"{PLANE}_m": self.plane,
             f"{METHOD}_m": self.method,
         }
-        worst = {name: _largest_known(values) for name, values in sources.items()}
-        return worst | {"plane_for_finite_width_relative": self.left_out}
+        return {name: _largest_known(values) for name, values in sources.items()}
 
 
 def _largest_known(errors: FloatArray) -> list[float | None]:
@@ -130,18 +127,12 @@ def estimate_errors(
     positions : PositionErrors
         The largest of the assessed operating points stand for every place.
     """
-    made, pair = plan.discretization, points.places[0].contact.pair
-    bias, nominal = PlaneBias.of(pair, made), points.nominal.pair
-    missing = abs(bias.mean) if bias else 0.0
+    made, nominal = plan.discretization, points.nominal.pair
 
     def left(these: FloatArray, those: FloatArray, part: float) -> FloatArray:
         """Return a part of the differences of STE, at all points."""
         return nested.sample.spread_points(part * np.nan_to_num(np.abs(these - those)))
 
-    free_ends = left(nested.table, nested.plane, CORRECTION_ERROR)
-    if missing:
-        curves = [LEFT_OUT * missing * np.nan_to_num(np.abs(solution.deflection)) for solution in solutions]
-        free_ends = points.gathered(curves)
     face, lags = isinstance(made, FaceDiscretization), [np.nan_to_num(each.deflection) for each in solutions]
     return _ErrorSources(
         left(nested.patched, nested.coarse, made.remaining)
@@ -149,9 +140,8 @@ def estimate_errors(
         left(nested.table, nested.sliced, made.remaining_slices),
         np.broadcast_to(positions.band[:, :, None, None], (*positions.band.shape, *points.shape)),
         points.gathered([_contact_error(solution) for solution in solutions]),
-        free_ends,
+        left(nested.table, nested.plane, CORRECTION_ERROR),
         points.gathered([point_error(nominal, plan.load, lag, over_face=face) for lag in lags]),
-        missing,
     )
 
 
@@ -207,8 +197,6 @@ def curve_errors(
     own, by_mesh, by_patches, by_slices, free_ends = _measured(points, nested, plan)
     if points.period > 1:
         own[BESIDE_MESH] = _beside_by_load(points, solutions, sample)
-    if bias := PlaneBias.of(pair, made):
-        free_ends = bias.errors(pair, own)
     by_source = {
         "discretisation": np.hypot(by_mesh, by_patches),
         "slices": by_slices,
@@ -380,7 +368,7 @@ class AssessedTable:
     by_source, held_out : dict
         The largest by source; what was measured between the nodes of each axis.
     bias : PlaneBias, optional
-        What the plane leaves out of a finite width where it is not corrected.
+        What the plane leaves out of a finite width where it is not corrected; no error holds it.
     """
 
     band: FloatArray
@@ -455,23 +443,22 @@ def assessed_table(
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
     between = held_out_axes(table, fine, checked.request.scene, checked.decided, solved)
     held_out = {name: error.to_json() for name, error in between.items()}
-    bias = plane_bias(table, fine, plan)
+    bias = table_bias(table, fine, plan)
     of_arm = load_arm_errors(fine, table, arms, plan)
     return AssessedTable(sources.total, with_axes(errors, between), of_arm, sources.to_json(), held_out, bias)
 
 
 def unassessed_table(table: SteDatabase, points: OperatingPoints, plan: Plan) -> AssessedTable:
     """Return the errors of a table of which none was estimated, but for what is known in closed form."""
-    bias = plane_bias(table, points, plan)
-    left = {"plane_for_finite_width_relative": abs(bias.mean) if bias else 0.0}
+    bias = table_bias(table, points, plan)
     unknown = np.full(table.error_estimate.shape, np.nan)
     errors = np.full((len(SOURCES), QUANTITIES, plan.load.size, *points.shape), np.nan)
-    return AssessedTable(unknown, errors, errors[: len(OF_LOAD_ARM)], left, {}, bias)
+    return AssessedTable(unknown, errors, errors[: len(OF_LOAD_ARM)], {}, {}, bias)
 
 
-def plane_bias(table: SteDatabase, points: OperatingPoints, plan: Plan) -> PlaneBias | None:
+def table_bias(table: SteDatabase, points: OperatingPoints, plan: Plan) -> PlaneBias | None:
     """Return what the plane leaves out of the curves of a table."""
     pair, ste = points.nominal.pair, table.static_transmission_error
-    bias = PlaneBias.of(pair, plan.discretization)
-    own = np.stack([mean_of_curves(table.position, ste, table.period), np.ptp(ste, axis=0)])
-    return bias and bias.of_curves(pair, own)
+    bias = plane_bias(pair, plan.discretization)
+    mean = mean_of_curves(table.position, ste, table.period)
+    return bias and bias.of_curves(mean, np.ptp(ste, axis=0))

@@ -22,7 +22,7 @@ from fe_contact.analysis.estimates.assessed_table import (
     curve_errors,
     estimate_errors,
     load_arm_errors,
-    plane_bias,
+    table_bias,
     unassessed_table,
     with_axes,
     worst_residual,
@@ -89,7 +89,7 @@ def _condensed_errors(
     if contacts.coarse is None:
         errors[BY_MESH], band = _expected(table, plan, contacts.own)
         sources = replace(sources, discretization=np.broadcast_to(band, sources.contact.shape))
-    bias = plane_bias(table, points, plan)
+    bias = table_bias(table, points, plan)
     of_arm = load_arm_errors(points, table, arms, plan)
     return AssessedTable(sources.total, with_axes(errors, {}), of_arm, sources.to_json(), {}, bias)
 

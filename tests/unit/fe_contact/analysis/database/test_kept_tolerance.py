@@ -13,12 +13,11 @@ from analysis_requests import table_request
 from fe_contact import AllowedError, Gear, GearPair, SteDatabase, analyze
 from fe_contact.analysis.database import kept_tolerance
 from fe_contact.analysis.database.compute_database import _Computed, compute_database, compute_pass
-from fe_contact.analysis.estimates import assessed_table
 from fe_contact.analysis.request.model_choice import Decided, decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.errors import MeshError, SolveError
 from fe_contact.options import AnalysisOptions, Run, TableAxes
-from fe_contact.planning import model_error, plane_bias
+from fe_contact.planning import model_error
 from fe_contact.ste.fields import DIMENSIONS
 
 SPUR = GearPair(*[Gear(20, 2e-3, 12e-3, 20e-3)] * 2, 40e-3)
@@ -33,8 +32,6 @@ def nothing_but_discretization(monkeypatch) -> None:
     monkeypatch.setattr(model_error, "FLOOR", none)
     for name in ("LARGE_DISPLACEMENT", "TILT"):
         monkeypatch.setattr(model_error, name, {False: none, True: none})
-    for module in (plane_bias, assessed_table):
-        monkeypatch.setattr(module, "LEFT_OUT", 0.0)
 
 
 @pytest.fixture
