@@ -15,7 +15,7 @@ from fe_contact.errors import increasing
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.hertz import contact_modulus, half_width, relative_radius
 from fe_contact.mesh import MeshRecipe, SectorRecipe
-from fe_contact.mesh.recipe import HELICAL_BODY_LAYERS
+from fe_contact.mesh.recipe import HELICAL_BODY_LAYERS, wound
 from fe_contact.options import AnalysisOptions
 from fe_contact.types import BoolArray, FloatArray, Json
 
@@ -182,7 +182,7 @@ def _coarser(recipe: SectorRecipe, gear: Toothing) -> SectorRecipe:
     Layers of a helical body are not merged where too few would be left.
     """
     larger = recipe.scaled(COARSER)
-    few = gear.helix_angle and larger.layers < larger.layer_group * HELICAL_BODY_LAYERS
+    few = wound(gear) and larger.layers < larger.layer_group * HELICAL_BODY_LAYERS
     return replace(larger, merge_rows=()) if few else larger
 
 

@@ -15,7 +15,7 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.geometry.web_compliance import finite_width_excess
 from fe_contact.options import LEVELS, AnalysisOptions
 from fe_contact.planning.cost_model import effort, predict_run
-from fe_contact.planning.model_error import in_small_displacements, model_errors
+from fe_contact.planning.model_error import helical_share, in_small_displacements, model_errors
 from fe_contact.planning.plan import (
     FINER_SLICES,
     SLICE_ORDER,
@@ -70,7 +70,7 @@ def _usual_curves(pair: ParallelAxes, plan: Plan) -> ExpectedCurves:
     unity = np.ones(plan.load.size)
     across_face = isinstance(plan.discretization, FaceDiscretization)
     spur = _SPUR_RIPPLE if across_face else _PLANE_RIPPLE
-    ripple = _HELICAL_RIPPLE if pair.base_helix_angle else spur
+    ripple = spur + helical_share(pair) * (_HELICAL_RIPPLE - spur)
     return ExpectedCurves(plan.load, unity, unity, ripple * unity, RELATIVE, absolute=False)
 
 
@@ -189,9 +189,9 @@ def usual_mesh_error(pair: ParallelAxes, plan: Plan) -> tuple[float, float]:
     """Return the median error by mesh of mean and of peak-to-peak, in parts of what the load adds."""
     if not isinstance(plan.discretization, FaceDiscretization):
         return _PLANE[plan.level]
-    if pair.base_helix_angle == 0.0:
-        return _SPUR[plan.level]
-    return (_RELIEVED if _modified(pair) else _HELICAL)[plan.level]
+    helical, wound = helical_share(pair), (_RELIEVED if _modified(pair) else _HELICAL)[plan.level]
+    mean, ripple = ((1.0 - helical) * a + helical * b for a, b in zip(_SPUR[plan.level], wound, strict=True))
+    return mean, ripple
 
 
 def _modified(pair: ParallelAxes) -> bool:
@@ -207,8 +207,7 @@ def _parts(pair: ParallelAxes, plan: Plan, known: ExpectedCurves) -> dict[str, F
     nothing = np.zeros_like(by_mesh)
     slices, plane = nothing.copy(), nothing.copy()
     if isinstance(made, FaceDiscretization):
-        helical = pair.base_helix_angle != 0.0
-        part = _HELICAL_SLICES * pair.overlap_ratio if helical else _SPUR_SLICES
+        part = max(_HELICAL_SLICES * pair.overlap_ratio, _SPUR_SLICES)
         slices[1] = part * (_SLICES / made.slices) ** SLICE_ORDER * known.added
     elif made.corrected:
         plane = np.outer(_CORRECTION * np.array(finite_width_excess(pair)) * (1.0, _WIDTH_RIPPLE), mean)

@@ -333,7 +333,7 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
         harmonic_phases=orders.phase[mesh],
         spectrum=orders,
         period=database.period,
-        over_face=bias and over_face(bias, mean, ripple),
+        over_face=over_face(bias, mean, ripple) if bias else None,
     )
 
 

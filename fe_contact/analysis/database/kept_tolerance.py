@@ -401,7 +401,18 @@ def _following(table: SteDatabase, last: _Pass) -> _Refinement | str:
     if table.n_failed:
         return f"{table.n_failed} points failed"
     bought, _ = bought_shares(error_shares(table, tolerance), last.decided.checked.request)
-    return _next_pass(last.decided, bought)
+    measured = _next_pass(last.decided, bought)
+    behind = last.decided.behind
+    if behind and last.refinement is None and (isinstance(measured, str) or measured.expected > 1.0):
+        return _behind_trial(behind, last)
+    return measured
+
+
+def _behind_trial(behind: Decided, trial: _Pass) -> _Refinement:
+    """Return the pass that was expected to follow a trial, where one step from the trial is not enough."""
+    expected = behind.mesh.option.error.bought / behind.checked.request.options.allowed.relative
+    name = f"{behind.checked.model_name}, {behind.mesh.option.name}"
+    return _Refinement(behind, "trial", (f"{trial.name} -> {name}",), expected)
 
 
 def _ended(made: _Refinement, passes: Sequence[_Pass], cache: Path | None) -> str:

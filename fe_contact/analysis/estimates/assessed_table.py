@@ -21,7 +21,7 @@ from fe_contact.analysis.request.solved_run import Solved
 from fe_contact.analysis.tables import PositionNodes
 from fe_contact.contact import ContactSolution
 from fe_contact.geometry import ParallelAxes
-from fe_contact.planning.model_error import model_errors, point_error
+from fe_contact.planning.model_error import helical_share, model_errors, point_error
 from fe_contact.planning.plan import FaceDiscretization, Plan
 from fe_contact.planning.plane_bias import plane_bias
 from fe_contact.ste import Metadata, SteDatabase
@@ -245,7 +245,7 @@ def _measured(points: OperatingPoints, nested: Nested, plan: Plan, balance: floa
     `balance` is the least change of a mean over the mean size of the change about it.
     """
     made, pair = plan.discretization, points.nominal.pair
-    helical = isinstance(made, FaceDiscretization) and pair.base_helix_angle != 0.0
+    helical = helical_share(pair) if isinstance(made, FaceDiscretization) else 0.0
     # on the curve: half the slices may multiply a small ripple, and no part of that is what many change
     many_slices = nested.table + made.remaining_slices * (nested.table - nested.sliced)
     parts = 1.0, _left_by_mesh(pair, plan, helical), plan.remaining_patches, 1.0, CORRECTION_ERROR
@@ -265,7 +265,7 @@ def _changes(
     those: Sequence[FloatArray],
     parts: FloatArray,
     balance: float,
-    helical: bool,
+    helical: float,
 ) -> FloatArray:
     """Return parts (k, 23) of the changes of k sets of curves (T R, f, m, d), (k, 23, F, M, D) in m."""
     first, second = np.stack(these, axis=1), np.stack(those, axis=1)
@@ -277,7 +277,7 @@ def _changes(
         least = balance * mean_of_curves(sample.knots, about, sample.period)
         change[MEAN] = np.maximum(change[MEAN], least)
     change = parts.T[:, :, None, None, None] * change.reshape(QUANTITIES, *first.shape[1:])
-    return sample.spread(np.moveaxis(_shared(change) if helical else change, 1, 0))
+    return sample.spread(np.moveaxis(_shared(change, helical), 1, 0))
 
 
 def _beside_by_load(
@@ -307,20 +307,23 @@ def _by_solver(points: OperatingPoints, solutions: list[ContactSolution], sample
     )
 
 
-def _left_by_mesh(pair: ParallelAxes, plan: Plan, helical: bool) -> FloatArray:
-    """Error left over the change to the coarse mesh, (23,)."""
+def _left_by_mesh(pair: ParallelAxes, plan: Plan, helical: float) -> FloatArray:
+    """Error left over the change to the coarse mesh, (23,); `helical`: the part of helical constants."""
     made = plan.discretization
     straight = "spur" if all(gear.web is None for gear in plan.bodies(pair)) else "thin"
-    kind = ("helical" if helical else straight) if isinstance(made, FaceDiscretization) else "plane"
-    mean, ripple, harmonics = LEFT_BY_MESH[kind]["draft" if plan.level == "draft" else "standard"]
-    part = np.array([mean, ripple, *[harmonics] * (QUANTITIES - BESIDE_MESH)])
-    return part * made.remaining if helical else part
+    level = "draft" if plan.level == "draft" else "standard"
+    if isinstance(made, FaceDiscretization):
+        spur, wound = (np.array(LEFT_BY_MESH[kind][level]) for kind in (straight, "helical"))
+        mean, ripple, harmonics = (1.0 - helical) * spur + helical * made.remaining * wound
+    else:
+        mean, ripple, harmonics = LEFT_BY_MESH["plane"][level]
+    return np.array([mean, ripple, *[harmonics] * (QUANTITIES - BESIDE_MESH)])
 
 
-def _shared(change: FloatArray) -> FloatArray:
-    """Let every harmonic change (23, ...) by its share of peak-to-peak at least."""
+def _shared(change: FloatArray, helical: float) -> FloatArray:
+    """Let every harmonic of a helical pair change (23, ...) by its share of peak-to-peak at least."""
     number = np.arange(1, QUANTITIES - FIRST_HARMONIC + 1).reshape(-1, *[1] * (change.ndim - 1))
-    least = HARMONIC_SHARE * change[PEAK_TO_PEAK] / np.sqrt(number)
+    least = helical * HARMONIC_SHARE * change[PEAK_TO_PEAK] / np.sqrt(number)
     return np.concatenate([change[:FIRST_HARMONIC], np.maximum(change[FIRST_HARMONIC:], least)])
 
 
