@@ -80,8 +80,8 @@ def test_no_error_of_a_plane_holds_what_it_leaves_out(cache: Path) -> None:
         assert one.over_face.mean.error > one.mean.error
 
 
-# Three dimensions over plane strain by resolved contact, with its own uncertainty: mean of the 20/20 pair of
-# b/m 6 and of the 40/80 pair of b/m 20 at 100 and 1000 N m.
+# Mean in three dimensions over plane strain by resolved contact, of pairs of module 4 mm: the ratio is held
+# against pairs of the same teeth and face in modules, of module 2 mm, at the loads of this file.
 RESOLVED = {"20/20": (20, 20, 6.25, (1.028, 1.030)), "40/80": (40, 80, 20.0, (1.018, 1.025))}
 
 
