@@ -106,20 +106,41 @@ def errors_by_source(table: SteFields, point: OperatingPoint) -> FloatArray:
     """
     values = np.moveaxis(table.curve_error, (2, 3, 4), (0, 1, 2))
     at_nodes = np.delete(values, np.s_[len(AT_NODES) : len(SOURCES)], axis=3)
-    between = []
-    axes = (
+    for knots, at in _coordinates(table, point):
+        at_nodes = _linear(knots, at_nodes, at)
+    between = [
+        _of_interval(values[..., source, :], table, point, i)
+        for i, source in enumerate(range(len(AT_NODES), len(SOURCES)))
+    ]
+    first, derivatives = np.split(at_nodes, [len(AT_NODES)])
+    return np.concatenate([first, np.array(between), derivatives])
+
+
+def interval_error(table: SteFields, point: OperatingPoint) -> float:
+    """Return the largest error of a point of the curve by interpolation between the nodes of the axes, m.
+
+    That of its interval, of all axes together; 0 on nodes and for tables without. NaN: not estimated.
+    """
+    if not table.interval_error.size:
+        return 0.0
+    return float(sum(_of_interval(table.interval_error[i], table, point, i) for i in range(3)))
+
+
+def _coordinates(table: SteFields, point: OperatingPoint) -> tuple[tuple[FloatArray, float], ...]:
+    """Return the nodes of load, misalignment and center distance, each with the value of the point."""
+    return (
         (table.force, point.force),
         (table.misalignment, point.misalignment),
         (table.center_distance_change, point.center_distance_change),
     )
-    for knots, at in axes:
-        at_nodes = _linear(knots, at_nodes, at)
-    for i, source in enumerate(range(len(AT_NODES), len(SOURCES))):
-        knots, at = axes[i]
-        inside = at not in knots and knots[0] < at < knots[-1]
-        between.append(_interval(values[..., source, :], axes, i) if inside else np.zeros(QUANTITIES))
-    first, derivatives = np.split(at_nodes, [len(AT_NODES)])
-    return np.concatenate([first, np.array(between), derivatives])
+
+
+def _of_interval(values: FloatArray, table: SteFields, point: OperatingPoint, axis: int) -> FloatArray:
+    """Return what values (F, M, D, ...) of intervals of an axis say at a point: zeros on its nodes."""
+    axes = _coordinates(table, point)
+    knots, at = axes[axis]
+    inside = at not in knots and knots[0] < at < knots[-1]
+    return _interval(values, axes, axis) if inside else np.zeros(values.shape[3:])
 
 
 def source_names(errors: FloatArray) -> tuple[str, ...]:
@@ -146,7 +167,7 @@ def _linear(knots: FloatArray, values: FloatArray, at: float) -> FloatArray:
 
 
 def _interval(values: FloatArray, axes: tuple[tuple[FloatArray, float], ...], axis: int) -> FloatArray:
-    """Errors (23,) of the interval of one axis that holds the point, linear along the other two."""
+    """Errors (...) of the interval of one axis that holds the point, linear along the other two."""
     knots, at = axes[axis]
     values = np.moveaxis(values, axis, 0)[int(np.searchsorted(knots, at)) - 1]
     for i, (others, where) in enumerate(axes):
@@ -337,6 +358,7 @@ def _evaluate(
     ste, _ = force.deflection_at(position, point.force * transverse, *alignment)
     stored = at_operating_point(database, database.error_estimate, point)
     error = interpolate(Axis(database.position, float(database.period)), stored, position)
+    error = error + interval_error(database, point)
     smallest_load = min([database.force[0], *database.support_force[:1]])
     if point.force >= smallest_load:
         return ste, error, np.zeros_like(ste)

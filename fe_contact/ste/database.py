@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypedDict, TypeVar, Unpack
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from fe_contact.errors import SolveError
 from fe_contact.ste import extraction, netcdf
@@ -130,6 +130,42 @@ def _isotonic(levels: FloatArray, force: FloatArray, least: float) -> FloatArray
     weights = np.ones_like(levels)
     weights[0] = _LIFT_OFF_WEIGHT
     return np.asarray(scipy.optimize.isotonic_regression(levels - tilt, weights=weights).x + tilt)
+
+
+@dataclass(frozen=True)
+class SupportLoads:
+    """Solutions at further loads of a table.
+
+    Attributes
+    ----------
+    force : (S,) array
+        N, increasing.
+    deflection, tangent : (P, S, M, D) arrays
+        STE in m, and its derivative in m/N.
+    pairs : (P, S, M, D) integer array
+        Number of pairs that carry load.
+    """
+
+    force: FloatArray
+    deflection: FloatArray
+    tangent: FloatArray
+    pairs: IntArray
+
+
+def with_support_loads(table: Table, loads: SupportLoads) -> Table:
+    """Return a table with further support loads."""
+    order = np.argsort(np.concatenate([table.support_force, loads.force]))
+
+    def merged(stored: NDArray[Any], further: NDArray[Any]) -> NDArray[Any]:
+        return np.concatenate([stored, further], axis=1)[:, order]
+
+    return replace(
+        table,
+        support_force=np.concatenate([table.support_force, loads.force])[order],
+        support_transmission_error=merged(table.support_transmission_error, loads.deflection),
+        support_tangent_compliance=merged(table.support_tangent_compliance, loads.tangent),
+        support_pairs_in_contact=merged(table.support_pairs_in_contact, loads.pairs),
+    )
 
 
 def in_own_model(table: Table) -> Table:

@@ -150,7 +150,15 @@ ATTRIBUTES: dict[str, tuple[str, str]] = {
         "error of mean, peak-to-peak, any order beside the mesh and harmonics 1 to 20 of the load arm, "
         "by source: " + ", ".join(OF_LOAD_ARM),
     ),
-    "support_force": ("N", "further loads that only carry the force extraction"),
+    "interval_error": (
+        "m",
+        "largest error of the transmission error between each node and the next of the axes force, "
+        "misalignment, center_distance_change",
+    ),
+    "support_force": (
+        "N",
+        "further loads that only carry the interpolation: those between two loads of the axis were inserted",
+    ),
     "support_transmission_error": ("m", "static transmission error at the support loads"),
     "support_tangent_compliance": ("m N-1", "derivative of the transmission error at the support loads"),
     "support_pairs_in_contact": ("1", "number of tooth pairs that carry the support loads"),

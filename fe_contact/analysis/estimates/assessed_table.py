@@ -15,6 +15,7 @@ from fe_contact.analysis.estimates.position_errors import (
     position_errors,
 )
 from fe_contact.analysis.estimates.table_sample import Nested, TableSample
+from fe_contact.analysis.estimates.tolerance_shares import interval_goal
 from fe_contact.analysis.pairs.pair_contact import OperatingPoints
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.solved_run import Solved
@@ -46,6 +47,7 @@ from fe_contact.ste.curve_quantities import (
     mean_of_curves,
     quantity_changes,
 )
+from fe_contact.ste.database import SupportLoads, with_support_loads
 from fe_contact.types import FloatArray, Json, Status
 
 # Errors of a table, by source.
@@ -336,19 +338,23 @@ def _shared(change: FloatArray) -> FloatArray:
     return np.concatenate([change[:FIRST_HARMONIC], np.maximum(change[FIRST_HARMONIC:], least)])
 
 
-def with_axes(at_nodes: FloatArray, axes: Mapping[str, AxisError]) -> FloatArray:
-    """Append the interpolation along the axes: (9, 23, F, M, D).
+def interval_errors(shape: tuple[int, ...], axes: Mapping[str, AxisError]) -> tuple[FloatArray, FloatArray]:
+    """Lay out the interpolation errors of the axes of a table with nodes (F, M, D).
 
     What was assessed at one alignment stands for all of them. An interval that was not assessed has NaN.
+
+    Returns
+    -------
+    (ndarray, ndarray), shapes (3, F, M, D) and (3, 23, F, M, D)
+        Of points, and of mean, peak-to-peak and harmonics, in m at the lower node of every interval.
     """
-    shape = at_nodes.shape[1:]
-    between = []
+    errors = np.zeros((len(BETWEEN_NODES), 1 + QUANTITIES, *shape))
     for i, name in enumerate(BETWEEN_NODES):
-        errors = np.zeros(shape)
-        intervals = np.moveaxis(errors, 1 + i, 1)[:, : shape[1 + i] - 1]  # a view
-        intervals[...] = axes[name].change[..., None] if name in axes else np.nan
-        between.append(errors)
-    return np.concatenate([at_nodes, np.stack(between)])
+        intervals = np.moveaxis(errors[i], 1 + i, 1)[:, : shape[i] - 1]  # a view
+        intervals[...] = np.nan
+        if name in axes:
+            intervals[...] = np.concatenate([axes[name].error[None], axes[name].change])[..., None]
+    return errors[:, 0], errors[:, 1:]
 
 
 def _summary(errors: FloatArray) -> Json:
@@ -377,6 +383,10 @@ class AssessedTable:
         Of mean, peak-to-peak and harmonics by source, m; NaN where not estimated.
     load_arm_error : ndarray, shape (3, 23, F, M, D)
         The same of the load arm.
+    interval_error : ndarray, shape (3, F, M, D)
+        Of points between the nodes of an axis, at the lower one, m.
+    inserted : SupportLoads, optional
+        Loads with which the table has these errors between its loads.
     by_source, held_out : dict
         The largest by source; what was measured between the nodes of each axis.
     bias : PlaneBias, optional
@@ -386,19 +396,23 @@ class AssessedTable:
     band: FloatArray
     curve_error: FloatArray
     load_arm_error: FloatArray
+    interval_error: FloatArray
+    inserted: SupportLoads | None
     by_source: Json
     held_out: Json
     bias: PlaneBias | None
 
     def stated(self, table: SteDatabase, metadata: Metadata) -> SteDatabase:
         """Return the table with them, and with the metadata that state them."""
-        return replace(
+        stated = replace(
             table,
             error_estimate=self.band,
             metadata=metadata,
             curve_error=self.curve_error,
             load_arm_error=self.load_arm_error,
+            interval_error=self.interval_error,
         )
+        return stated if self.inserted is None else with_support_loads(stated, self.inserted)
 
     def with_derivatives(self, derived: DerivedCycle | None) -> AssessedTable:
         """Return them with what derivatives miss, if any base pitch of the table is by them."""
@@ -453,11 +467,19 @@ def assessed_table(
     ste, arms = nested.parts
     measured = fine, solutions, ste, positions, plan
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
-    between = held_out_axes(table, fine, checked.request.scene, checked.decided, solved)
-    held_out = {name: error.to_json() for name, error in between.items()}
-    bias = plane_bias(table, fine, plan)
-    of_arm = load_arm_errors(fine, table, arms, plan)
-    return AssessedTable(sources.total, with_axes(errors, between), of_arm, sources.to_json(), held_out, bias)
+    goal = interval_goal(table, errors, checked.request)
+    between = held_out_axes(table, fine, checked.request.scene, checked.decided, solved, goal)
+    of_points, of_curves = interval_errors(errors.shape[2:], between)
+    return AssessedTable(
+        sources.total,
+        np.concatenate([errors, of_curves]),
+        load_arm_errors(fine, table, arms, plan),
+        of_points,
+        between["force"].inserted if "force" in between else None,
+        sources.to_json(),
+        {name: error.to_json() for name, error in between.items()},
+        plane_bias(table, fine, plan),
+    )
 
 
 def unassessed_table(table: SteDatabase, points: OperatingPoints, plan: Plan) -> AssessedTable:
@@ -466,7 +488,8 @@ def unassessed_table(table: SteDatabase, points: OperatingPoints, plan: Plan) ->
     left = {"plane_for_finite_width_relative": abs(bias.mean) if bias else 0.0}
     unknown = np.full(table.error_estimate.shape, np.nan)
     errors = np.full((len(SOURCES), QUANTITIES, plan.load.size, *points.shape), np.nan)
-    return AssessedTable(unknown, errors, errors[: len(OF_LOAD_ARM)], left, {}, bias)
+    of_points = errors[: len(BETWEEN_NODES), 0]
+    return AssessedTable(unknown, errors, errors[: len(OF_LOAD_ARM)], of_points, None, left, {}, bias)
 
 
 def plane_bias(table: SteDatabase, points: OperatingPoints, plan: Plan) -> PlaneBias | None:

@@ -21,10 +21,10 @@ from fe_contact.analysis.estimates.assessed_table import (
     AssessedTable,
     curve_errors,
     estimate_errors,
+    interval_errors,
     load_arm_errors,
     plane_bias,
     unassessed_table,
-    with_axes,
     worst_residual,
 )
 from fe_contact.analysis.estimates.position_errors import errors_by_halves
@@ -91,7 +91,10 @@ def _condensed_errors(
         sources = replace(sources, discretization=np.broadcast_to(band, sources.contact.shape))
     bias = plane_bias(table, points, plan)
     of_arm = load_arm_errors(points, table, arms, plan)
-    return AssessedTable(sources.total, with_axes(errors, {}), of_arm, sources.to_json(), {}, bias)
+    _, between = interval_errors(errors.shape[2:], {})
+    every = np.concatenate([errors, between])
+    nowhere = np.empty((0,) * 4)  # no point between nodes is assessed
+    return AssessedTable(sources.total, every, of_arm, nowhere, None, sources.to_json(), {}, bias)
 
 
 def _expected(table: SteDatabase, plan: Plan, contact: PairContact) -> tuple[FloatArray, FloatArray]:
