@@ -39,8 +39,8 @@ AWAY = 1.4
 """Error anywhere in an interval over the largest at its held-out loads and the positions of the table: a kink
 lies at another position for every load. Set on drawn tables (docs/decisions/0012)."""
 MOST_HALVINGS = 8
-"""Halvings of an interval of requested loads: a factor of five becomes one of 1.006. The error at a kink falls
-in proportion to the interval that holds it."""
+"""Halvings of an interval of requested loads: a factor of five becomes one of 1.006. The error at a kink
+falls in proportion to the interval that holds it."""
 
 
 @dataclass(frozen=True)

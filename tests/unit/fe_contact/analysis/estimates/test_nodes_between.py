@@ -1,4 +1,4 @@
-"""Between its nodes a table is as far from what is solved there as it states, and keeps a tolerance it has met."""
+"""Between its nodes a table is within its stated error of what is solved there, and of a tolerance it met."""
 
 from pathlib import Path
 
