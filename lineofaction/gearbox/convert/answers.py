@@ -54,8 +54,6 @@ def curve_json(
         "load_share": curve.load_share.tolist(),
         **_figures(curve),
     }
-    if np.all(np.isfinite(curve.error)):
-        answer["ste_error_um"] = (curve.error / UM).tolist()
     if teeth := tooth_loads_json(database, curve.point):
         answer["tooth_loads"] = teeth
     if curve.period > 1:  # over one base pitch the orders are the harmonics
@@ -175,7 +173,6 @@ def metadata_json(database: SteDatabase) -> Json:
         "position": database.position.tolist(),
         "torque_n_m": [as_typed(torque) for torque in database.torque],
         "normal_force_n": database.force.tolist(),
-        "inserted_normal_force_n": database.inserted_force.tolist(),
         "misalignment_um": [as_typed(skew, UM) for skew in database.misalignment],
         "center_distance_change_mm": [as_typed(change, MM) for change in database.center_distance_change],
         **({"tooth_loads": teeth} if any(teeth) else {}),
