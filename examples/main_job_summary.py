@@ -10,7 +10,7 @@ import numpy as np
 
 from dynamics.orders import Spectrum, find_peaks, mesh_orders, window_spectrum
 from dynamics.results import RunResult
-from fe_contact.ste import SteDatabase, in_own_model
+from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 
 TORQUE = 100.0  # N m on the driving gear
@@ -37,11 +37,10 @@ def summary(table: Path, run: Path, helical: Path, seconds: Mapping[str, float])
 
 def static_lines(database: SteDatabase) -> list[str]:
     """Mean and peak-to-peak STE with their errors, and what a plane leaves out of them."""
-    load, own = f" at {TORQUE:g} N m", in_own_model(database)
-    bias = database.metadata.receipt.get("bias")
+    load, bias = f" at {TORQUE:g} N m", database.metadata.receipt.get("bias")
     return [
-        _estimate("mean STE" + load, own.mean(torque=TORQUE)),
-        _estimate("peak-to-peak STE" + load, own.peak_to_peak(torque=TORQUE)),
+        _estimate("mean STE" + load, database.mean(torque=TORQUE)),
+        _estimate("peak-to-peak STE" + load, database.peak_to_peak(torque=TORQUE)),
         *([bias["words"]] if bias else []),
     ]
 

@@ -52,11 +52,6 @@ class AllowedError:
         """Return the size in m of which errors of quantities in m are parts: `relative` of it is allowed."""
         return np.maximum(np.abs(value), self.least_scale)
 
-    def stretched(self, factor: float) -> AllowedError:
-        """Return the tolerance of a multiple of the error, up to the largest allowed, with the same scale."""
-        most = min(self.relative * factor, LARGEST_RELATIVE) / self.relative
-        return AllowedError(self.relative * most, min(self.floor * most, LARGEST_FLOOR))
-
     @property
     def least_scale(self) -> float:
         """The size in m below which the floor counts."""

@@ -30,6 +30,16 @@ def wedge_softness(angle: float) -> float:
     return 0.5 * math.pi * (math.sin(half) ** 2 / along + math.cos(half) ** 2 / across)
 
 
+def lateral_share(poissons_ratio: float) -> float:
+    """Return the part of k p theta by which a flank gives way to a load whose normal is turned by theta.
+
+    A normal load draws the surface beside it towards itself by (1 - 2 nu)(1 + nu) p/(2 E). Where normals
+    turn, that has a part along the other normal. k = 2 (1 - nu^2)/(pi E), in plane strain; exact for a disc
+    (docs/theory/hertz.md).
+    """
+    return 0.25 * math.pi * (1.0 - 2.0 * poissons_ratio) / (1.0 - poissons_ratio)
+
+
 def contact_modulus(first: Material, second: Material) -> float:
     """Contact modulus E* in Pa, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 [1]_."""
     return 1.0 / (1.0 / first.plane_strain_modulus + 1.0 / second.plane_strain_modulus)

@@ -211,18 +211,15 @@ class _Strips:
     middle: FloatArray
     half: FloatArray
 
-    def removed(self, gap: GapTerm) -> tuple[FloatArray, FloatArray]:
-        """Return the gap at the touching points and its mean over the strips (k,), m."""
+    def removed(self, gap: GapTerm) -> FloatArray:
+        """Return the mean of a gap over the strips (k,), m."""
         if not gap.along_profile:
             rolls = self.roll_1, self.pair.mating_roll_length(self.roll_1)
-            return (np.asarray(gap(self.pair, *rolls, self.face)),) * 2
+            return np.asarray(gap(self.pair, *rolls, self.face))
         smooth, breaks = self._parted(gap)
-        slope = (smooth[2] - smooth[0]) / (2.0 * _NODE)
         bend = (smooth[2] - 2.0 * smooth[1] + smooth[0]) / _NODE**2
-        back = -self.middle / self.half
-        there, mean = smooth[1] + back * (slope + 0.5 * back * bend), smooth[1] + 0.25 * bend
-        there = there + sum(each.height(-distance) for each, distance in breaks)
-        return there, mean + sum(self._past(*each)[0] for each in breaks)
+        mean = smooth[1] + 0.25 * bend
+        return np.asarray(mean + sum(self._past(*each)[0] for each in breaks))
 
     def slopes(self, gap: GapTerm) -> FloatArray:
         """Return the mean slope of a gap over the strips (k,)."""
@@ -344,9 +341,8 @@ class CarryingStrips:
     strips : _Strips
     following : _FollowingPatches or None
         Of all candidates; None where patches stay.
-    arm, normal : ndarray, shape (k,), and float
-        Normal approach taken away per gap opened on the line of action: at the touching point, and by what
-        is removed over the strip beyond that.
+    normal : float
+        Normal approach taken away per depth removed in the transverse section.
     weight, arm_weight : ndarray, shape (k,)
         dSTE, and change of the load arm, per normal approach taken away.
     added_arm : ndarray, shape (P, L)
@@ -357,7 +353,6 @@ class CarryingStrips:
     index: IntArray
     strips: _Strips
     following: _FollowingPatches | None
-    arm: FloatArray
     normal: float
     weight: FloatArray
     arm_weight: FloatArray
@@ -399,7 +394,6 @@ class CarryingStrips:
             np.ravel_multi_index(at, shape),
             _Strips(pair, *places, middle, half),
             following,
-            candidates.motion_arm[p, m],
             math.cos(candidates.base_helix_angle),
             weight,
             arm_weight,
@@ -416,9 +410,8 @@ class CarryingStrips:
 
         Linear in their difference. Between its breaks a gap counts as a parabola over each strip.
         """
-        (there, mean), (below, under) = self.strips.removed(gap), self.strips.removed(over)
-        there, mean = there - below, mean - under
-        opened = self.arm * there + self.normal * (mean - there)
+        mean, under = self.strips.removed(gap), self.strips.removed(over)
+        opened = self.normal * (mean - under)
         if self.following is not None and (gap.along_profile or over.along_profile):
             at_rest = self.following.at_rest
             slopes = at_rest.slopes(gap) - at_rest.slopes(over)
@@ -465,7 +458,7 @@ class CarryingStrips:
         angle = np.pi * ((np.arange(_POINTS) + 0.5) / _POINTS - 0.5)
         x = self.strips.middle + self.strips.half * np.sin(angle)[:, None]
         by_node = np.zeros((len(rows), roll_length.size * face_position.size))
-        weight = rows.reshape(len(rows), -1)[:, self.row] * (self.weight * self.arm / _POINTS)
+        weight = rows.reshape(len(rows), -1)[:, self.row] * (self.weight * self.normal / _POINTS)
         for node, part in self.strips.nodes(gear, roll_length, face_position, x):
             _spread(weight, node, part, by_node)
         if self.following is not None:

@@ -12,9 +12,10 @@ import numpy as np
 from fe_contact.compliance import FlankCompliance, FlankCompliance3D
 from fe_contact.contact.candidates import with_gaps
 from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, face_loads
-from fe_contact.contact.model import ContactModel, MeetingTeeth
+from fe_contact.contact.model import ContactModel
 from fe_contact.contact.patch import Patches, load_vector
 from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices
+from fe_contact.contact.tooth_touch import tooth_touch
 from fe_contact.contact.touch import Touch, rolls_at
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray
@@ -55,7 +56,8 @@ def in_pitches(
     }
     touch = Touch(**tiled)
     if model.tooth_gaps:
-        touch = _of_teeth(pair, touch, model, pitch[:, None] - candidates.pair, candidates.face_position)
+        meeting = pitch[:, None] - candidates.pair
+        touch = tooth_touch(pair, touch, model, meeting, candidates.face_position)
     moved = replace(
         candidates,
         position=np.tile(candidates.position, times) + pitch,
@@ -63,52 +65,6 @@ def in_pitches(
         width=np.concatenate([candidates.width] * times),
     )
     return problem.touching(moved)
-
-
-_BESIDE = 1e-6
-"""Way along the flank in m over which slope and curvature of the gaps of teeth are taken."""
-_AT_ONCE = 16_384
-"""Candidates whose gaps are found together: what they take stays in the cache of the processor."""
-FLATTEST = 0.2
-"""Least curvature over that of plain flanks: a run in which waves bring it below states so."""
-
-
-def _of_teeth(
-    pair: ParallelAxes, touch: Touch, model: ContactModel, meeting: IntArray, face: FloatArray
-) -> Touch:
-    """Add the gaps of teeth that meet: they slope along the flank, so the least gap is beside the point.
-
-    With slope s and curvature c of the gap of the teeth it is s^2/(2 (1/R + c)) less than at the point, where
-    the flanks are free to touch beside it: at an edge or a break they are not.
-    """
-    whole, curvature = touch.gap.copy(), touch.curvature.copy()
-    there = np.nonzero(touch.gap != np.inf)  # more than a third of the candidates cannot touch
-    parts = max(there[0].size // _AT_ONCE, 1)
-    for at in zip(*(np.array_split(each, parts) for each in there), strict=True):
-        least, bent = _beside(pair, touch, model, meeting[at], face[at[1]], at)
-        whole[at], curvature[at] = whole[at] + least, bent
-    return replace(touch, gap=whole, curvature=curvature)
-
-
-def _beside(
-    pair: ParallelAxes,
-    touch: Touch,
-    model: ContactModel,
-    meeting: IntArray,
-    face: FloatArray,
-    at: tuple[IntArray, ...],
-) -> tuple[FloatArray, FloatArray]:
-    """Return the least gap of teeth beside candidates (k,), m, and the curvature of the whole gap, 1/m."""
-    s_1, s_2, plain = touch.s_1[at], touch.s_2[at], touch.curvature[at]
-
-    def gap(way: float) -> FloatArray:
-        return model.gap_of_teeth(MeetingTeeth(pair, meeting, *rolls_at(pair, s_1 + way, s_2 - way), face))
-
-    here, above, below = gap(0.0), gap(_BESIDE), gap(-_BESIDE)
-    slope, bend = (above - below) / (2.0 * _BESIDE), (above - 2.0 * here + below) / _BESIDE**2
-    curvature = np.maximum(plain + bend, FLATTEST * plain)
-    way = np.where(touch.slope[at] == 0.0, np.clip(-slope / curvature, touch.low[at], touch.high[at]), 0.0)
-    return here + way * (slope + 0.5 * curvature * way), curvature
 
 
 def with_flanks(

@@ -12,7 +12,7 @@ from fe_contact.contact.patch import Patches, tip_patches
 from fe_contact.contact.problem import Candidates, LoadedSlices, Slices
 from fe_contact.contact.touch import Touch, conjugate_touch, flank_coordinate, modified_touch
 from fe_contact.geometry import ParallelAxes, Toothing
-from fe_contact.hertz import wedge_softness
+from fe_contact.hertz import lateral_share, wedge_softness
 from fe_contact.types import FloatArray, IntArray
 
 LAW_LENGTH = 0.45
@@ -37,11 +37,14 @@ class PatchRule:
         Least length of the patch at a tip edge, m.
     edge_load : float
         4 p/(pi E*) of the line load p whose strip the patch at a tip edge follows, m.
+    law_length : float
+        Least reference length of the local law, m: that of the widest strip.
     """
 
     half_width: float
     edge_length: float
     edge_load: float = 0.0
+    law_length: float = 0.0
 
     def lengths(self, offset: FloatArray, radius: FloatArray) -> FloatArray:
         """Return the lengths of patches at a tip edge, m: those of the strip, (4) of docs/theory/hertz.md.
@@ -176,18 +179,19 @@ def _loaded_slices(
     module = pair.pinion.normal_module
     patch_1 = _patches(touch.s_1, touch.offset_1, tip_1, shift_1, radius, rule)
     patch_2 = _patches(touch.s_2, touch.offset_2, tip_2, shift_2, radius, rule)
+    bulge_1, bulge_2 = _bulge(pair.pinion, patch_1), _bulge(pair.wheel, patch_2)
     return LoadedSlices(
         pair=np.repeat(index, slices.center.size),
         face_position=np.tile(slices.center, index.size),
         present=np.repeat(meets, slices.center.size, axis=1),
         touch=middle,
-        patch_1=replace(patch_1, count=slices.points),
-        patch_2=replace(patch_2, count=slices.points),
+        patch_1=replace(patch_1, count=slices.points, bulge=bulge_1),
+        patch_2=replace(patch_2, count=slices.points, bulge=bulge_2),
         slice_width=slices.width,
         base_helix_angle=pair.base_helix_angle,
         corner_1=_corner_softness(pair.pinion),
         corner_2=_corner_softness(pair.wheel),
-        law_length=max(rule.half_width, min(LAW_LENGTH * width, LONGEST_LAW * module)),
+        law_length=max(rule.half_width, rule.law_length, min(LAW_LENGTH * width, LONGEST_LAW * module)),
         edge_load=rule.edge_load,
     )
 
@@ -204,6 +208,16 @@ def _patches(
     """Patches of one gear; beside the partner's edge they follow its load towards the own tip."""
     offset = offset - shift
     return tip_patches(s + shift, offset, tip, rule.half_width, rule.lengths(offset, radius))
+
+
+def _bulge(gear: Toothing, patches: Patches) -> FloatArray:
+    """Return what curved flanks under patches add to a half plane, 1/m; see `lateral_share`.
+
+    On the fillet, below the involute, the curvature is that half a patch above its base.
+    """
+    along = np.maximum(np.abs(patches.center), 0.5 * patches.half_width)
+    radius = gear.sign * np.sqrt(2.0 * gear.base_radius * along) / math.cos(gear.base_helix_angle)
+    return lateral_share(gear.material.poissons_ratio) / radius
 
 
 def _corner_softness(gear: Toothing) -> float:

@@ -8,7 +8,8 @@ from typing import Protocol
 
 import numpy as np
 
-from fe_contact.geometry import ParallelAxes
+from fe_contact.flank.extent import Extent
+from fe_contact.geometry import FlankGrid, ParallelAxes
 from fe_contact.types import FloatArray, IntArray
 
 
@@ -61,11 +62,18 @@ class GapTerm(Protocol):
     def only_removes(self) -> bool:
         """Whether it is nowhere below zero."""
 
+    @property
+    def grids(self) -> tuple[FlankGrid | None, FlankGrid | None]:
+        """Surfaces of pinion and wheel that are in it: they may be rough, and have no breaks."""
+
     def breaks(self, pair: ParallelAxes, face: FloatArray) -> tuple[Break, ...]:
         """Return where the gap's slope or curvature along the profile jumps.
 
         At `face`, as many distances (n,) from the pinion's mid-face in m as there are touching points.
         """
+
+    def extent(self, pair: ParallelAxes) -> Extent:
+        """Return bounds of the gap all over the usable flanks."""
 
     def __call__(
         self, pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
@@ -120,6 +128,21 @@ class ToothGap(Protocol):
     @property
     def largest(self) -> float:
         """Bound of the gap in m, of whichever tooth."""
+
+    def extent(self, pair: ParallelAxes, meeting: IntArray) -> Extent:
+        """Return bounds of the gap all over the usable flanks of the teeth that meet, arrays as `meeting`."""
+
+    def tooth(self, meeting: IntArray) -> IntArray:
+        """Return which of its teeth meet, the first is 0."""
+
+    def bend(self, teeth: MeetingTeeth) -> FloatArray:
+        """Return a bound of its curvature along the flanks at touching points, 1/m."""
+
+    def spread(self, meeting: IntArray) -> FloatArray:
+        """Return a bound of highest less lowest gap along the profiles of teeth that meet, m."""
+
+    def nodes(self, pair: ParallelAxes, tooth: int) -> FloatArray:
+        """Return roll lengths in m, between two of which the profile of a tooth turns back once at most."""
 
     def __call__(self, teeth: MeetingTeeth) -> FloatArray:
         """Gap in m, > 0 where material is missing."""
@@ -178,6 +201,13 @@ class ContactModel:
     def gap_of_teeth(self, teeth: MeetingTeeth) -> FloatArray:
         """Sum of the gaps that differ from tooth to tooth, m."""
         return np.asarray(sum((term(teeth) for term in self.tooth_gaps), np.zeros(())))
+
+    def extent(self, pair: ParallelAxes, meeting: IntArray) -> Extent:
+        """Return bounds of all gaps of the pairs of teeth that meet, arrays as `meeting`."""
+        alike = sum((term.extent(pair) for term in self.gaps), Extent())
+        of_teeth = sum((term.extent(pair, meeting) for term in self.tooth_gaps), alike)
+        none = np.zeros(meeting.shape)
+        return of_teeth + Extent(none, none, none)
 
     @property
     def period(self) -> int:

@@ -36,16 +36,23 @@ class Patches:
         Share of the load that is singular at the tip edge, 0 to 1.
     count : int
         Q.
+    bulge : ndarray or float
+        `fe_contact.hertz.lateral_share` of the material times the curvature of the flank, 1/m; 0 of a half
+        plane.
     """
 
     center: FloatArray
     half_width: FloatArray
     edge_share: FloatArray
     count: int = 1
+    bulge: FloatArray | float = 0.0
 
     def rows(self, keep: IntArray) -> Patches:
         """Keep some positions."""
-        return Patches(self.center[keep], self.half_width[keep], self.edge_share[keep], self.count)
+        bulge = np.broadcast_to(self.bulge, self.center.shape)[keep]
+        return Patches(
+            self.center[keep], self.half_width[keep], self.edge_share[keep], self.count, np.asarray(bulge)
+        )
 
     def by_slice(
         self, position: int | IntArray, slices: IntArray
@@ -69,6 +76,7 @@ class Patches:
     def law_width(self) -> FloatArray:
         """Half-width in m of the semi-elliptic patch that moves as much on a half plane under its own weight.
 
+        Normals of a flank turn under the patch, so that it moves by k p `bulge` E|x - y| more.
         With w the density of the patch, u = u(0) - s [phi x + x^2/(2R)] over it, which leaves ln a = ln 2 +
         1/4 + E_w[ln x] + E_w[x^2 - 2 t x]/(c (3c/4 - t)); the moments are those of Beta distributions. It
         equals a at no edge share.
@@ -78,7 +86,15 @@ class Patches:
         first, second = 0.5 - 0.25 * share, 0.3125 - 0.1875 * share
         # t/c = (1/2 - 3/4 share)/(1 - share), multiplied through by 1 - share, zero at a sharp corner
         moments = (second * (1.0 - share) - first * (1.0 - 1.5 * share)) / 0.25
-        return np.exp(math.log(2.0) + 0.25 + logarithm + moments)
+        curved = self.bulge * self.mean_distance
+        return np.asarray(np.exp(math.log(2.0) + 0.25 + logarithm + moments - curved))
+
+    @property
+    def mean_distance(self) -> FloatArray:
+        """Mean distance E|x - y| in m of two points of the load, 0.576 half-widths of a semi-ellipse."""
+        smooth, edge = 1.0 - self.edge_share, self.edge_share
+        parts = 256.0 * smooth**2 + 640.0 * smooth * edge + 240.0 * edge**2
+        return np.asarray(parts * self.half_width / (45.0 * math.pi**2))
 
 
 def tip_patches(

@@ -68,6 +68,28 @@ class Gap(NamedTuple):
     bend: FloatArray
 
 
+@njit(cache=True, error_model="numpy")
+def rounded(gap: Gap, least: FloatArray) -> Gap:
+    """Return gaps whose curvature (n,) is nowhere below `least` in 1/m."""
+    curvature, bend = np.maximum(gap.curvature, least), gap.bend.copy()
+    for i in range(curvature.size):
+        flattest = curvature[i]
+        for k in range(bend.shape[1]):
+            flattest += min(bend[i, k], 0.0)
+        if flattest >= least[i]:
+            continue
+        order = np.argsort(np.abs(gap.place[i]))
+        left, right = curvature[i], curvature[i]
+        for k in order:  # away from the touching point to either side
+            here = right if gap.place[i, k] >= 0.0 else left
+            bend[i, k] = max(bend[i, k], least[i] - here)
+            if gap.place[i, k] >= 0.0:
+                right += bend[i, k]
+            else:
+                left += bend[i, k]
+    return Gap(gap.slope, curvature, gap.low, gap.high, gap.place, gap.jump, bend)
+
+
 _SLOPE, CURVATURE, _LOW, _HIGH, _BREAKS = range(5)
 _PLACE, _JUMP, _BEND, _WIDTH = range(4)
 """Columns of a table of gaps, and of each of its breaks. A loop passes on one array faster than seven."""

@@ -8,8 +8,10 @@ from typing import TypeAlias
 
 import numpy as np
 
+from fe_contact.contact.least_gap import least_gap, samples
 from fe_contact.contact.model import GapTerm
-from fe_contact.contact.strip import Gap
+from fe_contact.contact.rough_flanks import DesignedSurface, DeviatingTeeth
+from fe_contact.contact.strip import Gap, rounded
 from fe_contact.geometry import ParallelAxes, Side, Toothing, corner_contact, edge_gap
 from fe_contact.hertz import relative_radius
 from fe_contact.types import BoolArray, FloatArray, IntArray
@@ -19,29 +21,7 @@ from host.loops import inner, njit
 
 
 @njit(cache=True, error_model="numpy")
-def _rounded(gap: Gap, least: FloatArray) -> Gap:
-    """Return gaps whose curvature (n,) is nowhere below `least` in 1/m."""
-    curvature, bend = np.maximum(gap.curvature, least), gap.bend.copy()
-    for i in range(curvature.size):
-        flattest = curvature[i]
-        for k in range(bend.shape[1]):
-            flattest += min(bend[i, k], 0.0)
-        if flattest >= least[i]:
-            continue
-        order = np.argsort(np.abs(gap.place[i]))
-        left, right = curvature[i], curvature[i]
-        for k in order:  # away from the touching point to either side
-            here = right if gap.place[i, k] >= 0.0 else left
-            bend[i, k] = max(bend[i, k], least[i] - here)
-            if gap.place[i, k] >= 0.0:
-                right += bend[i, k]
-            else:
-                left += bend[i, k]
-    return Gap(gap.slope, curvature, gap.low, gap.high, gap.place, gap.jump, bend)
-
-
-@njit(cache=True, error_model="numpy")
-def _touching_places(gap: Gap, low: FloatArray, high: FloatArray) -> FloatArray:
+def touching_places(gap: Gap, low: FloatArray, high: FloatArray) -> FloatArray:
     """Return where gaps that grow to both sides are least between `low` and `high` (n,), m."""
     touching = np.empty(gap.slope.size)
     for i in range(touching.size):
@@ -101,7 +81,7 @@ def _curvature(gap: Gap, i: int, x: float) -> float:
 
 
 @njit(cache=True, error_model="numpy")
-def _moved_gap(gap: Gap, shift: FloatArray) -> tuple[FloatArray, Gap]:
+def moved_gap(gap: Gap, shift: FloatArray) -> tuple[FloatArray, Gap]:
     """Return the gap (n,) in m at `shift` (n,) in m, and that about there."""
     n, breaks = gap.place.shape
     least, slope, curvature = np.empty(n), np.empty(n), np.empty(n)
@@ -125,18 +105,28 @@ def _moved_gap(gap: Gap, shift: FloatArray) -> tuple[FloatArray, Gap]:
     return least, Gap(slope, curvature, gap.low - shift, gap.high - shift, position, gap.jump, bend)
 
 
-_FLATTEST = 100.0
+_FLAT = 100.0
 _SAMPLES = 17
 _PASSES, _CUT_TIP_PASSES = 2, 4
 """How often the touching point is looked for, from the lowest sample on; where a tip is cut, further off."""
-_STEP = 0.01
+STEP = 0.01
 """Step of differences along the flank over the relative radius: about half a contact strip."""
 _REACH = 0.5
 """How far a touching point may move, over the flanks' lengths from the base circle."""
-_ROUNDEST = 0.25
+FLATTEST = 0.25
 """Least curvature of the gap over that of plain involutes."""
+ALLOWED = 1e-7
+"""What the gap may be above its least value, over the relative radius: 0.5 nm at 5 mm."""
+ROUGH = 0.25
+"""Curvature of deviations over that of plain flanks above which a parabola misses nanometers."""
+_MISSED = 10.0
+"""How far the true gap after a step may be from its parabola, over that: what is left is of higher order."""
+_ALIKE = 1e-4
+"""Distance of samples over the step of differences below which they are one."""
+_AT_ONCE = 8192
+"""Touching points that are followed together: what they take stays in the cache of the processor."""
 _NEAR = 1e-4
-"""Of `_STEP`: step of differences of the exact gap, whose slope is nowhere rounded."""
+"""Of `STEP`: step of differences of the exact gap, whose slope is nowhere rounded."""
 _Arrays: TypeAlias = tuple[FloatArray, ...]
 _SIDES: tuple[Side, Side] = ("exit", "approach")
 """Where the tips of the pinion and of the wheel leave contact."""
@@ -244,12 +234,12 @@ def conjugate_touch(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, 
 
 
 def _relative_radius(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray) -> FloatArray:
-    """Return the relative radius of curvature in m, at most `_FLATTEST` base radii of gear 2.
+    """Return the relative radius of curvature in m, at most `_FLAT` base radii of gear 2.
 
     Off the line of action the edge of a ring gear may meet its pinion where the pinion is the flatter one:
     flanks that part at the edge would close in again further away. There they count as flat.
     """
-    flattest = _FLATTEST * pair.wheel.base_radius
+    flattest = _FLAT * pair.wheel.base_radius
     radius = relative_radius(roll_1, pair.wheel.sign * roll_2)
     return np.where((radius >= 0.0) & (radius <= flattest), radius, flattest)
 
@@ -259,13 +249,21 @@ def flank_coordinate(gear: Toothing, roll: FloatArray | float) -> FloatArray:
     return np.asarray(gear.sign * np.square(roll) / (2.0 * gear.base_radius))
 
 
-def modified_touch(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> Touch:
+def modified_touch(
+    pair: ParallelAxes,
+    touch: Touch,
+    face: FloatArray,
+    gaps: tuple[GapTerm, ...],
+    teeth: DeviatingTeeth | None = None,
+) -> Touch:
     """Touching points of modified flanks, and the gap about them.
 
     Sloping modifications move the touching point off the line of action: over the distance x along the flank
     the gap is x^2/(2R) plus the modifications, and its least value counts. On a relief of slope m' it is less
     than the modification on the line of action by R m'^2/2, some tenths of a micrometer. About the touching
     point of plain involutes the modifications are parabolas, from one break of theirs to the next.
+
+    At a tip edge the lag that closes what is removed exceeds it by the lever arm (`docs/theory/contact.md`).
 
     Parameters
     ----------
@@ -274,41 +272,70 @@ def modified_touch(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tup
     face : ndarray, shape (n,)
         Distance of each candidate from the pinion's mid-face, m.
     gaps : tuple of GapTerm
-        At least one.
+        At least one, or teeth that differ.
+    teeth : DeviatingTeeth or None
+        Gaps that differ from tooth to tooth, of the teeth that meet at each candidate.
     """
     moving = tuple(term for term in gaps if term.along_profile)
     steady = tuple(term for term in gaps if not term.along_profile)
-    moved = _moved(pair, touch, face, moving) if moving else touch
+    moved = _moved(pair, touch, face, moving, teeth) if moving or teeth else touch
+    if moving:
+        moved = replace(moved, gap=moved.gap + _lag_at_edges(pair, moved, face, moving))
     roll_2 = pair.mating_roll_length(touch.roll_1)
-    return replace(moved, gap=moved.gap + sum(term(pair, touch.roll_1, roll_2, face) for term in steady))
+    gap = moved.gap + sum(term(pair, touch.roll_1, roll_2, face) for term in steady)
+    return replace(moved, gap=gap + _lag_at_edges(pair, moved, face, steady) if steady else gap)
 
 
-def _moved(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> Touch:
-    """Move the touching points to where conjugate gap and `gaps` together are least."""
+def _lag_at_edges(
+    pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]
+) -> FloatArray:
+    """Return by how much the lag (P, n) that closes a depth removed at tip edges exceeds that depth, m.
+
+    The edge of a flank is removed along its normal, which the angle between the flanks takes off the normal
+    of the mate; and of a lag of gear 2 its edge closes the part of the lever arm only.
+    """
+    excess = np.zeros(touch.gap.shape)
+    at = np.nonzero(np.isfinite(touch.gap) & ((touch.lever_1 != 1.0) | (touch.lever_2 != 1.0)))
+    roll_1, along = touch.roll_1[at], np.broadcast_to(face, excess.shape)[at]
+    nominal = roll_1, pair.mating_roll_length(roll_1)
+    touching = rolls_at(pair, touch.s_1[at], touch.s_2[at])
+    removed = sum(term(pair, *(touching if term.along_profile else nominal), along) for term in gaps)
+    levers = (pair.pinion, touch.lever_1[at]), (pair.wheel, touch.lever_2[at])
+    angle = sum(_angle_at_edge(gear, lever) for gear, lever in levers)
+    excess[at] = removed * (np.cos(angle) / touch.lever_2[at] - 1.0)
+    return excess
+
+
+def _angle_at_edge(gear: Toothing, lever: FloatArray) -> FloatArray:
+    """Return the angle in rad between the normal of a flank at its tip edge and a force of this lever arm."""
+    arm = gear.base_radius / gear.tip_radius
+    return np.asarray(np.arccos(lever * arm) - np.arccos(arm))
+
+
+def _moved(
+    pair: ParallelAxes,
+    touch: Touch,
+    face: FloatArray,
+    gaps: tuple[GapTerm, ...],
+    teeth: DeviatingTeeth | None,
+) -> Touch:
+    """Move the touching points to where conjugate gap, `gaps` and those of teeth together are least."""
     shape, possible = touch.gap.shape, np.flatnonzero(np.isfinite(touch.gap))
     plain = {name: each.reshape(touch.gap.size, *each.shape[2:]) for name, each in vars(touch).items()}
     here = Touch(**{name: values[possible] for name, values in plain.items()})
-    flanks = _Flanks(pair, here, np.broadcast_to(face, shape).ravel()[possible], gaps)
-    shift, now = flanks.lowest_sample()
-    of: IntArray = np.arange(now.size)
-    found: _Arrays = ()
-    step: FloatArray = np.zeros(0)
-    for _ in range(_CUT_TIP_PASSES if flanks.cut_tips else _PASSES):
-        if found:  # where there was no step, the next is none either
-            on = np.flatnonzero(step)
-            flanks, of = flanks.some(on), of[on]
-        x = shift[of]
-        about = flanks.about(x)
-        step = _touching_places(about, flanks.first - x, flanks.last - x)
-        # bumps of a measured flank are no parabolas: the step must lead down, unless it is next to nothing
-        ahead = flanks.gap(x + step)
-        down = (ahead <= now[of]) | (np.abs(step) < 1e-3 * flanks.step)
-        step = np.where(down, step, 0.0)
-        least, beside = _moved_gap(about, step)
-        found = _replaced(found, of, (now[of] + least, *beside))
-        shift[of], now[of] = x + step, np.where(down, ahead, now[of])
-    moved = {"s_1": here.s_1 + shift, "s_2": here.s_2 - shift, "gap": here.gap + found[0], "moved": shift}
-    moved |= Gap(*found[1:])._asdict()
+    faces = np.broadcast_to(face, shape).ravel()[possible]
+    if teeth is not None:
+        teeth = teeth._replace(meeting=np.broadcast_to(teeth.meeting, shape).ravel()[possible])
+    surfaces = tuple(
+        DesignedSurface.of(pair, gear, grid)
+        for term in gaps
+        for gear, grid in enumerate(term.grids)
+        if grid is not None
+    )
+    flanks = _Flanks(pair, here, faces, gaps, teeth, surfaces)
+    shift, now, about = _touching(flanks)
+    moved = {"s_1": here.s_1 + shift, "s_2": here.s_2 - shift, "gap": here.gap + now, "moved": shift}
+    moved |= about._asdict()
     result = {}
     for name, values in moved.items():
         alike = plain[name].shape[1:] == values.shape[1:]
@@ -316,6 +343,59 @@ def _moved(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTe
         every[possible] = values
         result[name] = every.reshape(*shape, *values.shape[1:])
     return replace(touch, **result)
+
+
+def _touching(flanks: _Flanks) -> tuple[FloatArray, FloatArray, Gap]:
+    """Return where flanks touch (n,), the true gap there in m, and the gap about there.
+
+    Gaps of few parabolas are solved from the lowest of a few samples on. Where the flanks are rougher than
+    they are round, or the true gap is not what the parabolas say, it is followed downwards from many samples.
+    """
+    sharp = flanks.sharp
+    shift, now, poor, about = _by_parabolas(
+        flanks if not sharp.any() else flanks.some(np.flatnonzero(~sharp))
+    )
+    if not sharp.any() and not poor.any():
+        return shift, now, about
+    whole: _Arrays = (shift, now, *about)
+    if sharp.any():
+        every = tuple(np.zeros((sharp.size, *values.shape[1:])) for values in whole)
+        whole = _replaced(every, np.flatnonzero(~sharp), whole)
+        rough = sharp.copy()
+        rough[~sharp] = poor
+    else:
+        rough = poor
+    at = np.flatnonzero(rough)
+    for part in np.array_split(at, at.size // _AT_ONCE + 1):
+        near = flanks.some(part)
+        place, least = near.least(whole[0][part])
+        _, beside = moved_gap(near.about(place), np.zeros(part.size))
+        whole = _replaced(whole, part, (place, least, *beside))
+    return whole[0], whole[1], Gap(*whole[2:])
+
+
+def _by_parabolas(flanks: _Flanks) -> tuple[FloatArray, FloatArray, BoolArray, Gap]:
+    """Return touching points of gaps made of parabolas, the true gap there, where it is poor, that about."""
+    shift, now = flanks.lowest_sample()
+    of: IntArray = np.arange(now.size)
+    poor, found = np.zeros(now.size, dtype=bool), ()  # type: BoolArray, _Arrays
+    step: FloatArray = np.zeros(0)
+    for _ in range(_CUT_TIP_PASSES if flanks.cut_tips else _PASSES):
+        if found:  # where there was no step, the next is none either
+            on = np.flatnonzero(step)
+            flanks, of = flanks.some(on), of[on]
+        x = shift[of]
+        about = flanks.about(x)
+        step = touching_places(about, flanks.first - x, flanks.last - x)
+        # bumps of a measured flank are no parabolas: the step must lead down, unless it is next to nothing
+        ahead = flanks.gap(x + step)
+        down = (ahead <= now[of]) | (np.abs(step) < 1e-3 * flanks.step)
+        step = np.where(down, step, 0.0)
+        least, beside = moved_gap(about, step)
+        found = _replaced(found, of, tuple(beside))
+        poor[of] = ~down | (np.abs(now[of] + least - ahead) > _MISSED * flanks.allowed)
+        shift[of], now[of] = x + step, np.where(down, ahead, now[of])
+    return shift, now, poor, Gap(*found)
 
 
 def _replaced(whole: _Arrays, of: IntArray, some: _Arrays) -> _Arrays:
@@ -330,8 +410,17 @@ def _replaced(whole: _Arrays, of: IntArray, some: _Arrays) -> _Arrays:
 class _Flanks:
     """Gaps over the conjugate ones of n touching points, functions of the way x (n,) in m along the flank."""
 
-    def __init__(self, pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> None:
+    def __init__(
+        self,
+        pair: ParallelAxes,
+        touch: Touch,
+        face: FloatArray,
+        gaps: tuple[GapTerm, ...],
+        teeth: DeviatingTeeth | None,
+        surfaces: tuple[DesignedSurface, ...],
+    ) -> None:
         self._pair, self._touch, self._face, self._gaps = pair, touch, face, gaps
+        self._teeth, self._surfaces = teeth, surfaces
         self._breaks = [each for term in gaps for each in term.breaks(pair, face)]
         cut = {_SIDES[each.gear] for each in self._breaks if each.ends_flank}
         self.cut_tips = [side for side in _SIDES if side in cut]
@@ -339,17 +428,85 @@ class _Flanks:
         inwards = np.minimum(touch.s_1, np.where(touch.s_2 < 0.0, -touch.s_2, np.inf))
         self.first = np.maximum(touch.low, -_REACH * inwards)
         self.last = np.minimum(touch.high, np.where(touch.s_2 < 0.0, np.inf, _REACH * touch.s_2))
-        self.step = np.minimum(_STEP / touch.curvature, 0.2 * (self.last - self.first))
+        self.step = np.minimum(STEP / touch.curvature, 0.2 * (self.last - self.first))
+        self.allowed = ALLOWED / touch.curvature
         self._tilt = {side: self._beside(side) for side in self.cut_tips}
 
     def some(self, of: IntArray) -> _Flanks:
         """Return some of the touching points."""
-        return _Flanks(self._pair, self._touch.rows(of), self._face[of], self._gaps)
+        teeth = None if self._teeth is None else self._teeth.some(of)
+        return _Flanks(self._pair, self._touch.rows(of), self._face[of], self._gaps, teeth, self._surfaces)
 
     def gap(self, x: FloatArray) -> FloatArray:
         """Return the gap at x, m."""
         excess = sum(self._excess(side, x) for side in self.cut_tips)
         return np.asarray(self._plain(x) + self._removed(x) + excess)
+
+    def gap_of(self, x: FloatArray, of: IntArray) -> FloatArray:
+        """Return the gap in m at ways x (k,) of some of the touching points (k,)."""
+        if self.cut_tips:
+            return self.some(of).gap(x)
+        touch = self._touch
+        return x * (touch.slope[of] + 0.5 * touch.curvature[of] * x) + self._removed(x, of)
+
+    @property
+    def sharp(self) -> BoolArray:
+        """Where the flanks may be nearly as hollow as they are round, or more: they may touch elsewhere."""
+        touch = self._touch
+        if not self._surfaces and self._teeth is None:
+            return np.zeros(touch.s_1.size, dtype=bool)
+        rolls = rolls_at(self._pair, touch.s_1, touch.s_2)
+        bend = sum((each.bend(self._pair, rolls) for each in self._surfaces), np.zeros(touch.s_1.size))
+        if self._teeth is not None:
+            bend = bend + self._teeth.bend(self._pair, rolls, self._face)
+        return np.asarray(bend > ROUGH * touch.curvature)
+
+    def least(self, start: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return where the gap is least (n,), and the gap there, m; `start`: where it is low.
+
+        Off the window the conjugate gap is larger than all that the deviations can fall.
+        """
+        touch, fall = self._touch, self._largest_fall()
+        steepness = np.abs(touch.slope)
+        reach = (np.sqrt(steepness**2 + 2.0 * touch.curvature * fall) - steepness) / touch.curvature
+        reach = np.maximum(1.1 * reach, self.step)  # a valley at its end has samples to either side
+        low, high = np.maximum(self.first, -reach), np.minimum(self.last, reach)
+        even = low + (high - low) * np.linspace(0.0, 1.0, _SAMPLES)[:, None]
+        every: IntArray = np.arange(start.size)
+        parts = [(each, every) for each in (*even, np.clip(start, low, high))]
+        parts += self._nodes_within(low, high)
+        x, of = (np.concatenate(each) for each in zip(*parts, strict=True))
+        order = np.lexsort((x, of))
+        x, of = x[order], of[order]
+        new = np.append(True, (np.diff(of) > 0) | (np.diff(x) > _ALIKE * self.step[of[1:]]))
+        return least_gap(self.gap_of, x[new], of[new], self.allowed)
+
+    def _largest_fall(self) -> FloatArray:
+        """Return a bound of how much less may be removed within the reach than at the touching points, m."""
+        fall = np.full(self.step.size, sum(each.spread for each in self._surfaces))
+        if self._teeth is not None:
+            fall = fall + self._teeth.spread
+        if self._gaps:
+            part = np.linspace(0.0, 1.0, _SAMPLES)[:, None]
+            samples = self._designed(self.first + (self.last - self.first) * part)
+            fall = fall + np.maximum(self._designed(np.zeros(fall.size)) - samples.min(axis=0), 0.0)
+        return fall
+
+    def _nodes_within(self, low: FloatArray, high: FloatArray) -> list[tuple[FloatArray, IntArray]]:
+        """Return ways to the nodes of all gaps between `low` and `high`, and of which touching points."""
+        touch, pair = self._touch, self._pair
+        every: IntArray = np.arange(low.size)
+        sets = [(each.gear, every, each.nodes) for each in self._surfaces]
+        sets += [] if self._teeth is None else self._teeth.nodes(pair)
+        parts = []
+        for gear, of, nodes in sets:
+            s = np.sort(flank_coordinate((pair.pinion, pair.wheel)[gear], nodes))
+            if gear == 0:
+                x, each = samples(s, touch.s_1[of], (low[of], high[of]))
+            else:
+                x, each = samples(-s[::-1], -touch.s_2[of], (low[of], high[of]))
+            parts.append((x, of[each]))
+        return parts
 
     def lowest_sample(self) -> tuple[FloatArray, FloatArray]:
         """Return where the gap is least among samples all over the reach and at 0, and the gap there, m.
@@ -359,7 +516,8 @@ class _Flanks:
         """
         lowest = np.zeros(self.step.size)
         least = self.gap(lowest)
-        bounded = not self.cut_tips and all(term.only_removes for term in self._gaps)
+        alike = self._teeth is None
+        bounded = alike and not self.cut_tips and all(term.only_removes for term in self._gaps)
         may = np.flatnonzero(least > 0.0) if bounded else np.arange(lowest.size)
         part, near = np.linspace(0.0, 1.0, _SAMPLES)[:, None], self.some(may)
         x = near.first + (near.last - near.first) * part
@@ -401,7 +559,7 @@ class _Flanks:
             bends[:, k] = np.where(inside, -each.bend, each.bend)
         ends = touch.low - x, touch.high - x
         # flanks hollowed out more than they are round would touch at several places
-        return _rounded(Gap(slope, curvature, *ends, position, jump, bends), _ROUNDEST * touch.curvature)
+        return rounded(Gap(slope, curvature, *ends, position, jump, bends), FLATTEST * touch.curvature)
 
     def _plain(self, x: FloatArray) -> FloatArray:
         """Return the gap of plain flanks at x, m."""
@@ -409,8 +567,18 @@ class _Flanks:
 
     def _removed(self, x: FloatArray, of: IntArray | slice = slice(None)) -> FloatArray:
         """Return what is removed at x, m, of some of the touching points."""
+        removed = self._designed(x, of)
+        if self._teeth is not None:
+            rolls = rolls_at(self._pair, self._touch.s_1[of] + x, self._touch.s_2[of] - x)
+            removed = removed + self._teeth.some(of).gap(self._pair, rolls, self._face[of])
+        return removed
+
+    def _designed(self, x: FloatArray, of: IntArray | slice = slice(None)) -> FloatArray:
+        """Return the part of it that all teeth have in common."""
         rolls = rolls_at(self._pair, self._touch.s_1[of] + x, self._touch.s_2[of] - x)
-        return np.asarray(sum(term(self._pair, *rolls, self._face[of]) for term in self._gaps))
+        return np.asarray(
+            sum((term(self._pair, *rolls, self._face[of]) for term in self._gaps), np.zeros(()))
+        )
 
     def _excess(self, side: Side, x: FloatArray) -> FloatArray:
         """Return how much further apart than their parabola plain flanks are behind a cut tip, m.
@@ -442,7 +610,7 @@ class _Flanks:
 
     def _behind(self, side: Side, x: FloatArray) -> BoolArray:
         """Return where x is to the root of the gear whose tip leaves on that side, on round flanks."""
-        flattest = _FLATTEST * self._pair.wheel.base_radius
+        flattest = _FLAT * self._pair.wheel.base_radius
         return np.asarray((x < 0.0 if side == "exit" else x > 0.0) & (self._touch.radius < flattest))
 
 

@@ -10,9 +10,13 @@ import numpy as np
 
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects.effect import ContactScene, Effect, Verdict
-from fe_contact.geometry import ParallelAxes, Toothing
+from fe_contact.flank.extent import Extent
+from fe_contact.geometry import ParallelAxes, Toothing, blank_factor
+from fe_contact.geometry.iso6336_stiffness import modulus_ratio
 from fe_contact.hertz import relative_radius
 
+_STEEL_STIFFNESS = 14e9
+"""N/m per m of face: about the single stiffness of steel teeth on solid bodies after ISO 6336."""
 _ALONG_EDGE = 33
 _ALONG_FLANK = 401
 
@@ -48,6 +52,10 @@ class CornerContact(Effect):
         """Let tip edges touch."""
         return replace(model, corner_contact=True)
 
+    def extent(self, scene: ContactScene) -> Extent:
+        """Return how far deflections exceed the gaps at the tip edges: so much more the gears give way."""
+        return Extent(0.0, max(_largest_deflection(scene) - _least_tip_gap(scene.pair), 0.0))
+
     def without(self, scene: ContactScene) -> ContactScene:
         """Return the scene itself: nothing in it stands for the effect alone."""
         return scene
@@ -80,6 +88,12 @@ def _gap_at_tip(gear: Toothing, radius: float) -> float:
 
 
 def _largest_deflection(scene: ContactScene) -> float:
-    """Rough upper deflection in m: line load over 14 N/(mm um), about the stiffness of ISO 6336."""
-    width = min(scene.pair.pinion.face_width, scene.pair.wheel.face_width)
-    return float(scene.torque.max()) / scene.pair.pinion.base_radius / width / 14e9
+    """Return the deflection in m of one pair under the whole load, by the stiffness after ISO 6336.
+
+    That of the pair's moduli, and of its bodies where they are rims on webs.
+    """
+    pair = scene.pair
+    body = 0.5 * (blank_factor(pair.pinion) + blank_factor(pair.wheel))
+    stiffness = _STEEL_STIFFNESS * body * modulus_ratio(pair)
+    width = min(pair.pinion.face_width, pair.wheel.face_width)
+    return float(scene.torque.max()) / pair.pinion.base_radius / width / stiffness

@@ -14,6 +14,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fe_contact.contact.model import ContactModel
+from fe_contact.flank.extent import Extent
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.types import FloatArray
 
@@ -125,6 +126,20 @@ class Effect:
         None: a tolerance does not neglect it; it costs nothing, or its influence is estimated coarsely.
         """
         return None
+
+    def extent(self, scene: ContactScene) -> Extent:
+        """Return bounds of what leaving it out changes of the transmission error anywhere, by its gaps.
+
+        Gaps shift the transmission error by no more than their bounds, at single places too, which a sample
+        may pass by. Without gaps it acts everywhere alike: no bounds beside the estimate.
+        """
+        model = self.contribute(scene, ContactModel())
+        extent = sum((term.extent(scene.pair) for term in model.gaps), Extent())
+        for term in model.tooth_gaps:
+            teeth = np.arange((scene.pair.pinion, scene.pair.wheel)[term.gear].teeth)
+            gaps = term.extent(scene.pair, teeth)
+            extent += Extent(float(np.min(gaps.low)), float(np.max(gaps.high)))
+        return extent
 
     def estimable(self, scene: ContactScene) -> bool:
         """Whether springs for teeth can tell its influence."""

@@ -8,7 +8,8 @@ from typing import ClassVar
 from fe_contact.contact import Break, flank_coordinate
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects.effect import ContactScene, Effect, Verdict
-from fe_contact.geometry import FlankModification, ParallelAxes
+from fe_contact.flank.extent import Extent, modification_extent
+from fe_contact.geometry import FlankGrid, FlankModification, ParallelAxes
 from fe_contact.types import FloatArray
 
 
@@ -34,6 +35,17 @@ class ModificationGap:
     def only_removes(self) -> bool:
         """Whether neither flank has material added anywhere."""
         return self.pinion.only_removes and self.wheel.only_removes
+
+    @property
+    def grids(self) -> tuple[FlankGrid | None, FlankGrid | None]:
+        """The free-form surfaces of both flanks."""
+        return self.pinion.flank_grid, self.wheel.flank_grid
+
+    def extent(self, pair: ParallelAxes) -> Extent:
+        """Sum of the bounds of both flanks."""
+        return modification_extent(
+            self.pinion, pair.pinion, pair.pinion.tip_form_roll_length
+        ) + modification_extent(self.wheel, pair.wheel, pair.wheel.tip_form_roll_length)
 
     def breaks(self, pair: ParallelAxes, face: FloatArray) -> tuple[Break, ...]:
         """Roll lengths at which reliefs and the edges of rounded or chamfered tips begin on either flank."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -9,7 +10,9 @@ import numpy as np
 
 from fe_contact.contact.model import Break, ContactModel
 from fe_contact.effects.effect import ContactScene, Effect, Verdict
+from fe_contact.flank.extent import Extent
 from fe_contact.geometry import ParallelAxes
+from fe_contact.hertz import relative_radius
 from fe_contact.types import FloatArray
 
 
@@ -24,6 +27,7 @@ class MisalignmentGap:
     growth: float
     along_profile: ClassVar[bool] = False
     only_removes: ClassVar[bool] = False
+    grids: ClassVar[tuple[None, None]] = (None, None)
 
     def breaks(self, pair: ParallelAxes, face: FloatArray) -> tuple[Break, ...]:
         """None: it stays the same as a touching point moves along the profile, across the plane of action."""
@@ -36,12 +40,37 @@ class MisalignmentGap:
         arm = pair.tilt_arm(roll_1, face) - pair.common_face_center
         return np.asarray(self.growth * arm / pair.face_width)
 
+    def extent(self, pair: ParallelAxes) -> Extent:
+        """Largest gap to either side; with the helix it grows along the line of action.
+
+        Beyond the ends of the path of contact it gains on the gap of a tip edge, x^2/(2 R'), by slope^2 R'/2
+        at most; twice that is allowed, as the edge parts a little slower.
+        """
+        slope = abs(self.growth * math.tan(pair.base_helix_angle)) / pair.face_width
+        reach = self.reach(pair) + slope**2 * max(_edge_radii(pair))
+        return Extent(-reach, reach, slope)
+
     def reach(self, pair: ParallelAxes) -> float:
         """Largest gap in size on the path of contact, m."""
         path = pair.path_of_contact
         ends = pair.common_face_center + 0.5 * pair.face_width * np.array([[-1.0], [1.0]])
         rolls = np.array([path.start, path.end])
         return float(np.abs(self(pair, rolls, rolls, ends)).max())
+
+
+def _edge_radii(pair: ParallelAxes) -> tuple[float, float]:
+    """Return R' of the gaps of both tip edges over the overshoot x along the line of action, m.
+
+    The edge stands off by the arc l x/r_b of its flank, on flanks of the relative radius R.
+    """
+    path = pair.path_of_contact
+    ends = (path.end, pair.pinion), (path.start, pair.wheel)
+    radii = []
+    for roll_1, gear in ends:
+        roll_2 = float(pair.mating_roll_length(roll_1))
+        radius = abs(float(relative_radius(roll_1, pair.wheel.sign * roll_2)))
+        radii.append(radius * (gear.base_radius / (roll_1 if gear is pair.pinion else roll_2)) ** 2)
+    return radii[0], radii[1]
 
 
 @dataclass(frozen=True)
@@ -73,6 +102,10 @@ class Misalignment(Effect):
     def across_face(self, scene: ContactScene) -> str | None:
         """Say so where there is any."""
         return "misalignment" if np.any(scene.misalignment != 0.0) else None
+
+    def extent(self, scene: ContactScene) -> Extent:
+        """Return the extent of the largest misalignment."""
+        return MisalignmentGap(scene.largest_misalignment).extent(scene.pair)
 
     def without(self, scene: ContactScene) -> ContactScene:
         """Return the scene with aligned gears."""

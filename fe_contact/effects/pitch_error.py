@@ -10,8 +10,9 @@ import numpy as np
 
 from fe_contact.contact.model import ContactModel, MeetingTeeth
 from fe_contact.effects.effect import ContactScene, Effect, Verdict
-from fe_contact.geometry import PitchDeviation
-from fe_contact.types import FloatArray
+from fe_contact.flank.extent import Extent
+from fe_contact.geometry import ParallelAxes, PitchDeviation
+from fe_contact.types import FloatArray, IntArray
 
 
 @dataclass(frozen=True)
@@ -31,9 +32,30 @@ class _PitchGap:
         """Bound of the gap, m."""
         return max(self.teeth)
 
+    def extent(self, pair: ParallelAxes, meeting: IntArray) -> Extent:
+        """Return the gap itself: it is the same all over a flank."""
+        gap = np.array(self.teeth)[self.tooth(meeting)]
+        return Extent(gap, gap)
+
     def __call__(self, teeth: MeetingTeeth) -> FloatArray:
         """Return the gap of the tooth that meets, m: the same all over a flank."""
-        return np.array(self.teeth)[teeth.meeting % self.period % len(self.teeth)]
+        return np.array(self.teeth)[self.tooth(teeth.meeting)]
+
+    def tooth(self, meeting: IntArray) -> IntArray:
+        """Return which teeth meet, the first is 0."""
+        return meeting % self.period % len(self.teeth)
+
+    def bend(self, teeth: MeetingTeeth) -> FloatArray:
+        """Return zeros: the gap is the same all over a flank."""
+        return np.zeros(teeth.meeting.shape)
+
+    def spread(self, meeting: IntArray) -> FloatArray:
+        """Return zeros, see `bend`."""
+        return np.zeros(meeting.shape)
+
+    def nodes(self, _pair: ParallelAxes, _tooth: int) -> FloatArray:
+        """Return none, see `bend`."""
+        return np.zeros(0)
 
 
 @dataclass(frozen=True)

@@ -8,67 +8,17 @@ from typing import ClassVar
 
 import numpy as np
 
-from fe_contact.contact.model import ContactModel, MeetingTeeth
+from fe_contact.contact.model import ContactModel
+from fe_contact.contact.touch import STEP
 from fe_contact.effects.effect import ContactScene, Effect, Verdict
+from fe_contact.effects.turning_gap import TurningGap
 from fe_contact.errors import InputError
 from fe_contact.geometry import (
     NO_RUN_OUT,
     ParallelAxes,
-    RunOut,
-    ToothFlank,
     Toothing,
-    Wave,
     deviations_period,
-    flanks_excess,
 )
-from fe_contact.types import FloatArray
-
-
-@dataclass(frozen=True)
-class _TurningGap:
-    """Gap along the line of action by what turns with one gear, m.
-
-    Attributes
-    ----------
-    gear : int
-        0 is the pinion, 1 the wheel.
-    period : int
-        Base pitches after which it is taken to repeat.
-    """
-
-    gear: int
-    run_out: RunOut
-    waves: tuple[Wave, ...]
-    flanks: tuple[ToothFlank, ...]
-    period: int
-
-    @property
-    def largest(self) -> float:
-        """Bound of the gap, m."""
-        waves = sum(wave.amplitude for wave in self.waves)
-        flanks = max((flank.largest for flank in self.flanks), default=0.0)
-        return self.run_out.eccentricity + 0.5 * self.run_out.wobble + waves + flanks
-
-    def __call__(self, teeth: MeetingTeeth) -> FloatArray:
-        """Return the gap of pairs of teeth at touching points: that of the gear turned until they touch."""
-        pair = teeth.pair
-        own = (pair.pinion, pair.wheel)[self.gear]
-        lead = math.tan(pair.base_helix_angle) / own.base_radius  # the gear turns so far per m of face
-        at_pitch_point = pair.path_of_contact.pitch_point
-        if self.gear == 0:
-            roll, rolled, face = teeth.roll_1, teeth.roll_1 - at_pitch_point, teeth.face
-        else:
-            way = teeth.roll_2 - pair.mating_roll_length(at_pitch_point)
-            roll, rolled, face = teeth.roll_2, -own.sign * way, teeth.face - pair.axial_offset
-        tooth = teeth.meeting % self.period
-        turn = 2.0 * math.pi / own.teeth * tooth + rolled / own.base_radius + teeth.face * lead
-        along = face / own.face_width
-        excess = self.run_out.excess(turn, along)
-        for wave in self.waves:
-            excess = excess + wave.excess(turn, along, lead * own.face_width)
-        if self.flanks:
-            excess = excess + flanks_excess(own, self.flanks, tooth % own.teeth, roll, face)
-        return np.asarray(-excess)
 
 
 @dataclass(frozen=True)
@@ -92,7 +42,7 @@ class ToothDeviations(Effect):
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Add the gap of each gear that has any."""
         gaps = tuple(
-            _TurningGap(index, gear.run_out, gear.waves, gear.tooth_flanks, _period(scene))
+            TurningGap.of(index, gear, _period(scene))
             for index, gear in enumerate(scene.gears.values())
             if gear.deviates
         )
@@ -117,7 +67,8 @@ class ToothDeviations(Effect):
 def sharpest_crest(pair: ParallelAxes) -> float:
     """Return the largest curvature of waves and forms of both gears over that of the plain flanks.
 
-    At the ends of the path of contact, the crests of all of them together. At 1 a trough fits the mate.
+    At the ends of the path of contact, the crests of all of them together; of measured surfaces, over the
+    length of a contact strip at any place of it. At 1 a trough fits the mate.
     """
     path = pair.path_of_contact
     roll_1 = np.array([path.start, path.end])
@@ -126,7 +77,30 @@ def sharpest_crest(pair: ParallelAxes) -> float:
         (sum(wave.amplitude * wave.order**2 for wave in gear.waves) + _hollow(gear)) / np.square(roll)
         for gear, roll in zip((pair.pinion, pair.wheel), rolls, strict=True)
     )
-    return float(np.max(sum(waves) / pair.relative_curvature(roll_1)))
+    surfaces = sum(_hollow_surface(pair, index) for index in (0, 1))
+    return float(np.max(sum(waves) / pair.relative_curvature(roll_1))) + surfaces
+
+
+_PLACES = 513
+"""Places of the path of contact at which surfaces are looked at."""
+
+
+def _hollow_surface(pair: ParallelAxes, index: int) -> float:
+    """Return how hollow surfaces of single teeth of a gear are over a strip, over the flanks' curvature."""
+    gear = (pair.pinion, pair.wheel)[index]
+    roll_1 = np.linspace(pair.path_of_contact.start, pair.path_of_contact.end, _PLACES)
+    roll = roll_1 if index == 0 else pair.mating_roll_length(roll_1)
+    curvature = pair.relative_curvature(roll_1)
+    strip = STEP / curvature
+    squares = (roll**2 + 2.0 * gear.base_radius * way for way in (-strip, 0.0 * strip, strip))
+    inner, outer = sorted((gear.form_roll_length, gear.tip_roll_length))
+    rolls = np.clip(np.sqrt(np.maximum(list(squares), 0.0)), inner, outer)
+    middle, deepest = np.zeros(rolls.shape), 0.0
+    for flank in gear.tooth_flanks:
+        if flank.flank_grid is not None:
+            before, here, after = flank.flank_grid.material_removed(rolls, middle)
+            deepest = max(deepest, float(np.max((2.0 * here - before - after) / (strip**2 * curvature))))
+    return deepest
 
 
 def _hollow(gear: Toothing) -> float:

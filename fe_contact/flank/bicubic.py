@@ -22,22 +22,37 @@ def _hermite(axis: FloatArray, at: float, weight: FloatArray) -> int:
     return int(cell)
 
 
+@inner()
+def bicubic_at(
+    axes: tuple[FloatArray, FloatArray],
+    nodes: FloatArray,
+    roll: float,
+    face: float,
+    across: FloatArray,
+    along: FloatArray,
+) -> float:
+    """Interpolate at a point; `nodes` (4, m n) row by row, `across` and `along` (4,) are scratch."""
+    i, j = _hermite(axes[0], roll, across), _hermite(axes[1], face, along)
+    value = 0.0
+    for a in range(2):
+        for b in range(2):
+            at = (i + a) * axes[1].size + j + b
+            value += (
+                across[a] * along[b] * nodes[0, at]
+                + across[2 + a] * along[b] * nodes[1, at]
+                + across[a] * along[2 + b] * nodes[2, at]
+                + across[2 + a] * along[2 + b] * nodes[3, at]
+            )
+    return value
+
+
 @njit(cache=True)
 def bicubic(
     roll_axis: FloatArray, face_axis: FloatArray, nodes: FloatArray, roll: FloatArray, face: FloatArray
 ) -> FloatArray:
-    """Bicubic Hermite interpolation at points (k,)."""
-    values = np.zeros(roll.size)
+    """Bicubic Hermite interpolation at points (k,); `nodes` (4, m n) row by row."""
+    values = np.empty(roll.size)
     across, along = np.zeros(4), np.zeros(4)
     for k in range(roll.size):
-        i = _hermite(roll_axis, roll[k], across)
-        j = _hermite(face_axis, face[k], along)
-        for a in range(2):
-            for b in range(2):
-                values[k] += (
-                    across[a] * along[b] * nodes[0, i + a, j + b]
-                    + across[2 + a] * along[b] * nodes[1, i + a, j + b]
-                    + across[a] * along[2 + b] * nodes[2, i + a, j + b]
-                    + across[2 + a] * along[2 + b] * nodes[3, i + a, j + b]
-                )
+        values[k] = bicubic_at((roll_axis, face_axis), nodes, roll[k], face[k], across, along)
     return values

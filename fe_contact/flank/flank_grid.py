@@ -10,6 +10,7 @@ import numpy as np
 
 from bounds import SiNote
 from fe_contact.errors import InputError, increasing, within
+from fe_contact.flank.extent import Extent
 from fe_contact.types import FloatArray
 
 _LARGEST = 0.01  # m; catches micrometers given as meters
@@ -19,6 +20,8 @@ _CONFIRMING = 4
 """Neighboring second differences that confirm a curvature; beside a border of five nodes three."""
 _MOST_UNLIKE = 3.0
 """Their ratio: 1 of a parabola; a flat between two reliefs has several times the curvature beside it."""
+_STEEPEST = 3.0
+"""Bound of the slope of a monotone cubic over that of its chord."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +73,7 @@ class FlankGrid:
 
     def _refuse_invented(self) -> None:
         """Refuse nodes between which the surface invents material."""
-        beyond = _beyond(self._nodes, np.array(self.roll_length), np.array(self.face_position))
+        beyond = _beyond(self.nodes, np.array(self.roll_length), np.array(self.face_position))
         i, j = np.unravel_index(beyond.argmax(), beyond.shape)
         if beyond[i, j] > LARGEST_INVENTION:
             value = f"{1e6 * beyond[i, j]:.3g} µm beyond the nodes around it"
@@ -93,11 +96,27 @@ class FlankGrid:
         from fe_contact.flank.bicubic import bicubic  # noqa: PLC0415 (loads the compiler)
 
         flat = (np.ascontiguousarray(axis, dtype=float).ravel() for axis in (roll_length, face_position))
-        removed = bicubic(np.array(self.roll_length), np.array(self.face_position), self._nodes, *flat)
+        removed = bicubic(
+            np.array(self.roll_length), np.array(self.face_position), self.nodes.reshape(4, -1), *flat
+        )
         return np.asarray(removed.reshape(roll_length.shape))
 
     @cached_property
-    def _nodes(self) -> FloatArray:
+    def extent(self) -> Extent:
+        """Bounds of the material removed, in m, and of its slope over the roll length.
+
+        Between nodes the surface leaves them by no more than it is allowed to, and is at most three times as
+        steep as the chord: it would turn back.
+        """
+        values, axes = np.array(self.removed), (np.array(self.roll_length), np.array(self.face_position))
+        heights = (float(np.max(_sagitta(values, axis, i))) for i, axis in enumerate(axes))
+        between = 0.0 if self.neutral else LARGEST_INVENTION + sum(heights)
+        chord = np.abs(np.diff(values, axis=0)) / np.diff(axes[0])[:, None]
+        low, high = float(values.min()) - between, float(values.max()) + between
+        return Extent(low, high, _STEEPEST * float(chord.max()))
+
+    @cached_property
+    def nodes(self) -> FloatArray:
         """Value, slope along the profile, along the face, and mixed slope at the nodes, (4, m, n)."""
         value, roll, face = np.array(self.removed), np.array(self.roll_length), np.array(self.face_position)
         along_roll, along_face = _slope(value, roll, 0), _slope(value, face, 1)

@@ -174,7 +174,7 @@ class _FreeForm(FlankPart):
 
 
 def check_reach(grid: FlankGrid, gear: Tooth) -> None:
-    """Refuse a grid an axis of which lies beside the flank: a wrong unit or origin."""
+    """Refuse a grid beside the flank, or deeper than half the module: a wrong unit or origin."""
     half = 0.5 * gear.face_width
     for axis, (low, high) in {"roll_length": involute(gear), "face_position": (-half, half)}.items():
         nodes = getattr(grid, axis)
@@ -183,6 +183,12 @@ def check_reach(grid: FlankGrid, gear: Tooth) -> None:
             bound = Text.of("a range that reaches into the flank, which spans ", *ends)
             advice = "Is the unit or the origin another one?"
             raise InputError(f"flank_grid.{axis}", [nodes[0], nodes[-1]], bound, advice)
+    removed, largest = np.array(grid.removed), 0.5 * gear.normal_module
+    i, j = np.unravel_index(np.abs(removed).argmax(), removed.shape)
+    if abs(removed[i, j]) > largest:
+        bound = Text.of("at most half the module in size, ", Quantity(largest, "m", digits=6))
+        advice = "Is the unit another one, or is the point beside the tooth?"
+        raise InputError(f"flank_grid.removed[{i}][{j}]", float(removed[i, j]), bound, advice)
 
 
 class OverFlank(

@@ -16,6 +16,52 @@ NOTHING = float("nan")
 
 
 @dataclass(frozen=True)
+class LineLoad:
+    """Load of a pair of teeth along the face, linear between stations.
+
+    Attributes
+    ----------
+    ahead : int
+        Pair index.
+    face_position : (k,) array
+        From mid-face, m.
+    load : (k,) array
+        Normal force per length of contact line, N/m.
+    """
+
+    ahead: int
+    face_position: FloatArray
+    load: FloatArray
+
+    def largest_mean(self, length: float) -> float:
+        """Return the largest mean over a length of the face within the stations, N/m."""
+        face = np.linspace(self.face_position[0], self.face_position[-1], _SAMPLES)
+        load = np.interp(face, self.face_position, self.load)
+        force = np.concatenate([[0.0], np.cumsum(0.5 * (load[1:] + load[:-1]) * np.diff(face))])
+        start = np.linspace(face[0], face[-1] - length, _SAMPLES)
+        within = np.interp(start + length, face, force) - np.interp(start, face, force)
+        return float(within.max() / length)
+
+
+_SAMPLES = 4001
+"""Places of a load over the face between which its means are searched."""
+
+
+def line_loads(ahead: IntArray, face: FloatArray, force: FloatArray) -> tuple[LineLoad, ...]:
+    """Return the line loads of pairs from forces (h,) in N on hats at face positions (h,), m.
+
+    Forces are those along the face: per unit of the contact line's projection on the axis.
+    """
+    loads = []
+    for pair in np.unique(ahead):
+        stations, number = np.unique(face[ahead == pair], return_inverse=True)
+        between = np.diff(stations)
+        width = 0.5 * (np.append(between, 0.0) + np.insert(between, 0, 0.0))
+        loads.append(LineLoad(int(pair), stations, np.bincount(number, force[ahead == pair]) / width))
+    return tuple(loads)
+
+
+@dataclass(frozen=True)
 class FullContactPoint:
     """One solved position under one torque, or why there is none.
 
@@ -41,6 +87,8 @@ class FullContactPoint:
         if not known.
     error_estimate : float
         Half-width of the discretization's error band, m; NaN if not requested.
+    line_loads : tuple of LineLoad
+        Of the pairs over the face; none of a plane solution.
     """
 
     position: float
@@ -54,6 +102,7 @@ class FullContactPoint:
     load_share: Mapping[int, float] = field(default_factory=dict)
     max_pressure: float = NOTHING
     error_estimate: float = NOTHING
+    line_loads: tuple[LineLoad, ...] = ()
 
     @classmethod
     def failed(

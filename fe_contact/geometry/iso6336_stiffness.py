@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from fe_contact.errors import positive
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.gear_pair import GearPair
+from fe_contact.geometry.parallel_axes import ParallelAxes
 from fe_contact.geometry.toothing import Toothing
 
 MEASURED_OVER_THEORY = 0.8
@@ -71,7 +72,7 @@ def iso6336_stiffness(pair: GearPair, line_load: float | None = None) -> Iso6336
         * body
         * rack
         * math.cos(pair.pinion.helix_angle)
-        * _modulus_ratio(pair)
+        * modulus_ratio(pair)
     )
     if line_load is not None:
         single *= min(1.0, positive("line_load", line_load) / _LOW_LINE_LOAD) ** _LOW_LOAD_EXPONENT
@@ -111,7 +112,7 @@ def _rack_factor(gear: Gear) -> float:
     return height * (1.0 - 0.02 * (20.0 - math.degrees(gear.normal_pressure_angle)))
 
 
-def _modulus_ratio(pair: GearPair) -> float:
+def modulus_ratio(pair: ParallelAxes) -> float:
     """Harmonic mean of both moduli over steel's (the series is for steel pairs)."""
     moduli = pair.pinion.material.youngs_modulus, pair.wheel.material.youngs_modulus
     mean = 2.0 * moduli[0] * moduli[1] / sum(moduli)

@@ -11,8 +11,10 @@ import numpy as np
 
 from bounds import Declared, Kind, between, declared, described, inside, integers, required
 from fe_contact.errors import InputError, declared_fields
+from fe_contact.flank.extent import Extent
 from fe_contact.flank.flank_grid import FlankGrid
 from fe_contact.flank.over_flank import SURFACE, check_reach
+from fe_contact.geometry.tooth_surfaces import ToothSurfaces
 from fe_contact.types import FloatArray, IntArray
 
 if TYPE_CHECKING:
@@ -88,6 +90,18 @@ class ToothFlank:
         slopes = 0.5 * (abs(self.profile_slope) + abs(self.helix_slope))
         return slopes + abs(self.profile_form) + abs(self.helix_form) + max(grids, default=0.0)
 
+    def extent(self, gear: Tooth) -> Extent:
+        """Return the extent of the gap that the flank makes: material missing, less that in excess."""
+        slopes = 0.5 * (abs(self.profile_slope) + abs(self.helix_slope))
+        profile, helix = self.profile_form, self.helix_form
+        forms = [_form_extent(profile, self.profile_form_waves), _form_extent(helix, self.helix_form_waves)]
+        # u and v run over 2: the form of a profile is steepest at the ends, or at a zero of its waves
+        per_u = 0.5 * abs(self.profile_slope)
+        waves = 0.5 * math.pi * self.profile_form_waves
+        per_u += abs(profile) * (waves or 2.0)
+        steep = Extent(-slopes, slopes, 2.0 * per_u / abs(gear.tip_roll_length - gear.form_roll_length))
+        return sum((grid.extent for grid in self._surface), sum(forms, steep))
+
     @property
     def shape(self) -> Hashable:
         """What teeth have in common that are alike."""
@@ -143,24 +157,7 @@ def flanks_excess(
     roll_length, face : ndarray
         Where on them, m; `face` from mid-face. All broadcast.
     """
-    tooth, roll_length, face = np.broadcast_arrays(tooth, roll_length, face)
-    u, v = coordinates(gear, roll_length, face)
-    amounts = np.zeros((6, max(int(tooth.max(initial=0)) + 1, *(flank.tooth for flank in flanks))))
-    for flank in flanks:
-        amounts[:, flank.tooth - 1] = (
-            *(flank.profile_slope, flank.profile_form, flank.profile_form_waves),
-            *(flank.helix_slope, flank.helix_form, flank.helix_form_waves),
-        )
-    profile_slope, profile_form, profile_waves, helix_slope, helix_form, helix_waves = amounts[:, tooth]
-    excess = 0.5 * (profile_slope * u + helix_slope * v)
-    excess += _form(profile_form, profile_waves, u) + _form(helix_form, helix_waves, v)
-    for flank in flanks:
-        on = tooth == flank.tooth - 1
-        if flank.flank_grid is not None and on.any():
-            roll = 0.5 * (u[on] * (gear.tip_roll_length - gear.form_roll_length))
-            roll += 0.5 * (gear.tip_roll_length + gear.form_roll_length)
-            excess[on] -= flank.flank_grid.material_removed(roll, face[on])
-    return np.asarray(excess)
+    return ToothSurfaces.of(gear, flanks).excess(tooth, roll_length, face)
 
 
 def _form(height: FloatArray, waves: FloatArray, at: FloatArray) -> FloatArray:
@@ -169,6 +166,12 @@ def _form(height: FloatArray, waves: FloatArray, at: FloatArray) -> FloatArray:
     if waves.any():
         shape = np.where(waves == 0.0, shape, 0.5 * np.cos(math.pi * waves * at))
     return np.asarray(height * shape)
+
+
+def _form_extent(height: float, waves: int) -> Extent:
+    """Return the extent of the gap of a form deviation: its excess is 1/3 - u^2 of it, or half a cosine."""
+    ends = (-0.5 * height, 0.5 * height) if waves else (-height / 3.0, 2.0 * height / 3.0)
+    return Extent(min(ends), max(ends))
 
 
 def repeats_after(values: tuple[Hashable, ...]) -> int:

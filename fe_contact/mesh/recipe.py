@@ -177,7 +177,7 @@ class SectorRecipe:
         """Return the quickest useful recipe: flank elements of 0.2 modules, 8 layers or more."""
         m = gear.normal_module
         layers = _layers(gear, least=8, thickest=1.5, most=16)
-        merge = () if gear.helix_angle and layers < 2 * HELICAL_BODY_LAYERS else (-2,)
+        merge = () if wound(gear) and layers < 2 * HELICAL_BODY_LAYERS else (-2,)
         return cls(
             flank_size=0.2 * m,
             tip_size=0.05 * m,
@@ -201,7 +201,7 @@ class SectorRecipe:
             depth_limit=0.45 * m,
             body_size=0.2 * m,
             body_limit=1.5 * m,
-            layers=_layers(gear, least=16 if gear.helix_angle else 12, thickest=1.0, most=24),
+            layers=_layers(gear, least=16 if wound(gear) else 12, thickest=1.0, most=24),
         )
 
     @classmethod
@@ -252,6 +252,16 @@ class SectorRecipe:
     def content(self) -> Json:
         """Return all fields as plain JSON."""
         return asdict(self) | {"merge_rows": list(self.merge_rows)}
+
+
+WOUND = 0.1
+"""Overlap ratio below which the teeth of a helical gear are meshed as those of a spur gear."""
+
+
+def wound(gear: Toothing) -> bool:
+    """Whether the helix turns the layers of a gear enough for the layers of helical meshes."""
+    turn = gear.face_width * math.sin(abs(gear.helix_angle)) / (math.pi * gear.normal_module)
+    return turn >= WOUND
 
 
 def _layers(gear: Toothing, least: int, thickest: float, most: int) -> int:

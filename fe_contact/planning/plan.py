@@ -15,7 +15,7 @@ from fe_contact.errors import increasing
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.hertz import contact_modulus, half_width, relative_radius
 from fe_contact.mesh import MeshRecipe, SectorRecipe
-from fe_contact.mesh.recipe import HELICAL_BODY_LAYERS
+from fe_contact.mesh.recipe import HELICAL_BODY_LAYERS, wound
 from fe_contact.options import AnalysisOptions
 from fe_contact.types import BoolArray, FloatArray, Json
 
@@ -182,7 +182,7 @@ def _coarser(recipe: SectorRecipe, gear: Toothing) -> SectorRecipe:
     Layers of a helical body are not merged where too few would be left.
     """
     larger = recipe.scaled(COARSER)
-    few = gear.helix_angle and larger.layers < larger.layer_group * HELICAL_BODY_LAYERS
+    few = wound(gear) and larger.layers < larger.layer_group * HELICAL_BODY_LAYERS
     return replace(larger, merge_rows=()) if few else larger
 
 
@@ -193,12 +193,15 @@ STE in corner contact by less than 0.05 %)."""
 EDGE_SHARE = 0.5
 """Share of the largest load whose strip the patch at a tip edge follows: another pair carries too there."""
 
-WIDEST_PATCH = 0.375
-"""Largest half-width of a load patch in modules, unless the mesh asks for more.
+WIDEST_STRIP = 0.225
+"""Largest half-width of a strip in modules that patches and the local law follow; wider ones are counted in
+the receipt."""
 
-A patch that wide costs 0.2 % of the mean and 1 % of peak-to-peak, one of half a module 0.5 and 3 %. Contacts
-that outgrow it are counted in the receipt.
-"""
+STRIP_OVER_LAW = 0.6
+"""Strip over the reference length of the local law, at most; the law is straight from 0.66 on."""
+
+PATCH_SHARE = 0.5
+"""Share of the largest load whose strips the load patches follow."""
 
 SMALLEST_SUPPORT = 1e-3
 """Lowest support load over the largest load."""
@@ -375,20 +378,22 @@ def make_plan(
 def patch_rules(pair: ParallelAxes, force: float, made: Discretization) -> tuple[PatchRule, PatchRule, float]:
     """Return the load patches, wider ones that tell what they cost, and the part of that change that is left.
 
-    Patches are as wide as any strip, within reason, and as the mesh asks; the wider ones as the coarse mesh
-    asks, but no wider than a slice if that tells enough. `force` is the largest requested load in N.
+    Patches are as wide as strips under half the largest load, and as the mesh asks; the wider ones as the
+    coarse mesh asks, but no wider than a slice if that tells enough. `force` is the largest requested load in
+    N. The local law reaches as far as the strips of any load, whatever the patches.
     """
     cosine = math.cos(pair.base_helix_angle)
     modulus = contact_modulus(pair.pinion.material, pair.wheel.material)
     edge_load = 4.0 * EDGE_SHARE * force * cosine / (pair.face_width * math.pi * modulus)
-    wanted = wanted_patch(pair, LARGEST_SUPPORT * force)
+    wanted, law = wanted_patch(pair, force), longest_strip(pair, LARGEST_SUPPORT * force) / STRIP_OVER_LAW
     half, edge = _resolved(made, made.recipes)
     half, edge = max(half, wanted), max(edge, EDGE_PATCH * pair.pinion.normal_module)
     coarse, coarse_edge = _resolved(made, made.coarse_recipes)
     slice_width = pair.face_width / (SLICE_OVER_PATCH * made.slices)
     wider = max(min(coarse, slice_width), WIDER * half if half > wanted else half)
     left = PATCHES_SEEN * (1.0 - (wanted / half) ** 2) / ((wider / half) ** 2 - 1.0) if half > wanted else 0.0
-    return PatchRule(half, edge, edge_load), PatchRule(wider, max(coarse_edge, edge), edge_load), left
+    coarse_edge = max(coarse_edge, edge)
+    return PatchRule(half, edge, edge_load, law), PatchRule(wider, coarse_edge, edge_load, law), left
 
 
 def _resolved(made: Discretization, recipes: tuple[MeshRecipe | SectorRecipe, ...]) -> tuple[float, float]:
@@ -398,8 +403,17 @@ def _resolved(made: Discretization, recipes: tuple[MeshRecipe | SectorRecipe, ..
 
 
 def wanted_patch(pair: ParallelAxes, force: float) -> float:
-    """Return the half-width in m of load patches that hold the strips at a load in N, whatever the mesh."""
-    return min(_widest_strip(pair, force) / 0.6, WIDEST_PATCH * pair.pinion.normal_module)
+    """Return the half-width in m of load patches for loads up to one in N, whatever the mesh.
+
+    Bodies give way by a part in proportion to a^2 under a patch, and by 3/2 b^2 under a strip that widens
+    with its load: patches are right for half of it.
+    """
+    return math.sqrt(1.5) * longest_strip(pair, PATCH_SHARE * force)
+
+
+def longest_strip(pair: ParallelAxes, force: float) -> float:
+    """Return the half-width in m of strips under a load in N, no more than `WIDEST_STRIP`."""
+    return min(_widest_strip(pair, force), WIDEST_STRIP * pair.pinion.normal_module)
 
 
 def _widest_strip(pair: ParallelAxes, force: float) -> float:

@@ -15,7 +15,7 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.geometry.web_compliance import finite_width_excess
 from fe_contact.options import LEVELS, AnalysisOptions
 from fe_contact.planning.cost_model import effort, predict_run
-from fe_contact.planning.model_error import in_small_displacements, model_errors
+from fe_contact.planning.model_error import helical_share, in_small_displacements, model_errors
 from fe_contact.planning.plan import (
     FINER_SLICES,
     SLICE_ORDER,
@@ -23,7 +23,8 @@ from fe_contact.planning.plan import (
     Plan,
     make_plan,
 )
-from fe_contact.planning.plane_bias import PlaneBias
+from fe_contact.planning.plane_bias import plane_bias
+from fe_contact.ste.plane_bias import PlaneBias
 from fe_contact.types import FloatArray, Json
 
 # Mean and peak-to-peak transmission error as expected before anything is computed.
@@ -69,7 +70,7 @@ def _usual_curves(pair: ParallelAxes, plan: Plan) -> ExpectedCurves:
     unity = np.ones(plan.load.size)
     across_face = isinstance(plan.discretization, FaceDiscretization)
     spur = _SPUR_RIPPLE if across_face else _PLANE_RIPPLE
-    ripple = _HELICAL_RIPPLE if pair.base_helix_angle else spur
+    ripple = spur + helical_share(pair) * (_HELICAL_RIPPLE - spur)
     return ExpectedCurves(plan.load, unity, unity, ripple * unity, RELATIVE, absolute=False)
 
 
@@ -174,8 +175,8 @@ def expected_error(
     known = curves or _usual_curves(pair, plan)
     parts, own = _parts(pair, plan, known), np.stack([known.mean, known.peak_to_peak])
     relative = np.sqrt(sum(np.square(part) for part in parts.values())) / known.scale
-    if bias := PlaneBias.of(pair, plan.discretization):
-        bias = bias.of_curves(pair, own) if known.absolute and _modified(pair) else bias
+    if bias := plane_bias(pair, plan.discretization):
+        bias = bias.of_curves(*own) if known.absolute and _modified(pair) else bias
     counted = [part for name, part in parts.items() if not (bias and name == "plane")]
     absolute = np.sqrt(sum(np.square(part) for part in counted))
     worst = np.unravel_index(int(np.argmax(relative)), relative.shape)
@@ -188,9 +189,9 @@ def usual_mesh_error(pair: ParallelAxes, plan: Plan) -> tuple[float, float]:
     """Return the median error by mesh of mean and of peak-to-peak, in parts of what the load adds."""
     if not isinstance(plan.discretization, FaceDiscretization):
         return _PLANE[plan.level]
-    if pair.base_helix_angle == 0.0:
-        return _SPUR[plan.level]
-    return (_RELIEVED if _modified(pair) else _HELICAL)[plan.level]
+    helical, wound = helical_share(pair), (_RELIEVED if _modified(pair) else _HELICAL)[plan.level]
+    mean, ripple = ((1.0 - helical) * a + helical * b for a, b in zip(_SPUR[plan.level], wound, strict=True))
+    return mean, ripple
 
 
 def _modified(pair: ParallelAxes) -> bool:
@@ -206,13 +207,12 @@ def _parts(pair: ParallelAxes, plan: Plan, known: ExpectedCurves) -> dict[str, F
     nothing = np.zeros_like(by_mesh)
     slices, plane = nothing.copy(), nothing.copy()
     if isinstance(made, FaceDiscretization):
-        helical = pair.base_helix_angle != 0.0
-        part = _HELICAL_SLICES * pair.overlap_ratio if helical else _SPUR_SLICES
+        part = max(_HELICAL_SLICES * pair.overlap_ratio, _SPUR_SLICES)
         slices[1] = part * (_SLICES / made.slices) ** SLICE_ORDER * known.added
     elif made.corrected:
         plane = np.outer(_CORRECTION * np.array(finite_width_excess(pair)) * (1.0, _WIDTH_RIPPLE), mean)
-    elif bias := PlaneBias.of(pair, made):
-        plane = bias.errors(pair, own)
+    elif bias := plane_bias(pair, made):
+        plane = bias.largest(mean, ripple)
     left = model_errors if known.absolute else in_small_displacements  # large ones are known in m alone
     method = left(pair, known.force, own, over_face=isinstance(made, FaceDiscretization))
     positions = nothing.copy()
@@ -321,6 +321,32 @@ def _percent(value: float) -> str:
     return engineering(100.0 * value, 2)
 
 
+def mesh_options(
+    pair: ParallelAxes,
+    load: FloatArray,
+    options: AnalysisOptions,
+    model: ContactModel,
+    alignments: tuple[int, int] = (1, 1),
+    curves: ExpectedCurves | None = None,
+    *,
+    bound: bool = False,
+) -> list[MeshOption]:
+    """Return the meshes and slices that there are, the levels first; parameters of `chosen_mesh`."""
+
+    def option(level: str, slices: int | None = None) -> MeshOption:
+        plan = make_plan(pair, load, options, model, level, slices)
+        error = expected_error(pair, plan, curves, bound=bound)
+        return MeshOption(level, plan.discretization.slices, error, effort(pair, plan, model, alignments))
+
+    if options.level is not None:
+        return [option(options.level)]
+    meshes = [option(level) for level in LEVELS]
+    usual = make_plan(pair, load, options, model, "draft").discretization
+    if isinstance(usual, FaceDiscretization):
+        meshes += [option(level, n) for level in LEVELS for n in FINER_SLICES]
+    return meshes
+
+
 def chosen_mesh(
     pair: ParallelAxes,
     load: FloatArray,
@@ -349,23 +375,15 @@ def chosen_mesh(
         The caller chose the model.
     """
 
-    def option(level: str, slices: int | None = None) -> MeshOption:
-        plan = make_plan(pair, load, options, model, level, slices)
-        error = expected_error(pair, plan, curves, bound=bound)
-        return MeshOption(level, plan.discretization.slices, error, effort(pair, plan, model, alignments))
-
     def seconds(choice: MeshOption) -> float:
         plan = make_plan(pair, load, options, model, choice.level, choice.slices)
         return predict_run(pair, plan, model, alignments, cache).cpu_seconds
 
+    meshes = mesh_options(pair, load, options, model, alignments, curves, bound=bound)
     if options.level is not None:
-        return MeshChoice(option(options.level), True, "as requested")
+        return MeshChoice(meshes[0], True, "as requested")
     if options.tolerance is None and options.time_budget is None:
-        return MeshChoice(option("standard"), True, "nothing asked")
-    meshes = [option(level) for level in LEVELS]
-    usual = make_plan(pair, load, options, model, "draft").discretization
-    if isinstance(usual, FaceDiscretization):
-        meshes += [option(level, n) for level in LEVELS for n in FINER_SLICES]
+        return MeshChoice(meshes[LEVELS.index("standard")], True, "nothing asked")
     if options.tolerance is not None:
         return _mesh_for_tolerance(options.tolerance, meshes)
     return _mesh_for_time(options.time_budget or 0.0, meshes, seconds)

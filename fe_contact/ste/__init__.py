@@ -1,7 +1,7 @@
 """STE databases: storage, C1 interpolation, force extraction. Light: xarray is imported for files only."""
 
 from fe_contact.ste.curve import Curve
-from fe_contact.ste.database import SteDatabase, in_own_model
+from fe_contact.ste.database import SteDatabase
 from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.ste.force_table import ForceTable
 from fe_contact.ste.mesh_force import MeshForce, Validity
@@ -17,5 +17,4 @@ __all__ = [
     "SteDatabase",
     "ToothLoads",
     "Validity",
-    "in_own_model",
 ]

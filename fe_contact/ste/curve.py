@@ -14,6 +14,7 @@ from fe_contact.ste.curve_quantities import BESIDE_MESH, QUANTITIES, Spectrum, e
 from fe_contact.ste.fields import SteFields
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.ste.mesh_force import MeshForce
+from fe_contact.ste.plane_bias import OverFace, over_face, stored_bias
 from fe_contact.types import Estimate, FloatArray
 
 # The load, misalignment and center distance of a query.
@@ -106,20 +107,41 @@ def errors_by_source(table: SteFields, point: OperatingPoint) -> FloatArray:
     """
     values = np.moveaxis(table.curve_error, (2, 3, 4), (0, 1, 2))
     at_nodes = np.delete(values, np.s_[len(AT_NODES) : len(SOURCES)], axis=3)
-    between = []
-    axes = (
+    for knots, at in _coordinates(table, point):
+        at_nodes = _linear(knots, at_nodes, at)
+    between = [
+        _of_interval(values[..., source, :], table, point, i)
+        for i, source in enumerate(range(len(AT_NODES), len(SOURCES)))
+    ]
+    first, derivatives = np.split(at_nodes, [len(AT_NODES)])
+    return np.concatenate([first, np.array(between), derivatives])
+
+
+def interval_error(table: SteFields, point: OperatingPoint) -> float:
+    """Return the largest error of a point of the curve by interpolation between the nodes of the axes, m.
+
+    That of its interval, of all axes together; 0 on nodes and for tables without. NaN: not estimated.
+    """
+    if not table.interval_error.size:
+        return 0.0
+    return float(sum(_of_interval(table.interval_error[i], table, point, i) for i in range(3)))
+
+
+def _coordinates(table: SteFields, point: OperatingPoint) -> tuple[tuple[FloatArray, float], ...]:
+    """Return the nodes of load, misalignment and center distance, each with the value of the point."""
+    return (
         (table.force, point.force),
         (table.misalignment, point.misalignment),
         (table.center_distance_change, point.center_distance_change),
     )
-    for knots, at in axes:
-        at_nodes = _linear(knots, at_nodes, at)
-    for i, source in enumerate(range(len(AT_NODES), len(SOURCES))):
-        knots, at = axes[i]
-        inside = at not in knots and knots[0] < at < knots[-1]
-        between.append(_interval(values[..., source, :], axes, i) if inside else np.zeros(QUANTITIES))
-    first, derivatives = np.split(at_nodes, [len(AT_NODES)])
-    return np.concatenate([first, np.array(between), derivatives])
+
+
+def _of_interval(values: FloatArray, table: SteFields, point: OperatingPoint, axis: int) -> FloatArray:
+    """Return what values (F, M, D, ...) of intervals of an axis say at a point: zeros on its nodes."""
+    axes = _coordinates(table, point)
+    knots, at = axes[axis]
+    inside = at not in knots and knots[0] < at < knots[-1]
+    return _interval(values, axes, axis) if inside else np.zeros(values.shape[3:])
 
 
 def source_names(errors: FloatArray) -> tuple[str, ...]:
@@ -146,7 +168,7 @@ def _linear(knots: FloatArray, values: FloatArray, at: float) -> FloatArray:
 
 
 def _interval(values: FloatArray, axes: tuple[tuple[FloatArray, float], ...], axis: int) -> FloatArray:
-    """Errors (23,) of the interval of one axis that holds the point, linear along the other two."""
+    """Errors (...) of the interval of one axis that holds the point, linear along the other two."""
     knots, at = axes[axis]
     values = np.moveaxis(values, axis, 0)[int(np.searchsorted(knots, at)) - 1]
     for i, (others, where) in enumerate(axes):
@@ -273,6 +295,9 @@ class Curve:
         mesh harmonics.
     period : int
         Of the table, base pitches.
+    over_face : OverFace, optional
+        Mean and peak-to-peak of the gears of finite width, where the table is of a plane that is not
+        corrected: the errors above are towards the plane model.
     """
 
     point: OperatingPoint
@@ -288,6 +313,7 @@ class Curve:
     harmonic_phases: FloatArray
     spectrum: Spectrum
     period: int
+    over_face: OverFace | None = None
 
 
 def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: ArrayLike | None) -> Curve:
@@ -308,6 +334,9 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
     lowest, highest = int(np.argmin(ste)), int(np.argmax(ste))
     stored = [part[even.size :] for part in (ste, band, below)]
     values, *error_parts = stored if at is None else _evaluate(database, force, point, position)
+    mean = Estimate(float(np.mean(ste[: even.size])), mean_error, "m")
+    ripple = Estimate(float(ste[highest] - ste[lowest]), ripple_error, "m")
+    bias = stored_bias(database.metadata.receipt)
     return Curve(
         point=point,
         torque=point.force * database.facts.base_radius[0] * math.cos(database.facts.base_helix_angle),
@@ -316,8 +345,8 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
         error=sum(error_parts, np.zeros(position.size)),
         pair=_pairs_seen(database, position),
         load_share=_load_share(database, position, point),
-        mean=Estimate(float(np.mean(ste[: even.size])), mean_error, "m"),
-        peak_to_peak=Estimate(float(ste[highest] - ste[lowest]), ripple_error, "m"),
+        mean=mean,
+        peak_to_peak=ripple,
         harmonics=tuple(
             Estimate(float(size), float(error), "m")
             for size, error in zip(orders.amplitude[mesh], orders.error[mesh], strict=True)
@@ -325,6 +354,7 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
         harmonic_phases=orders.phase[mesh],
         spectrum=orders,
         period=database.period,
+        over_face=over_face(bias, mean, ripple) if bias else None,
     )
 
 
@@ -337,6 +367,7 @@ def _evaluate(
     ste, _ = force.deflection_at(position, point.force * transverse, *alignment)
     stored = at_operating_point(database, database.error_estimate, point)
     error = interpolate(Axis(database.position, float(database.period)), stored, position)
+    error = error + interval_error(database, point)
     smallest_load = min([database.force[0], *database.support_force[:1]])
     if point.force >= smallest_load:
         return ste, error, np.zeros_like(ste)

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any, TypedDict, TypeVar, Unpack
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from fe_contact.errors import SolveError
 from fe_contact.ste import extraction, netcdf
-from fe_contact.ste.curve import AT_NODES, PLANE, Curve, curve, default_value, operating_point
+from fe_contact.ste.curve import Curve, curve, default_value, operating_point
 from fe_contact.ste.curve_quantities import Spectrum
 from fe_contact.ste.fields import GRID, SteFields
 from fe_contact.ste.force_table import ForceTable, LevelGrid
@@ -132,15 +132,40 @@ def _isotonic(levels: FloatArray, force: FloatArray, least: float) -> FloatArray
     return np.asarray(scipy.optimize.isotonic_regression(levels - tilt, weights=weights).x + tilt)
 
 
-def in_own_model(table: Table) -> Table:
-    """Return a table with its errors towards its own model: without the `bias` of its receipt."""
-    bias = table.metadata.receipt.get("bias")
-    if not bias:
-        return table
-    errors = table.curve_error.copy()
-    errors[AT_NODES.index(PLANE) : AT_NODES.index(PLANE) + 1] = 0.0
-    band = table.error_estimate - bias["stated"] * np.abs(table.static_transmission_error)
-    return replace(table, curve_error=errors, error_estimate=np.maximum(band, 0.0))
+@dataclass(frozen=True)
+class SupportLoads:
+    """Solutions at further loads of a table.
+
+    Attributes
+    ----------
+    force : (S,) array
+        N, increasing.
+    deflection, tangent : (P, S, M, D) arrays
+        STE in m, and its derivative in m/N.
+    pairs : (P, S, M, D) integer array
+        Number of pairs that carry load.
+    """
+
+    force: FloatArray
+    deflection: FloatArray
+    tangent: FloatArray
+    pairs: IntArray
+
+
+def with_support_loads(table: Table, loads: SupportLoads) -> Table:
+    """Return a table with further support loads."""
+    order = np.argsort(np.concatenate([table.support_force, loads.force]))
+
+    def merged(stored: NDArray[Any], further: NDArray[Any]) -> NDArray[Any]:
+        return np.concatenate([stored, further], axis=1)[:, order]
+
+    return replace(
+        table,
+        support_force=np.concatenate([table.support_force, loads.force])[order],
+        support_transmission_error=merged(table.support_transmission_error, loads.deflection),
+        support_tangent_compliance=merged(table.support_tangent_compliance, loads.tangent),
+        support_pairs_in_contact=merged(table.support_pairs_in_contact, loads.pairs),
+    )
 
 
 # The derivatives along all axes of a mesh-force table: plain arrays that make it C1 in every coordinate.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,18 +11,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_contact.errors import DatabaseError
+from fe_contact.ste.facts import PairFacts
 from fe_contact.ste.fields import SteFields
 from fe_contact.ste.force_table import (
-    ForceCubic,
     ForceTable,
     deflection_grid,
     monotone_stiffness,
     stiffness_grid,
 )
 from fe_contact.ste.interpolation import Axis, monotone_slopes, ordered_slopes
-from fe_contact.types import FloatArray, IntArray
+from fe_contact.types import BoolArray, FloatArray, IntArray
 
-# Levels between the stored loads, with the kink where a further tooth pair comes into contact.
+# Levels between the stored loads: with the kink where a further tooth pair comes into contact over the whole
+# face at once, smooth where it comes into contact gradually.
 
 
 # shared by the steps that hold a kink; with more, the position knots are what limits the table
@@ -31,6 +33,18 @@ _INSERTED = 64
 _NUMBERS = 2_000_000
 # a branch stiffens with F^exponent; line contact is near 0.1, a triangle of contact 0.5
 _LARGEST_EXPONENT = 0.5
+# halvings of the interval of an exponent: to 1e-9
+_HALVINGS = 30
+# least compliance of a smooth curve over that of its step: a cubic may be flat inside
+_LEAST_COMPLIANCE = 0.1
+# power of the force in which the deflection of a smooth step is a cubic: of 0, 1/4, 1/2 and 1 the one with
+# the smallest errors over loads five times apart, on ten drawn pairs (docs/decisions/0012)
+_POWER = 0.25
+# ratio of loads over which a cubic of the force in the deflection is close enough to that
+_CLOSE_LOADS = 1.5
+# overlap ratio from which a helical pair comes into contact gradually: that of a path along which the gap
+# beyond the path of contact grows by several deflections
+_GRADUAL_OVERLAP = 0.1
 
 
 Pair = tuple[FloatArray, FloatArray]  # deflection in m and stiffness in N/m
@@ -45,48 +59,101 @@ class _LoadLevels:
     stiffness: FloatArray
 
 
-def _refined(levels: _LoadLevels, pairs: IntArray) -> _LoadLevels:
-    """Insert levels into every step in which a pair comes into contact at some position.
+def gradual_contact(facts: PairFacts) -> float:
+    """Return how gradually a further pair comes into contact: 0 along a whole line at once, 1 from a corner.
 
-    `pairs` (P, M, D, L) counts the pairs in contact; level 0 is lift-off. At positions without a kink in the
-    step the inserted levels lie on the cubic that is there anyway.
+    Along a line the stiffness jumps; from a corner the line of contact grows from nothing, and so does the
+    stiffness.
+    """
+    overlap = facts.face_width * math.tan(facts.base_helix_angle) / facts.base_pitch
+    return min(overlap / _GRADUAL_OVERLAP, 1.0)
+
+
+def _refined(levels: _LoadLevels, pairs: IntArray, gradual: float) -> _LoadLevels:
+    """Insert levels into steps that hold a kink at some position, and into wide steps.
+
+    `pairs` (P, M, D, L) counts the pairs in contact; level 0 is lift-off. At positions without a kink, and to
+    the part `gradual` at all positions, the inserted levels lie on the smooth curve.
     """
     secant = np.diff(levels.force) / np.diff(levels.deflection, axis=-1)
     below, above = levels.stiffness[..., :-1], levels.stiffness[..., 1:]
-    kinked = np.asarray((np.diff(pairs, axis=-1) > 0) & (below < secant) & (secant < above))
-    steps = [k for k in range(1, levels.force.size - 1) if kinked[..., k].any()]
-    if not steps:
-        return levels
-    bearable = _NUMBERS // levels.deflection[..., 0].size - levels.force.size
-    inserted = min(max(bearable, len(steps)), _INSERTED)
-    parts = 1 + -(-inserted // len(steps))
-    fractions = np.arange(1, parts) / parts
+    kinked = (np.diff(pairs, axis=-1) > 0) & (below < secant) & (secant < above) & (gradual < 1.0)
     pieces = [levels]
-    for k in steps:
-        force = levels.force[k] + fractions * (levels.force[k + 1] - levels.force[k])
-        smooth, branches = _on_cubic(levels, k, force), _on_branches(levels, pairs, k, force)
-        chosen = (
-            np.where(kinked[..., k, None], kink, cubic) for kink, cubic in zip(branches, smooth, strict=True)
-        )
-        pieces.append(_LoadLevels(force, *chosen))
+    for k, count in _inserted_counts(levels, kinked).items():
+        low, high = levels.force[k : k + 2]
+        force = low * (high / low) ** (np.arange(1, count + 1) / (count + 1))
+        deflection, stiffness = _smooth(levels, k, force)
+        sharp = np.where(kinked[..., k, None], 1.0 - gradual, 0.0)
+        if sharp.any():
+            lag, stiff = _on_branches(levels, pairs, k, force)
+            deflection = deflection + sharp * (lag - deflection)
+            stiffness = 1.0 / (1.0 / stiffness + sharp * (1.0 / stiff - 1.0 / stiffness))
+        pieces.append(_LoadLevels(force, deflection, stiffness))
     return _load_refinement_merged(pieces)
 
 
-def _on_branches(
-    levels: _LoadLevels, pairs: IntArray, k: int, force: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Deflection and stiffness at `force` on the softer of the branches from both ends of step k.
+def _inserted_counts(levels: _LoadLevels, kinked: BoolArray) -> dict[int, int]:
+    """Return how many levels to insert into the steps that get any.
 
-    A branch takes its curvature from the next step on its own side; not so where it would then miss the
-    other end of the step.
+    Steps with a kink share what a table bears, and have one at least; wide steps get theirs if all fit.
+    """
+    steps = range(1, levels.force.size - 1)
+    kinks = [k for k in steps if kinked[..., k].any()]
+    bearable = _NUMBERS // levels.deflection[..., 0].size - levels.force.size
+    inserted = min(max(bearable, len(kinks)), _INSERTED) if kinks else 0
+    counts = {k: -(-inserted // len(kinks)) for k in kinks}
+    ratio = levels.force[2:] / levels.force[1:-1]
+    apart = np.ceil(np.log(ratio) / math.log(_CLOSE_LOADS) * (1.0 - 1e-9)).astype(int) - 1
+    wide = {k: int(apart[k - 1]) for k in steps if k not in counts and apart[k - 1] > 0}
+    return counts | wide if sum(wide.values()) + inserted <= bearable else counts
+
+
+def _smooth(levels: _LoadLevels, k: int, force: FloatArray) -> Pair:
+    """Deflection and stiffness at `force` on the cubic of step k in F^`_POWER`, monotone."""
+    axis = levels.force[k : k + 2] ** _POWER
+    lag, stiff = levels.deflection[..., k : k + 2], levels.stiffness[..., k : k + 2]
+    width = axis[1] - axis[0]
+    chord = np.diff(lag, axis=-1) / width
+    # d lag / d F^p = (d lag / dF) F^(1 - p) / p
+    slope = np.minimum(levels.force[k : k + 2] ** (1.0 - _POWER) / (_POWER * stiff), 3.0 * chord)
+    t = (force**_POWER - axis[0]) / width
+    s = 1.0 - t
+    ends = (s * slope[..., :1] - t * slope[..., 1:]) * width
+    deflection = lag[..., :1] + t * t * (3.0 - 2.0 * t) * np.diff(lag, axis=-1) + t * s * ends
+    tangent = s * (1.0 - 3.0 * t) * slope[..., :1] + t * (3.0 * t - 2.0) * slope[..., 1:]
+    compliance = (6.0 * t * s * chord + tangent) * _POWER * force ** (_POWER - 1.0)
+    least = _LEAST_COMPLIANCE * np.diff(lag, axis=-1) / (levels.force[k + 1] - levels.force[k])
+    return deflection, 1.0 / np.maximum(compliance, least)
+
+
+def _on_branches(levels: _LoadLevels, pairs: IntArray, k: int, force: FloatArray) -> Pair:
+    """Deflection and stiffness at `force` on the stiffer of the branches from both ends of step k.
+
+    A branch takes its curvature from the next step on its own side, or as much of it as lets it meet the
+    other branch inside the step.
     """
     ends = levels.force[k : k + 2]
     start, end = levels.deflection[..., k, None], levels.deflection[..., k + 1, None]
-    before, after = _exponent(levels, pairs, k - 1), _exponent(levels, pairs, k + 1)
-    before = np.where(_branch(levels, k, before, ends[1:])[0] >= end, before, 0.0)
-    after = np.where(_branch(levels, k + 1, after, ends[:1])[0] <= start, 0.0, after)
+    before = _largest_exponent(
+        _exponent(levels, pairs, k - 1), lambda n: _branch(levels, k, n, ends[1:])[0] >= end
+    )
+    after = _largest_exponent(
+        _exponent(levels, pairs, k + 1), lambda n: _branch(levels, k + 1, n, ends[:1])[0] > start
+    )
     (lower, soft), (upper, stiff) = _branch(levels, k, before, force), _branch(levels, k + 1, after, force)
     return np.minimum(lower, upper), np.where(lower < upper, soft, stiff)
+
+
+def _largest_exponent(wanted: FloatArray, holds: Callable[[FloatArray], BoolArray]) -> FloatArray:
+    """Return the largest exponents up to those wanted for which a condition `holds`, as it does for 0."""
+    low, high = np.zeros_like(wanted), wanted
+    if np.all(holds(wanted)):
+        return wanted
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        inside = holds(middle)
+        low, high = np.where(inside, middle, low), np.where(inside, high, middle)
+    return np.where(holds(wanted), wanted, low)
 
 
 def _branch(
@@ -110,21 +177,6 @@ def _exponent(levels: _LoadLevels, pairs: IntArray, k: int) -> FloatArray:
     branch = (pairs[..., k, None] == pairs[..., k + 1, None]) & (below > 0.0)
     growth = np.log(np.where(branch, above / np.where(branch, below, 1.0), 1.0))
     return np.asarray(np.clip(growth / np.log(force[1] / force[0]), 0.0, _LARGEST_EXPONENT))
-
-
-def _on_cubic(levels: _LoadLevels, k: int, force: FloatArray) -> Pair:
-    shape = (*levels.deflection.shape[:-1], force.size)
-    deflection, stiffness = (
-        np.repeat(entry[..., k : k + 2].reshape(-1, 2), force.size, axis=0)
-        for entry in (levels.deflection, levels.stiffness)
-    )
-    flat = np.zeros_like(deflection)
-    cubic = ForceCubic(
-        deflection, flat, np.broadcast_to(levels.force[k : k + 2], flat.shape), stiffness, flat
-    )
-    forces, nowhere = np.tile(force, len(flat) // force.size), np.zeros(len(flat), bool)
-    at_force = cubic.deflection(forces, nowhere)
-    return at_force.reshape(shape), cubic.sample(at_force, nowhere, nowhere)[1].reshape(shape)
 
 
 def _load_refinement_merged(pieces: list[_LoadLevels]) -> _LoadLevels:
@@ -182,7 +234,7 @@ def force_table(database: SteFields) -> ForceTable:
     _, order = _all_loads(database)
     loaded = _merged(database.pairs_in_contact, database.support_pairs_in_contact, order).astype(np.int64)
     pairs = np.concatenate([np.zeros_like(loaded[..., :1]), loaded], axis=-1)
-    levels = _refined(_stored_levels(database), pairs)
+    levels = _refined(_stored_levels(database), pairs, gradual_contact(database.facts))
     axis = Axis(database.position, float(database.period))
     deflection = deflection_grid((axis,), levels.deflection, (ordered_slopes(axis, levels.deflection),))
     unlimited = stiffness_grid((axis,), levels.stiffness, (monotone_slopes(axis, levels.stiffness),))

@@ -48,6 +48,7 @@ OPTIONAL: dict[str, tuple[str, ...]] = {
     "curve_error": CURVE_ERROR,
     "load_arm_error": ("load_arm_source", *CURVE_ERROR[1:]),
     "pair_pressure": (*GRID, "pair"),
+    "interval_error": ("axis", *CURVE_ERROR[2:]),
 }
 """Dimensions of the arrays that some tables do not have: they are empty there."""
 INTEGER_TYPES: dict[str, type[np.signedinteger[Any]]] = {
@@ -121,6 +122,9 @@ class SteFields:
     load_arm_error : (3 or 4, 23, F, M, D) array
         Errors of the same quantities of it in m, >= 0, by source (`ste.curve.OF_LOAD_ARM`, and as above);
         NaN: not estimated. Empty for tables without.
+    interval_error : (3, F, M, D) array
+        Largest error of the transmission error between each node and the next of an axis, m, >= 0: of loads,
+        misalignments, center distances; 0 after the last node, NaN: not estimated. Empty for older tables.
     pair_pressure : (P, F, M, D, N) array
         Largest contact pressure of each pair away from edges, Pa; `max_pressure` is that of all. Empty where
         the period is 1, and for older tables.
@@ -154,6 +158,7 @@ class SteFields:
     load_arm: FloatArray = field(default_factory=lambda: np.empty((0,) * len(GRID)))
     load_arm_error: FloatArray = field(default_factory=lambda: np.empty((0,) * len(CURVE_ERROR)))
     pair_pressure: FloatArray = field(default_factory=lambda: np.empty((0,) * (len(GRID) + 1)))
+    interval_error: FloatArray = field(default_factory=lambda: np.empty((0,) * len(GRID)))
 
     def __post_init__(self) -> None:
         if np.size(self.support_force) == 0:
@@ -188,6 +193,12 @@ class SteFields:
         return DIMENSIONS | {name: axes for name, axes in OPTIONAL.items() if getattr(self, name).size}
 
     @property
+    def inserted_force(self) -> FloatArray:
+        """Support loads between the loads of the table, N: with them interpolation meets a tolerance."""
+        inside = (self.support_force > self.force[0]) & (self.support_force < self.force[-1])
+        return np.asarray(self.support_force[inside])
+
+    @property
     def n_failed(self) -> int:
         """Number of grid points without a usable solution."""
         return int(np.count_nonzero(self.failed))
@@ -198,6 +209,8 @@ class SteFields:
         if self.period > 1:
             extent += f" over {self.period} base pitches"
         text = f"STE database: {extent}; force {self.force[0]:g} to {self.force[-1]:g} N"
+        if self.inserted_force.size:
+            text += f", {self.inserted_force.size} loads inserted"
         return (
             f"{text}\nWARNING: {self.failure_message()}" if self.n_failed else f"{text}; all points converged"
         )
@@ -255,6 +268,9 @@ def _check_shapes(table: SteFields) -> None:
             name,
             f"have the dimensions {', '.join(OPTIONAL[name])}",
         )
+    intervals, nodes = table.interval_error, table.static_transmission_error.shape[1:]
+    differs = intervals.size > 0 and intervals.shape != (3, *nodes)
+    _refuse(differs, "interval_error", "have the dimensions 3, force, misalignment, center_distance_change")
 
 
 def _check_axes(table: SteFields) -> None:
@@ -307,7 +323,7 @@ def _check_values(table: SteFields) -> None:
         "load_share",
         "sum to 1 where converged",
     )
-    curves = {name: getattr(table, name) for name in ("curve_error", "load_arm_error")}
+    curves = {name: getattr(table, name) for name in ("curve_error", "load_arm_error", "interval_error")}
     for name, errors in {"error_estimate": table.error_estimate[good], **curves}.items():
         _refuse(bool(np.any(errors < 0.0)), name, "be >= 0 m, or NaN where not estimated")
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from fe_contact.errors import DatabaseError
-from fe_contact.ste.curve import AT_NODES, METHOD, OF_LOAD_ARM, SOURCES
+from fe_contact.ste.curve import AT_NODES, METHOD, OF_LOAD_ARM, PLANE, SOURCES
 from fe_contact.ste.curve_quantities import BESIDE_MESH
 from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.ste.fields import DIMENSIONS, OPTIONAL, RESIDUALS, SteFields
@@ -150,7 +150,15 @@ ATTRIBUTES: dict[str, tuple[str, str]] = {
         "error of mean, peak-to-peak, any order beside the mesh and harmonics 1 to 20 of the load arm, "
         "by source: " + ", ".join(OF_LOAD_ARM),
     ),
-    "support_force": ("N", "further loads that only carry the force extraction"),
+    "interval_error": (
+        "m",
+        "largest error of the transmission error between each node and the next of the axes force, "
+        "misalignment, center_distance_change",
+    ),
+    "support_force": (
+        "N",
+        "further loads that only carry the interpolation: those between two loads of the axis were inserted",
+    ),
     "support_transmission_error": ("m", "static transmission error at the support loads"),
     "support_tangent_compliance": ("m N-1", "derivative of the transmission error at the support loads"),
     "support_pairs_in_contact": ("1", "number of tooth pairs that carry the support loads"),
@@ -179,6 +187,8 @@ def read(path: Path) -> dict[str, Any]:
         if attributes["schema_version"] < _BESIDE_MESH_SINCE and content.get(name, np.empty(0)).size:
             content[name] = np.insert(content[name], BESIDE_MESH, np.nan, axis=1)
     documents = {name: json_attribute(path, attributes, name) for name in _JSON_ATTRIBUTES}
+    if part := (documents["receipt"].get("bias") or {}).get("stated"):
+        content |= _without_bias(content, part)
     return content | {
         "facts": _facts(path, attributes),
         "metadata": Metadata(
@@ -189,6 +199,14 @@ def read(path: Path) -> dict[str, Any]:
         ),
         "period": _period(path, attributes),
     }
+
+
+def _without_bias(content: dict[str, Any], part: float) -> dict[str, Any]:
+    """Return the errors of an older file without the bias of its plane, which was `part` of the STE."""
+    errors = content.get("curve_error", np.empty(0)).copy()
+    errors[AT_NODES.index(PLANE) : AT_NODES.index(PLANE) + 1] = 0.0
+    band = content["error_estimate"] - part * np.abs(content["static_transmission_error"])
+    return {"curve_error": errors, "error_estimate": np.maximum(band, 0.0)}
 
 
 def _described(name: str) -> Json:

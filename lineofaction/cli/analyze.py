@@ -12,7 +12,7 @@ from rich.console import Console
 from bounds import engineering
 from bounds.types import Json
 from fe_contact.analysis.run_plan import PlannedLevel, RunPlan
-from fe_contact.ste import SteDatabase, in_own_model
+from fe_contact.ste import SteDatabase
 from host.directories import cache_home
 from lineofaction.cli.guard import warn
 from lineofaction.cli.output import (
@@ -130,9 +130,8 @@ def run_analyze(
     if as_json:
         print_json(summary)
     else:
-        shown = in_own_model(database)
-        print_headlines(static_headlines(shown))
-        _show(summary_json(shown))
+        print_headlines(static_headlines(database))
+        _show(summary)
         print_written([output])
     if database.n_failed:
         raise JobFailed(f"{database.failure_message()}. The table in {output} holds NaN there.")
@@ -162,6 +161,7 @@ def _show(summary: dict[str, Any]) -> None:
     receipt, load = summary["receipt"], summary["loads"][-1]
     if bias := receipt.get("bias"):
         out.print(bias["words"], soft_wrap=True)
+        out.print(_over_face(load), soft_wrap=True)
     if sources := source_rows(receipt, -1):
         rows = [[name, *(engineering(error / UM, 2) for error in errors)] for name, *errors in sources]
         head = ["source", "mean µm", "p-p µm", "harm. 1 µm"]
@@ -172,6 +172,17 @@ def _show(summary: dict[str, Any]) -> None:
     out.print(_cost(receipt, load["normal_force_n"] / load["torque_n_m"]))
     out.print(f"points {summary['points']}, failed {summary['failed_points']}")
     out.print(f"content hash {summary['content_hash']}")
+
+
+def _over_face(load: dict[str, Any]) -> str:
+    """Mean and peak-to-peak of the gears of finite width: those of the plane, corrected."""
+    errors = "mean_over_face_error_um" in load
+    mean, ripple = (
+        f"{load[f'{name}_over_face_um']:.4g}"
+        + (f" ±{engineering(load[f'{name}_over_face_error_um'], 1)}" if errors else "")
+        for name in ("mean", "peak_to_peak")
+    )
+    return f"over the face at {load['torque_n_m']:.6g} N m: mean {mean} µm, peak-to-peak {ripple} µm"
 
 
 def _show_effects(out: Console, ledger: list[dict[str, Any]]) -> None:
@@ -214,6 +225,9 @@ def _cost(receipt: dict[str, Any], newton_metre: float = 1.0) -> str:
         text += f"\nperiod {pitches} base pitches; contact predicted {engineering(seconds, 2)} CPU s"
     if cycle := receipt.get("cycle"):
         text += f"\n{_of_cycle(cycle)}"
+    if inserted := receipt.get("held_out", {}).get("force", {}).get("inserted"):
+        loads = ", ".join(f"{force / newton_metre:.4g}" for force in inserted)
+        text += f"\nloads inserted for interpolation: {loads} N m"
     if held_out := _held_out(receipt.get("held_out", {})):
         text += f"\nlargest error at held-out points between the nodes: {held_out} (in the errors there)"
     if allowed := receipt.get("misalignment_range"):

@@ -14,7 +14,7 @@ from bounds.types import Json
 from dynamics.errors import DynamicsError
 from dynamics.results import RunResult
 from fe_contact.errors import FeContactError
-from fe_contact.ste import SteDatabase, in_own_model
+from fe_contact.ste import SteDatabase
 from host.directories import whole_file
 from lineofaction.gearbox.convert.complaint import marks_of_case
 from lineofaction.gearbox.problems import BadInput, DamagedFile
@@ -207,7 +207,7 @@ def _page_of(read: Inputs) -> Page:
     """Put the page together, without what the files warn of."""
     if read.only_page is not None:
         return read.only_page
-    database, run = read.database and in_own_model(read.database), read.run
+    database, run = read.database, read.run
     sections: list[Section] = []
     alarms: list[str] = []
     if database is not None:
@@ -250,7 +250,7 @@ def headlines_of(read: Inputs) -> tuple[Headline, ...]:
     """Return the main figures of the table, of the studies, and of the run."""
     headlines: list[Headline] = []
     if read.database is not None:
-        headlines += static_headlines(in_own_model(read.database), nominal_force(read))
+        headlines += static_headlines(read.database, nominal_force(read))
     for study in read.pages.values():
         headlines += study.headlines
     if read.run is not None:

@@ -12,7 +12,7 @@ import pytest
 from page_visit import CASE, Visit, found_inaccessible, opened, served, tab
 from playwright.sync_api import Browser, expect
 
-from fe_contact.ste import SteDatabase, in_own_model
+from fe_contact.ste import SteDatabase
 from lineofaction.client import LineOfActionClient
 
 OWN = CASE | {"accuracy": {k: v for k, v in CASE["accuracy"].items() if k != "receipt"}}
@@ -46,7 +46,7 @@ def test_a_card_has_the_ripple_and_the_figures_of_its_table(
     seen: Visit, gallery: tuple[str, SteDatabase]
 ) -> None:
     card = seen.page.locator("#jobs-rows li").first
-    table = in_own_model(gallery[1])
+    table = gallery[1]
     curve = table.curve(torque=float(table.torque[1]))
     ripple, tone = curve.peak_to_peak, curve.harmonics[0].value
     expect(card).to_contain_text(f"{1e6 * ripple.value:.3g} µm")

@@ -239,3 +239,63 @@ def test_gap_of_a_relieved_wheel_is_the_lag_that_makes_its_flank_touch(name: str
     record_figure(f"gap of a relieved wheel {name}", worst, "at most 1e-7 m", "m", "rigid rotation")
     assert worst < 1e-7
     assert np.ptp(gap) > 5e-6
+
+
+DEPTH = 20e-6
+
+
+class Offset:
+    """The same depth removed from one flank everywhere."""
+
+    along_profile, only_removes = True, True
+
+    def breaks(self, pair: ParallelAxes, face: np.ndarray) -> tuple[()]:
+        return ()
+
+    def __call__(self, pair: ParallelAxes, first: np.ndarray, second: np.ndarray, face: np.ndarray) -> Any:
+        return np.full(np.broadcast(first, face).shape, DEPTH)
+
+
+RELIEF = FlankModification(tip_relief=DEPTH, tip_relief_length=4e-3)
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("sloped", [False, True])
+@pytest.mark.parametrize("side", ["approach", "exit"])
+@pytest.mark.parametrize("name", ["20/20", "17/43 shifted", "43/17 shifted", "36/96 internal"])
+def test_gap_of_a_relieved_tip_edge_is_the_lag_that_makes_it_touch(
+    name: str, side: Side, sloped: bool, record_figure: Any
+) -> None:
+    """The edge is the end of the relieved flank, moved along its normal; the mate is a plain involute.
+
+    A lag closes what is removed from gear 2 by the lever arm of its edge, up to two per cent less than on
+    the line of action.
+    """
+    pair, gear = PAIRS[name], int(side == "approach")
+    body, path = (pair.pinion, pair.wheel)[gear], pair.path_of_contact
+    reach = np.linspace(0.0, 2e-3, 401)[1:]
+    overshoot = np.interp([5e-6, 15e-6, 40e-6], corner_contact(pair, side, reach).gap, reach)
+    roll_1 = (path.start - overshoot if side == "approach" else path.end + overshoot)[None]
+    touch = conjugate_touch(pair, roll_1, pair.mating_roll_length(roll_1), corners=True)
+    relief, plain = RELIEF if sloped else FlankModification(), FlankModification()
+    term = ModificationGap(*((plain, relief) if gear else (relief, plain))) if sloped else Offset()
+    gap = modified_touch(pair, touch, np.zeros(overshoot.size), (term,)).gap[0]
+    roll = body.tip_roll_length - body.sign * np.concatenate([[0.0], np.geomspace(1e-7, 2e-3, 4001)])
+    profile, s = tooth_profile(body), body.sign * roll**2 / (2.0 * body.base_radius)
+    removed = relief.material_removed(body, roll) if sloped else np.full(roll.shape, DEPTH)
+    points, assembly = profile.flank(s) - removed[:, None] * profile.normal(s), Assembly(pair)
+
+    def clearance(lag: float, at: float) -> float:
+        first, second = assembly.turns(at, lag)
+        if gear:
+            return _angle_past(assembly.placed(points, second) + assembly.up, pair.pinion, first)
+        placed = assembly.own_frame(_clockwise(points, first) - assembly.up, second)
+        return _angle_past(placed, pair.wheel, 0.0)
+
+    turned = [
+        brentq(clearance, lag - 5e-6, lag + 5e-6, args=(float(at),), xtol=1e-13)
+        for lag, at in zip(gap, roll_1[0], strict=True)
+    ]
+    worst = float(np.max(np.abs(gap - turned)))
+    record_figure(f"gap of a relieved edge {name} {side} {sloped}", worst, "at most 2e-8 m", "m", "rotation")
+    assert worst < 2e-8

@@ -1,1 +1,1 @@
-"""Assumptions of a run, checked on its results, and the ledger of effects."""
+"""Assumptions of a run and laws of its table, checked on its results, and the ledger of effects."""

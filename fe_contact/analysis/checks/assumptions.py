@@ -18,14 +18,14 @@ from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.analysis.request.solved_run import SolvedRun
 from fe_contact.analysis.tables import SolvedTable
 from fe_contact.contact import solve_contact
-from fe_contact.contact.assembly import FLATTEST
+from fe_contact.contact.touch import FLATTEST
 from fe_contact.effects.effect import across_face
-from fe_contact.effects.influence.estimate import estimate_influence
+from fe_contact.effects.influence.estimate import estimate_influence, largest_part
 from fe_contact.effects.misalignment import MisalignmentGap
 from fe_contact.effects.tooth_deviations import sharpest_crest
 from fe_contact.errors import SolveError
 from fe_contact.geometry.printed_data import backlash_rounding
-from fe_contact.planning.plane_bias import PlaneBias
+from fe_contact.planning.plane_bias import plane_bias
 from fe_contact.types import FloatArray, Json
 from model_studies.stage_clock import StageClock
 
@@ -130,15 +130,21 @@ def _at_handovers(point: OperatingPoint, load: FloatArray) -> FloatArray:
 
 
 def _neglected(run: SolvedTable) -> Iterator[Assumption]:
-    """Effects neglected for the tolerance: their influence beside what was computed."""
+    """Effects neglected for the tolerance: estimate and bound of their influence beside what was computed."""
     request = run.checked.request
     for name in request.neglected:
         influence = estimate_influence(*run.checked.assessing(name), name)
         if influence is not None:
             mean = np.abs(influence.mean)[:, None] / _allowed(run).scale(_means(run))
             ripple = np.abs(influence.peak_to_peak)[:, None] / _allowed(run).scale(_ripples(run))
-            change = float(np.max(np.maximum(mean, ripple)))
-            reason = f"estimated at {_allowed(run).part_words(change)} of what was computed"
+            estimate = float(np.max(np.maximum(mean, ripple)))
+            scene, _ = run.checked.assessing(name)
+            sizes = _means(run), _ripples(run)
+            bound = largest_part(scene.effect(name).extent(scene), *sizes, _allowed(run))
+            reason = f"estimated at {_allowed(run).part_words(estimate)} of what was computed"
+            if bound:
+                reason += f"; its gaps change at most {_allowed(run).part_words(bound)}"
+            change = max(estimate, bound)
             holds = change <= _allowed(run).relative
             yield Assumption(name, "neglected effects are negligible", holds, change, reason)
 
@@ -152,7 +158,7 @@ def _plane(run: SolvedRun) -> Iterator[Assumption]:
     reason = "; ".join(reasons) if reasons else "nothing in the scene acts across it"
     face, width = request.model_effects
     yield Assumption(face, "uniform load over the face", not reasons, float("nan"), reason)
-    if bias := PlaneBias.of(run.places.places[0].contact.pair, run.plan.discretization):
+    if bias := plane_bias(run.places.places[0].contact.pair, run.plan.discretization):
         missing = abs(bias.mean)
         reason = f"the finite width changes about {engineering(100 * missing, 2)} % of the mean"
         holds = missing <= _allowed(run).relative
@@ -198,7 +204,7 @@ def _crests(run: SolvedRun) -> Iterator[Assumption]:
     """Waves leave flanks that touch in one place: their troughs are flatter than the mate is curved."""
     point = run.places.places[0]
     if point.model.tooth_gaps and (sharpest := sharpest_crest(point.contact.pair)):
-        reason = f"waves are at most {engineering(sharpest, 2)} times as curved as the flanks"
+        reason = f"waves and traces are at most {engineering(sharpest, 2)} times as curved as the flanks"
         holds = sharpest <= 1.0 - FLATTEST
         yield Assumption("", "flanks touch in one place", holds, float("nan"), reason)
 

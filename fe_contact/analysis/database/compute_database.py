@@ -10,15 +10,16 @@ from functools import partial
 import numpy as np
 
 from bounds import Finding
-from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.checks.assumptions import check_assumptions, settled, with_effects
 from fe_contact.analysis.checks.effect_ledger import effect_ledger
+from fe_contact.analysis.checks.table_laws import check_laws, require_laws
 from fe_contact.analysis.estimates.assessed_table import (
     AssessedTable,
     assessed_table,
     unassessed_table,
     worst_residual,
 )
+from fe_contact.analysis.estimates.tolerance_shares import tolerance_receipt
 from fe_contact.analysis.request.model_choice import Decided
 from fe_contact.analysis.request.request import Checked, Influences, Request, estimated_influences
 from fe_contact.analysis.request.solved_run import Solved
@@ -30,8 +31,6 @@ from fe_contact.planning.cost_model import log_name
 from fe_contact.plausibility import merged, table_findings
 from fe_contact.solver_version import SOLVER_VERSION, software_versions
 from fe_contact.ste import Metadata, SteDatabase
-from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES, METHOD, PLANE, SOURCES, all_sources
-from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, mean_of_curves
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from fe_contact.types import FloatArray, Json, Status
 from model_studies.progress import by_cost
@@ -87,74 +86,6 @@ def _worst_condition(solved: Solved, known: FloatArray | None = None) -> float |
     return worst if np.isfinite(worst) else None
 
 
-# The tolerance that was requested, held against the errors that were measured.
-
-
-def error_shares(table: SteDatabase, allowed: AllowedError) -> FloatArray:
-    """Return the errors of mean and peak-to-peak by source in parts of what is allowed.
-
-    Returns
-    -------
-    ndarray, shape (9, 2, F, M, D)
-        Sources in the order of `SOURCES`; those between nodes stand at the lower node of their interval. NaN
-        where not estimated and at failed points.
-    """
-    ste = table.static_transmission_error
-    values = np.stack([mean_of_curves(table.position, ste, table.period), np.ptp(ste, axis=0)])
-    return np.asarray(table.curve_error[:, [MEAN, PEAK_TO_PEAK]] / allowed.of(values))
-
-
-def bought_shares(shares: FloatArray, request: Request) -> tuple[FloatArray, FloatArray]:
-    """Part the errors at nodes, each (6, ...), into those that work lowers and those that last.
-
-    Those of the method last; so do those of the plane, where the caller chose it.
-    """
-    lasting = (METHOD, PLANE) if request.model_chosen else (METHOD,)
-    lasts = np.isin(AT_NODES, lasting).reshape(-1, *[1] * (shares.ndim - 1))
-    at_nodes = shares[: len(AT_NODES)]
-    return np.where(lasts, 0.0, at_nodes), np.where(lasts, at_nodes, 0.0)
-
-
-def _tolerance_receipt(table: SteDatabase, allowed: AllowedError, request: Request) -> Json:
-    """Hold the errors of mean and peak-to-peak at all nodes of a table against the tolerance.
-
-    Returns
-    -------
-    dict
-        `relative`, `floor_m`: the tolerance. `used`: the largest error that work lowers, over what is
-        allowed. `met`: whether that is at most 1. Both are None where errors were not estimated; a failed
-        point keeps nothing. `lasting`: the largest error that no mesh lowers, in parts of the sizes that
-        the tolerance counts by; a bias is none. `between_nodes`: the axes between whose nodes interpolation
-        alone takes more than is allowed.
-    """
-    shares = error_shares(table, allowed)
-    bought, lasting = bought_shares(shares, request)
-    if table.metadata.receipt.get("bias"):
-        lasting[AT_NODES.index(PLANE)] = 0.0
-    bought = all_sources(np.concatenate([bought, shares[len(SOURCES) :]]))
-    used = float(np.max(bought))
-    limits = {"relative": allowed.relative, "floor_m": allowed.floor}
-    if np.isnan(bought).all():
-        return limits | {"used": None, "met": None}
-    kept = {"used": used if np.isfinite(used) else None, "met": used <= 1.0}
-    kept["lasting"] = allowed.relative * float(np.nanmax(all_sources(lasting)))
-    return limits | kept | {"between_nodes": _between_nodes(table, shares)}
-
-
-def _between_nodes(table: SteDatabase, shares: FloatArray) -> list[Json]:
-    """Return the worst interval of each axis that takes more than is allowed; more nodes are the caller's."""
-    axes = zip(BETWEEN_NODES, (table.force, table.misalignment, table.center_distance_change), strict=True)
-    beyond = []
-    for i, (name, nodes) in enumerate(axes):
-        by_interval = np.moveaxis(shares[len(AT_NODES) + i], 1 + i, 0)[:-1]
-        worst = np.nan_to_num(by_interval).max(axis=(1, 2, 3), initial=0.0)
-        if worst.size and worst.max() > 1.0:
-            k = int(np.argmax(worst))
-            interval = [float(nodes[k]), float(nodes[k + 1])]
-            beyond.append({"axis": name, "used": float(worst[k]), "between": interval})
-    return beyond
-
-
 @dataclass(frozen=True)
 class _Computed:
     """A table, and what it was computed with: effects that turned out to be needed included."""
@@ -177,7 +108,8 @@ def compute_pass(
 ) -> _Computed:
     """Compute the table of a checked request once.
 
-    Raises `SolveError`: an assumption of the run does not hold and `on_violation` is "fail".
+    Raises `SolveError`: an assumption of the run does not hold and `on_violation` is "fail", or the table
+    breaks a law of mechanics; `partial` is then the table.
 
     Parameters
     ----------
@@ -196,6 +128,9 @@ def compute_pass(
         lambda made, needed: solve_table(with_effects(made.checked, needed), clock, run, made),
         clock,
     )
+    support = [each.solution for each in made.support]
+    laws = check_laws(made.table, made.places.places, made.solved, support)
+    require_laws(laws, made.table)
     full = _full(made)
     influences = _started_influences(planned, run, before) if full else iter([{}])
     assessed, contact = _assessed(made, clock, run)
@@ -210,13 +145,14 @@ def compute_pass(
     remote = run.workers.cost.since(before)
     receipt = clock.to_json() | assessed.to_json() | contact | _planned(made)
     receipt |= {"assumptions": [assumption.to_json() for assumption in assumptions], "repeated": repeated}
+    receipt["laws"] = [law.to_json() for law in laws]
     if remote.tasks or remote.lost:
         receipt["elsewhere"] = asdict(remote)
     metadata = _metadata(case, made, receipt, ledger)
     table = assessed.stated(made.table, metadata)
     tolerance = made.checked.request.options.tolerance
     if tolerance is not None:
-        kept = _tolerance_receipt(table, tolerance, made.checked.request)
+        kept = tolerance_receipt(table, tolerance, made.checked.request)
         metadata.receipt["tolerance"] = kept
         metadata.receipt["choice"]["met"] = kept["met"]
     return _Computed(table, made.decided)

@@ -10,7 +10,8 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from bounds import engineering
-from fe_contact.analysis.database.compute_database import bought_shares, compute_pass, error_shares
+from fe_contact.analysis.database.compute_database import compute_pass
+from fe_contact.analysis.estimates.tolerance_shares import bought_shares, error_shares
 from fe_contact.analysis.request.model_choice import Decided, decide, next_model
 from fe_contact.analysis.request.request import Checked
 from fe_contact.errors import FeContactError
@@ -400,8 +401,35 @@ def _following(table: SteDatabase, last: _Pass) -> _Refinement | str:
         return "met"
     if table.n_failed:
         return f"{table.n_failed} points failed"
+    at_nodes = table.metadata.receipt["tolerance"]["used_at_nodes"]
+    if at_nodes is not None and at_nodes <= 1.0:
+        return _beyond_between(table)
     bought, _ = bought_shares(error_shares(table, tolerance), last.decided.checked.request)
-    return _next_pass(last.decided, bought)
+    measured = _next_pass(last.decided, bought)
+    behind = last.decided.behind
+    if behind and last.refinement is None and (isinstance(measured, str) or measured.expected > 1.0):
+        return _behind_trial(behind, last)
+    return measured
+
+
+def _behind_trial(behind: Decided, trial: _Pass) -> _Refinement:
+    """Return the pass that was expected to follow a trial, where one step from the trial is not enough."""
+    expected = behind.mesh.option.error.bought / behind.checked.request.options.allowed.relative
+    name = f"{behind.checked.model_name}, {behind.mesh.option.name}"
+    return _Refinement(behind, "trial", (f"{trial.name} -> {name}",), expected)
+
+
+def _beyond_between(table: SteDatabase) -> str:
+    """Say which intervals alone keep a table from its tolerance: no mesh lowers what they take."""
+    missed = table.metadata.receipt["tolerance"]["between_nodes"]
+    if not missed:
+        return "the table cannot be interpolated between its nodes"
+    words = [
+        f"{entry['axis'].replace('_', ' ')} {entry['between'][0]:.6g} and {entry['between'][1]:.6g}"
+        for entry in missed
+    ]
+    share = engineering(max(entry["used"] for entry in missed), 2)
+    return f"between {', '.join(words)} interpolation takes {share} of the tolerance: add a value there"
 
 
 def _ended(made: _Refinement, passes: Sequence[_Pass], cache: Path | None) -> str:

@@ -15,15 +15,16 @@ from fe_contact.analysis.estimates.position_errors import (
     position_errors,
 )
 from fe_contact.analysis.estimates.table_sample import Nested, TableSample
+from fe_contact.analysis.estimates.tolerance_shares import interval_goal
 from fe_contact.analysis.pairs.pair_contact import OperatingPoints
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.solved_run import Solved
 from fe_contact.analysis.tables import PositionNodes
 from fe_contact.contact import ContactSolution
 from fe_contact.geometry import ParallelAxes
-from fe_contact.planning.model_error import model_errors, point_error
+from fe_contact.planning.model_error import helical_share, model_errors, point_error
 from fe_contact.planning.plan import FaceDiscretization, Plan
-from fe_contact.planning.plane_bias import LEFT_OUT, PlaneBias
+from fe_contact.planning.plane_bias import plane_bias
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.curve import (
     AT_NODES,
@@ -46,6 +47,8 @@ from fe_contact.ste.curve_quantities import (
     mean_of_curves,
     quantity_changes,
 )
+from fe_contact.ste.database import SupportLoads, with_support_loads
+from fe_contact.ste.plane_bias import PlaneBias
 from fe_contact.types import FloatArray, Json, Status
 
 # Errors of a table, by source.
@@ -55,8 +58,8 @@ from fe_contact.types import FloatArray, Json, Status
 # which bounds what is left of the difference (`Discretization.remaining`). The table's error is measured
 # at the middles between its nodes. Where the plane stands in for three dimensions, a part of what it was
 # corrected by is its error; it is measured against three-dimensional solutions
-# (docs/effects.md#finite_width). A plane that is not corrected, requested by name or not, errs by what it
-# leaves out of the finite width.
+# (docs/effects.md#finite_width). The errors of a plane that is not corrected are those of its model: what it
+# leaves out of the finite width has a sign, and is a correction (`ste.plane_bias`).
 
 CORRECTION_ERROR = 0.03
 """Error of the correction for a finite width in parts of the correction itself. The largest seen of mean,
@@ -73,8 +76,6 @@ class _ErrorSources:
     discretization, slices, interpolation, contact, plane, method : ndarray
         Finite elements, slices of the face, table beside the node, contact, the plane for a finite width, and
         what the method leaves out.
-    left_out : float
-        Relative part of the mean STE that an uncorrected plane leaves out; it is part of `plane`.
     """
 
     discretization: FloatArray
@@ -83,7 +84,6 @@ class _ErrorSources:
     contact: FloatArray
     plane: FloatArray
     method: FloatArray
-    left_out: float
 
     @property
     def total(self) -> FloatArray:
@@ -92,7 +92,7 @@ class _ErrorSources:
         return np.asarray(sum(parts) + self.method)
 
     def to_json(self) -> Json:
-        """Return the largest of each source by load, m, and the part that the plane leaves out.
+        """Return the largest of each source by load, m.
 
         Beside a failed point errors are unknown and left out; None where that leaves none.
         """
@@ -104,8 +104,7 @@ class _ErrorSources:
             f"{PLANE}_m": self.plane,
             f"{METHOD}_m": self.method,
         }
-        worst = {name: _largest_known(values) for name, values in sources.items()}
-        return worst | {"plane_for_finite_width_relative": self.left_out}
+        return {name: _largest_known(values) for name, values in sources.items()}
 
 
 def _largest_known(errors: FloatArray) -> list[float | None]:
@@ -130,18 +129,12 @@ def estimate_errors(
     positions : PositionErrors
         The largest of the assessed operating points stand for every place.
     """
-    made, pair = plan.discretization, points.places[0].contact.pair
-    bias, nominal = PlaneBias.of(pair, made), points.nominal.pair
-    missing = abs(bias.mean) if bias else 0.0
+    made, nominal = plan.discretization, points.nominal.pair
 
     def left(these: FloatArray, those: FloatArray, part: float) -> FloatArray:
         """Return a part of the differences of STE, at all points."""
         return nested.sample.spread_points(part * np.nan_to_num(np.abs(these - those)))
 
-    free_ends = left(nested.table, nested.plane, CORRECTION_ERROR)
-    if missing:
-        curves = [LEFT_OUT * missing * np.nan_to_num(np.abs(solution.deflection)) for solution in solutions]
-        free_ends = points.gathered(curves)
     face, lags = isinstance(made, FaceDiscretization), [np.nan_to_num(each.deflection) for each in solutions]
     return _ErrorSources(
         left(nested.patched, nested.coarse, made.remaining)
@@ -149,9 +142,8 @@ def estimate_errors(
         left(nested.table, nested.sliced, made.remaining_slices),
         np.broadcast_to(positions.band[:, :, None, None], (*positions.band.shape, *points.shape)),
         points.gathered([_contact_error(solution) for solution in solutions]),
-        free_ends,
+        left(nested.table, nested.plane, CORRECTION_ERROR),
         points.gathered([point_error(nominal, plan.load, lag, over_face=face) for lag in lags]),
-        missing,
     )
 
 
@@ -207,8 +199,6 @@ def curve_errors(
     own, by_mesh, by_patches, by_slices, free_ends = _measured(points, nested, plan)
     if points.period > 1:
         own[BESIDE_MESH] = _beside_by_load(points, solutions, sample)
-    if bias := PlaneBias.of(pair, made):
-        free_ends = bias.errors(pair, own)
     by_source = {
         "discretisation": np.hypot(by_mesh, by_patches),
         "slices": by_slices,
@@ -257,7 +247,7 @@ def _measured(points: OperatingPoints, nested: Nested, plan: Plan, balance: floa
     `balance` is the least change of a mean over the mean size of the change about it.
     """
     made, pair = plan.discretization, points.nominal.pair
-    helical = isinstance(made, FaceDiscretization) and pair.base_helix_angle != 0.0
+    helical = helical_share(pair) if isinstance(made, FaceDiscretization) else 0.0
     # on the curve: half the slices may multiply a small ripple, and no part of that is what many change
     many_slices = nested.table + made.remaining_slices * (nested.table - nested.sliced)
     parts = 1.0, _left_by_mesh(pair, plan, helical), plan.remaining_patches, 1.0, CORRECTION_ERROR
@@ -277,7 +267,7 @@ def _changes(
     those: Sequence[FloatArray],
     parts: FloatArray,
     balance: float,
-    helical: bool,
+    helical: float,
 ) -> FloatArray:
     """Return parts (k, 23) of the changes of k sets of curves (T R, f, m, d), (k, 23, F, M, D) in m."""
     first, second = np.stack(these, axis=1), np.stack(those, axis=1)
@@ -289,7 +279,7 @@ def _changes(
         least = balance * mean_of_curves(sample.knots, about, sample.period)
         change[MEAN] = np.maximum(change[MEAN], least)
     change = parts.T[:, :, None, None, None] * change.reshape(QUANTITIES, *first.shape[1:])
-    return sample.spread(np.moveaxis(_shared(change) if helical else change, 1, 0))
+    return sample.spread(np.moveaxis(_shared(change, helical), 1, 0))
 
 
 def _beside_by_load(
@@ -319,36 +309,43 @@ def _by_solver(points: OperatingPoints, solutions: list[ContactSolution], sample
     )
 
 
-def _left_by_mesh(pair: ParallelAxes, plan: Plan, helical: bool) -> FloatArray:
-    """Error left over the change to the coarse mesh, (23,)."""
+def _left_by_mesh(pair: ParallelAxes, plan: Plan, helical: float) -> FloatArray:
+    """Error left over the change to the coarse mesh, (23,); `helical`: the part of helical constants."""
     made = plan.discretization
     straight = "spur" if all(gear.web is None for gear in plan.bodies(pair)) else "thin"
-    kind = ("helical" if helical else straight) if isinstance(made, FaceDiscretization) else "plane"
-    mean, ripple, harmonics = LEFT_BY_MESH[kind]["draft" if plan.level == "draft" else "standard"]
-    part = np.array([mean, ripple, *[harmonics] * (QUANTITIES - BESIDE_MESH)])
-    return part * made.remaining if helical else part
+    level = "draft" if plan.level == "draft" else "standard"
+    if isinstance(made, FaceDiscretization):
+        spur, wound = (np.array(LEFT_BY_MESH[kind][level]) for kind in (straight, "helical"))
+        mean, ripple, harmonics = (1.0 - helical) * spur + helical * made.remaining * wound
+    else:
+        mean, ripple, harmonics = LEFT_BY_MESH["plane"][level]
+    return np.array([mean, ripple, *[harmonics] * (QUANTITIES - BESIDE_MESH)])
 
 
-def _shared(change: FloatArray) -> FloatArray:
-    """Let every harmonic change (23, ...) by its share of peak-to-peak at least."""
+def _shared(change: FloatArray, helical: float) -> FloatArray:
+    """Let every harmonic of a helical pair change (23, ...) by its share of peak-to-peak at least."""
     number = np.arange(1, QUANTITIES - FIRST_HARMONIC + 1).reshape(-1, *[1] * (change.ndim - 1))
-    least = HARMONIC_SHARE * change[PEAK_TO_PEAK] / np.sqrt(number)
+    least = helical * HARMONIC_SHARE * change[PEAK_TO_PEAK] / np.sqrt(number)
     return np.concatenate([change[:FIRST_HARMONIC], np.maximum(change[FIRST_HARMONIC:], least)])
 
 
-def with_axes(at_nodes: FloatArray, axes: Mapping[str, AxisError]) -> FloatArray:
-    """Append the interpolation along the axes: (9, 23, F, M, D).
+def interval_errors(shape: tuple[int, ...], axes: Mapping[str, AxisError]) -> tuple[FloatArray, FloatArray]:
+    """Lay out the interpolation errors of the axes of a table with nodes (F, M, D).
 
     What was assessed at one alignment stands for all of them. An interval that was not assessed has NaN.
+
+    Returns
+    -------
+    (ndarray, ndarray), shapes (3, F, M, D) and (3, 23, F, M, D)
+        Of points, and of mean, peak-to-peak and harmonics, in m at the lower node of every interval.
     """
-    shape = at_nodes.shape[1:]
-    between = []
+    errors = np.zeros((len(BETWEEN_NODES), 1 + QUANTITIES, *shape))
     for i, name in enumerate(BETWEEN_NODES):
-        errors = np.zeros(shape)
-        intervals = np.moveaxis(errors, 1 + i, 1)[:, : shape[1 + i] - 1]  # a view
-        intervals[...] = axes[name].change[..., None] if name in axes else np.nan
-        between.append(errors)
-    return np.concatenate([at_nodes, np.stack(between)])
+        intervals = np.moveaxis(errors[i], 1 + i, 1)[:, : shape[i] - 1]  # a view
+        intervals[...] = np.nan
+        if name in axes:
+            intervals[...] = np.concatenate([axes[name].error[None], axes[name].change])[..., None]
+    return errors[:, 0], errors[:, 1:]
 
 
 def _summary(errors: FloatArray) -> Json:
@@ -377,28 +374,36 @@ class AssessedTable:
         Of mean, peak-to-peak and harmonics by source, m; NaN where not estimated.
     load_arm_error : ndarray, shape (3, 23, F, M, D)
         The same of the load arm.
+    interval_error : ndarray, shape (3, F, M, D)
+        Of points between the nodes of an axis, at the lower one, m.
+    inserted : SupportLoads, optional
+        Loads with which the table has these errors between its loads.
     by_source, held_out : dict
         The largest by source; what was measured between the nodes of each axis.
     bias : PlaneBias, optional
-        What the plane leaves out of a finite width where it is not corrected.
+        What the plane leaves out of a finite width where it is not corrected; no error holds it.
     """
 
     band: FloatArray
     curve_error: FloatArray
     load_arm_error: FloatArray
+    interval_error: FloatArray
+    inserted: SupportLoads | None
     by_source: Json
     held_out: Json
     bias: PlaneBias | None
 
     def stated(self, table: SteDatabase, metadata: Metadata) -> SteDatabase:
         """Return the table with them, and with the metadata that state them."""
-        return replace(
+        stated = replace(
             table,
             error_estimate=self.band,
             metadata=metadata,
             curve_error=self.curve_error,
             load_arm_error=self.load_arm_error,
+            interval_error=self.interval_error,
         )
+        return stated if self.inserted is None else with_support_loads(stated, self.inserted)
 
     def with_derivatives(self, derived: DerivedCycle | None) -> AssessedTable:
         """Return them with what derivatives miss, if any base pitch of the table is by them."""
@@ -453,25 +458,34 @@ def assessed_table(
     ste, arms = nested.parts
     measured = fine, solutions, ste, positions, plan
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
-    between = held_out_axes(table, fine, checked.request.scene, checked.decided, solved)
-    held_out = {name: error.to_json() for name, error in between.items()}
-    bias = plane_bias(table, fine, plan)
-    of_arm = load_arm_errors(fine, table, arms, plan)
-    return AssessedTable(sources.total, with_axes(errors, between), of_arm, sources.to_json(), held_out, bias)
+    bias = table_bias(table, fine, plan)
+    goal = interval_goal(table, errors, checked.request, bias)
+    between = held_out_axes(table, fine, checked.request.scene, checked.decided, solved, goal)
+    of_points, of_curves = interval_errors(errors.shape[2:], between)
+    return AssessedTable(
+        sources.total,
+        np.concatenate([errors, of_curves]),
+        load_arm_errors(fine, table, arms, plan),
+        of_points,
+        between["force"].inserted if "force" in between else None,
+        sources.to_json(),
+        {name: error.to_json() for name, error in between.items()},
+        bias,
+    )
 
 
 def unassessed_table(table: SteDatabase, points: OperatingPoints, plan: Plan) -> AssessedTable:
     """Return the errors of a table of which none was estimated, but for what is known in closed form."""
-    bias = plane_bias(table, points, plan)
-    left = {"plane_for_finite_width_relative": abs(bias.mean) if bias else 0.0}
+    bias = table_bias(table, points, plan)
     unknown = np.full(table.error_estimate.shape, np.nan)
     errors = np.full((len(SOURCES), QUANTITIES, plan.load.size, *points.shape), np.nan)
-    return AssessedTable(unknown, errors, errors[: len(OF_LOAD_ARM)], left, {}, bias)
+    of_points = errors[: len(BETWEEN_NODES), 0]
+    return AssessedTable(unknown, errors, errors[: len(OF_LOAD_ARM)], of_points, None, {}, {}, bias)
 
 
-def plane_bias(table: SteDatabase, points: OperatingPoints, plan: Plan) -> PlaneBias | None:
+def table_bias(table: SteDatabase, points: OperatingPoints, plan: Plan) -> PlaneBias | None:
     """Return what the plane leaves out of the curves of a table."""
     pair, ste = points.nominal.pair, table.static_transmission_error
-    bias = PlaneBias.of(pair, plan.discretization)
-    own = np.stack([mean_of_curves(table.position, ste, table.period), np.ptp(ste, axis=0)])
-    return bias and bias.of_curves(pair, own)
+    bias = plane_bias(pair, plan.discretization)
+    mean = mean_of_curves(table.position, ste, table.period)
+    return bias and bias.of_curves(mean, np.ptp(ste, axis=0))

@@ -7,20 +7,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fe_contact.analysis.estimates.held_out_loads import HeldOutLoads
+from fe_contact.analysis.estimates.interval_goal import IntervalGoal
 from fe_contact.analysis.pairs.contact_lines import deflected_operating_points
 from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoints, operating_points
 from fe_contact.analysis.request.solved_run import Solved
 from fe_contact.contact import Start
 from fe_contact.effects import ContactScene
 from fe_contact.errors import DatabaseError
-from fe_contact.sampled import LOADS, WIDE_INTERVALS, WIDE_PROBES, sample_of, some_positions, spread
+from fe_contact.sampled import LOADS, sample_of, some_positions, spread
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve_quantities import BESIDE_MESH, FIRST_HARMONIC, QUANTITIES, quantity_changes
+from fe_contact.ste.database import SupportLoads
 from fe_contact.types import FloatArray, IntArray, Json
 
-LOAD_PROBES, MIDDLE = np.arange(1, WIDE_PROBES + 1) / (WIDE_PROBES + 1), np.array([0.5])
-"""Held-out loads in every interval, on a logarithmic scale: a kink rounds the curve anywhere in it. Of more
-than four intervals the middles alone: those are short."""
 POSITIONS = 16
 """Positions at which an interval of center distances is assessed: each needs a compliance of its own."""
 
@@ -43,16 +43,20 @@ class AxisError:
     change : ndarray, shape (23, I, L) or (23, I, 1)
         What that does to mean, peak-to-peak and harmonics, m; bounds of it from `error` for center distances,
         which are not assessed at all positions.
+    inserted : SupportLoads, optional
+        Solutions at loads beside those requested, with which the table has these errors.
     """
 
     at: FloatArray
     error: FloatArray
     change: FloatArray
+    inserted: SupportLoads | None = None
 
     def to_json(self) -> Json:
         """Return plain JSON; intervals without a solution hold null."""
         rows = [[float(e) if np.isfinite(e) else None for e in row] for row in self.error]
-        return {"at": self.at.tolist(), "error_m": rows}
+        inserted = [] if self.inserted is None else self.inserted.force.tolist()
+        return {"at": self.at.tolist(), "error_m": rows, "inserted": inserted}
 
 
 def held_out_axes(
@@ -61,6 +65,7 @@ def held_out_axes(
     scene: ContactScene,
     choices: Mapping[str, str],
     solved: Solved,
+    goal: IntervalGoal | None = None,
 ) -> dict[str, AxisError]:
     """Solve one held-out point in every interval of every axis that has one.
 
@@ -81,6 +86,8 @@ def held_out_axes(
         Effect name to "on" or "off", as decided for the whole table.
     solved : list of (ContactProblem, ContactSolution)
         Of every place, in all base pitches: held-out loads and misalignments start from the nearest ones.
+    goal : IntervalGoal, optional
+        Insert loads until their intervals meet it; not in a table of which base pitches are derived.
 
     Returns
     -------
@@ -91,7 +98,7 @@ def held_out_axes(
     if table.n_failed:
         return {}
     table = _first_pitch(table)
-    assessed = _Assessed(table, some_positions(table.position.size), points, scene, choices, solved)
+    assessed = _Assessed(table, some_positions(table.position.size), points, scene, choices, solved, goal)
     axes = {
         "force": (table.force, assessed.force),
         "misalignment": (table.misalignment, assessed.misalignment),
@@ -129,18 +136,15 @@ class _Assessed:
     scene: ContactScene
     choices: Mapping[str, str]
     solved: Solved
+    goal: IntervalGoal | None = None
 
     def force(self) -> AxisError:
-        """Assess the loads."""
+        """Assess the loads, and insert those that the goal asks for."""
         force = self.table.force
-        (m,), (d,) = self._nearest("misalignment"), self._nearest("center_distance_change")
-        point = self.places.places[self._place(int(np.searchsorted(self.table.misalignment, m)), d)]
-        probes = LOAD_PROBES if force.size <= WIDE_INTERVALS + 1 else MIDDLE
-        loads = force[:-1, None] ** (1.0 - probes) * force[1:, None] ** probes
-        (curves,) = self._curves([point], loads.ravel(), np.array([m]), d)
-        error = _worst(curves).reshape(loads.shape).max(axis=1)
-        change = self._changes(curves).reshape(-1, *loads.shape).max(axis=2)
-        return AxisError(np.sqrt(force[1:] * force[:-1]), error[:, None], change[..., None])
+        goal = None if any(point.derived is not None for point in self.places.places) else self.goal
+        errors = HeldOutLoads(self.table, self.rows, self.places, self.solved).errors(goal)
+        middles = np.sqrt(force[1:] * force[:-1])
+        return AxisError(middles, errors.error[:, None], errors.change[..., None], errors.inserted)
 
     def misalignment(self) -> AxisError:
         """Assess the misalignments, at some loads."""

@@ -11,10 +11,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bounds import Finding, warn_of
-from fe_contact.analysis.flanks.load_distribution import FlankScene, LoadDistribution, load_distribution
+from fe_contact.analysis.flanks.flank_errors import with_errors
+from fe_contact.analysis.flanks.load_distribution import (
+    FlankErrors,
+    FlankScene,
+    LoadDistribution,
+    load_distribution,
+)
 from fe_contact.analysis.flanks.solved_operating_point import solved_point
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import as_checked
+from fe_contact.errors import DatabaseError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.plausibility import flank_findings, merged, unexpected
@@ -87,6 +94,7 @@ SCHEMA_VERSION = 2
 _GRID = ("position", "pair", "face_position")
 _GEARS: tuple[Literal["pinion"], Literal["wheel"]] = ("pinion", "wheel")
 _SCALARS, _DOCUMENTS = ("slice_width", "base_helix_angle"), ("scene", "metadata")
+_NO_ERRORS = FlankErrors(reason="the file is older than errors of flanks")
 
 # dimensions, units and long name of what is read back
 STORED: dict[str, tuple[tuple[str, ...], str, str]] = {
@@ -140,8 +148,19 @@ def read(path: Path) -> dict[str, Any]:
         "at_edge": content["at_edge"].astype(bool) if "at_edge" in content else False,
         "scene": FlankScene.from_json(scene),
         "metadata": Metadata(**metadata),
+        "errors": _errors(path, attributes),
         **{name: float(attributes[name]) for name in _SCALARS},
     }
+
+
+def _errors(path: Path, attributes: Json) -> FlankErrors:
+    """Return the errors of a file; `DatabaseError`: they are something else."""
+    if "errors" not in attributes:
+        return _NO_ERRORS
+    try:
+        return FlankErrors(**json_attribute(path, attributes, "errors"))
+    except TypeError as error:
+        raise DatabaseError(f"{path.name}: damaged, its errors are not those of flanks") from error
 
 
 def _arrays(results: LoadDistribution) -> dict[str, Any]:
@@ -174,6 +193,7 @@ def _attributes(results: LoadDistribution, arrays: dict[str, Any]) -> Json:
         "schema_version": np.int64(SCHEMA_VERSION),
         "content_hash": results.metadata.content_hash,
         "mean_face_load_factor": results.mean_face_load_factor,
+        "errors": json.dumps(asdict(results.errors)),
         "scene": json.dumps(results.scene.to_json()),
         "metadata": json.dumps(asdict(results.metadata)),
         "warnings": json.dumps(results.metadata.warnings),
@@ -214,8 +234,8 @@ def flank_results(
     case : dict, optional
         The case as the caller phrased it, echoed and hashed; default: the request in SI units.
     """
-    checked = as_checked(pair, point, options)
-    solved, receipt = solved_point(checked, at, StageClock(run.workers.cost), run)
+    clock = StageClock(run.workers.cost)
+    solved, receipt = solved_point(as_checked(pair, point, options), at, clock, run)
     checked, request = solved.checked, solved.checked.request
     results = load_distribution(
         solved.contact.pair,
@@ -223,8 +243,10 @@ def flank_results(
         solved.solution,
         misalignment=float(request.misalignment[0]),
         center_distance_change=float(request.center_distance_change[0]),
-        metadata=Metadata(receipt=receipt),
     )
+    with clock.stage("error estimate"):
+        results = with_errors(results, solved, run.cache)
+    results = replace(results, metadata=Metadata(receipt=receipt | clock.to_json()))
     warn_of(unexpected(request.findings, _findings(results)))
     return replace(results, metadata=_metadata(checked, results, case))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,7 +14,7 @@ from fe_contact.contact.touch import rolls_at
 from fe_contact.errors import DatabaseError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import Metadata, PairFacts
-from fe_contact.types import BoolArray, FloatArray, IntArray, Json
+from fe_contact.types import BoolArray, Estimate, FloatArray, IntArray, Json
 from host.loops import njit
 
 if TYPE_CHECKING:
@@ -94,6 +94,27 @@ def _flank_scene(
 
 
 @dataclass(frozen=True)
+class FlankErrors:
+    """Errors of figures of flank results over their values, or why there are none.
+
+    Attributes
+    ----------
+    line_load, pressure : float or None
+        Of the largest ones clear of edges. None: not estimated.
+    face_load_factor, largest_face_load_factor : float or None
+        Of K_Hbeta over the cycle, and of the largest one at a position.
+    reason : str
+        Why those that are None are not estimated.
+    """
+
+    line_load: float | None = None
+    face_load_factor: float | None = None
+    largest_face_load_factor: float | None = None
+    pressure: float | None = None
+    reason: str = "one solution tells no error"
+
+
+@dataclass(frozen=True)
 class LoadDistribution:
     """One load on P positions, N tooth pairs and K stretches of the common face, several a slice.
 
@@ -130,6 +151,8 @@ class LoadDistribution:
         Whether the strip reaches an edge of either flank; nowhere in files older than it.
     metadata : Metadata
         Case, effects, cost and versions.
+    errors : FlankErrors
+        Of the largest line load, of K_Hbeta and of the largest pressure.
     """
 
     position: FloatArray
@@ -148,6 +171,7 @@ class LoadDistribution:
     scene: FlankScene
     metadata: Metadata = field(default_factory=Metadata)
     at_edge: BoolArray | bool = False
+    errors: FlankErrors = field(default_factory=FlankErrors)
 
     @property
     def clear_pressure(self) -> FloatArray:
@@ -168,6 +192,39 @@ class LoadDistribution:
     def face_load(self) -> FloatArray:
         """Force of all pairs per unit of face width (P, K), N/m."""
         return np.asarray(self.force.sum(axis=1) / self.slice_width)
+
+    @property
+    def largest_line_load(self) -> Estimate:
+        """Largest line load of all positions clear of edges, N/m: the mean over `slice_width` of the face."""
+        clear = np.where(self.at_edge, 0.0, self.line_load)
+        return _estimate(float(np.max(clear, initial=0.0)), self.errors.line_load, "N/m")
+
+    @property
+    def edge_line_load(self) -> float:
+        """Largest line load at an edge, N/m: it peaks over less than a slice where a line ends at a tip."""
+        return float(np.max(np.where(self.at_edge, self.line_load, 0.0), initial=0.0))
+
+    @property
+    def largest_pressure(self) -> Estimate:
+        """Largest pressure of all positions clear of edges, Pa."""
+        return _estimate(float(np.max(self.clear_pressure, initial=0.0)), self.errors.pressure, "Pa")
+
+    @property
+    def cycle_face_load_factor(self) -> Estimate:
+        """`mean_face_load_factor` with its error."""
+        return _estimate(self.mean_face_load_factor, self.errors.face_load_factor, "1")
+
+    @property
+    def largest_face_load_factor(self) -> Estimate:
+        """Largest `face_load_factor` of all positions."""
+        largest = float(self.face_load_factor.max())
+        return _estimate(largest, self.errors.largest_face_load_factor, "1")
+
+    def at(self, positions: BoolArray) -> LoadDistribution:
+        """Return the same at some of the positions (P,), without errors."""
+        per_position = {name: getattr(self, name)[positions] for name in _PER_POSITION}
+        edge = np.broadcast_to(self.at_edge, self.force.shape)[positions]
+        return replace(self, **per_position, at_edge=edge, errors=FlankErrors())
 
     @property
     def load_centroid(self) -> FloatArray:
@@ -226,6 +283,10 @@ class LoadDistribution:
     def _meshing(self) -> BoolArray:
         """Stretches that belong to a contact line: on the path of contact, or loaded at a tip edge."""
         return np.asarray(self.on_path | (self.force > 0.0))
+
+
+_PER_POSITION = ("position", "deflection", "roll_length_1", "roll_length_2", "on_path", "force", "lever",
+                 "pressure", "gap")  # fmt: skip
 
 
 def load_distribution(
@@ -291,6 +352,11 @@ def _loaded_gap(problem: ContactProblem, force: FloatArray, deflection: FloatArr
     bent = problem.moved(force[:, None])[:, 0]
     approach = candidates.motion_arm * (deflection[:, None] - candidates.gap)
     return np.where(force > 0.0, 0.0, bent - approach)
+
+
+def _estimate(value: float, relative: float | None, unit: str) -> Estimate:
+    """Return a figure with its error; NaN where none is estimated."""
+    return Estimate(value, math.nan if relative is None else relative * abs(value), unit)
 
 
 def _largest_over_mean(values: FloatArray) -> FloatArray:

@@ -16,15 +16,16 @@ import numpy as np
 
 from bounds import at_most
 from fe_contact.analysis.checks.assumptions import Assumption, check_cheaply
+from fe_contact.analysis.checks.table_laws import check_laws, require_laws
 from fe_contact.analysis.database.compute_database import failed_points
 from fe_contact.analysis.estimates.assessed_table import (
     AssessedTable,
     curve_errors,
     estimate_errors,
+    interval_errors,
     load_arm_errors,
-    plane_bias,
+    table_bias,
     unassessed_table,
-    with_axes,
     worst_residual,
 )
 from fe_contact.analysis.estimates.position_errors import errors_by_halves
@@ -89,9 +90,12 @@ def _condensed_errors(
     if contacts.coarse is None:
         errors[BY_MESH], band = _expected(table, plan, contacts.own)
         sources = replace(sources, discretization=np.broadcast_to(band, sources.contact.shape))
-    bias = plane_bias(table, points, plan)
+    bias = table_bias(table, points, plan)
     of_arm = load_arm_errors(points, table, arms, plan)
-    return AssessedTable(sources.total, with_axes(errors, {}), of_arm, sources.to_json(), {}, bias)
+    _, between = interval_errors(errors.shape[2:], {})
+    every = np.concatenate([errors, between])
+    nowhere = np.empty((0,) * 4)  # no point between nodes is assessed
+    return AssessedTable(sources.total, every, of_arm, nowhere, None, sources.to_json(), {}, bias)
 
 
 def _expected(table: SteDatabase, plan: Plan, contact: PairContact) -> tuple[FloatArray, FloatArray]:
@@ -266,6 +270,8 @@ class CondensedPair:
                 self._latest.preview = solved
             kept = KeptContact.of(solved.pair, solved.problem, solved.solution)
             table = assembled_table(checked.request, points, nodes, [kept], [])
+            laws = check_laws(table, points.places, [(kept.problem, kept.solution)])
+            require_laws(laws, table)
         with clock.stage("error estimate"):
             stated = unassessed_table(table, points, plan) if preview else None
             assessed = stated or _condensed_errors(table, solved, contacts, sample)

@@ -165,7 +165,7 @@ def contact_fields(
         "max_pressure": np.where(good, largest.max(axis=2), np.nan),
         "pair_pressure": np.where(good[..., None], largest, np.nan),
         "edge_pressure": np.where(good, np.where(edge, pressure, 0.0).max(axis=2), np.nan),
-        "pairs_in_contact": _pairs_in_contact(solution.force, of_pair),
+        "pairs_in_contact": carrying_pairs(solution.force, candidates),
         "status": solution.status,
         "residuals": solution.residuals,
     }
@@ -189,11 +189,11 @@ def _support_fields(
     _pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution
 ) -> dict[str, NDArray[Any]]:
     """Arrays (P, S) of one place at the support loads."""
-    pair = problem.candidates.pair
-    carrying = _pairs_in_contact(solution.force, pair[:, None] == np.unique(pair))
+    carrying = carrying_pairs(solution.force, problem.candidates)
     return dict(zip(OF_SUPPORT, (solution.deflection, solution.tangent, carrying), strict=True))
 
 
-def _pairs_in_contact(force: FloatArray, of_pair: BoolArray) -> IntArray:
-    """Count the pairs (P, F) of which any candidate carries load."""
+def carrying_pairs(force: FloatArray, candidates: Candidates) -> IntArray:
+    """Count the pairs (P, F) of which any candidate carries load, by their forces (P, F, m) in N."""
+    of_pair = candidates.pair[:, None] == np.unique(candidates.pair)
     return np.asarray((((force > 0.0).astype(float) @ of_pair) > 0.0).sum(axis=2))

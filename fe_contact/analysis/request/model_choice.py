@@ -22,7 +22,14 @@ from fe_contact.effects.influence.estimate import estimate_influence
 from fe_contact.options import LEVELS, AnalysisOptions
 from fe_contact.planning.cost_model import Prediction, effort
 from fe_contact.planning.plan import FaceDiscretization, NodeRule, Plan
-from fe_contact.planning.planned import ExpectedCurves, MeshChoice, MeshOption, chosen_mesh, expected_error
+from fe_contact.planning.planned import (
+    ExpectedCurves,
+    MeshChoice,
+    MeshOption,
+    chosen_mesh,
+    expected_error,
+    mesh_options,
+)
 from fe_contact.sampled import ALIGNMENTS, LOADS, sample_of
 from fe_contact.types import FloatArray, Json
 
@@ -136,29 +143,8 @@ WIDTH_SHARE = 0.8
 peak-to-peak are 0.8 of the measured change in the median (docs/lab/influence.md)."""
 
 
-@dataclass(frozen=True)
-class _Trial:
-    """What is tried before the mesh that is expected to meet the tolerance.
-
-    Attributes
-    ----------
-    error : float
-        Largest ratio of expected error to tolerance.
-    work : float
-        Largest ratio of its work to that of the expected mesh.
-    models : bool
-        Whether other models are tried too, not meshes of the expected one alone.
-    """
-
-    error: float
-    work: float
-    models: bool = True
-
-
-TRIED = _Trial(2.0, 0.1), _Trial(1.25, 0.5), _Trial(5.0, 0.35, models=False)
-"""In this order. Where the trial suffices it saves more than a failed pass costs. A mesh of the same model
-measures errors, which tell the next mesh, and its gears serve the error estimate of the next: predictions are
-off by as much on wide and quiet helical pairs."""
+TRIED_WORK = 0.1
+"""Work over that of the expected mesh up to which another one is tried first."""
 
 
 def decide(
@@ -173,23 +159,46 @@ def decide(
     keep_model : bool
         Choose mesh and slices only: what is requested is more than the transmission error.
     tried : bool
-        The run measures its errors and is refined where they are too large: what is expected to err by
-        somewhat more than the tolerance is tried first where it costs much less (`TRIED`).
+        The run measures its errors and is refined where they are too large: what is expected to miss the
+        tolerance is tried first only where it costs next to nothing (`TRIED_WORK`). The expected cost of all
+        passes never falls as the tolerance becomes tighter.
     """
     options = checked.request.options
     if options.tolerance is not None and options.time_budget is not None:
         return _within_time(checked, cache, keep_model=keep_model, tried=tried)
     models = [checked] if keep_model else _alternatives(checked)
     curves = expected_curves(checked) if _wishes(checked) or checked.model.across_face else None
-    chosen = _best(_meshes(models, curves, cache, 1.0))
-    if tried and options.tolerance is not None:
-        for trial in TRIED:
-            among = models if trial.models else [chosen[0]]
-            first = _best(_meshes(among, curves, cache, trial.error))
-            if first[1].met and first[1].option.effort <= trial.work * chosen[1].option.effort:
-                said = _planned(first[0], _said_tried(*chosen, first[1]))
-                return replace(said, behind=_planned(*chosen))
+    chosen = _best(_meshes(models, curves, cache))
+    if tried and options.tolerance is not None and (first := _trial(models, chosen[1], curves)):
+        return replace(_planned(first[0], _said_tried(*chosen, first[1])), behind=_planned(*chosen))
     return _planned(*chosen)
+
+
+def _trial(
+    models: Sequence[Checked], chosen: MeshChoice, curves: ExpectedCurves | None
+) -> tuple[Checked, MeshOption] | None:
+    """Return the most exact of the meshes that cost next to nothing beside the chosen one, or None.
+
+    Costs are compared without the positions that a tolerance asks for, so that what is tried beside a dearer
+    mesh costs no less. The uncorrected plane is left out: a tighter tolerance would not try it.
+    """
+    usual = [(model, _options(model, curves, usual=True)) for model in models[-2:]]
+    works = [option.effort for _, options in usual for option in options if option.name == chosen.option.name]
+    cheap = [
+        (model, option)
+        for model, options in usual
+        for option, own in zip(_options(model, curves), options, strict=True)
+        if own.effort <= TRIED_WORK * max(works)
+    ]
+    return min(cheap, key=lambda trial: trial[1].error.bought, default=None)
+
+
+def _options(checked: Checked, curves: ExpectedCurves | None, *, usual: bool = False) -> list[MeshOption]:
+    """Return all meshes of a model; with the `usual` positions if so wished."""
+    request, options = checked.request, checked.request.options
+    options = replace(options, tolerance=None) if usual else options
+    arguments = request.pair, request.load, options, checked.model, request.alignments
+    return mesh_options(*arguments, curves, bound=request.model_chosen)
 
 
 def _within_time(checked: Checked, cache: Path | None, *, keep_model: bool, tried: bool) -> Decided:
@@ -218,20 +227,20 @@ def _within_time(checked: Checked, cache: Path | None, *, keep_model: bool, trie
 
 
 def _meshes(
-    models: Sequence[Checked], curves: ExpectedCurves | None, cache: Path | None, stretch: float
+    models: Sequence[Checked], curves: ExpectedCurves | None, cache: Path | None
 ) -> list[tuple[Checked, MeshChoice]]:
     meshes: list[tuple[Checked, MeshChoice]] = []
     for model in models:
         # what the coarsest mesh in the plane meets, three dimensions meet no cheaper
         if not (model.model.across_face and any(mesh.met and mesh.level == LEVELS[0] for _, mesh in meshes)):
-            meshes.append((model, _mesh(model, curves, cache, stretch)))
+            meshes.append((model, _mesh(model, curves, cache)))
     return meshes
 
 
-def _said_tried(checked: Checked, chosen: MeshChoice, first: MeshChoice) -> MeshChoice:
+def _said_tried(checked: Checked, chosen: MeshChoice, first: MeshOption) -> MeshChoice:
     dearer = f"{checked.model_name}, {chosen.option.name}"
-    reason = f"expected error {first.option.error.words}, tried first: much less work than {dearer}"
-    return MeshChoice(first.option, chosen.met, reason)
+    reason = f"expected error {first.error.words}, tried first: at most a tenth of the work of {dearer}"
+    return MeshChoice(first, chosen.met, reason)
 
 
 def _wishes(checked: Checked) -> bool:
@@ -290,14 +299,10 @@ def _again(request: Request) -> Checked:
     return checked_request(request, neglect=False)
 
 
-def _mesh(
-    checked: Checked, curves: ExpectedCurves | None, cache: Path | None, stretch: float = 1.0
-) -> MeshChoice:
-    request, options = checked.request, checked.request.options
-    if options.tolerance is not None:
-        options = replace(options, tolerance=options.tolerance.stretched(stretch))
-    arguments = request.pair, request.load, options, checked.model
-    return chosen_mesh(*arguments, request.alignments, cache, curves, bound=request.model_chosen)
+def _mesh(checked: Checked, curves: ExpectedCurves | None, cache: Path | None) -> MeshChoice:
+    request = checked.request
+    arguments = request.pair, request.load, request.options, checked.model, request.alignments
+    return chosen_mesh(*arguments, cache, curves, bound=request.model_chosen)
 
 
 def _best(choices: Sequence[tuple[Checked, MeshChoice]]) -> tuple[Checked, MeshChoice]:

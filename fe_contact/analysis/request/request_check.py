@@ -13,7 +13,7 @@ from fe_contact.analysis.request.request import Checked, Request
 from fe_contact.compliance.flank import LARGEST_ROUNDING, least_face_width
 from fe_contact.contact import ContactModel
 from fe_contact.effects import ContactScene, LedgerEntry, compose
-from fe_contact.effects.influence.estimate import estimate_influences
+from fe_contact.effects.influence.estimate import estimate_influences, largest_part
 from fe_contact.errors import InputError
 from fe_contact.flank.modification import fields_of
 from fe_contact.geometry import FlankModification, ParallelAxes
@@ -27,6 +27,8 @@ from fe_contact.planning.plan import make_plan
 SHARE = 0.1
 """Part of the tolerance that all neglected effects together may change by their estimates, which are right
 within a factor of two in most cases (docs/accuracy.md): what is neglected stays below it."""
+LARGEST_PART = 0.5
+"""Part of the tolerance that their gaps together may change at most, by their bounds over estimated sizes."""
 
 
 def _neglected_effects(
@@ -35,7 +37,8 @@ def _neglected_effects(
     """Return the automatic effects whose estimated influence is below the tolerance's share, and why.
 
     The smallest come first, until their sum would exceed the share of mean and peak-to-peak; none without
-    a tolerance. The ledger is as the scene alone decides.
+    a tolerance. An estimate passes single places by: gaps that could change more there stay. The ledger is
+    as the scene alone decides.
     """
     if tolerance is None:
         return {}
@@ -44,12 +47,19 @@ def _neglected_effects(
     decided = {entry.name: "on" if entry.on else "off" for entry in ledger}
     estimates = estimate_influences(scene, decided, able, tolerance.least_scale)
     neglected: dict[str, str] = {}
-    total = 0.0
+    total, bounded = 0.0, 0.0
     influences = [(name, influence) for name, influence in estimates.items() if influence is not None]
     for name, influence in sorted(influences, key=lambda item: item[1].largest):
         total += influence.largest
         if total > SHARE * tolerance.relative:
             break
+        bound = largest_part(
+            scene.effect(name).extent(scene), influence.whole.mean, influence.whole.peak_to_peak, tolerance
+        )
+        if bounded + bound > LARGEST_PART * tolerance.relative:
+            total -= influence.largest
+            continue
+        bounded += bound
         # an estimate of another size than the tolerance bounds nothing
         estimated = f"within a factor of two in most cases, at {tolerance.part_words(influence.largest)}"
         neglected[name] = f"neglected: estimated, {estimated} where it is largest"

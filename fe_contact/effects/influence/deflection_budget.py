@@ -68,7 +68,9 @@ class Springs:
         """
         problem, count = self.problem(model), _positions(model)
         if model.tooth_gaps:
-            pitches = spread_pitches([term.period for term in model.tooth_gaps])
+            pitches = np.union1d(
+                spread_pitches([term.period for term in model.tooth_gaps]), _uneven_pitches(self.pair, model)
+            )
             problem = in_pitches(self.pair, problem, model, np.repeat(pitches, count))
         key = repr(model.gaps), problem.candidates.position.size, load.size
         solution = solve_contact(problem, load, self._last.get(key))
@@ -123,6 +125,17 @@ def spread_pitches(periods: Sequence[int]) -> IntArray:
     angle = 2.0 * np.pi * step[:, None, None] * rates[:, None] * index
     steadiness = np.abs(np.exp(1j * angle).mean(axis=-1)).max(axis=1)
     return np.sort(index * step[int(steadiness.argmin())] % whole)
+
+
+UNEVEN_PITCHES = 4
+"""Base pitches looked at beside these, those of the teeth that deviate most."""
+
+
+def _uneven_pitches(pair: ParallelAxes, model: ContactModel) -> IntArray:
+    """Return the base pitches in which pair 0 deviates most from the nominal flanks."""
+    extent = model.extent(pair, np.arange(model.period))
+    reach = np.maximum(np.asarray(extent.high), -np.asarray(extent.low))
+    return np.argsort(-reach, kind="stable")[:UNEVEN_PITCHES]
 
 
 def _positions(model: ContactModel) -> int:

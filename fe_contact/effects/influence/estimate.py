@@ -8,9 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bounds import engineering
+from fe_contact.allowed_error import AllowedError
 from fe_contact.effects.composer import compose, flipped
 from fe_contact.effects.effect import ContactScene, Effect, named
 from fe_contact.effects.influence.deflection_budget import EstimatedCurve, Springs
+from fe_contact.flank.extent import Extent
 from fe_contact.types import FloatArray, Json
 from model_studies.ablation import TRIFLE
 
@@ -115,6 +117,15 @@ class EstimatedInfluence:
     peak_to_peak: FloatArray
     whole: EstimatedCurve
     largest: float
+
+
+def largest_part(extent: Extent, mean: FloatArray, ripple: FloatArray, allowed: AllowedError) -> float:
+    """Return the bound of the changes of mean and peak-to-peak by gaps that are left out.
+
+    In parts of the sizes that a tolerance counts by: means and ripples (L, ...) in m.
+    """
+    of_mean = np.max(extent.reach / allowed.scale(mean))
+    return float(max(of_mean, np.max(extent.span / allowed.scale(ripple))))
 
 
 def estimate_influence(

@@ -25,6 +25,7 @@ from fe_contact.full_contact.condensation.linearized_contact import (
 from fe_contact.full_contact.condensation.placed_mesh import PlacedBody
 from fe_contact.full_contact.condensation.sites import ContactSite
 from fe_contact.full_contact.condensation.weak_gap import FlankCurve, WeakGap, weak_gap
+from fe_contact.full_contact.table import LineLoad
 from fe_contact.geometry import ParallelAxes, tooth_profile
 from fe_contact.material import Material
 from fe_contact.mesh.quality import shape_derivatives
@@ -237,6 +238,10 @@ class _PairGeometry:
     def thickness(self) -> float:
         """Face width that the plane stands for, m."""
         return self.pair.face_width
+
+    def line_loads(self, _contact: LinearizedContact, _pressure: FloatArray) -> tuple[LineLoad, ...]:
+        """Return none: in the plane the load is even."""
+        return ()
 
     def checks(self, solutions: Sequence[Solution]) -> list[tuple[float, float]]:
         """Return the largest relative breach of the laws, and the torque of gear 2 over that of gear 1.

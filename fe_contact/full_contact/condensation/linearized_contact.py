@@ -9,6 +9,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from fe_contact.full_contact.condensation.sites import ContactSite
+from fe_contact.full_contact.table import LineLoad
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray, Status
 
@@ -217,6 +218,9 @@ class ContactGeometry(Protocol):
 
     def checks(self, solutions: Sequence[Solution]) -> list[tuple[float, float]]:
         """Return the largest relative breach of the laws, and the torque of gear 2 over that of gear 1."""
+
+    def line_loads(self, contact: LinearizedContact, pressure: FloatArray) -> tuple[LineLoad, ...]:
+        """Return the load of every pair along the face; none in the plane."""
 
 
 def rotation(angle: float) -> FloatArray:

@@ -37,16 +37,20 @@ class Resolution:
         How many times finer the elements at a tip edge are.
     layers : int
         Layers over half the face, 1 to 24; the plane has none.
+    outermost : float
+        Thickness of the layer at the face over that at mid-face, 0.01 to 1: 0.05 resolves the free ends.
     """
 
     per_half_width: float = USUAL
     corner: float = 8.0
     layers: int = 6
+    outermost: float = 0.25
 
     def __post_init__(self) -> None:
         within("per_half_width", self.per_half_width, 1.5, 16.0, "6 is usual.")
         within("corner", self.corner, 1.0, 32.0, "8 is usual.")
         integer("layers", self.layers, 1, 24)
+        within("outermost", self.outermost, 0.01, 1.0, "0.25 is usual.")
 
     @property
     def growth(self) -> float:
@@ -68,7 +72,8 @@ class Resolution:
 
     def coarser(self, factor: float = 1.5) -> Resolution:
         """Return the same with elements larger by `factor`."""
-        return Resolution(self.per_half_width / factor, self.corner, max(1, round(self.layers / factor)))
+        layers = max(1, round(self.layers / factor))
+        return Resolution(self.per_half_width / factor, self.corner, layers, self.outermost)
 
 
 # The loaded flank with its modification: exact profile less the material removed along its normal.

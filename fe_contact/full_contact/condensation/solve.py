@@ -102,6 +102,7 @@ def _point(
         torque=torque,
         load_share=share,
         max_pressure=_largest_pressure(contact, solution),
+        line_loads=geometry.line_loads(contact, solution.pressure),
     )
 
 

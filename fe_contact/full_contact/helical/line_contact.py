@@ -112,12 +112,15 @@ class LineContact:
     ----------
     ahead : (h,) int array
         Pair index of each hat.
+    face : (h,) array
+        Station along the face of each hat, m.
     at_side : (h,) bool array
         Hats at a side of their strip that is no tip edge: pressure there is cut off.
     """
 
     system: ContactSystem
     ahead: IntArray
+    face: FloatArray
     at_side: BoolArray
 
 
@@ -169,7 +172,8 @@ def line_contact(
         weight[kept],
     )
     ahead = np.concatenate([np.full(each.stations.hats, each.teeth[1]) for each in pairs])
-    return LineContact(system, ahead[kept], cut[kept] > 0.5 * weight[kept])
+    face = np.concatenate([np.tile(each.stations.face, each.stations.across) for each in pairs])
+    return LineContact(system, ahead[kept], face[kept], cut[kept] > 0.5 * weight[kept])
 
 
 def _pairs(

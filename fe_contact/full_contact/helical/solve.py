@@ -13,7 +13,13 @@ from fe_contact.full_contact.condensation.linearized_contact import ActiveSetSol
 from fe_contact.full_contact.condensation.sites import Resolution
 from fe_contact.full_contact.helical.flank_bodies import BodyMesh, HelicalGear, helical_gear
 from fe_contact.full_contact.helical.line_contact import LineContact, line_contact
-from fe_contact.full_contact.table import FullContactPoint, FullContactTable, SolvedPosition, tables_of
+from fe_contact.full_contact.table import (
+    FullContactPoint,
+    FullContactTable,
+    SolvedPosition,
+    line_loads,
+    tables_of,
+)
 from fe_contact.full_contact.validity import check_axes, refusal_helical
 from fe_contact.geometry import ParallelAxes
 from fe_contact.hertz import contact_modulus, half_width
@@ -156,6 +162,7 @@ def _point(
             for ahead in np.unique(contact.ahead)
         },
         max_pressure=float(solution.pressure.max()),
+        line_loads=line_loads(contact.ahead, contact.face, solution.pressure * contact.system.weight),
     )
 
 

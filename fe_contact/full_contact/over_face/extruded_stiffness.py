@@ -21,8 +21,6 @@ from fe_contact.types import FloatArray, IntArray
 # Layers over half the face: hats on their planes, a bubble in each, and integrals of both.
 
 
-OUTERMOST = 0.25
-"""Thickness of the layer at the face over the mean one."""
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 
 
@@ -73,7 +71,7 @@ class Layers:
         return value.T @ weighted, slope.T @ weighted, slope.T @ (weights[:, None] * slope)
 
 
-def graded_layers(face_width: float, count: int) -> Layers:
+def graded_layers(face_width: float, count: int, outermost: float = 0.25) -> Layers:
     """Return layers over half of a face that grow in proportion from the face inwards.
 
     Parameters
@@ -82,8 +80,10 @@ def graded_layers(face_width: float, count: int) -> Layers:
         m.
     count : int
         Over half the face, >= 1.
+    outermost : float
+        Thickness of the layer at the face over that at mid-face.
     """
-    thickness = np.geomspace(1.0, OUTERMOST, count) if count > 1 else np.ones(1)
+    thickness = np.geomspace(1.0, outermost, count) if count > 1 else np.ones(1)
     planes = np.concatenate([[0.0], np.cumsum(thickness)])
     return Layers(0.5 * face_width * planes / planes[-1])
 

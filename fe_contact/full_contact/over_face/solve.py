@@ -33,7 +33,7 @@ from fe_contact.full_contact.condensation.solve import contact_tables, resolutio
 from fe_contact.full_contact.condensation.weak_gap import FlankCurve, WeakGap, weak_gap
 from fe_contact.full_contact.over_face.extruded_body import ExtrudedBody, extruded_body
 from fe_contact.full_contact.over_face.extruded_stiffness import Layers, graded_layers
-from fe_contact.full_contact.table import FullContactTable
+from fe_contact.full_contact.table import FullContactTable, LineLoad, line_loads
 from fe_contact.full_contact.validity import check_axes, refusal_over_face
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray
@@ -151,6 +151,13 @@ class _FaceGeometry:
             checks.append((breach, abs(applied[1]) / torque))
         return checks
 
+    def line_loads(self, contact: LinearizedContact, pressure: FloatArray) -> tuple[LineLoad, ...]:
+        """Return the load of every pair along the face."""
+        planes = self.bodies[0].layers.planes
+        face = np.concatenate([-planes[:0:-1], planes])
+        ahead = np.array([site.ahead for site in self.sites])[contact.site]
+        return line_loads(ahead, face[contact.line % len(face)], pressure * contact.system.weight)
+
     def _gathered(self, gaps: Sequence[_FaceGap], at: Configuration) -> LinearizedContact:
         """Join the pairs, without hats that hardly face their mate."""
         full = [self._full_weights(site) for site in self.sites]
@@ -262,10 +269,16 @@ _ACROSS = 201
 class _WholeFace:
     """A contact for each misalignment.
 
-    `misalignments`: growth of the gap over the face in the plane of action, m.
+    Attributes
+    ----------
+    misalignments : tuple of float
+        Growth of the gap over the face in the plane of action, m.
+    outermost : float
+        Thickness of the layer at the face over that at mid-face.
     """
 
     misalignments: tuple[float, ...]
+    outermost: float
 
     @property
     def count(self) -> int:
@@ -298,7 +311,7 @@ class _WholeFace:
         layers: int,
     ) -> tuple[tuple[ContactGeometry, ...], int]:
         """Condense both gears over the face."""
-        over = graded_layers(pair.face_width, layers)
+        over = graded_layers(pair.face_width, layers, self.outermost)
         materials = (pair.pinion.material, pair.wheel.material)
         bodies: list[ExtrudedBody] = [
             extruded_body(mesh, over, material) for mesh, material in zip(meshes, materials, strict=True)
@@ -366,5 +379,6 @@ def solve_full_contact_over_face(
         raise InputError("pair", "this pair", f"one that full contact over the face holds; {reason}")
     check_axes(torques, positions, misalignments)
     meshes = resolutions(resolution, estimate_error=estimate_error)
-    model = _WholeFace(tuple(float(misalignment) for misalignment in misalignments))
+    growth = tuple(float(misalignment) for misalignment in misalignments)
+    model = _WholeFace(growth, resolution.outermost)
     return contact_tables(model, pair, torques, positions, meshes, report)

@@ -9,8 +9,8 @@ import numpy as np
 
 from bounds import engineering
 from bounds.types import Json
-from fe_contact.ste import Curve, SteDatabase, ToothLoads, in_own_model
-from fe_contact.ste.curve import PLANE, OperatingPoint
+from fe_contact.ste import Curve, SteDatabase, ToothLoads
+from fe_contact.ste.curve import OperatingPoint
 from fe_contact.ste.curve_quantities import BY_SOURCE
 from fe_contact.types import Estimate
 from lineofaction.gearbox.convert.case import boundary_errors
@@ -110,6 +110,11 @@ def _figures(curve: Curve) -> Json:
         "harmonics_um": [item.value / UM for item in curve.harmonics],
         "harmonics_error_um": [item.error / UM for item in curve.harmonics],
     }
+    if curve.over_face is not None:
+        mean, ripple = curve.over_face.mean, curve.over_face.peak_to_peak
+        figures["mean_over_face_um"], figures["mean_over_face_error_um"] = mean.value / UM, mean.error / UM
+        figures["peak_to_peak_over_face_um"] = ripple.value / UM
+        figures["peak_to_peak_over_face_error_um"] = ripple.error / UM
     known = np.isfinite([item.error for item in (curve.mean, curve.peak_to_peak, *curve.harmonics)]).all()
     return {name: value for name, value in figures.items() if known or "error" not in name}
 
@@ -124,7 +129,7 @@ def headline_json(table: SteDatabase) -> Json:
     The ripple is in um less its mean; an error that was not estimated is None.
     """
     force = float(table.force[table.force.size // 2])
-    curve = in_own_model(table).curve(force=force, at=_RIPPLE, allow_failed=True)
+    curve = table.curve(force=force, at=_RIPPLE, allow_failed=True)
     error, ripple = curve.peak_to_peak.error, (curve.ste - curve.mean.value) / UM
     return {
         "torque_n_m": as_typed(curve.torque),
@@ -193,11 +198,10 @@ _NOTHING = 1e-12
 
 
 def source_rows(receipt: Json, load: int) -> list[tuple[str, float, float, float]]:
-    """Return what each source states of mean, peak-to-peak and first harmonic at a load, m; no bias."""
+    """Return what each source states of mean, peak-to-peak and first harmonic at a load, m."""
     rows = [
         (name.replace("_", " "), *(float(parts[quantity][load]) for quantity in BY_SOURCE))
         for name, parts in receipt.get("curve_error", {}).items()
-        if not (name == PLANE and "bias" in receipt)
     ]
     return [row for row in rows if max(row[1:]) > _NOTHING]
 
@@ -207,7 +211,7 @@ def source_rows(receipt: Json, load: int) -> list[tuple[str, float, float, float
 
 def draft_line(table: SteDatabase, refining: str) -> str:
     """Return mean and peak-to-peak with their errors at the highest load, and what is refined."""
-    curve = in_own_model(table).curve(force=float(table.force[-1]), allow_failed=True)
+    curve = table.curve(force=float(table.force[-1]), allow_failed=True)
     mean, ripple = _figure(curve.mean), _figure(curve.peak_to_peak)
     return f"draft: mean {mean} µm, p-p {ripple} µm at {curve.torque:.6g} N m (refining {refining})"
 

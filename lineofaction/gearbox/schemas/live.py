@@ -327,6 +327,12 @@ class LiveCurve(BoundaryModel):
     mean_error_um: float | None = Field(default=None, description="Its error in µm", examples=[0.02])
     peak_to_peak_um: float = Field(description="Peak to peak in µm", examples=[2.8])
     peak_to_peak_error_um: float | None = Field(default=None, description="Its error in µm", examples=[0.03])
+    mean_over_face_um: float | None = Field(
+        default=None, description="Mean of the gears of finite width in µm: that of a plane, corrected"
+    )
+    mean_over_face_error_um: float | None = Field(default=None, description="Its error in µm")
+    peak_to_peak_over_face_um: float | None = Field(default=None, description="Peak to peak, as that mean")
+    peak_to_peak_over_face_error_um: float | None = Field(default=None, description="Its error in µm")
     harmonics_um: list[float] = Field(
         description="Amplitudes of the mesh harmonics in µm", examples=[[1.1, 0.4]]
     )
@@ -338,7 +344,7 @@ class LiveCurve(BoundaryModel):
         examples=[{"discretisation": {"mean": 0.01, "peak_to_peak": 0.02, "first_harmonic": 0.01}}],
     )
     bias: ModelBias | None = Field(
-        default=None, description="What a plane model leaves out: as `finite_width` in the errors, too"
+        default=None, description="What a plane model leaves out: a correction, in none of the errors"
     )
     order: list[float] | None = Field(
         default=None, description="Orders, if the period has several base pitches"

@@ -57,11 +57,13 @@ class PlannedCost(BaseModel):
 class ModelBias(BaseModel):
     """By how much the gears exceed a plane model; parts of its own figures, with sign."""
 
+    subject: str = Field(description="Plane model and face width in words")
     mean: float
     peak_to_peak: float | None = Field(description="Null where reliefs hide it: it may have either sign")
     either_way_um: float = Field(description="Then the largest change of peak-to-peak in µm, else 0")
     error: float = Field(description="Error of the bias in parts of it")
-    stated: float = Field(description="Part of STE by which error bands are wider for it")
+    visible_peak_to_peak: float = Field(description="Of flanks whose ripple no relief hides")
+    bending_ripple: float = Field(description="Peak-to-peak over the mean of unmodified flanks")
     words: str
 
 

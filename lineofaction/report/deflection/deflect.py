@@ -247,9 +247,8 @@ def _headlines(result: GearboxDeflection) -> tuple[Headline, ...]:
     factors = [part for part in result.flanks if np.isfinite(part.face_load_factor)]
     if factors:
         worst = max(factors, key=lambda part: part.face_load_factor)
-        lines.append(
-            Headline("largest K_Hbeta", number(worst.face_load_factor, 3), f"mesh {worst.mesh}, {worst.case}")
-        )
+        remark = f"mesh {worst.mesh}, {worst.case}; error not estimated: flanks of a case are solved once"
+        lines.append(Headline("largest K_Hbeta", number(worst.face_load_factor, 3), remark))
     return tuple(lines)
 
 

@@ -11,9 +11,9 @@ import numpy as np
 from bounds import engineering
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution, pressure_map
 from fe_contact.ste import SteDatabase
-from fe_contact.types import IntArray
+from fe_contact.types import Estimate, IntArray
 from lineofaction.gearbox.convert.effects import assumption_lines
-from lineofaction.gearbox.units import UM, boundary_ledger
+from lineofaction.gearbox.units import MPA, UM, boundary_ledger
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
     Axis,
@@ -33,6 +33,9 @@ from lineofaction.report.pair import pair_lead, pair_title
 from lineofaction.report.presentation import Presentation
 from lineofaction.report.ste.curves import POSITION_LABEL
 from lineofaction.report.ste.page import case_tables, contact_effects, edge_words
+
+N_PER_MM = 1e3
+"""In N/m."""
 
 
 def _face_axis(flanks: LoadDistribution) -> Axis:
@@ -346,17 +349,51 @@ def _face_table(flanks: LoadDistribution, mean: FloatArray) -> Table:
     return Table.of("Load over the face", range(mean.size), columns)
 
 
+def error_words(estimate: Estimate, unit: str, scale: float, reason: str) -> str:
+    """Return the error of a figure in a unit of `scale` SI units, or that it has none, and why."""
+    if math.isnan(estimate.error):
+        return f"error not estimated: {reason}"
+    return f"± {engineering(estimate.error / scale, 2)} {unit}".rstrip()
+
+
 def _page(flanks: LoadDistribution, database: SteDatabase | None = None) -> Page:
     """Return the page of flank results; beside their database, which has its own effects and case."""
     pair = flanks.scene.facts
     sections = (*_results(flanks), *_making(flanks, alone=database is None))
-    at = _operating_point(flanks)
-    largest = f"{number(1e-6 * float(flanks.clear_pressure.max()))} MPa"
-    headlines = [Headline("largest flank pressure", largest, f"{at}{edge_words(flanks.edge_pressure)}")]
+    return Page(
+        pair_title(pair), pair_lead(pair), tuple(_headlines(flanks)), sections, _alarms(flanks, database)
+    )
+
+
+def _headlines(flanks: LoadDistribution) -> Iterator[Headline]:
+    """Yield the largest pressure and line load, and K_Hbeta, each with its error or why it has none."""
+    at, reason = _operating_point(flanks), flanks.errors.reason
+    pressure, load = flanks.largest_pressure, flanks.largest_line_load
+    band = error_words(pressure, "MPa", MPA, reason)
+    remark = f"{band}; {at}{edge_words(flanks.edge_pressure)}"
+    yield Headline("largest flank pressure", f"{number(pressure.value / MPA)} MPa", remark)
+    band = error_words(load, "N/mm", N_PER_MM, reason)
+    remark = f"{band}{_length_words(flanks)}; {at}{_edge_load(flanks)}"
+    yield Headline("largest line load", f"{number(load.value / N_PER_MM)} N/mm", remark)
     if flanks.face_position.size > 1:
-        factor = flanks.mean_face_load_factor
-        headlines.append(Headline("K_Hbeta over the cycle", number(factor, 3), at))
-    return Page(pair_title(pair), pair_lead(pair), tuple(headlines), sections, _alarms(flanks, database))
+        factor = flanks.cycle_face_load_factor
+        remark = f"{error_words(factor, '', 1.0, reason)}{_length_words(flanks)}; {at}"
+        yield Headline("K_Hbeta over the cycle", number(factor.value, 3), remark)
+
+
+def _edge_load(flanks: LoadDistribution) -> str:
+    """Name the line load at edges apart; nothing where none is reached."""
+    if flanks.edge_line_load <= 0.0:
+        return ""
+    load = number(flanks.edge_line_load / N_PER_MM, 3)
+    return f"; {load} N/mm at the edges, indicative: error not estimated"
+
+
+def _length_words(flanks: LoadDistribution) -> str:
+    """Say over which length a load is the mean; nothing in the plane."""
+    if flanks.face_position.size == 1:
+        return ""
+    return f", peak over {number(1e3 * flanks.slice_width, 2)} mm of the face"
 
 
 def _results(flanks: LoadDistribution) -> tuple[Section, ...]:
@@ -417,11 +454,16 @@ def _text(flanks: LoadDistribution) -> Iterator[str]:
         f"torque {scene.torque:.6g} N m, normal force {scene.normal_force:.6g} N, "
         f"misalignment {scene.misalignment / UM:.4g} µm"
     )
-    yield f"largest line load {1e-3 * flanks.line_load.max():.4g} N/mm"
+    load, reason = flanks.largest_line_load, flanks.errors.reason
+    band = error_words(load, "N/mm", N_PER_MM, reason)
+    words = f"{band}{_length_words(flanks)}{_edge_load(flanks)}"
+    yield f"largest line load {load.value / N_PER_MM:.4g} N/mm, {words}"
     if flanks.face_position.size > 1:
         ends = (engineering(1e3 * end, 3) for end in (flanks.load_centroid.min(), flanks.load_centroid.max()))
+        largest = flanks.largest_face_load_factor
         yield (
-            f"K_Hbeta at most {engineering(flanks.face_load_factor.max(), 3)} at one position; "
+            f"K_Hbeta at most {engineering(largest.value, 3)} at one position, "
+            f"{error_words(largest, '', 1.0, reason)}{_length_words(flanks)}; "
             f"load centroid {' to '.join(dict.fromkeys(ends))} mm from mid-face"
         )
     yield from assumption_lines(receipt)

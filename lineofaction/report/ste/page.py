@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from bounds import engineering, leftover
-from fe_contact.ste import SteDatabase
+from bounds import leftover
+from fe_contact.ste import Curve, SteDatabase
 from fe_contact.types import Estimate
 from lineofaction.gearbox.convert.answers import source_rows
 from lineofaction.gearbox.convert.effects import by_size, influence_place, influence_words, trifles_title
@@ -64,7 +64,7 @@ def static_headlines(database: SteDatabase, force: float | None = None) -> tuple
     remark = f"{UNBOUNDED}{edge_words(edge)}"
     curve, label = load_curve(database, load), load_labels(database)[load]
     figures = {"mean": curve.mean, "peak-to-peak": curve.peak_to_peak}
-    biases = _biases(database.metadata.receipt)
+    biases = _over_face(curve)
     return (
         *(
             Headline(f"{name} STE at {label}", f"{um(one.value)} µm", f"{_band(one)}{bias}")
@@ -75,22 +75,20 @@ def static_headlines(database: SteDatabase, force: float | None = None) -> tuple
     )
 
 
-def _biases(receipt: Mapping[str, Any]) -> tuple[str, str]:
-    """Say what a finite width adds to mean and peak-to-peak of a plane; nothing where it is corrected."""
-    bias = receipt.get("bias")
-    if bias is None:
+def _over_face(curve: Curve) -> tuple[str, str]:
+    """Say mean and peak-to-peak of the gears of finite width; nothing where the table has them."""
+    if curve.over_face is None:
         return "", ""
-    hidden = f"±{um(bias['either_way_m'], 2)} µm"
-    mean, ripple = (
-        hidden if part is None else f"{engineering(100.0 * part, 2, '+')} %"
-        for part in (bias["mean"], bias["peak_to_peak"])
-    )
-    return f"; gears of this width {mean}", f"; gears of this width {ripple}"
+    figures = curve.over_face.mean, curve.over_face.peak_to_peak
+    mean, ripple = (f"; gears of this width {um(one.value)} µm {_band(one)}" for one in figures)
+    return mean, ripple
 
 
 def edge_words(pressure: float) -> str:
     """Name the pressure (Pa) of contacts that reach an edge apart from that of the flank; nothing for 0."""
-    return f"; {number(1e-6 * pressure, 3)} MPa at the edges, indicative" if pressure > 0.0 else ""
+    if pressure <= 0.0:
+        return ""
+    return f"; {number(1e-6 * pressure, 3)} MPa at the edges, indicative: the true one is singular"
 
 
 def static_alarms(database: SteDatabase) -> tuple[str, ...]:

@@ -14,16 +14,10 @@ const decibels = (value, from) => (from && value && value !== from ? `${signed(2
 /** Pressure at edges, where the true one is singular, apart from that of the flank; nothing where no contact reaches one. */
 export const edgeWords = ({ edge_pressure_mpa: edge }) => (edge ? `${number(edge, 3)} MPa` : "");
 
-/** The error without the bias of a plane model, which has its own statement. */
-export function ownError({ bias, error_by_source_um: errors }, total, source) {
-  return bias && total ? Math.sqrt(Math.max(0, total ** 2 - errors.finite_width[source] ** 2)) : total;
-}
-
 /** What each source states of the errors of a curve. */
-export function sourcesOf({ bias, error_by_source_um: errors }) {
-  const shown = Object.entries(errors).filter(([name]) => !(bias && name === "finite_width"));
+export function sourcesOf({ error_by_source_um: errors }) {
   const row = ([name, of]) => [name.replaceAll("_", " "), ...["peak_to_peak", "mean", "first_harmonic"].map((figure) => number(of[figure], 2))];
-  return { caption: "Errors by source, µm", head: ["source", "peak to peak", "mean", "harmonic 1"], rows: shown.map(row) };
+  return { caption: "Errors by source, µm", head: ["source", "peak to peak", "mean", "harmonic 1"], rows: Object.entries(errors).map(row) };
 }
 
 /** Level of an amplitude, dB re 1 µm, and what its error makes of it: without end where that is as large. */
@@ -60,24 +54,31 @@ export function heardFigures(heard) {
   return [[heardWords(heard), words, [remark, from].filter(Boolean).join("; ")]];
 }
 
+/** Remark on figures of the flanks: a live answer solves one discretization of them. */
+const UNSTATED = "error not estimated";
+
 /** Main figures of a curve, each with its error and its change from another. */
 export function mainFigures(now, from) {
   const remarks = (...words) => words.filter(Boolean).join("; ");
-  const entry = (name, value, total, other, source, changed = change) => {
-    const error = ownError(now, total, source);
-    return [name, `${toError(value, error)} µm`, remarks(plusMinus(error, now.preview), changed(value, other))];
-  };
+  const entry = (name, value, error, other, changed = change) => (
+    [name, `${toError(value, error)} µm`, remarks(plusMinus(error, now.preview), changed(value, other))]);
   const edges = edgeWords(now.flanks);
   const { k_h_beta: factor, largest_pressure_mpa: pressure } = now.flanks;
   const entries = [
-    entry("peak to peak", now.peak_to_peak_um, now.peak_to_peak_error_um, from.peak_to_peak_um, "peak_to_peak"),
-    entry("mean", now.mean_um, now.mean_error_um, from.mean_um, "mean"),
-    entry("first harmonic", now.harmonics_um[0], now.harmonics_error_um?.[0], from.harmonics_um[0], "first_harmonic", decibels),
-    ["largest pressure", `${number(pressure, 3)} MPa`, remarks(edges && "on the flank", change(pressure, from.flanks.largest_pressure_mpa))],
+    entry("peak to peak", now.peak_to_peak_um, now.peak_to_peak_error_um, from.peak_to_peak_um),
+    entry("mean", now.mean_um, now.mean_error_um, from.mean_um),
+    entry("first harmonic", now.harmonics_um[0], now.harmonics_error_um?.[0], from.harmonics_um[0], decibels),
+    ["largest pressure", `${number(pressure, 3)} MPa`, remarks(edges && "on the flank", UNSTATED, change(pressure, from.flanks.largest_pressure_mpa))],
     ...(edges ? [["at the edges", edges, "indicative"]] : []),
   ];
-  if (factor !== null) entries.push(["K_Hbeta", number(factor, 4), change(factor, from.flanks.k_h_beta)]);
-  return now.bias ? [...entries, ["bias of the mean", `${signed(100 * now.bias.mean, 2)} %`, now.bias.words]] : entries;
+  if (factor !== null) entries.push(["K_Hbeta", number(factor, 4), remarks(UNSTATED, change(factor, from.flanks.k_h_beta))]);
+  if (!now.bias) return entries;
+  return [
+    ...entries,
+    ["bias of the mean", `${signed(100 * now.bias.mean, 2)} %`, now.bias.words],
+    entry("mean over the face", now.mean_over_face_um, now.mean_over_face_error_um, from.mean_over_face_um),
+    entry("peak to peak over the face", now.peak_to_peak_over_face_um, now.peak_to_peak_over_face_error_um, from.peak_to_peak_over_face_um),
+  ];
 }
 
 /** Main figures of variants beside each other, with their errors; of tones the change from the first. @param {import("./live_figures.js").Shown[]} variants @param {any} heard */
@@ -86,10 +87,8 @@ export function besideFigures(variants, heard) {
   const shown = [...variants].sort(named);
   const [{ name: first, curve: from }] = shown;
   const row = (name, of) => [name, ...shown.map(({ curve }) => of(curve))];
-  const measured = (name, value, total, source) => row(name, (curve) => {
-    const error = ownError(curve, total(curve), source);
-    return `${toError(value(curve), error)} ${plusMinus(error, curve.preview)}`.trim();
-  });
+  const measured = (name, value, error) => row(name, (curve) => (
+    `${toError(value(curve), error(curve))} ${plusMinus(error(curve), curve.preview)}`.trim()));
   const levels = heard?.curves.length ? levelsOf({ ...heard, curves: [...heard.curves].sort(named) }) : [];
   const heardOf = (name, of) => [name, ...shown.map((own) => levels.filter((level) => level.name === own.name).map(of)[0] ?? "none")];
   const complaint = heard ? [
@@ -102,10 +101,10 @@ export function besideFigures(variants, heard) {
     head: ["figure", ...shown.map(({ name }) => name)],
     rows: [
       ...complaint,
-      measured("peak to peak, µm", (curve) => curve.peak_to_peak_um, (curve) => curve.peak_to_peak_error_um, "peak_to_peak"),
-      measured("first harmonic, µm", (curve) => curve.harmonics_um[0], (curve) => curve.harmonics_error_um?.[0], "first_harmonic"),
+      measured("peak to peak, µm", (curve) => curve.peak_to_peak_um, (curve) => curve.peak_to_peak_error_um),
+      measured("first harmonic, µm", (curve) => curve.harmonics_um[0], (curve) => curve.harmonics_error_um?.[0]),
       row(`first harmonic, dB from ${first}`, (curve) => (curve === from ? "" : decibels(curve.harmonics_um[0], from.harmonics_um[0]).replace(" dB", ""))),
-      measured("mean, µm", (curve) => curve.mean_um, (curve) => curve.mean_error_um, "mean"),
+      measured("mean, µm", (curve) => curve.mean_um, (curve) => curve.mean_error_um),
       row("largest pressure, MPa", ({ flanks }) => number(flanks.largest_pressure_mpa, 3)),
       ...(from.flanks.k_h_beta === null ? [] : [row("K_Hbeta", ({ flanks }) => (flanks.k_h_beta === null ? "none" : number(flanks.k_h_beta, 4)))]),
       ...(from.bias ? [row("bias of the mean, %", ({ bias }) => (bias ? signed(100 * bias.mean, 2) : "none"))] : []),

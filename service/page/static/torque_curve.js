@@ -4,7 +4,6 @@ import { Problem, ask } from "./api.js";
 import { make, number } from "./elements.js";
 import { band } from "./lines.js";
 import { layout } from "./live_figures.js";
-import { ownError } from "./live_numbers.js";
 import { plot } from "./plots.js";
 
 const [LOADS, CLOSER] = [16, 1.5]; // up to the end of the slider; the power by which they are closer at low ones
@@ -68,7 +67,7 @@ export class TorqueCurve {
     try {
       const { curves, cpu_seconds: cpu } = await ask(`${key}/ste`, { ...flanks, torque_n_m: torques, caller: `${this.caller}-torques` });
       rows.push(...curves.map((curve) => (
-        { torque: curve.torque_n_m, ripple: curve.peak_to_peak_um, error: ownError(curve, curve.peak_to_peak_error_um, "peak_to_peak") })));
+        { torque: curve.torque_n_m, ripple: curve.peak_to_peak_um, error: curve.peak_to_peak_error_um })));
       this.node.dataset.cpu = Number(this.node.dataset.cpu ?? 0) + cpu;
       entry.ended = rows.length === LOADS;
     } catch (problem) { // a variant that was analyzed at lower loads ends there

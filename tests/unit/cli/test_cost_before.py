@@ -455,16 +455,16 @@ def test_a_table_costs_every_pass_that_is_expected(
 def test_a_plan_prints_what_its_table_costs_in_both_passes(tmp_path: Path) -> None:
     (tmp_path / "case.toml").write_text(
         "[pair]\nnormal_module_mm = 2.0\nhelix_angle_deg = 9.0\ncenter_distance_mm = 40.4986\n"
-        "[pair.pinion]\nteeth = 20\nface_width_mm = 8.0\nbore_diameter_mm = 20.0\n"
-        "[pair.wheel]\nteeth = 20\nface_width_mm = 8.0\nbore_diameter_mm = 20.0\n"
-        "[load]\ntorque_n_m = [40.0]\n[accuracy]\ntolerance = 0.002\ntolerance_floor_nm = 1.0\n"
+        "[pair.pinion]\nteeth = 20\nface_width_mm = 40.0\nbore_diameter_mm = 20.0\n"
+        "[pair.wheel]\nteeth = 20\nface_width_mm = 40.0\nbore_diameter_mm = 20.0\n"
+        "[load]\ntorque_n_m = [200.0]\n[accuracy]\ntolerance = 0.002\ntolerance_floor_nm = 1.0\n"
     )
     done = loa("plan", tmp_path / "case.toml")
-    said = re.match(r"standard, 15 slices, then fine, 15 slices: ([\d.]+) CPU s", done.stdout)
+    said = re.match(r"draft, 21 slices, then fine, 31 slices: ([\d.]+) CPU s", done.stdout)
     assert said, done.output
     cost = table_cost(read_model(Case, tmp_path / "case.toml"))
     assert said[1] == engineering(cost.seconds, 2)
-    assert [row.split()[0] for row in re.findall("> (.*)", done.stdout)] == ["standard,", "fine,"]
+    assert [row.split()[0] for row in re.findall("> (.*)", done.stdout)] == ["draft,", "fine,"]
 
 
 def test_the_status_checks_each_case_of_a_unit_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

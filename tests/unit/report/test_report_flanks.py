@@ -9,15 +9,16 @@ import numpy as np
 import pytest
 from matplotlib.contour import ContourSet
 
-from fe_contact.analysis.flanks.load_distribution import LoadDistribution, pressure_map
+from fe_contact.analysis.flanks.load_distribution import FlankErrors, LoadDistribution, pressure_map
 from fe_contact.ste import SteDatabase
 from lineofaction.report.document import write_report
-from lineofaction.report.drawing.figure import HeatMap, Panel, Strokes
+from lineofaction.report.drawing.figure import HeatMap, Panel, Strokes, number
 from lineofaction.report.drawing.image import panel_sheet, png
 from lineofaction.report.drawing.interactive import plotly_figure
 from lineofaction.report.flank.flank import (
     PAGE,
     _isolines,
+    _text,
     contact_lines,
     contact_pattern_figure,
     line_load_figure,
@@ -163,7 +164,8 @@ def test_one_slice_has_a_curve_and_nothing_over_the_face(one_slice: LoadDistribu
         assert panel.shade is None
         assert np.nanmax(panel.lines[0].y) == pytest.approx(1e-6 * one_slice.pressure.max())
     assert "plane" in section.text
-    assert [headline.name for headline in PAGE.page(one_slice).headlines] == ["largest flank pressure"]
+    names = [headline.name for headline in PAGE.page(one_slice).headlines]
+    assert names == ["largest flank pressure", "largest line load"]
 
 
 @pytest.fixture
@@ -193,8 +195,24 @@ def test_load_and_alignment_are_said(flanks: LoadDistribution) -> None:
     assert PAGE.figure(flanks).title == f"Contact pattern, 19/26, {torque:.2f} N m, misalignment 30.0 µm"
     assert [h.value for h in PAGE.page(flanks).headlines] == [
         f"{1e-6 * flanks.pressure.max():.1f} MPa",
+        f"{1e-3 * flanks.line_load.max():.2f} N/mm",
         f"{flanks.mean_face_load_factor:.2f}",
     ]
+
+
+def test_every_headline_has_its_error_or_says_why_there_is_none(flanks: LoadDistribution) -> None:
+    bare = PAGE.page(flanks).headlines
+    assert all(h.remark.startswith("error not estimated: one solution tells no error") for h in bare)
+    errors = FlankErrors(0.05, 0.02, 0.03, 0.01, "none is missing")
+    stated = PAGE.page(replace(flanks, errors=errors)).headlines
+    load, pressure = 1e-3 * flanks.line_load.max(), 1e-6 * flanks.pressure.max()
+    bands = [float(re.match(r"± ([\d.]+)", h.remark)[1]) for h in stated]  # type: ignore[index]
+    expected = [0.01 * pressure, 0.05 * load, 0.02 * flanks.mean_face_load_factor]
+    assert bands == pytest.approx(expected, rel=0.05)
+    lines = list(_text(replace(flanks, errors=errors)))
+    assert sum("±" in line for line in lines) == 2
+    part = f"peak over {number(1e3 * flanks.slice_width, 2)} mm of the face"
+    assert sum(part in line for line in lines) == 2 and sum(part in h.remark for h in stated) == 2
 
 
 def test_another_pair_than_the_databases_is_said_loudly(

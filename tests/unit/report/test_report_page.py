@@ -187,7 +187,7 @@ def test_an_edge_is_named_apart_from_the_largest_pressure(database: SteDatabase)
     edges[3] = 1.072e9
     pressed = static_headlines(replace(database, edge_pressure=edges))[2]
     assert pressed.value == static_headlines(database)[2].value == "700.0 MPa"
-    assert pressed.remark.endswith("1072 MPa at the edges, indicative")
+    assert pressed.remark.endswith("1072 MPa at the edges, indicative: the true one is singular")
 
 
 def test_headlines_are_those_of_the_load_asked_for(database: SteDatabase) -> None:

@@ -18,7 +18,6 @@ from fe_contact.material import Material
 from fe_contact.mesh import PlaneStrain
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning.plan import make_plan
-from fe_contact.planning.plane_bias import LEFT_OUT
 
 POSITION = np.arange(16) / 16
 SOURCE = "contact in three dimensions and in plane strain on one mesh of the sector"
@@ -135,23 +134,20 @@ def table(pair: GearPair, **options: object) -> SteDatabase:
 
 
 def test_switched_off_it_is_plane_strain_and_on_its_error_is_stated_by_source(monkeypatch):
-    """The effect off, and the explicit model: the same table, which states what is left out as an error."""
+    """The effect off, and the explicit model: the same table, whose errors do not hold what is left out."""
     options = {"level": "draft", "positions": 16}
     off = table(SIX, effects={"finite_width": "off"}, **options)
     asked = table(SIX, model="plane_strain", **options)
     assert np.array_equal(off.static_transmission_error, asked.static_transmission_error)
     assert np.array_equal(off.error_estimate, asked.error_estimate)
     sources = asked.metadata.receipt["error_by_source"]
-    missing = sources["plane_for_finite_width_relative"]
-    highest = asked.static_transmission_error.max()
-    assert sources["finite_width_m"] == pytest.approx([LEFT_OUT * missing * highest], rel=1e-9)
+    assert sources["finite_width_m"] == [0.0]
     # Three parts in a hundred of what it changed, added to the other sources at every point.
     corrected, plain = (table(SIX, model=model, **options) for model in ("auto", "plane_strain"))
     change = corrected.static_transmission_error - plain.static_transmission_error
     assert change.min() > 0.0
     stated = corrected.metadata.receipt["error_by_source"]
     assert stated["finite_width_m"][0] == pytest.approx(CORRECTION_ERROR * change.max(), rel=1e-9, abs=0.0)
-    assert stated["plane_for_finite_width_relative"] == 0.0
     assert stated["discretisation_m"] == plain.metadata.receipt["error_by_source"]["discretisation_m"]
     monkeypatch.setattr(assessed_table, "CORRECTION_ERROR", 0.0)
     exact = table(SIX, **options)

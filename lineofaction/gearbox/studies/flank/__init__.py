@@ -26,10 +26,21 @@ class FlankFigures(Figures):
     positions: Annotated[int, Source("position.size")]
     slices: Annotated[int, Source("face_position.size")]
     k_h_beta: Annotated[float, Source("mean_face_load_factor")]
+    k_h_beta_error: float | None = Field(default=None, description="null: not estimated, `error_reason`")
     largest_face_load_factor: float
+    largest_face_load_factor_error: float | None = None
     load_centroid_mm: tuple[float, float]
-    largest_line_load_n_per_mm: float
+    largest_line_load_n_per_mm: float = Field(description="Where no strip reaches an edge of a flank")
+    largest_line_load_error_n_per_mm: float | None = None
+    edge_line_load_n_per_mm: float | None = Field(default=None, description="At edges; no error is estimated")
+    peak_length_mm: Annotated[float | None, Source("slice_width")] = Field(
+        default=None, description="Length along the face over which line load and K_Hbeta take their peak"
+    )
     largest_pressure_mpa: float = Field(description="Where no strip reaches an edge of a flank")
+    largest_pressure_error_mpa: float | None = None
+    error_reason: Annotated[str, Source("errors.reason")] = Field(
+        default="", description="Why errors that are null are not estimated"
+    )
     edge_pressure_mpa: float = Field(description="At edges as if the flank went on; the true one is singular")
     effect_ledger: Annotated[
         list[Json] | Json, Source("metadata.effect_ledger", document=True, turned=boundary_ledger)

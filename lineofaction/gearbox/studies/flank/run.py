@@ -16,7 +16,7 @@ from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.studies.computation import Means, PointStudy, ResultFile
 from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.flank import FlankFigures, Inputs
-from lineofaction.gearbox.units import MM, UM, as_typed
+from lineofaction.gearbox.units import MM, MPA, UM, as_typed
 
 
 def flanks_of(checked: CheckedCase, run: Run) -> LoadDistribution:
@@ -54,15 +54,27 @@ class _FlankStudy(PointStudy[FlankFigures, LoadDistribution]):
             "torque_n_m": as_typed(scene.torque),
             "misalignment_um": as_typed(scene.misalignment, UM),
             "center_distance_change_mm": as_typed(scene.center_distance_change, MM),
+            **_errors(flanks),
             "largest_face_load_factor": flanks.face_load_factor.max(),
             "load_centroid": (centroid.min(), centroid.max()),
-            "largest_line_load_n_per_mm": flanks.line_load.max() * MM,
+            "largest_line_load_n_per_mm": flanks.largest_line_load.value * MM,
+            "edge_line_load_n_per_mm": flanks.edge_line_load * MM,
             "largest_pressure_mpa": flanks.clear_pressure.max() * 1e-6,
             "edge_pressure_mpa": flanks.edge_pressure * 1e-6,
         }
 
     def warnings(self, flanks: LoadDistribution) -> list[Json] | None:
         return flanks.metadata.warnings
+
+
+def _errors(flanks: LoadDistribution) -> Json:
+    """Return the errors of the figures, NaN where one is not estimated."""
+    return {
+        "k_h_beta_error": flanks.cycle_face_load_factor.error,
+        "largest_face_load_factor_error": flanks.largest_face_load_factor.error,
+        "largest_line_load_error_n_per_mm": flanks.largest_line_load.error * MM,
+        "largest_pressure_error_mpa": flanks.largest_pressure.error / MPA,
+    }
 
 
 RUN = _FlankStudy()

@@ -68,14 +68,16 @@ class _RootStressStudy(PointStudy[RootStressFigures, Roots]):
     inputs, answer, file = Inputs, RootStressFigures, record_file(("tooth-root stress", Roots))
 
     def predicted(self, case: CheckedCase, _inputs: FlankPoint, cache: Path | None) -> StudyCost:
-        """Return what the gears, one solution, and the stresses of both on two meshes take."""
+        """Return what the gears, one solution with its errors, and the stresses on two meshes take."""
         with boundary_errors():
             checked = case.at_point
             plan = checked.planned(cache)
-            whole = checked.predicted(plan, cache, with_errors=False)
+            whole = checked.predicted(plan, cache)
             stresses = Work("stresses", stress_seconds(case.pair, plan, cache))
-        parts = Work("gears", whole.stages["compliance"]), Work("contact", whole.parts["contact"]["table"])
-        return StudyCost((*parts, stresses), whole.memory_bytes)
+            rougher = whole.parts["error estimate"]
+        gears = Work("gears", whole.stages["compliance"] + rougher["bodies"])
+        contact = Work("contact", whole.parts["contact"]["table"]), Work("its errors", rougher["solutions"])
+        return StudyCost((gears, *contact, stresses), whole.memory_bytes)
 
     def compute(self, case: CheckedCase, _inputs: FlankPoint, means: Means) -> Roots:
         """Return the peaks over a mesh cycle, the passage of a tooth of each gear, receipt and warnings."""

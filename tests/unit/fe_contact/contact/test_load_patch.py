@@ -14,7 +14,7 @@ from fe_contact.contact import PatchRule, contact_pressure
 from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, face_loads
 from fe_contact.contact.patch import Patches, load_vector, tip_patches
 from fe_contact.contact.strip import Gap
-from fe_contact.hertz import half_width, peak_pressure
+from fe_contact.hertz import half_width, lateral_share, peak_pressure
 
 
 def flank(ends: np.ndarray) -> np.ndarray:
@@ -168,6 +168,39 @@ def test_law_width_gives_the_patch_self_approach(share):
     mean = math.log(2.0) + series - math.log(half)
     patches = Patches(np.array([0.0]), np.array([half]), np.array([share]))
     assert -(math.log(patches.law_width[0]) - 0.25 - math.log(2.0)) == pytest.approx(mean, rel=1e-12, abs=0.0)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.4, 1.0])
+def test_mean_distance_of_two_points_of_the_load(share):
+    """Of independent points with the distribution F it is the integral of 2 F (1 - F)."""
+    angle = (np.arange(20_000) + 0.5) * math.pi / 20_000 - 0.5 * math.pi
+    density = (1.0 - share) * 2.0 * np.cos(angle) ** 2 + share * (1.0 + np.sin(angle))
+    distribution = np.cumsum(density) / 20_000 - 0.5 * density / 20_000
+    mean = np.sum(2.0 * distribution * (1.0 - distribution) * np.cos(angle)) * math.pi / 20_000
+    patches = Patches(np.array([0.0]), np.array([3e-4]), np.array([share]))
+    assert patches.mean_distance[0] == pytest.approx(3e-4 * mean, rel=1e-6, abs=0.0)
+
+
+@pytest.mark.parametrize("poissons_ratio", [0.0, 0.3, 0.45])
+def test_patch_on_a_disc_moves_as_its_law_width_says(poissons_ratio):
+    """Pressures p_n cos(n t) push the rim of a disc in by p_n R/(2 mu) (2 (1 - nu) n - (1 - 2 nu))/(n^2 - 1).
+
+    Two patches under one load then differ by k ln of their law widths, up to the square of width over R.
+    """
+    radius, order = 10e-3, np.arange(2.0, 400_000.0)
+    widths = np.array([1e-5, 5e-5])
+
+    def approach(half):
+        wave = order * half / radius
+        along = np.square(2.0 * j1(wave) / wave)  # a semi-ellipse pushes, and weighs what it moves
+        yielding = 2.0 * (1.0 - poissons_ratio) * order - (1.0 - 2.0 * poissons_ratio)
+        return np.sum(along * yielding / (order**2 - 1.0)) / (2.0 * math.pi)  # times P/mu
+
+    bulge = lateral_share(poissons_ratio) / radius
+    patches = Patches(np.zeros(2), widths, np.zeros(2), bulge=bulge)
+    law = np.log(patches.law_width[1] / patches.law_width[0]) * (1.0 - poissons_ratio) / math.pi
+    difference = approach(widths[0]) - approach(widths[1])
+    assert difference == pytest.approx(law, rel=0.0, abs=0.5 * (widths[1] / radius) ** 2)
 
 
 @pytest.mark.parametrize("slope", [0.2, 0.01, 1e-3, 0.0, -1e-3, -5e-3])

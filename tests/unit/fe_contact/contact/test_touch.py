@@ -26,6 +26,7 @@ class Removed:
 
     along_profile = True
     only_removes = False
+    grids = (None, None)
 
     def breaks(self, gears, face):
         return ModificationGap(gears.pinion.modification, gears.wheel.modification).breaks(gears, face)

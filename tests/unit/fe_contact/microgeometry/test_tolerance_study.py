@@ -82,12 +82,16 @@ def test_a_larger_sample_begins_with_the_smaller_one(found: ToleranceStudy) -> N
 
 
 def test_the_least_of_tangents_stands_for_pairs_it_does_not_know(found: ToleranceStudy) -> None:
-    """Of 120 pairs, 40 solved: the others by the model are off by as much as the 30 held against it say."""
-    sampling = Sampling(samples=120, seed=3, positions=16, exact=40)
+    """Of 120 pairs, 60 solved: the others by the model are off by as much as the 45 held against it say.
+
+    Of 20 pairs one, where the contact at an extreme changes, is 20 times as far off as the median: fewer
+    held against the model may be without such a pair.
+    """
+    sampling = Sampling(samples=120, seed=3, positions=16, exact=60)
     model = scatter(PAIR, TORQUES, SLOPES, sampling, AnalysisOptions(**DRAFT))
-    assert (model.solved, model.held, found.solved) == (40, 30, 120)
-    np.testing.assert_array_equal(model.peak_to_peak[:40], found.peak_to_peak[:40])
-    missed = (model.peak_to_peak - found.peak_to_peak)[40:]
+    assert (model.solved, model.held, found.solved) == (60, 45, 120)
+    np.testing.assert_array_equal(model.peak_to_peak[:60], found.peak_to_peak[:60])
+    missed = (model.peak_to_peak - found.peak_to_peak)[60:]
     assert np.all(np.sqrt(np.mean(missed**2, axis=0)) < 2.0 * model.missed)
     assert np.all(model.missed < 0.05 * found.peak_to_peak.std(axis=0))
     assert np.all(model.missed < 0.2 * np.abs(model.first_order - found.peak_to_peak).mean(axis=0))

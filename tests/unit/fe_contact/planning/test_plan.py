@@ -1,5 +1,6 @@
 """Accuracy to discretization, and the receipt."""
 
+import math
 import time
 from dataclasses import replace
 
@@ -34,14 +35,20 @@ def test_levels_are_nested_refinements_with_a_coarse_mesh(pair):
     assert made.coarse_recipes[1].flank_size == pytest.approx(2.0 * made.recipes[1].flank_size)
 
 
-def test_patches_are_wider_than_contacts_but_for_an_overload(pair):
+def test_patches_follow_strips_of_half_the_load_and_the_law_holds_all_of_them(pair):
     """A patch as wide as the tooth would spoil the curves of the usual loads (docs/theory/contact.md)."""
-    usual, overload = pair.normal_force(100.0), pair.normal_force(1e5)
-    plan = make_plan(pair, np.array([usual, overload]), AnalysisOptions(), ContactModel())
-    assert plan.patch.half_width == pytest.approx(0.375 * pair.pinion.normal_module, rel=1e-12)
-    loads = np.array([1e3, 1e5])
-    strip = half_width(loads[-1] / pair.face_width, relative_radius(*pair.roll_lengths(0.0)), 115e9)
-    assert make_plan(pair, loads, AnalysisOptions(), ContactModel()).patch.half_width >= strip / 0.66
+    module, radius = pair.pinion.normal_module, relative_radius(*pair.roll_lengths(0.0))
+
+    def strip(load):
+        return float(half_width(load / pair.face_width, radius, 115e9))
+
+    overload = make_plan(pair, np.array([pair.normal_force(1e5)]), AnalysisOptions(), ContactModel()).patch
+    assert overload.half_width == pytest.approx(math.sqrt(1.5) * 0.225 * module, rel=1e-12)
+    assert overload.law_length == pytest.approx(0.375 * module, rel=1e-12)
+    heavy = 0.4 * (0.225 * module / strip(1.0)) ** 2
+    found = make_plan(pair, np.array([1e3, heavy]), AnalysisOptions(), ContactModel(), "fine").patch
+    assert found.half_width == pytest.approx(math.sqrt(1.5) * strip(0.5 * heavy), rel=0.01)
+    assert found.law_length >= strip(2.0 * heavy) / 0.66
 
 
 def test_coarse_patches_are_wider_as_the_elements_are_but_for_strips_and_slices(pair):
@@ -51,9 +58,9 @@ def test_coarse_patches_are_wider_as_the_elements_are_but_for_strips_and_slices(
         made = found.discretization
         elements = made.coarse_recipes[0].flank_size / made.recipes[0].flank_size
         assert found.coarse_patch.half_width / found.patch.half_width == pytest.approx(elements, rel=1e-12)
-        assert make_plan(pair, heavy, AnalysisOptions(), model).coarse_patch.half_width == pytest.approx(
-            make_plan(pair, heavy, AnalysisOptions(), model).patch.half_width, rel=1e-12
-        )
+        loaded = make_plan(pair, heavy, AnalysisOptions(), model)
+        widest = max(found.coarse_patch.half_width, loaded.patch.half_width)
+        assert loaded.coarse_patch.half_width == pytest.approx(widest, rel=1e-12)
     narrow = replace(pair, pinion=replace(pair.pinion, face_width=2e-3))
     found = make_plan(narrow, light, AnalysisOptions(), ContactModel(across_face=True))
     slice_width = narrow.face_width / found.discretization.slices

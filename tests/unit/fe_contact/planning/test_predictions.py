@@ -169,9 +169,9 @@ def test_time_and_error_are_the_same_in_the_reason_and_in_the_levels(tolerance, 
 
 def test_a_mesh_that_is_tried_first_is_planned_with_the_one_that_is_expected_to_follow():
     options = AnalysisOptions(tolerance=AllowedError(2e-3, 1e-9))
-    plan = plan_run(pair(0.15), TableAxes(torques=[40.0]), options)
+    plan = plan_run(pair(0.15, width=40e-3), TableAxes(torques=[200.0]), options)
     assert "tried first" in plan.choice.reason and plan.passes[0] == plan.chosen
-    assert [entry.level for entry in plan.passes] == ["standard", "fine"]
+    assert [entry.level for entry in plan.passes] == ["draft", "fine"]
     assert all(entry in plan.levels for entry in plan.passes)
     expected = decide(plan.checked, None).predicted(None)
     assert plan.to_json()["passes"][1]["cost"]["cpu_seconds"] == pytest.approx(expected.cpu_seconds)

@@ -1,10 +1,13 @@
 """Levels between the loads: the kink where a further pair comes into contact."""
 
+from dataclasses import replace
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from held_out import held_out_error
 
-from fe_contact.ste.extraction import _LoadLevels, _refined
+from fe_contact.ste.extraction import _LoadLevels, _refined, gradual_contact
 
 COARSE = (266.0, 1330.0, 2660.0, 5320.0, 10640.0)
 BETWEEN = (900.0, 2000.0, 4000.0, 8000.0)
@@ -15,31 +18,49 @@ POSITION = np.unique(
 
 
 def without_kinks(make, **case):
-    """The same table, said to hold the same pairs at all loads: one cubic from load to load."""
+    """The same table, said to hold the same pairs at all loads: one smooth curve from load to load."""
     database = make(**case)
     return make(**case, pairs_in_contact=np.ones(database.status.shape))
 
 
-def test_levels_are_added_only_to_steps_with_a_kink(make):
+def test_levels_gather_in_steps_with_a_kink(make):
     table = without_kinks(make).force_table()
-    assert table.level.tolist() == [0.0, *COARSE]
+    added = np.setdiff1d(table.level, [0.0, *COARSE])
+    count = [int(np.sum((added > low) & (added < high))) for low, high in pairwise([0.0, *COARSE])]
+    assert count == [0, 3, 1, 1, 1]
     # The pairs change between the second and third load only.
     pairs = np.ones((64, 5, 1, 1))
     pairs[:, 2:] = 2
     level = make(pairs_in_contact=pairs).force_table().level
-    added = np.setdiff1d(level, [0.0, *COARSE])
-    assert added.size > 10
-    assert added.min() > 1330.0
-    assert added.max() < 2660.0
-    # Cutting a cubic into parts does not change it.
+    assert np.sum((level > 1330.0) & (level < 2660.0)) == 64
+    # Where no kink is, more levels leave the curve as it is.
     refined, plain = make(), without_kinks(make)
     changing = np.any(np.diff(refined.pairs_in_contact[:, :, 0, 0], axis=1) != 0, axis=1)
     x = refined.position[~changing]
     assert x.size > 20
-    d = np.linspace(1e-7, 3e-5, 400)
-    one, other = refined.force_at(x[:, None], d), plain.force_at(x[:, None], d)
-    assert np.allclose(one.force, other.force, rtol=1e-9, atol=1e-9)
-    assert np.allclose(one.stiffness, other.stiffness, rtol=1e-7)
+    force = np.geomspace(266.0, 10640.0, 200)
+    one, other = refined.ste(x[:, None], force), plain.ste(x[:, None], force)
+    assert np.allclose(one, other, rtol=2e-4, atol=0.0)
+
+
+def test_a_helical_pair_comes_into_contact_gradually(make):
+    """A corner of a flank that touches first adds no stiffness at once: no kink, a smooth curve."""
+    facts = make().facts
+    straight, steep = (replace(facts, base_helix_angle=angle) for angle in (0.0, 0.35))
+    slight = replace(facts, base_helix_angle=0.001)
+    assert gradual_contact(straight) == 0.0
+    assert gradual_contact(steep) == 1.0
+    assert gradual_contact(slight) < 0.05
+    force = np.array([0.0, 100.0, 500.0, 2500.0])
+    lag = 1e-8 * force**0.75 * np.ones((6, 1, 1, 1))
+    stiff = 1.0 / (0.75e-8 * np.maximum(force, 1.0) ** -0.25) * (force > 0.0) * np.ones((6, 1, 1, 1))
+    levels = _LoadLevels(force, lag, stiff)
+    pairs = np.array([0, 1, 1, 2]) * np.ones((6, 1, 1, 1), dtype=int)
+    smooth = _refined(levels, pairs, 1.0)
+    exact = 1e-8 * smooth.force**0.75
+    assert np.allclose(smooth.deflection[0, 0, 0], exact, rtol=1e-12)
+    assert np.allclose(smooth.stiffness[0, 0, 0, 1:], smooth.force[1:] ** 0.25 / 0.75e-8, rtol=1e-9)
+    assert smooth.force.size == 4 + 2 * 3
 
 
 def test_two_straight_branches_are_found(make):
@@ -101,7 +122,7 @@ def test_a_curved_branch_is_followed(make):
 
 @pytest.mark.parametrize("relief", [0.0, 10e-6])
 def test_it_pays_between_the_loads(make, relief):
-    """At held-out loads and positions, against one cubic from load to load."""
+    """At held-out loads and positions, against one smooth curve from load to load."""
     case = {"position": POSITION, "relief": relief, "force": COARSE}
     truth = make(position=(np.arange(211) + 0.37) / 211, relief=relief, force=BETWEEN)
     refined, plain = held_out_error(make(**case), truth), held_out_error(without_kinks(make, **case), truth)
@@ -110,7 +131,7 @@ def test_it_pays_between_the_loads(make, relief):
 
 
 def test_no_false_peaks_beside_the_handover(make):
-    """Peak-to-peak between the loads, where single cubics read several per cent too high."""
+    """Peak-to-peak between the loads, where smooth curves read several per cent too high."""
     truth, refined, plain = (
         make(position=POSITION, force=BETWEEN),
         make(position=POSITION),
@@ -133,11 +154,11 @@ def test_a_long_period_has_as_many_levels_as_can_be_held():
     stiffness = np.where(two, k + k2, k) * (force > 0.0)
     levels = _LoadLevels(force, deflection[:, None, None], stiffness[:, None, None])
     long, short = (
-        _refined(levels, pairs),
-        _refined(_LoadLevels(force, levels.deflection[::64], levels.stiffness[::64]), pairs[::64]),
+        _refined(levels, pairs, 0.0),
+        _refined(_LoadLevels(force, levels.deflection[::64], levels.stiffness[::64]), pairs[::64], 0.0),
     )
     assert long.deflection.size <= 2_000_000 + gap.size
-    assert short.force.size == 4 + 64
+    assert short.force.size == 4 + 64 + 5  # those of the kink, and of the wide step below it
     at = np.isclose(long.force[:, None], short.force).any(axis=1)
     assert at.sum() >= 4
     branch = branches(k, k2, gap[:, None], long.force[long.force >= 1000.0])

@@ -13,12 +13,12 @@ from analysis_requests import table_request
 from fe_contact import AllowedError, Gear, GearPair, SteDatabase, analyze
 from fe_contact.analysis.database import kept_tolerance
 from fe_contact.analysis.database.compute_database import _Computed, compute_database, compute_pass
-from fe_contact.analysis.estimates import assessed_table
+from fe_contact.analysis.estimates import held_out_loads
 from fe_contact.analysis.request.model_choice import Decided, decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.errors import MeshError, SolveError
 from fe_contact.options import AnalysisOptions, Run, TableAxes
-from fe_contact.planning import model_error, plane_bias
+from fe_contact.planning import model_error
 from fe_contact.ste.fields import DIMENSIONS
 
 SPUR = GearPair(*[Gear(20, 2e-3, 12e-3, 20e-3)] * 2, 40e-3)
@@ -33,8 +33,6 @@ def nothing_but_discretization(monkeypatch) -> None:
     monkeypatch.setattr(model_error, "FLOOR", none)
     for name in ("LARGE_DISPLACEMENT", "TILT"):
         monkeypatch.setattr(model_error, name, {False: none, True: none})
-    for module in (plane_bias, assessed_table):
-        monkeypatch.setattr(module, "LEFT_OUT", 0.0)
 
 
 @pytest.fixture
@@ -111,7 +109,7 @@ def test_what_is_used_falls_from_pass_to_pass_and_met_is_what_the_table_states(
         for name in ("mean", "peak_to_peak")
     ]
     worst = max(one.error / float(allowed.of(np.array(one.value))) for one in stated)
-    assert receipt(table)["tolerance"]["used"] == pytest.approx(worst, rel=1e-3)
+    assert receipt(table)["tolerance"]["used_at_nodes"] == pytest.approx(worst, rel=1e-3)
     assert receipt(table)["tolerance"]["met"] is (worst <= 1.0)
     assert (receipt(table)["tolerance"]["reason"] == "met") is (worst <= 1.0)
 
@@ -248,19 +246,46 @@ def test_a_level_or_a_minimal_receipt_refines_nothing():
         assert "passes" not in receipt(analyze(SPUR, **asked, **PLANE))
 
 
-def test_loads_between_which_a_table_misses_the_tolerance_are_named(tmp_path: Path):
-    """The axes are the caller's: the receipt says where they want another node."""
-    wide, dense = (
-        analyze(SPUR, tolerance=0.01, **(PLANE | {"torques": torques}), cache=tmp_path)
-        for torques in ([1.0, 80.0], [40.0, 50.0])
-    )
-    (beyond,) = receipt(wide)["tolerance"]["between_nodes"]
+def test_loads_are_inserted_until_every_interval_meets_the_tolerance(tmp_path: Path):
+    """Those that were requested stay the axis; the others are support loads between them."""
+    wide = analyze(SPUR, tolerance=0.01, **(PLANE | {"torques": [16.0, 80.0]}), cache=tmp_path)
+    kept = receipt(wide)["tolerance"]
+    assert wide.torque == pytest.approx([16.0, 80.0])
+    assert wide.inserted_force.size >= 1
+    assert wide.inserted_force.tolist() == receipt(wide)["held_out"]["force"]["inserted"]
+    assert f"{wide.inserted_force.size} loads inserted" in wide.summary()
+    assert (kept["met"], kept["between_nodes"]) == (True, [])
+    assert kept["used_at_nodes"] < kept["used"] <= 1.0
+    # What is said of the interval holds where nothing was solved, by a table that is solved there.
+    for torque in (20.0, 34.0, 47.0, 66.0):
+        truth = analyze(SPUR, tolerance=0.01, **(PLANE | {"torques": [torque, 80.0]}), cache=tmp_path)
+        for ours, true in zip(figures_at(wide, torque), figures_at(truth, torque), strict=True):
+            assert abs(ours.value - true.value) <= min(ours.error, max(0.01 * true.value, 20e-9))
+
+
+def figures_at(table, torque):
+    return table.mean(torque=torque), table.peak_to_peak(torque=torque)
+
+
+def test_an_interval_that_misses_the_tolerance_is_not_met(tmp_path: Path, monkeypatch):
+    """Without a limit on halvings it would be: met is said of the intervals, too."""
+    monkeypatch.setattr(held_out_loads, "MOST_HALVINGS", 0)
+    wide = analyze(SPUR, tolerance=0.01, **(PLANE | {"torques": [1.0, 80.0]}), cache=tmp_path)
+    kept = receipt(wide)["tolerance"]
+    (beyond,) = kept["between_nodes"]
     assert beyond["axis"] == "force"
     assert beyond["between"] == wide.force.tolist()
-    assert beyond["used"] > 1.0
-    assert wide.force.size == 2
-    assert receipt(wide)["tolerance"]["met"] is True  # of the loads that were requested
+    assert kept["used"] >= beyond["used"] > 1.0 >= kept["used_at_nodes"]
+    assert kept["met"] is False
+    assert kept["reason"].startswith("between force")
+    dense = analyze(SPUR, tolerance=0.01, **(PLANE | {"torques": [40.0, 41.0]}), cache=tmp_path)
     assert receipt(dense)["tolerance"]["between_nodes"] == []
+
+
+def test_a_level_inserts_nothing(tmp_path: Path):
+    table = analyze(SPUR, level="draft", **(PLANE | {"torques": [16.0, 80.0]}), cache=tmp_path)
+    assert table.inserted_force.size == 0
+    assert table.interval_error[0, 0, 0, 0] > 0.0
 
 
 def test_what_the_method_leaves_out_stands_beside_a_tolerance_and_buys_no_mesh(monkeypatch):

@@ -7,6 +7,7 @@ import pytest
 
 from fe_contact import Gear, GearPair, analyze
 from fe_contact.analysis.estimates.held_out_axes import _around, held_out_axes
+from fe_contact.analysis.estimates.held_out_loads import AWAY
 from fe_contact.effects import EFFECTS, ContactScene
 from fe_contact.types import Status
 
@@ -81,8 +82,22 @@ def test_the_estimate_between_loads_covers_the_true_error(coarse, made):
         alike = np.append(between, coarse.force[-1])  # the largest load decides on the patches
         truths[part] = missed(coarse, made(torques=None, normal_forces=alike))[:-1]
     probed = np.max([truths[part] for part in (0.25, 0.5, 0.75)], axis=0)
-    assert error[:, 0] == pytest.approx(probed, rel=1e-6)
-    assert np.max([truths[0.4], truths[0.6]]) <= 1.5 * error.max()
+    assert error[:, 0] == pytest.approx(AWAY * probed, rel=1e-6)
+    assert np.all(np.max([truths[0.4], truths[0.6]], axis=0) <= error[:, 0])
+
+
+def test_a_point_between_the_loads_states_the_error_of_its_interval(coarse, made):
+    """The band and the figures of a curve between two loads cover what is solved there."""
+    load = float(np.sqrt(coarse.force[0] * coarse.force[1]))
+    between, at_node = coarse.curve(force=load), coarse.curve(force=float(coarse.force[0]))
+    stored = np.interp(between.position, coarse.position, coarse.error_estimate[:, 1, 0, 0])
+    error = stated(coarse, "force")[1][0, 0]
+    assert coarse.interval_error.shape == (3, *coarse.static_transmission_error.shape[1:])
+    assert np.all(between.error >= error)
+    assert np.all(between.error <= stored + error)
+    assert np.all(at_node.error == coarse.error_estimate[:, 0, 0, 0])
+    truth = made(torques=None, normal_forces=[load, float(coarse.force[-1])]).curve(force=load)
+    assert np.all(np.abs(between.ste - truth.ste) <= between.error)
 
 
 def test_misalignment_in_three_dimensions(made):

@@ -64,7 +64,7 @@ def test_scene_and_making_are_recorded(found: LoadDistribution) -> None:
     assert 2.0 * scene.pitch_point[0] == pytest.approx(here.common_tangent, rel=1e-12)
     metadata = found.metadata
     assert metadata.case == {"name": "spur"}
-    assert set(metadata.receipt["stages"]) == {"compliance", "contact", "assumptions"}
+    assert set(metadata.receipt["stages"]) == {"compliance", "contact", "assumptions", "error estimate"}
     assert {one["assumption"] for one in metadata.receipt["assumptions"]} >= {"coast flanks stay apart"}
     assert metadata.receipt["repeated"] == []
     assert len(metadata.content_hash) == 64

@@ -151,7 +151,7 @@ def test_the_roots_of_a_ring_gear_are_pulled_at_the_same_end(cache: Path) -> Non
 
 
 def test_peak_and_passage_say_the_same(cache: Path) -> None:
-    history = solved(SPUR, cache, at=np.arange(8) / 8).pinion
+    history = solved(SPUR, cache, at=np.arange(32) / 32).pinion
     passage = history.passage()
     assert np.all(np.diff(passage.position) > 0.0)
     for root, extreme in (("tension", passage.tension.max()), ("compression", passage.compression.min())):

@@ -146,6 +146,9 @@ def test_equilibrium_holds_and_the_lag_grows() -> None:
             assert point.residual < 1e-10
             assert sum(point.load_share.values()) == pytest.approx(1.0, abs=1e-10)
             assert point.torque_ratio == pytest.approx(1.0, abs=5e-3)
+            projected = sum(np.trapezoid(own.load, own.face_position) for own in point.line_loads)
+            force = projected / math.cos(helical_pair(1.0).base_helix_angle)  # the line is oblique
+            assert force == pytest.approx(helical_pair(1.0).normal_force(point.torque), rel=1e-2)
     assert np.all(np.diff(table.transmission_error, axis=1) > 0.0)
 
 

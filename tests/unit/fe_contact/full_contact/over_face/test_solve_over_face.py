@@ -64,6 +64,16 @@ def test_opposite_misalignments_mirror() -> None:
     assert np.all(straight > first)
 
 
+def test_line_loads_carry_the_torque_and_mirror() -> None:
+    aligned, one, other = (table.points[0][1] for table in plain())
+    for point in (aligned, one, other):
+        forces = [np.trapezoid(own.load, own.face_position) for own in point.line_loads]
+        assert sum(forces) == pytest.approx(PAIR.normal_force(TORQUE), rel=2e-3)  # arms of bent flanks
+    for own, mirrored in zip(one.line_loads, other.line_loads, strict=True):
+        np.testing.assert_allclose(own.load, mirrored.load[::-1], rtol=1e-6, atol=1e-6 * own.load.max())
+    assert one.line_loads[0].load[0] > 1.1 * one.line_loads[0].load[-1]
+
+
 @pytest.mark.law
 def test_a_slope_is_a_misalignment() -> None:
     """Removed from a flank or turned away: the same gap but for where on the flank it is."""

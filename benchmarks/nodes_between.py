@@ -1,0 +1,153 @@
+"""Do the errors that a table states between its nodes cover what is solved there? Drawn tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks.drawn_pairs import drawn_pairs
+from benchmarks.figures import Figure
+from benchmarks.pair_cases import PairCase
+from fe_contact import SteDatabase, analyze
+from fe_contact.types import FloatArray
+
+SUBJECT = "tables between their nodes"
+SEED, TABLES = 73, 30
+POINTS = 5
+"""Loads between nodes of each table, and where it has them, misalignments there."""
+TOLERANCE = 0.01
+_COVERAGE = 95.0
+UM = 1e-6
+
+
+@dataclass(frozen=True)
+class BetweenNodes:
+    """One table at points between its nodes, held against a table that is solved there.
+
+    Attributes
+    ----------
+    name : str
+    met : bool
+        Whether the table says that it meets its tolerance.
+    inserted : int
+        Its inserted loads and misalignments.
+    mean, ripple : (Q, 4) arrays
+        Value, stated error less that which the solution at the point has in common, true difference, and
+        allowed error of mean and peak-to-peak, m.
+    outside : (Q,) array
+        Part of the positions at which the difference is beyond the band.
+    """
+
+    name: str
+    met: bool
+    inserted: int
+    mean: FloatArray
+    ripple: FloatArray
+    outside: FloatArray
+
+
+def drawn_tables(
+    seed: int = SEED, count: int = TABLES
+) -> Iterator[tuple[PairCase, dict[str, Any], FloatArray]]:
+    """Yield pairs, the axes of their tables, and points between the nodes: loads, misalignments (2, 5)."""
+    draw = np.random.default_rng(seed)
+    for k, case in enumerate(drawn_pairs(seed, count)):
+        rated = case.forces[1]
+        steps = draw.uniform(1.8, 5.0, int(draw.integers(1, 3)))
+        force = rated * draw.uniform(0.15, 0.5) * np.cumprod([1.0, *steps])
+        low = draw.integers(0, force.size - 1, POINTS)
+        part = draw.uniform(0.08, 0.92, POINTS)
+        load = np.sort(force[low] ** (1.0 - part) * force[low + 1] ** part)
+        skews = np.array(case.options.get("misalignments", (0.0,)))
+        axes: dict[str, Any] = {"normal_forces": force, "misalignments": tuple(skews)}
+        where = np.full(POINTS, skews[0])
+        if k % 5 == 2:
+            axes["misalignments"] = (0.0, float(draw.uniform(8.0, 25.0)) * UM)
+            where = draw.uniform(0.1, 0.9, POINTS) * axes["misalignments"][1]
+        yield case, axes, np.stack([load, where])
+
+
+def between_nodes(
+    case: PairCase, axes: dict[str, Any], at: FloatArray, cache_dir: Path | None
+) -> BetweenNodes:
+    """Hold one table against a solution at each of its points."""
+    options = {"tolerance": TOLERANCE, "cache": cache_dir}
+    table = analyze(case.pair, **axes, **options)
+    rows = []
+    for load, skew in at.T.tolist():
+        truth = _solved(case, table, load, skew, options)
+        rows.append(_row(table, truth, load, skew))
+    mean, ripple, outside = (np.array(each) for each in zip(*rows, strict=True))
+    held = table.metadata.receipt["held_out"]
+    inserted = sum(len(axis["inserted"]) for axis in held.values())
+    return BetweenNodes(
+        case.name, table.metadata.receipt["tolerance"]["met"], inserted, mean, ripple, outside
+    )
+
+
+def _solved(
+    case: PairCase, table: SteDatabase, load: float, skew: float, options: dict[str, Any]
+) -> SteDatabase:
+    """Return the table of a load and the highest one of `table`, on the same mesh."""
+    return analyze(
+        case.pair,
+        normal_forces=[load, float(table.force[-1])],  # the highest load decides on the load patches
+        misalignments=(skew,),
+        **options,
+    )
+
+
+def _row(table: SteDatabase, truth: SteDatabase, load: float, skew: float) -> tuple[Any, Any, float]:
+    point = {"force": load, "misalignment": skew}
+    curve = table.curve(**point, at=truth.position)
+    own, exact = table.curve(**point), truth.curve(**point)
+    pairs = ((own.mean, exact.mean), (own.peak_to_peak, exact.peak_to_peak))
+    figures = [
+        (ours.value, ours.error, abs(ours.value - true.value), TOLERANCE * max(true.value, 20e-9 / TOLERANCE))
+        for ours, true in pairs
+    ]
+    outside = float(np.mean(np.abs(curve.ste - exact.ste) > curve.error))
+    return figures[0], figures[1], outside
+
+
+@cache
+def assessed() -> tuple[BetweenNodes, ...]:
+    """Hold all drawn tables against solutions between their nodes."""
+    return tuple(between_nodes(*drawn, None) for drawn in drawn_tables())
+
+
+def figures() -> list[Figure]:
+    """Return the coverage, and the part of the points within the tolerance where it is said to be met."""
+    found = assessed()
+    ripple = np.concatenate([one.ripple for one in found])
+    mean = np.concatenate([one.mean for one in found])
+    met = np.concatenate([one.ripple for one in found if one.met] or [np.empty((0, 4))])
+    return [
+        Figure(SUBJECT, "means covered", 100.0 * covered(mean), "%", _COVERAGE),
+        Figure(SUBJECT, "peak-to-peaks covered", 100.0 * covered(ripple), "%", _COVERAGE),
+        Figure(
+            SUBJECT, "peak-to-peaks within a tolerance said to be met", 100.0 * within(met), "%", _COVERAGE
+        ),
+        Figure(
+            SUBJECT,
+            "positions in the band",
+            100.0 * (1.0 - np.mean([o.outside for o in found])),
+            "%",
+            _COVERAGE,
+        ),
+    ]
+
+
+def covered(rows: FloatArray) -> float:
+    """Return the part of the rows whose difference is within the stated error."""
+    return float(np.mean(rows[:, 2] <= rows[:, 1]))
+
+
+def within(rows: FloatArray) -> float:
+    """Return the part of the rows whose difference is within the allowed error."""
+    return float(np.mean(rows[:, 2] <= rows[:, 3]))

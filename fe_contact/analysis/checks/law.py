@@ -1,0 +1,122 @@
+"""A law held against a table: its worst place, the value there and the bound."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from bounds import engineering
+from fe_contact.ste.fields import SteFields
+from fe_contact.types import FloatArray, Json
+
+_DIGITS = 6
+"""Of value and bound in a message: a law may be broken in the last of them."""
+
+
+@dataclass(frozen=True)
+class LawCheck:
+    """The worst place of a table under a law.
+
+    Attributes
+    ----------
+    law, quantity : str
+        Name of the law, and what it bounds.
+    place : str
+        Position, load, misalignment and center distance.
+    value, bound : float
+        In `unit`; the bound is the nearer one where there are two.
+    unit : str
+        Empty for numbers.
+    ratio : float
+        Part of the room between the bounds that the value takes: above 1 the law is broken, and so it is
+        where this is NaN.
+    """
+
+    law: str
+    quantity: str
+    place: str
+    value: float
+    bound: float
+    unit: str
+    ratio: float
+
+    @property
+    def broken(self) -> bool:
+        """Whether the value is out of its bound."""
+        return not self.ratio <= 1.0
+
+    @property
+    def words(self) -> str:
+        """The law, the place and both numbers."""
+        value, bound = (
+            f"{engineering(each, _DIGITS)} {self.unit}".rstrip() if np.isfinite(each) else str(each)
+            for each in (self.value, self.bound)
+        )
+        return f"{self.law}: {self.quantity} is {value} at {self.place}, bound {bound}"
+
+    def to_json(self) -> Json:
+        """Return plain JSON; numbers that are not finite are None."""
+        numbers = {"value": self.value, "bound": self.bound, "ratio": self.ratio}
+        finite = {name: number if np.isfinite(number) else None for name, number in numbers.items()}
+        return {"law": self.law, "quantity": self.quantity, "unit": self.unit, "place": self.place} | finite
+
+
+@dataclass(frozen=True)
+class Law:
+    """What a law bounds: its name, the quantity, its unit and how many of it are in one SI unit."""
+
+    name: str
+    quantity: str
+    unit: str = ""
+    per_si: float = 1.0
+
+    def between(
+        self, value: FloatArray, low: FloatArray | float, high: FloatArray | float, place: Callable[..., str]
+    ) -> LawCheck:
+        """Hold values (...) between bounds that broadcast; `place` names the place of an index."""
+        low, high = np.broadcast_to(low, value.shape), np.broadcast_to(high, value.shape)
+        middle, room = 0.5 * (low + high), 0.5 * (high - low)
+        off = value - middle
+        ratio = np.divide(np.abs(off), room, out=np.full(value.shape, np.inf), where=room > 0.0)
+        ratio = np.where(off == 0.0, 0.0, ratio)
+        bound = np.where(off < 0.0, low, high)
+        return self._worst(value, bound, ratio, place)
+
+    def below(self, value: FloatArray, bound: FloatArray | float, place: Callable[..., str]) -> LawCheck:
+        """Hold values (...) below bounds > 0 that broadcast."""
+        bound = np.broadcast_to(bound, value.shape)
+        return self._worst(value, bound, value / bound, place)
+
+    def above(self, value: FloatArray, bound: FloatArray | float, place: Callable[..., str]) -> LawCheck:
+        """Hold values (...) above bounds > 0 that broadcast; the ratio is bound over value."""
+        bound = np.broadcast_to(bound, value.shape)
+        ratio = np.divide(bound, value, out=np.full(value.shape, np.inf), where=value > 0.0)
+        return self._worst(value, bound, ratio, place)
+
+    def _worst(
+        self, value: FloatArray, bound: FloatArray, ratio: FloatArray, place: Callable[..., str]
+    ) -> LawCheck:
+        at = np.unravel_index(int(np.argmax(np.where(np.isnan(ratio), np.inf, ratio))), ratio.shape)
+        return LawCheck(
+            law=self.name,
+            quantity=self.quantity,
+            place=place(*at),
+            value=float(value[at]) * self.per_si,
+            bound=float(bound[at]) * self.per_si,
+            unit=self.unit,
+            ratio=float(ratio[at]),
+        )
+
+
+def place_words(
+    table: SteFields, position: int, misalignment: int, distance: int, force: float | None = None
+) -> str:
+    """Name a place of a table by its indices, and the normal force in N if there is one."""
+    words = [f"position {table.position[position]:.6g}"]
+    if force is not None:
+        words.append(f"force {force:.6g} N")
+    words.append(f"misalignment {1e6 * table.misalignment[misalignment]:.4g} µm")
+    words.append(f"center distance change {1e6 * table.center_distance_change[distance]:.4g} µm")
+    return ", ".join(words)

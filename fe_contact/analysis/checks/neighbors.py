@@ -1,0 +1,79 @@
+"""Bounds of how far the transmission error goes between neighboring positions.
+
+Where a pair carries, the transmission error follows its gap and its compliance. Along the line of action it
+changes no faster than deviations slope, the gap of a tip edge opens while it may carry, and the compliance of
+teeth grows towards their tips, times the deflection.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fe_contact.analysis.pairs.pair_contact import OperatingPoint
+from fe_contact.contact import ContactProblem
+from fe_contact.flank.extent import Extent
+from fe_contact.geometry import ParallelAxes, Side, corner_contact
+from fe_contact.types import FloatArray
+
+_OVERSHOOTS = 129
+_SIDES: tuple[Side, Side] = ("approach", "exit")
+ELASTIC = 2.0
+"""Change of the transmission error over that of the deflection at constant forces: they change as much."""
+
+
+def edge_slope(pair: ParallelAxes, level: FloatArray) -> FloatArray:
+    """Return how fast gaps of tip edges open at most, m/m, while they are below levels (...) in m."""
+    overshoot = np.linspace(0.0, pair.base_pitch, _OVERSHOOTS)
+    slope = np.zeros(level.shape)
+    for side in _SIDES:
+        gap = corner_contact(pair, side, overshoot).gap
+        there = np.isfinite(gap)
+        if np.count_nonzero(there) < 2:
+            continue
+        opening = np.diff(gap[there]) / np.diff(overshoot[there])
+        # the slope of the interval that holds the level, and the one before it: gaps are convex
+        within = np.searchsorted(gap[there], level).clip(1, opening.size) - 1
+        slope = np.maximum(slope, np.maximum.accumulate(opening)[within])
+    return np.asarray(slope)
+
+
+def compliance_slope(problem: ContactProblem, base_pitch: float) -> float:
+    """Return the largest relative change of a slice's compliance per way along the line of action, 1/m."""
+    count = len(problem.compliance)
+    position = problem.candidates.position[:count]
+    slices = np.einsum("qii->qi", problem.compliance)
+    there = problem.candidates.slices.present & (slices > 0.0)
+    both = there[1:] & there[:-1]
+    if count < 2 or not both.any():
+        return np.inf
+    way = base_pitch * np.diff(position)[:, None]
+    change = np.abs(np.diff(slices, axis=0)) / np.minimum(slices[1:], slices[:-1]).clip(1e-300) / way
+    return float(change[both].max())
+
+
+def largest_steps(
+    point: OperatingPoint,
+    problem: ContactProblem,
+    way: FloatArray,
+    deviations: Extent,
+    deflection: FloatArray,
+) -> FloatArray:
+    """Return the most by which a curve goes from each position to the next (P, L), m.
+
+    Parameters
+    ----------
+    way : ndarray, shape (P,)
+        To the next position along the line of action, m.
+    deviations : Extent
+        Of the teeth in mesh, arrays (P,).
+    deflection : ndarray, shape (L,)
+        Largest transmission error of each load above the least gap, m.
+    """
+    pair = point.contact.pair
+    low, high, slope = (np.asarray(each) for each in (deviations.low, deviations.high, deviations.slope))
+    here_and_next = [np.stack([each, np.roll(each, -1)]) for each in (low, high, slope)]
+    span = here_and_next[1].max(axis=0) - here_and_next[0].min(axis=0)
+    by_deviations = np.minimum(here_and_next[2].max(axis=0) * way, span)[:, None]
+    edges = edge_slope(pair, deflection)
+    elastic = ELASTIC * compliance_slope(problem, pair.base_pitch) * deflection
+    return np.asarray(by_deviations + way[:, None] * (edges + elastic))

@@ -1,0 +1,239 @@
+"""Interpolation error between the loads of a table, and the loads that bring it down.
+
+A held-out load is solved at some positions of one or two alignments of the table. Where the table misses one
+by more than a goal allows, the middle one of the interval becomes a node, and both halves are measured again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from fe_contact.analysis.estimates.interval_goal import IntervalGoal
+from fe_contact.analysis.pairs.contact_lines import solve_operating_points
+from fe_contact.analysis.pairs.kept_contact import carrying_pairs
+from fe_contact.analysis.pairs.pair_contact import OperatingPoints
+from fe_contact.analysis.request.solved_run import Solved
+from fe_contact.analysis.tables import table_support
+from fe_contact.contact import Start
+from fe_contact.sampled import WIDE_INTERVALS, WIDE_PROBES
+from fe_contact.ste import SteDatabase
+from fe_contact.ste.curve_quantities import (
+    BESIDE_MESH,
+    FIRST_HARMONIC,
+    MEAN,
+    PEAK_TO_PEAK,
+    mean_of_curves,
+    quantity_changes,
+)
+from fe_contact.ste.database import SupportLoads, with_support_loads
+from fe_contact.types import BoolArray, FloatArray, IntArray
+
+LOAD_PROBES, MIDDLE = np.arange(1, WIDE_PROBES + 1) / (WIDE_PROBES + 1), np.array([0.5])
+"""Held-out loads in every interval, on a logarithmic scale: a kink rounds the curve anywhere in it. Of more
+than four intervals the middles alone: those are short."""
+AWAY = 1.4
+"""Error anywhere in an interval over the largest at its held-out loads and the positions of the table: a kink
+lies at another position for every load. Set on drawn tables (docs/decisions/0012)."""
+MOST_HALVINGS = 8
+"""Halvings of an interval of requested loads: a factor of five becomes one of 1.006. The error at a kink
+falls in proportion to the interval that holds it."""
+
+
+@dataclass(frozen=True)
+class LoadErrors:
+    """Error between the requested loads.
+
+    Attributes
+    ----------
+    error : ndarray, shape (F - 1,)
+        Largest difference of interpolant and solution in the interval after each load, m.
+    change : ndarray, shape (23, F - 1)
+        What it does to mean, peak-to-peak and harmonics, m.
+    inserted : SupportLoads, optional
+        Solutions at further loads, with which the table has these errors, in all its base pitches.
+    """
+
+    error: FloatArray
+    change: FloatArray
+    inserted: SupportLoads | None
+
+
+@dataclass(frozen=True)
+class HeldOutLoads:
+    """The first pitch of a table at some positions, held against solutions between its loads.
+
+    Attributes
+    ----------
+    table : SteDatabase
+        One base pitch.
+    rows : ndarray of int, shape (R,)
+        Positions that are solved.
+    places : OperatingPoints
+        Of the table.
+    solved : list of (ContactProblem, ContactSolution)
+        Of every place: held-out loads start from them.
+    """
+
+    table: SteDatabase
+    rows: IntArray
+    places: OperatingPoints
+    solved: Solved
+
+    def errors(self, goal: IntervalGoal | None = None) -> LoadErrors:
+        """Measure the error of every interval; with a goal insert loads until it is met or halved enough."""
+        force = self.table.force.tolist()
+        probes, support, table = self._solved(self._missing(force, np.empty(0))), None, self.table
+        for _ in range(MOST_HALVINGS):
+            further = self._middles(table, probes, goal)
+            more = self._everywhere(np.array(further)) if further else None
+            if more is None:
+                break
+            support = more if support is None else _joined(support, more)
+            table = with_support_loads(self.table, self._first_pitch(support))
+            missing = self._missing(_ends(table), probes.force)
+            probes = _joined(probes, self._solved(missing)) if missing.size else probes
+        error, change = self._missed(table, probes)
+        within = [_inside(probes.force, low, high) for low, high in pairwise(force)]
+        return LoadErrors(
+            np.array([error[inside].max() for inside in within]),
+            np.stack([change[:, inside].max(axis=1) for inside in within], axis=1),
+            support,
+        )
+
+    def _middles(self, table: SteDatabase, probes: SupportLoads, goal: IntervalGoal | None) -> list[float]:
+        """Return the middle held-out loads of the intervals of a table that miss the goal."""
+        if goal is None:
+            return []
+        allowed, middles = goal.shares("force"), []
+        share = self._shares(probes, self._missed(table, probes)[1], goal)
+        for low, high in pairwise(_ends(table)):
+            inside = _inside(probes.force, low, high)
+            if not np.all(share[inside] <= allowed[np.searchsorted(table.force, low, side="right") - 1]):
+                middle = int(np.argmin(np.abs(np.log(probes.force / np.sqrt(low * high)))))
+                middles.append(float(probes.force[middle]))
+        return middles
+
+    def _everywhere(self, load: FloatArray) -> SupportLoads | None:
+        """Solve loads at all places and positions; None: one has no solution at some place."""
+        points, position = self.places, self.table.position
+        (kept,), _ = solve_operating_points(points, position, (load,), conditioned=False, edges=False)
+        solved = table_support(points, kept)
+        if solved["support_force"].size < load.size:
+            return None
+        return SupportLoads(
+            solved["support_force"],
+            solved["support_transmission_error"],
+            solved["support_tangent_compliance"],
+            solved["support_pairs_in_contact"],
+        )
+
+    def _first_pitch(self, loads: SupportLoads) -> SupportLoads:
+        count = self.table.position.size
+        arrays = loads.deflection[:count], loads.tangent[:count]
+        return SupportLoads(loads.force, *arrays, loads.pairs[:count])
+
+    def _missing(self, ends: list[float], known: FloatArray) -> FloatArray:
+        """Return the held-out loads of intervals that are not known yet."""
+        probes = LOAD_PROBES if self.table.force.size <= WIDE_INTERVALS + 1 else MIDDLE
+        wanted = [low ** (1.0 - probes) * high**probes for low, high in pairwise(ends)]
+        beside = np.concatenate([known, ends])
+        return np.array([x for x in np.concatenate(wanted) if not np.isclose(x, beside, rtol=1e-9).any()])
+
+    def _missed(self, table: SteDatabase, probes: SupportLoads) -> tuple[FloatArray, FloatArray]:
+        """Largest difference (L,) of a table, and changes of the quantities (23, L), m."""
+        position, skews = self._at_rows.position, self._at_rows.misalignment
+        where = position[:, None, None], probes.force[:, None], skews
+        curves = table.ste(*where, float(self._at_rows.center_distance_change[0]))
+        truth = probes.deflection[..., 0]
+        error = np.abs(curves - truth).max(axis=0)
+        flat = curves.reshape(len(curves), -1), truth.reshape(len(truth), -1)
+        changes = quantity_changes(position, flat[0], flat[1], 1).reshape(-1, *truth.shape[1:])
+        # one pitch has no orders beside the mesh: they count as the harmonic that changes most
+        changes[BESIDE_MESH] = changes[FIRST_HARMONIC:].max(axis=0)
+        # a kink passes the extremes of the curve at a load between those that are held out
+        changes[PEAK_TO_PEAK] = np.maximum(changes[PEAK_TO_PEAK], error)
+        return AWAY * error.max(axis=1), AWAY * changes.max(axis=2)
+
+    def _shares(self, probes: SupportLoads, change: FloatArray, goal: IntervalGoal) -> FloatArray:
+        """Return the larger part of what is allowed that the changes take of mean and peak-to-peak, (L,).
+
+        Every point of an interval states the error of the worst: the least that is allowed in it counts.
+        """
+        at_nodes = self._at_rows.static_transmission_error[..., 0]
+        ste = np.concatenate([at_nodes, probes.deflection[..., 0]], axis=1)
+        force = np.concatenate([self.table.force, probes.force])
+        values = np.stack([mean_of_curves(self._at_rows.position, ste, 1), np.ptp(ste, axis=0)])
+        allowed = goal.tolerance.of(values).min(axis=2)
+        shares = np.zeros(probes.force.size)
+        for low, high in pairwise(self.table.force.tolist()):
+            inside = _inside(probes.force, low, high)
+            least = allowed[:, (force >= low) & (force <= high)].min(axis=1)
+            shares[inside] = (change[[MEAN, PEAK_TO_PEAK]][:, inside] / least[:, None]).max(axis=0)
+        return shares
+
+    @cached_property
+    def _alignments(self) -> tuple[IntArray, int]:
+        """Misalignments nearest to and farthest from zero, and the nearest center distance, as indices."""
+        sizes, changes = np.abs(self.table.misalignment), np.abs(self.table.center_distance_change)
+        return np.unique([np.argmin(sizes), np.argmax(sizes)]), int(np.argmin(changes))
+
+    @cached_property
+    def _at_rows(self) -> SteDatabase:
+        """The table at the rows and alignments that are solved."""
+        skews, change = self._alignments
+        chosen = {"position": self.rows, "misalignment": skews, "center_distance_change": np.array([change])}
+        arrays = {}
+        for name, dimensions in self.table.stored.items():
+            array = getattr(self.table, name)
+            for axis, dimension in enumerate(dimensions):
+                array = np.take(array, chosen[dimension], axis=axis) if dimension in chosen else array
+            arrays[name] = array
+        return replace(self.table, **arrays)
+
+    def _solved(self, load: FloatArray) -> SupportLoads:
+        """Solve loads in N at the rows, each started between the table's solutions around it."""
+        load, position, solutions = np.sort(load), self.table.position, []
+        skews, change = self._alignments
+        for m in skews.tolist():
+            place = m * self.table.center_distance_change.size + change
+            point = self.places.places[place]
+            point.contact.keep_rows(point.model, position, self.rows)
+            problem, solution = point.solve(position[self.rows], load, start=self._start(load, place))
+            pairs = carrying_pairs(solution.force, problem.candidates)
+            solutions.append((solution.deflection, solution.tangent, pairs))
+        deflection, tangent, carrying = (
+            np.stack(own, axis=2)[..., None] for own in zip(*solutions, strict=True)
+        )
+        return SupportLoads(load, deflection, tangent, carrying)
+
+    def _start(self, load: FloatArray, place: int) -> Start:
+        force, (problem, solution) = self.table.force, self.solved[place]
+        above = np.clip(np.searchsorted(force, load), 1, force.size - 1)
+        part = (load - force[above - 1]) / (force[above] - force[above - 1])
+        lower, upper = (solution.force[np.ix_(self.rows, loads)] for loads in (above - 1, above))
+        return Start(problem.candidates, lower + part[:, None] * (upper - lower))
+
+
+def _ends(table: SteDatabase) -> list[float]:
+    """Return the ends of the intervals of a table: its loads and those inserted between them, N."""
+    return sorted([*table.force.tolist(), *table.inserted_force.tolist()])
+
+
+def _joined(first: SupportLoads, second: SupportLoads) -> SupportLoads:
+    """Return both in order of load."""
+    force = np.concatenate([first.force, second.force])
+    order = np.argsort(force)
+    return SupportLoads(
+        force[order],
+        np.concatenate([first.deflection, second.deflection], axis=1)[:, order],
+        np.concatenate([first.tangent, second.tangent], axis=1)[:, order],
+        np.concatenate([first.pairs, second.pairs], axis=1)[:, order],
+    )
+
+
+def _inside(load: FloatArray, low: float, high: float) -> BoolArray:
+    return (load > low * (1.0 + 1e-9)) & (load < high * (1.0 - 1e-9))

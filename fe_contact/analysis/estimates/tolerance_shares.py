@@ -1,0 +1,146 @@
+"""The tolerance of a request, held against the errors of a table at and between its nodes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fe_contact.allowed_error import AllowedError
+from fe_contact.analysis.estimates.interval_goal import LEAST_SHARE, IntervalGoal
+from fe_contact.analysis.request.request import Request
+from fe_contact.ste import SteDatabase
+from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES, METHOD, PLANE, SOURCES, all_sources
+from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, mean_of_curves
+from fe_contact.ste.plane_bias import PlaneBias, stored_bias
+from fe_contact.types import FloatArray, Json
+
+
+def error_shares(table: SteDatabase, allowed: AllowedError) -> FloatArray:
+    """Return the errors of mean and peak-to-peak by source in parts of what is allowed.
+
+    A plane that the program chose errs by its whole bias; the one of the caller is the model that was
+    requested.
+
+    Returns
+    -------
+    ndarray, shape (9, 2, F, M, D)
+        Sources in the order of `SOURCES`; those between nodes stand at the lower node of their interval, in
+        parts of what is allowed at the end where that is less. NaN where not estimated and at failed points.
+    """
+    errors = _with_bias(table, table.curve_error, stored_bias(table.metadata.receipt))
+    shares = errors / allowed_errors(table, allowed)
+    for axis, source in enumerate(range(len(AT_NODES), len(SOURCES)), start=1):
+        least = _with_next(allowed_errors(table, allowed), axis, np.fmin)
+        shares[source] = table.curve_error[source, [MEAN, PEAK_TO_PEAK]] / least
+    return np.asarray(shares)
+
+
+def allowed_errors(table: SteDatabase, allowed: AllowedError) -> FloatArray:
+    """Return the errors of mean and peak-to-peak that are allowed at the nodes, (2, F, M, D) in m."""
+    return allowed.of(_mean_and_ripple(table))
+
+
+def _mean_and_ripple(table: SteDatabase) -> FloatArray:
+    ste = table.static_transmission_error
+    return np.stack([mean_of_curves(table.position, ste, table.period), np.ptp(ste, axis=0)])
+
+
+def _with_bias(table: SteDatabase, curve_error: FloatArray, bias: PlaneBias | None) -> FloatArray:
+    """Return errors of mean and peak-to-peak by source, that of the plane its whole bias; m."""
+    errors = curve_error[:, [MEAN, PEAK_TO_PEAK]]
+    if bias is not None:
+        errors[AT_NODES.index(PLANE)] = bias.largest(*_mean_and_ripple(table))
+    return errors
+
+
+def bought_shares(shares: FloatArray, request: Request) -> tuple[FloatArray, FloatArray]:
+    """Part the errors at nodes, each (6, ...), into those that work lowers and those that last.
+
+    Those of the method last; so do those of the plane, where the caller chose it.
+    """
+    lasting = (METHOD, PLANE) if request.model_chosen else (METHOD,)
+    lasts = np.isin(AT_NODES, lasting).reshape(-1, *[1] * (shares.ndim - 1))
+    at_nodes = shares[: len(AT_NODES)]
+    return np.where(lasts, 0.0, at_nodes), np.where(lasts, at_nodes, 0.0)
+
+
+def used_at_nodes(shares: FloatArray, request: Request) -> FloatArray:
+    """Return the part of the tolerance (F, M, D) that errors at nodes use of mean or peak-to-peak."""
+    bought, _ = bought_shares(shares, request)
+    return np.asarray(all_sources(np.concatenate([bought, shares[len(SOURCES) :]])).max(axis=0))
+
+
+def interval_goal(
+    table: SteDatabase, at_nodes: FloatArray, request: Request, bias: PlaneBias | None
+) -> IntervalGoal | None:
+    """Return what errors at nodes (6, 23, F, M, D) in m leave to intervals; None without a tolerance."""
+    tolerance = request.options.tolerance
+    if tolerance is None:
+        return None
+    shares = _with_bias(table, at_nodes, bias) / allowed_errors(table, tolerance)
+    return IntervalGoal(tolerance, used_at_nodes(shares, request))
+
+
+def tolerance_receipt(table: SteDatabase, allowed: AllowedError, request: Request) -> Json:
+    """Hold the errors of mean and peak-to-peak at and between all nodes of a table against the tolerance.
+
+    Returns
+    -------
+    dict
+        `relative`, `floor_m`: the tolerance. `used`: the largest error that work lowers, over what is
+        allowed, at any node or between nodes of all axes; `used_at_nodes`: at nodes alone. `met`: whether
+        `used` is at most 1. They are None where errors were not estimated; a failed point and an interval
+        that cannot be interpolated keep nothing. `lasting`: the largest error that no mesh lowers, in parts
+        of the sizes that the tolerance counts by; a bias is none. `between_nodes`: the worst interval of
+        every axis that takes the table beyond the tolerance.
+    """
+    shares = error_shares(table, allowed)
+    _, lasting = bought_shares(shares, request)
+    if table.metadata.receipt.get("bias"):
+        lasting[AT_NODES.index(PLANE)] = 0.0
+    nodes = used_at_nodes(shares, request)
+    limits = {"relative": allowed.relative, "floor_m": allowed.floor}
+    if np.isnan(nodes).all():
+        return limits | {"used": None, "used_at_nodes": None, "met": None}
+    cells, between = _cells(nodes, shares)
+    used = float(np.sqrt(cells**2 + np.square(between).sum(axis=0)).max())
+    kept = {"used": used if np.isfinite(used) else None, "met": used <= 1.0}
+    kept["used_at_nodes"] = float(nodes.max()) if np.isfinite(nodes).all() else None
+    kept["lasting"] = allowed.relative * float(np.nanmax(all_sources(lasting)))
+    return limits | kept | {"between_nodes": _missed_intervals(table, cells, between)}
+
+
+def _cells(nodes: FloatArray, shares: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the largest shares over the corners of each cell of nodes, which stands at its lowest corner.
+
+    Those at nodes (F, M, D), and between them along each axis (3, F, M, D).
+    """
+    between = shares[len(AT_NODES) : len(SOURCES)].max(axis=1)
+    for axis in range(3):
+        nodes = _with_next(nodes, axis, np.maximum)
+        for other in (i for i in range(3) if i != axis):
+            between[axis] = _with_next(between[axis], other, np.maximum)
+    return nodes, between
+
+
+def _with_next(values: FloatArray, axis: int, chosen: np.ufunc) -> FloatArray:
+    """Return the chosen one of values at every node of an axis and at the next; the last stays."""
+    after = np.roll(values, -1, axis=axis)
+    last = [slice(None)] * values.ndim
+    last[axis] = slice(-1, None)
+    after[tuple(last)] = values[tuple(last)]
+    return np.asarray(chosen(values, after))
+
+
+def _missed_intervals(table: SteDatabase, cells: FloatArray, between: FloatArray) -> list[Json]:
+    """Return the worst interval of each axis by which a table misses the tolerance."""
+    axes = zip(BETWEEN_NODES, (table.force, table.misalignment, table.center_distance_change), strict=True)
+    missed = []
+    for i, (name, nodes) in enumerate(axes):
+        share = np.moveaxis(between[i], i, 0)[:-1]
+        total = np.hypot(np.moveaxis(cells, i, 0)[:-1], share)
+        beyond = np.where((total > 1.0) & (share > LEAST_SHARE), share, 0.0).max(axis=(1, 2), initial=0.0)
+        if beyond.size and beyond.max() > 0.0:
+            k = int(np.argmax(beyond))
+            interval = [float(nodes[k]), float(nodes[k + 1])]
+            missed.append({"axis": name, "used": float(beyond[k]), "between": interval})
+    return missed

@@ -1,0 +1,80 @@
+"""An operating point on rougher discretizations: what errors on the flanks and in the roots are told by."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from fe_contact.analysis.pairs.pair_contact import PairContact, pair_contact
+from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
+from fe_contact.contact import ContactSolution
+from fe_contact.errors import SolveError
+from fe_contact.types import BoolArray, FloatArray
+
+FEWEST_POSITIONS = 8
+"""Positions from which on every second one tells what lies between them."""
+
+
+class Rougher(NamedTuple):
+    """An operating point as it was solved, and on a discretization that is rougher in one respect."""
+
+    finer: SolvedOperatingPoint
+    rougher: SolvedOperatingPoint
+
+
+def halves(position: FloatArray) -> tuple[BoolArray, ...]:
+    """Return which of the positions (P,) are every second one, and which the others; none where few are."""
+    even = np.arange(position.size) % 2 == 0
+    return (even, ~even) if position.size >= FEWEST_POSITIONS else ()
+
+
+def rougher_solutions(solved: SolvedOperatingPoint, cache: Path | None) -> Iterator[Rougher]:
+    """Yield changes by slices, load patches and meshes, at the first of the `halves` of the positions.
+
+    Raises `MeshError`, `SolveError`: a rougher discretization has no mesh or no solution.
+
+    Parameters
+    ----------
+    solved : SolvedOperatingPoint
+        Of one load.
+    cache : Path, optional
+        Directory of flank compliances: the coarse meshes are taken from it, or computed.
+    """
+    contact, plan, half = solved.contact, solved.plan, solved
+    for even in halves(solved.problem.candidates.position)[:1]:
+        half = _at(solved, even)
+    if plan.discretization.slices > 1:
+        yield Rougher(half, _on(half, contact.in_slices(plan.discretization.coarse_slices)))
+    plain = contact.in_plane_strain  # the coarse meshes have no correction for the finite width
+    by_mesh = [half if plain is contact else _on(half, plain)]
+    if plain.in_coarse_patches is not plain:
+        by_mesh.append(_on(half, plain.in_coarse_patches))
+    by_mesh.append(_on(half, pair_contact(contact.pair, plan, cache, coarse=True)))
+    yield from (Rougher(*ends) for ends in pairwise(by_mesh))
+
+
+def _at(solved: SolvedOperatingPoint, keep: BoolArray) -> SolvedOperatingPoint:
+    """Return the same at some of the positions (P,)."""
+    rows = np.flatnonzero(keep)
+    fields = {name: values[rows] for name, values in vars(solved.solution).items() if name != "load"}
+    return replace(
+        solved, solved=[(solved.problem.rows(rows), ContactSolution(load=solved.solution.load, **fields))]
+    )
+
+
+def _on(solved: SolvedOperatingPoint, contact: PairContact) -> SolvedOperatingPoint:
+    """Return the same operating point and positions on another discretization."""
+    places = solved.places.on(contact)
+    position = solved.problem.candidates.position
+    pitch = np.floor(position).astype(np.int64)
+    problem, solution = places.places[0].solve(
+        position - pitch, solved.solution.load, pitch if pitch.any() else None
+    )
+    if not solution.converged:
+        raise SolveError("positions without a solution on a rougher discretization", partial=solution)
+    return replace(solved, places=places, solved=[(problem, solution)])

@@ -1,0 +1,191 @@
+"""Touching points of flanks that differ from tooth to tooth, beside those that all teeth have in common."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from fe_contact.contact.model import ContactModel, MeetingTeeth
+from fe_contact.contact.rough_flanks import DeviatingTeeth
+from fe_contact.contact.strip import Gap, rounded
+from fe_contact.contact.touch import (
+    ALLOWED,
+    FLATTEST,
+    ROUGH,
+    STEP,
+    Touch,
+    conjugate_touch,
+    modified_touch,
+    moved_gap,
+    rolls_at,
+    touching_places,
+)
+from fe_contact.geometry import ParallelAxes
+from fe_contact.types import BoolArray, FloatArray, IntArray
+from host.loops import njit
+
+_AT_ONCE = 16_384
+"""Candidates whose gaps are found together: what they take stays in the cache of the processor."""
+_MOVING = ("s_1", "s_2", "gap", *Gap._fields)
+"""What the gaps of teeth change of touching points."""
+
+
+class _Part(NamedTuple):
+    """Some candidates of a touch: rows (k,) of those that the teeth have in common, and what meets there."""
+
+    pair: ParallelAxes
+    model: ContactModel
+    common: Touch
+    face: FloatArray
+    meeting: IntArray
+
+    def gap(self, way: FloatArray) -> FloatArray:
+        """Return the gap of the teeth at ways (k,) along the flanks, m."""
+        rolls = rolls_at(self.pair, self.common.s_1 + way, self.common.s_2 - way)
+        return self.model.gap_of_teeth(MeetingTeeth(self.pair, self.meeting, *rolls, self.face))
+
+    @property
+    def deviating(self) -> DeviatingTeeth:
+        """The teeth that meet there."""
+        return DeviatingTeeth(self.model.tooth_gaps, self.meeting)
+
+    def some(self, of: IntArray) -> _Part:
+        """Return some of the candidates."""
+        return self._replace(common=self.common.rows(of), face=self.face[of], meeting=self.meeting[of])
+
+
+def tooth_touch(
+    pair: ParallelAxes, touch: Touch, model: ContactModel, meeting: IntArray, face: FloatArray
+) -> Touch:
+    """Add the gaps of teeth that meet: they slope along the flank, so the least gap is beside the point.
+
+    Parameters
+    ----------
+    touch : Touch
+        Of the flanks that all teeth have in common, with the gaps of the model.
+    meeting : ndarray of int, shape (R, m)
+        Which pair of teeth meets there; see `MeetingTeeth`.
+    face : ndarray, shape (m,)
+        Distance of each candidate from the pinion's mid-face, m.
+
+    Notes
+    -----
+    Load patches stay where the common flanks touch: `moved` is theirs.
+    """
+    changed = {name: getattr(touch, name).copy() for name in _MOVING}
+    there = np.nonzero(touch.gap != np.inf)  # more than a third of the candidates cannot touch
+    for at in zip(*(np.array_split(each, there[0].size // _AT_ONCE + 1) for each in there), strict=True):
+        common = Touch(*(getattr(touch, name)[at] for name in touch.__dataclass_fields__))
+        beside = _beside(_Part(pair, model, common, face[at[1]], meeting[at]))
+        for name, values in zip(_MOVING, beside, strict=True):
+            changed[name][at] = values
+    return replace(touch, **changed)
+
+
+def _beside(part: _Part) -> tuple[FloatArray, ...]:
+    """Return what `_MOVING` names.
+
+    Where the teeth are less hollow than the flanks are round, one parabola leads to the least gap; where
+    they are not, or where the true gap there is another, it is searched for together with the common gap.
+    """
+    beside, poor = _stepped(part)
+    rough = np.flatnonzero(poor | _sharp(part))
+    if rough.size:
+        found = _searched(part.some(rough))
+        for values, replaced in zip(beside, found, strict=True):
+            values[rough] = replaced
+    return beside
+
+
+def _stepped(part: _Part) -> tuple[tuple[FloatArray, ...], BoolArray]:
+    """Step to the least of the common gap and a parabola of the teeth's, and say where that is poor."""
+    common, none = part.common, np.zeros(part.face.size)
+    half = np.minimum(STEP / common.curvature, 0.2 * (common.high - common.low))
+    middle = np.clip(none, common.low + half, common.high - half)
+    before, here, after = (part.gap(middle + way) for way in (-half, none, half))
+    bend = (before - 2.0 * here + after) / half**2
+    steepness = (after - before) / (2.0 * half) - bend * middle
+    level = here - middle * (steepness + 0.5 * bend * middle)
+    gap = Gap(*(getattr(common, name) for name in Gap._fields))
+    gap, way, least, far = _free_steps(gap, steepness, bend)
+    if far.any():
+        _step_on(common, gap, (steepness, bend), (way, least), np.flatnonzero(far))
+    teeth = part.gap(way)
+    missed = teeth - level - way * (steepness + 0.5 * bend * way)
+    poor = (np.abs(way) > half) | (np.abs(missed) > ALLOWED / common.curvature)
+    return (common.s_1 + way, common.s_2 - way, common.gap + least + teeth, *gap), poor
+
+
+@njit(cache=True, error_model="numpy")
+def _free_steps(
+    gap: Gap, steepness: FloatArray, bend: FloatArray
+) -> tuple[Gap, FloatArray, FloatArray, BoolArray]:
+    """Step to where gaps (n,) with a slope and a curvature more are least, if no break is on the way.
+
+    Returns the gaps about there, the ways in m, what the gaps without the teeth are there in m, and which of
+    them need more than such a step: they are left as they were.
+    """
+    n, breaks = gap.place.shape
+    slope, curvature, low, high = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    place = gap.place.copy()
+    ways, least, far = np.zeros(n), np.zeros(n), np.zeros(n, dtype=np.bool_)
+    for i in range(n):
+        slope[i], curvature[i] = gap.slope[i], gap.curvature[i] + bend[i]
+        low[i], high[i] = gap.low[i], gap.high[i]
+        whole = slope[i] + steepness[i]
+        hollow = 0.0
+        for k in range(breaks):
+            hollow += min(gap.bend[i, k], 0.0)
+        far[i] = curvature[i] + hollow < FLATTEST * gap.curvature[i]
+        if slope[i] != 0.0:  # at a tip edge that stays in contact, or at a break
+            held = (low[i] == 0.0 and whole > 0.0) or (high[i] == 0.0 and whole < 0.0)
+            slope[i] = whole
+            far[i] = far[i] or not held
+            continue
+        way = -steepness[i] / curvature[i]
+        far[i] = far[i] or way <= low[i] or way >= high[i]
+        for k in range(breaks):
+            at = place[i, k]
+            far[i] = far[i] or (way >= at if at >= 0.0 else way <= at)
+        if far[i]:
+            continue
+        ways[i], least[i] = way, 0.5 * gap.curvature[i] * way * way
+        low[i], high[i] = low[i] - way, high[i] - way
+        for k in range(breaks):
+            place[i, k] -= way
+    return Gap(slope, curvature, low, high, place, gap.jump.copy(), gap.bend.copy()), ways, least, far
+
+
+def _step_on(
+    common: Touch,
+    gap: Gap,
+    teeth: tuple[FloatArray, FloatArray],
+    stepped: tuple[FloatArray, FloatArray],
+    far: IntArray,
+) -> None:
+    """Step over breaks and to edges, in the place of what `_free_steps` returned of those candidates."""
+    plain = Gap(*(getattr(common, name)[far] for name in Gap._fields))
+    slope, curvature = plain.slope + teeth[0][far], plain.curvature + teeth[1][far]
+    whole = rounded(plain._replace(slope=slope, curvature=curvature), FLATTEST * plain.curvature)
+    way = touching_places(whole, plain.low, plain.high)
+    stepped[0][far], stepped[1][far] = way, moved_gap(plain, way)[0]
+    for values, replaced in zip(gap, moved_gap(whole, way)[1], strict=True):
+        values[far] = replaced
+
+
+def _sharp(part: _Part) -> BoolArray:
+    """Return where the flanks may be nearly as hollow as they are round, or more."""
+    common = part.common
+    bend = part.deviating.bend(part.pair, rolls_at(part.pair, common.s_1, common.s_2), part.face)
+    return np.asarray(bend > ROUGH * common.curvature)
+
+
+def _searched(part: _Part) -> tuple[FloatArray, ...]:
+    """Search for the least gap of common flanks and teeth together, from the plain involutes on."""
+    pair, roll_1 = part.pair, part.common.roll_1[None]  # candidates of one position
+    plain = conjugate_touch(pair, roll_1, pair.mating_roll_length(roll_1), part.model.corner_contact)
+    plain = replace(plain, gap=np.where(np.isfinite(plain.gap), plain.gap, 0.0))
+    found = modified_touch(pair, plain, part.face, part.model.gaps, part.deviating)
+    return tuple(getattr(found, name)[0] for name in _MOVING)

@@ -1,0 +1,58 @@
+"""Flanks of single teeth at many points, compiled."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fe_contact.flank.bicubic import bicubic_at
+from fe_contact.types import FloatArray, IntArray
+from host.loops import inner, njit
+
+if TYPE_CHECKING:
+    from fe_contact.geometry.tooth_surfaces import PackedGrids
+
+
+@njit(cache=True)
+def surfaces_excess(
+    tooth: IntArray,
+    roll_length: FloatArray,
+    face: FloatArray,
+    ends: tuple[float, float],
+    face_width: float,
+    amounts: FloatArray,
+    grids: PackedGrids,
+) -> FloatArray:
+    """Return how far flanks of teeth stand towards the mate, m, at points (k,); see `ToothSurfaces`.
+
+    Off the usable profile the values at its ends apply.
+    """
+    excess = np.zeros(tooth.size)
+    across, along = np.zeros(4), np.zeros(4)
+    middle, half = 0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0])
+    for k in range(tooth.size):
+        if tooth[k] >= len(amounts):
+            continue
+        slope, form, waves, helix, helix_form, helix_waves = amounts[tooth[k]]
+        u = min(max((roll_length[k] - middle) / half, -1.0), 1.0)
+        v = 2.0 * face[k] / face_width
+        excess[k] = 0.5 * (slope * u + helix * v) + _form(form, waves, u) + _form(helix_form, helix_waves, v)
+        grid = grids.of_tooth[tooth[k]]
+        if grid >= 0:
+            (m, n, size), (row, column, node) = grids.sizes[grid], grids.starts[grid]
+            axes = grids.roll[row : row + m], grids.face[column : column + n]
+            nodes = grids.nodes[:, node : node + size]
+            excess[k] -= bicubic_at(axes, nodes, middle + half * u, face[k], across, along)
+    return excess
+
+
+@inner()
+def _form(height: float, waves: float, at: float) -> float:
+    """Return a shape of this height whose mean line over -1 to 1 is zero: a measurement splits it so."""
+    if height == 0.0:
+        return 0.0
+    if waves == 0.0:
+        return height * (1.0 / 3.0 - at * at)
+    return height * 0.5 * math.cos(math.pi * waves * at)

@@ -1,0 +1,190 @@
+"""Flanks of all single teeth of a gear as arrays, for loops over many points of many teeth."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fe_contact.types import FloatArray, IntArray
+
+if TYPE_CHECKING:
+    from fe_contact.flank.flank_grid import FlankGrid
+    from fe_contact.flank.part import Tooth
+    from fe_contact.geometry.tooth_flank import ToothFlank
+
+
+class PackedGrids(NamedTuple):
+    """Surfaces of several teeth one after the other.
+
+    Attributes
+    ----------
+    of_tooth : ndarray of int, shape (T,)
+        Which surface a tooth has; -1: none.
+    sizes, starts : ndarray of int, shape (G, 3)
+        Nodes along the profile, along the face and in all of each surface, and where they begin.
+    roll, face : ndarray
+        Axes of all surfaces, m.
+    nodes : ndarray, shape (4, N)
+        Value, slopes and mixed slope at the nodes of all surfaces; see `FlankGrid`.
+    """
+
+    of_tooth: IntArray
+    sizes: IntArray
+    starts: IntArray
+    roll: FloatArray
+    face: FloatArray
+    nodes: FloatArray
+
+    @classmethod
+    def of(cls, grids: Sequence[FlankGrid | None]) -> PackedGrids:
+        """Pack the surfaces of teeth in the order of meshing; None where a tooth has none."""
+        there = [grid for grid in grids if grid is not None]
+        number = np.cumsum([grid is not None for grid in grids]) - 1
+        of_tooth = np.where([grid is not None for grid in grids], number, -1)
+        shapes = [(len(grid.roll_length), len(grid.face_position)) for grid in there]
+        sizes = np.array([(m, n, m * n) for m, n in shapes], dtype=np.int64).reshape(-1, 3)
+        return cls(
+            of_tooth=of_tooth.astype(np.int64),
+            sizes=sizes,
+            starts=np.cumsum(sizes, axis=0) - sizes,
+            roll=np.array([roll for grid in there for roll in grid.roll_length]),
+            face=np.array([face for grid in there for face in grid.face_position]),
+            nodes=np.concatenate([np.zeros((4, 0)), *(grid.nodes.reshape(4, -1) for grid in there)], axis=1),
+        )
+
+
+@dataclass(frozen=True)
+class ToothSurfaces:
+    """Flanks of single teeth of a gear.
+
+    Attributes
+    ----------
+    ends : (float, float)
+        Roll lengths at the form circle and at the tip, m.
+    face_width : float
+        m.
+    amounts : ndarray, shape (T, 6)
+        Slopes and forms of each tooth in the order of meshing, m, and the numbers of their waves.
+    grids : PackedGrids
+    kinks, bends : ndarray, shape (T,)
+        Bounds of jumps of the slope along the profile, and of the curvature in 1/m, over the roll length.
+    spreads : ndarray, shape (T,)
+        Bound of highest less lowest excess along a profile, m.
+    nodes : tuple of ndarray
+        Roll lengths in m of each tooth between two of which its profile turns back once at most.
+    """
+
+    ends: tuple[float, float]
+    face_width: float
+    amounts: FloatArray
+    grids: PackedGrids
+    kinks: FloatArray
+    bends: FloatArray
+    spreads: FloatArray
+    nodes: tuple[FloatArray, ...]
+
+    @classmethod
+    def of(cls, gear: Tooth, flanks: Sequence[ToothFlank]) -> ToothSurfaces:
+        """Lay out flanks of a gear; teeth without an entry, also beyond the last one, are as designed."""
+        teeth = max((flank.tooth for flank in flanks), default=0)
+        amounts = np.zeros((teeth, 6))
+        grids: list[FlankGrid | None] = [None] * teeth
+        for flank in flanks:
+            amounts[flank.tooth - 1] = (
+                *(flank.profile_slope, flank.profile_form, flank.profile_form_waves),
+                *(flank.helix_slope, flank.helix_form, flank.helix_form_waves),
+            )
+            grids[flank.tooth - 1] = flank.flank_grid
+        ends = gear.form_roll_length, gear.tip_roll_length
+        figures = np.array([grid_figures(grid, ends) for grid in grids]).reshape(-1, 3)
+        slope, form, waves = np.abs(amounts[:, :3]).T
+        phase = np.maximum(math.pi * waves, 2.0)  # a parabola: 1/3 - u^2 falls by 2 u
+        bend = np.where(waves > 0.0, 0.5 * form * phase**2, 2.0 * form) * (2.0 / (ends[1] - ends[0])) ** 2
+        return cls(
+            ends=ends,
+            face_width=gear.face_width,
+            amounts=amounts,
+            grids=PackedGrids.of(grids),
+            kinks=figures[:, 0],
+            bends=bend + figures[:, 1],
+            spreads=slope + form + figures[:, 2],
+            nodes=tuple(profile_nodes(ends, *each) for each in zip(waves, grids, strict=True)),
+        )
+
+    def excess(self, tooth: IntArray, roll_length: FloatArray, face: FloatArray) -> FloatArray:
+        """Return how far the flanks of teeth stand towards the mate, m.
+
+        Parameters
+        ----------
+        tooth : ndarray of int
+            Teeth in the order of meshing, the first is 0.
+        roll_length, face : ndarray
+            Where on them, m; `face` from mid-face. All broadcast.
+        """
+        import host.analysis  # noqa: F401, PLC0415 (says what to install)
+        from fe_contact.geometry.tooth_surface_loops import surfaces_excess  # noqa: PLC0415 (loads the compiler)
+
+        shape = np.broadcast_shapes(tooth.shape, roll_length.shape, face.shape)
+        roll, along = (np.broadcast_to(each, shape).ravel() for each in (roll_length, face))
+        teeth = np.broadcast_to(tooth, shape).ravel().astype(np.int64, copy=False)
+        excess = surfaces_excess(teeth, roll, along, self.ends, self.face_width, self.amounts, self.grids)
+        return np.asarray(excess.reshape(shape))
+
+
+_IN_CELL = 4
+"""Parts of a cell between the nodes of a surface, and of a wave between its crest and its trough."""
+
+
+def profile_nodes(ends: tuple[float, float], waves: float, grid: FlankGrid | None) -> FloatArray:
+    """Return roll lengths in m between two of which a profile turns back once at most.
+
+    `ends` are those of the usable profile in m, `waves` those of its form deviation.
+    """
+    low, high = min(ends), max(ends)
+    parts = [np.linspace(low, high, _IN_CELL * max(int(waves), 1) + 1)]
+    if grid is not None:
+        axis = np.array(grid.roll_length)
+        cells = np.arange(_IN_CELL * (axis.size - 1) + 1) / _IN_CELL
+        parts.append(np.clip(np.interp(cells, np.arange(axis.size), axis), low, high))
+    return np.unique(np.concatenate(parts))
+
+
+def grid_figures(grid: FlankGrid | None, ends: tuple[float, float]) -> tuple[float, float, float]:
+    """Return bounds of the slope's jumps, of the curvature and of highest less lowest value of a surface.
+
+    Within a cell a cubic is most curved at one of its ends; at the ends of the grid the slope drops to zero.
+    """
+    if grid is None:
+        return 0.0, 0.0, 0.0
+    value, slope = grid.nodes[:2]
+    axis = np.array(grid.roll_length)
+    step, kinks = np.diff(axis)[:, None], [0.0]
+    bend = 6.0 * np.diff(value, axis=0) / step**2
+    first = bend - (4.0 * slope[:-1] + 2.0 * slope[1:]) / step
+    last = bend - (2.0 * slope[:-1] + 4.0 * slope[1:]) / step
+    if axis[0] > min(ends):
+        kinks.append(np.abs(slope[0]).max())
+    if axis[-1] < max(ends):
+        kinks.append(np.abs(slope[-1]).max())
+    return max(kinks), float(max(np.abs(first).max(), np.abs(last).max())), float(np.ptp(value, axis=0).max())
+
+
+_KINK = 1000.0
+"""Relative radii over which a jump of the slope counts as a curvature: what it hides is below 1 nm then."""
+
+
+def curvature_bound(
+    per_length: FloatArray,
+    rolls: tuple[FloatArray, FloatArray],
+    kink: FloatArray | float,
+    bend: FloatArray | float,
+) -> FloatArray:
+    """Return a bound of the curvature along the flanks by figures over the roll length, 1/m.
+
+    `per_length` is roll length over length along the flank; `rolls` are those of both gears, m.
+    """
+    return np.asarray(bend * per_length**2 + _KINK * kink * per_length * (1.0 / rolls[0] + 1.0 / rolls[1]))

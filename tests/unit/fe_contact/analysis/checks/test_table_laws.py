@@ -1,0 +1,223 @@
+"""A table that breaks a law of mechanics is no result: planted breaks fail it, tables as solved do not."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from analysis_requests import table_request
+from spur_gears import GEAR, PAIR, gear
+
+from fe_contact import FlankGrid, FlankModification, GearPair, ToothFlank, analyze
+from fe_contact.analysis.checks.table_laws import check_laws, require_laws
+from fe_contact.analysis.database import compute_database
+from fe_contact.analysis.request.request_check import check_request
+from fe_contact.analysis.tables import SolvedTable, solve_table
+from fe_contact.errors import SolveError
+from fe_contact.geometry import PitchDeviation
+from fe_contact.options import Run
+from model_studies.stage_clock import StageClock
+
+pytestmark = pytest.mark.usefixtures("coarse_sectors")
+
+RELIEVED = replace(GEAR, modification=FlankModification(tip_relief=8e-6, tip_relief_length=1e-3))
+THREE_LOADS = {"torques": [10.0, 100.0, 400.0], "level": "draft", "positions": 256}
+SPOT = 56
+"""A position at which two pairs carry, edges apart."""
+SKEWED = {"torques": [50.0, 200.0], "misalignments": [0.0, 20e-6], "level": "draft", "positions": 16}
+UNEVEN = replace(GEAR, pitch_deviation=PitchDeviation(5e-6 * np.sin(np.arange(20.0))))
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("compliance")
+
+
+def solved(pair: GearPair, cache: Path, **asked: Any) -> SolvedTable:
+    run = Run(cache=cache)
+    return solve_table(check_request(pair, *table_request(**asked)), StageClock(run.workers.cost), run)
+
+
+@pytest.fixture(scope="module")
+def relieved(cache: Path) -> SolvedTable:
+    return solved(GearPair(RELIEVED, GEAR), cache, **THREE_LOADS)
+
+
+def require(made: SolvedTable) -> None:
+    support = [each.solution for each in made.support]
+    require_laws(check_laws(made.table, made.places.places, made.solved, support), made.table)
+
+
+@dataclass(frozen=True)
+class Break:
+    """A fault planted in arrays of a table or of its contact: the law it breaks, what it does."""
+
+    law: str
+    plant: Callable[[dict[str, np.ndarray], np.ndarray], None]
+
+
+def _into(
+    name: str, change: Callable[[np.ndarray], Any]
+) -> Callable[[dict[str, np.ndarray], np.ndarray], None]:
+    """Return a fault at one position and the middle load of an array of the table."""
+
+    def plant(arrays: dict[str, np.ndarray], _force: np.ndarray) -> None:
+        place = arrays[name][SPOT] if name == "no_load_transmission_error" else arrays[name][SPOT, 1]
+        place[...] = change(place)
+
+    return plant
+
+
+def _exchanged(arrays: dict[str, np.ndarray], _force: np.ndarray) -> None:
+    ste = arrays["static_transmission_error"]
+    ste[SPOT, [0, 1]] = ste[SPOT, [1, 0]]
+
+
+def _same_at_two_loads(arrays: dict[str, np.ndarray], _force: np.ndarray) -> None:
+    ste = arrays["static_transmission_error"]
+    ste[SPOT, 1] = ste[SPOT, 0]
+
+
+def _pulling(_arrays: dict[str, np.ndarray], force: np.ndarray) -> None:
+    force[SPOT, 1] = force[SPOT, 1].sum() * np.array([1.1, -0.1, *np.zeros(force.shape[2] - 2)])
+
+
+def _unbalanced(_arrays: dict[str, np.ndarray], force: np.ndarray) -> None:
+    force[SPOT, 1] *= 1.0 + 1e-6
+
+
+def _pulling_share(arrays: dict[str, np.ndarray], _force: np.ndarray) -> None:
+    share = arrays["load_share"][SPOT, 1, 0, 0]
+    share += 0.1 * (np.arange(share.size) == share.argmax()) - 0.1 * (np.arange(share.size) == share.argmin())
+
+
+def _low_pressure(arrays: dict[str, np.ndarray], _force: np.ndarray) -> None:
+    for name in ("max_pressure", "edge_pressure"):
+        arrays[name][SPOT, 1] *= 0.3
+
+
+def _spike(arrays: dict[str, np.ndarray], _force: np.ndarray) -> None:
+    """All loads and the curve without load together, by less than the relief could."""
+    arrays["static_transmission_error"][SPOT] += 3e-6
+    arrays["support_transmission_error"][SPOT] += 3e-6
+    arrays["no_load_transmission_error"][SPOT] += 3e-6
+
+
+BREAKS = {
+    "the curve without load falls below the flanks": Break(
+        "lifting of rigid gears", _into("no_load_transmission_error", lambda x: x - 0.1e-6)
+    ),
+    "the curve without load rises above the relief": Break(
+        "lifting of rigid gears", _into("no_load_transmission_error", lambda x: x + 20e-6)
+    ),
+    "a deflection of more than one pair": Break(
+        "lifting under load", _into("static_transmission_error", lambda x: 3.0 * x + 16e-6)
+    ),
+    "a deflection below the flanks": Break(
+        "lifting under load", _into("static_transmission_error", lambda x: -x)
+    ),
+    "no number": Break("lifting under load", _into("static_transmission_error", lambda x: np.nan * x)),
+    "less under more load": Break("rise with load", _exchanged),
+    "one deflection under two loads": Break("rise with load", _same_at_two_loads),
+    "a mesh that softens with load": Break(
+        "stiffening with load", _into("static_transmission_error", lambda x: 1.3 * x)
+    ),
+    "a tangent of another curve": Break(
+        "stiffening with load", _into("tangent_compliance", lambda x: 0.5 * x)
+    ),
+    "a contact that pulls": Break("contacts push", _pulling),
+    "forces beyond the torque": Break("balance of moments", _unbalanced),
+    "an equilibrium that is not": Break("balance of moments", _into("residuals", lambda x: x + 1e-6)),
+    "shares of less than the load": Break("shares of the load", _into("load_share", lambda x: 0.99 * x)),
+    "a negative share": Break("contacts push", _pulling_share),
+    "a centroid beside the face": Break("load within the face", _into("face_centroid", lambda x: x + 13e-3)),
+    "pressure that does not carry": Break("pressure carries the load", _low_pressure),
+    "a spike in one position": Break("continuity over positions", _spike),
+}
+
+
+def planted(made: SolvedTable, fault: Break) -> SolvedTable:
+    table = copy.copy(made.table)
+    arrays = {name: getattr(table, name).copy() for name in table.stored}
+    (problem, solution), *others = made.solved
+    force = solution.force.copy()
+    fault.plant(arrays, force)
+    for name, values in arrays.items():
+        object.__setattr__(table, name, values)
+    return replace(made, table=table, solved=[(problem, replace(solution, force=force)), *others])
+
+
+@pytest.mark.parametrize("fault", BREAKS.values(), ids=BREAKS)
+def test_a_planted_break_fails_by_law_place_and_numbers(relieved: SolvedTable, fault: Break) -> None:
+    broken = planted(relieved, fault)
+    with pytest.raises(SolveError, match=f"{fault.law}: .* is .* at position .*, bound ") as refused:
+        require(broken)
+    assert refused.value.partial is broken.table
+
+
+def test_every_law_has_a_planted_break(relieved: SolvedTable) -> None:
+    laws = {law.law for law in check_laws(relieved.table, relieved.places.places, relieved.solved)}
+    assert laws - {"continuity without load"} == {fault.law for fault in BREAKS.values()}
+
+
+@pytest.mark.parametrize(
+    ("pair", "asked"),
+    [
+        (PAIR, THREE_LOADS),
+        (PAIR, THREE_LOADS | {"torques": [1e-3, 0.1, 4000.0]}),
+        (GearPair(GEAR, RELIEVED), THREE_LOADS | {"center_distance_changes": [0.0, 0.1e-3]}),
+        (GearPair(UNEVEN, GEAR), THREE_LOADS),
+        (PAIR, SKEWED),
+        (GearPair(gear(helix_angle=0.3), gear(31, helix_angle=-0.3)), SKEWED),
+    ],
+    ids=["plain", "light and heavy", "relieved", "uneven pitches", "misaligned", "helical"],
+)
+def test_tables_as_solved_obey_all_laws(pair: GearPair, asked: Any, cache: Path) -> None:
+    require(solved(pair, cache, **asked))
+
+
+def test_a_run_whose_table_breaks_a_law_fails_with_it(
+    relieved: SolvedTable, cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    broken = planted(relieved, BREAKS["a deflection below the flanks"])
+    monkeypatch.setattr(compute_database, "solve_table", lambda *_, **__: broken)
+    for tolerance in (None, 0.02):
+        asked = (
+            THREE_LOADS if tolerance is None else {"torques": THREE_LOADS["torques"], "tolerance": tolerance}
+        )
+        with pytest.raises(SolveError, match="breaks a law of mechanics") as refused:
+            analyze(GearPair(RELIEVED, GEAR), cache=cache, **asked)  # type: ignore[arg-type]
+        assert refused.value.partial is broken.table
+
+
+def test_the_receipt_says_how_near_each_law_is_to_its_bound(cache: Path) -> None:
+    laws = analyze(PAIR, cache=cache, **THREE_LOADS).metadata.receipt["laws"]  # type: ignore[arg-type]
+    assert len(laws) >= 10
+    assert all(0.0 <= law["ratio"] <= 1.0 for law in laws)
+    ratio = {law["law"]: law["ratio"] for law in laws}
+    # one pair carries all: bound and deflection differ by the strip alone, which is a few per cent of it
+    assert 0.9 < ratio["lifting under load"] < 1.0
+    assert ratio["rise with load"] > 0.9
+
+
+EDGE_BREAK = ((5.0, 21.5, 22.3, 22.6, 22.85), (0.0, -4.0, -5.5, -5.0, 13.8))
+"""Roll lengths in mm and what is removed in um: the end of a measured trace at its tip."""
+
+
+def test_a_trace_on_one_tooth_never_lifts_by_more_than_it_is_high(cache: Path) -> None:
+    roll, removed = (np.array(values) for values in EDGE_BREAK)
+    grid = FlankGrid(tuple(1e-3 * roll), (-12e-3, 12e-3), tuple((1e-6 * x, 1e-6 * x) for x in removed))
+    asked: Any = {"torques": [200.0], "level": "draft"}
+    rough = GearPair(GEAR, replace(GEAR, tooth_flanks=(ToothFlank(tooth=3, flank_grid=grid),)))
+    try:
+        table = analyze(rough, cache=cache, **asked)
+    except SolveError as error:
+        assert "lifting of rigid gears" in str(error)
+        return
+    plain = analyze(PAIR, cache=cache, **asked).static_transmission_error
+    assert np.ptp(table.static_transmission_error) < np.ptp(removed) * 1e-6 + plain.max()

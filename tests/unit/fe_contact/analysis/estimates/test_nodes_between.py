@@ -1,0 +1,31 @@
+"""Between its nodes a table is within its stated error of what is solved there, and of a tolerance it met."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmarks.nodes_between import between_nodes, covered, drawn_tables, within
+
+DAY = (0, 3, 5)
+"""Spur pairs in the plane, external and internal, with loads up to five times apart."""
+
+
+@pytest.mark.law
+def test_drawn_tables_cover_what_is_solved_between_their_loads(tmp_path: Path) -> None:
+    drawn = list(drawn_tables(count=DAY[-1] + 1))
+    assess([drawn[k] for k in DAY], tmp_path)
+
+
+@pytest.mark.nightly
+def test_thirty_drawn_tables_cover_what_is_solved_between_their_nodes(tmp_path: Path) -> None:
+    assess(list(drawn_tables()), tmp_path)
+
+
+def assess(drawn, cache):
+    found = [between_nodes(*table, cache) for table in drawn]
+    ripple, mean = (np.concatenate([getattr(one, name) for one in found]) for name in ("ripple", "mean"))
+    assert covered(ripple) >= 0.95
+    assert covered(mean) >= 0.95
+    assert np.mean([one.outside for one in found]) <= 0.05
+    assert within(np.concatenate([one.ripple for one in found if one.met])) == 1.0
