@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_contact.contact.model import ContactModel, MeetingTeeth
+from fe_contact.contact.parabolic_gap import moved_gap, touching_places
 from fe_contact.contact.rough_flanks import DeviatingTeeth
 from fe_contact.contact.strip import Gap, rounded
 from fe_contact.contact.touch import (
@@ -18,9 +19,7 @@ from fe_contact.contact.touch import (
     Touch,
     conjugate_touch,
     modified_touch,
-    moved_gap,
     rolls_at,
-    touching_places,
 )
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray

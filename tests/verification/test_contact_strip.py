@@ -11,8 +11,8 @@ import math
 import numpy as np
 import pytest
 
+from fe_contact.contact.parabolic_gap import moved_gap, touching_places
 from fe_contact.contact.strip import Gap, gap_table, half_strip, strip_load
-from fe_contact.contact.touch import _moved_gap, _touching_places
 
 MODULUS = 115e9
 RADIUS = 6e-3
@@ -183,8 +183,8 @@ def test_touching_points_are_where_the_gap_is_least():
         rng.normal(0.0, 2e-4, (n, 3)), rng.choice([0.0, 5e-3, 0.03], (n, 3)),
         rng.choice([0.0, -5.0, 20.0], (n, 3)),
     )  # fmt: skip
-    place = _touching_places(about, about.low, about.high)
-    least, there = _moved_gap(about, place)
+    place = touching_places(about, about.low, about.high)
+    least, there = moved_gap(about, place)
     for i in range(n):
         one = Gap(*(part[i : i + 1] for part in about))
         moved = Gap(*(part[i : i + 1] for part in there))
