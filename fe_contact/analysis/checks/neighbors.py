@@ -2,7 +2,8 @@
 
 Where a pair carries, the transmission error follows its gap and its compliance. Along the line of action it
 changes no faster than deviations slope, the gap of a tip edge opens while it may carry, and the compliance of
-teeth grows towards their tips, times the deflection.
+teeth grows towards their tips, times the deflection. Rough flanks touch at one crest and then at the next:
+the curvature of the strip jumps there, and its approach with it.
 """
 
 from __future__ import annotations
@@ -49,6 +50,23 @@ def compliance_slope(problem: ContactProblem, base_pitch: float) -> float:
     way = base_pitch * np.diff(position)[:, None]
     change = np.abs(np.diff(slices, axis=0)) / np.minimum(slices[1:], slices[:-1]).clip(1e-300) / way
     return float(change[both].max())
+
+
+def approach_steps(
+    pair: ParallelAxes, problem: ContactProblem, positions: int, load: FloatArray
+) -> FloatArray:
+    """Return by how much the approach in a strip changes from each position to the next (P, L), m.
+
+    Under a line load p it changes by p/(pi E*) times the logarithm of the ratio of the curvatures. One pair
+    carries the loads (L,) in N over the face. Positions that follow from derivatives have the largest change.
+    """
+    touch = problem.candidates.touch
+    curvature = np.where(np.isfinite(touch.gap), touch.curvature, np.nan)
+    ratio = np.abs(np.log(np.roll(curvature, -1, axis=0) / curvature))
+    change = np.nan_to_num(ratio).max(axis=1)
+    if len(change) != positions:
+        change = np.full(positions, change.max())
+    return np.asarray(change[:, None] * load / (np.pi * problem.modulus * pair.face_width))
 
 
 def largest_steps(

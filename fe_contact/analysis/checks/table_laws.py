@@ -11,7 +11,7 @@ import numpy as np
 
 from fe_contact.analysis.checks.law import Law, LawCheck, place_words
 from fe_contact.analysis.checks.lifting import deviations_in_mesh
-from fe_contact.analysis.checks.neighbors import largest_steps
+from fe_contact.analysis.checks.neighbors import approach_steps, largest_steps
 from fe_contact.analysis.pairs.pair_contact import OperatingPoint
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.contact.single_pair import single_pair_deflection
@@ -265,6 +265,8 @@ class _Place:
         curves = np.concatenate([self._no_load[:, None], self._ste], axis=1)
         size = np.nanmax(curves, axis=0) - np.min(self._deviations.low)
         most = largest_steps(self.point, self.problem, way, self._deviations, size) + TOUCH
+        load = np.concatenate([[0.0], t.force])
+        most = most + approach_steps(self.point.contact.pair, self.problem, len(way), load)
         step = np.nan_to_num(np.abs(np.roll(curves, -1, axis=0) - curves))
         yield _NO_LOAD_NEIGHBORS.below(step[:, 0], most[:, 0], self._at)
         yield _NEIGHBORS.below(step[:, 1:], most[:, 1:], self._at)

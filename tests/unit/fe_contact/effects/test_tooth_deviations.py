@@ -15,7 +15,7 @@ from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact.model import ContactModel, MeetingTeeth
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.effects.tooth_deviations import sharpest_crest
-from fe_contact.errors import InputError, SolveError
+from fe_contact.errors import InputError
 from fe_contact.geometry import (
     FlankGrid,
     FlankModification,
@@ -370,13 +370,7 @@ def test_waves_more_curved_than_the_flanks_are_told(tmp_path, order, holds):
     path = pair.path_of_contact
     bend = AMPLITUDE * order**2 / path.start**2 / pair.relative_curvature(path.start)
     assert sharpest_crest(pair) == pytest.approx(float(bend), rel=1e-12)
-    try:
-        found = analyze(pair, torques=[100.0], level="draft", positions=16, cache=tmp_path).metadata.receipt
-    except SolveError as error:
-        # one touching point may end far below a wave: no result is better than that one
-        assert not holds
-        assert "lifting of rigid gears" in str(error)
-        return
+    found = analyze(pair, torques=[100.0], level="draft", positions=16, cache=tmp_path).metadata.receipt
     (entry,) = [each for each in found["assumptions"] if each["assumption"] == "flanks touch in one place"]
     assert entry["holds"] is holds
 
