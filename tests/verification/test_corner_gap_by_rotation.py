@@ -248,6 +248,7 @@ class Offset:
     """The same depth removed from one flank everywhere."""
 
     along_profile, only_removes = True, True
+    grids = None, None
 
     def breaks(self, pair: ParallelAxes, face: np.ndarray) -> tuple[()]:
         return ()
