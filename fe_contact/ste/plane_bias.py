@@ -59,9 +59,10 @@ class PlaneBias:
         return np.asarray(np.abs(added) + error)
 
     def of_curves(self, mean: FloatArray, peak_to_peak: FloatArray) -> PlaneBias:
-        """Return it with what is hidden in curves (...), m."""
+        """Return it with what is hidden in curves (...), m; those with a failed point (NaN) say nothing."""
         added, error = self.correction(mean, peak_to_peak)
-        return replace(self, hidden=float(np.max(error[1], where=added[1] == 0.0, initial=0.0)))
+        hidden = (added[1] == 0.0) & np.isfinite(error[1])
+        return replace(self, hidden=float(np.max(error[1], where=hidden, initial=0.0)))
 
     @property
     def words(self) -> str:

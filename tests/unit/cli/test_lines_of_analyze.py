@@ -28,7 +28,7 @@ SPUR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 def test_decisions_influence_price_and_what_does_not_hold_are_told() -> None:
     relieved = Gear(
         teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3,
-        modification=FlankModification(tip_relief=0.3e-6, tip_relief_length=1e-3),
+        modification=FlankModification(tip_relief=0.05e-6, tip_relief_length=2e-3),
     )  # fmt: skip
     table = analyze(
         GearPair(relieved, SPUR), torques=[100.0], tolerance=0.05, positions=64,
@@ -51,7 +51,7 @@ def test_decisions_influence_price_and_what_does_not_hold_are_told() -> None:
 
 def test_what_a_neglected_effect_takes_of_the_tolerance_is_its_influence() -> None:
     # the floor is what is allowed: of the mean itself the change is a larger part than of what counts
-    trace = FlankModification(tip_relief=1e-6, tip_relief_length=1e-3)
+    trace = FlankModification(tip_relief=0.4e-6, tip_relief_length=1e-3)
     pinion, allowed = replace(SPUR, modification=trace), AllowedError(0.05, 1e-6)
     options = AnalysisOptions(tolerance=allowed)
     entries = plan_run(GearPair(pinion, SPUR, 80e-3), TableAxes(torques=[100.0]), options).to_json()

@@ -270,12 +270,18 @@ def test_the_receipt_holds_the_measured_errors_against_it(tmp_path):
     parts = dict(zip(SOURCES, table.curve_error[..., 0, 0][:, [MEAN, PEAK_TO_PEAK]] / sizes, strict=True))
     assert not parts[PLANE].any()  # the caller chose the plane, whose part is a bias
     whole = np.array([[estimate.error for estimate in row] for row in values]) / sizes
-    assert loose["used"] == pytest.approx(np.sqrt(whole**2 - parts[METHOD] ** 2).max() / 0.5, rel=1e-3)
+    at_nodes = np.sqrt(whole**2 - parts[METHOD] ** 2).max()
+    assert loose["used_at_nodes"] == pytest.approx(at_nodes / 0.5, rel=1e-3)
+    # of the loads between, an interval states its error at its lower end and of the lesser size at both
+    between = (parts["force"] * sizes)[:, 0] / sizes.min(axis=1)
+    assert between.max() > 0.1 * at_nodes
+    assert loose["used"] == pytest.approx(np.hypot(at_nodes, between.max()) / 0.5, rel=1e-3)
     assert loose["lasting"] == pytest.approx(parts[METHOD].max(), rel=1e-3)
     assert (loose["relative"], loose["floor_m"], loose["met"]) == (0.5, 0.0, True)
     tight = AllowedError(1e-4, 0.0)
     assert kept(tight)[1]["met"] is False
     assert kept(AllowedError(1e-4, 1e-6))[1]["met"] is True
-    assert kept(tight, receipt="minimal")[1] == {"relative": 1e-4, "floor_m": 0.0, "used": None, "met": None}
+    unknown = {"used": None, "used_at_nodes": None, "met": None}
+    assert kept(tight, receipt="minimal")[1] == {"relative": 1e-4, "floor_m": 0.0} | unknown
     level = analyze(spur, level="draft", **asked).metadata.receipt
     assert "tolerance" not in level
