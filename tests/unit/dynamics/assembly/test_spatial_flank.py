@@ -160,7 +160,7 @@ def jolted(table, on):
 @pytest.mark.parametrize("on", [EFFECTS, EFFECTS[:1], EFFECTS[1:2], EFFECTS[:2]])
 def test_the_work_of_the_axes_closes_the_audit(table, on):
     energy = simulate(jolted(table, on)).energy
-    assert abs(energy.axes) > 1e-5
+    assert abs(energy.axes) > 5e-6  # the two axes work against each other: alone 3.1e-5 and -3.9e-5 J
     assert abs(energy.residual) < 2e-3 * abs(energy.axes)
     assert energy.relative < 1e-6
 

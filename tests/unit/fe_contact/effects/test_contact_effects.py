@@ -186,8 +186,9 @@ def test_a_free_flank_made_of_a_twist_is_that_twist():
     first, second = (
         over_face(case, LeadModification().contribute(case, ContactModel())).touch for case in (free, twisted)
     )
-    for name in ("s_1", "s_2", "gap"):
-        assert getattr(first, name) == pytest.approx(getattr(second, name), rel=0.0, abs=1e-12)
+    # On a surface that may be rough the least gap is searched; beside it by 10 nm the gap is 1e-14 m larger.
+    for name, off in (("s_1", 1e-8), ("s_2", 1e-8), ("gap", 1e-14)):
+        assert getattr(first, name) == pytest.approx(getattr(second, name), rel=0.0, abs=off)
 
 
 def test_a_tip_edge_is_clear_only_if_it_is_so_all_over_the_face():

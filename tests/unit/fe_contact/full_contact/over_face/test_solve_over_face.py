@@ -119,7 +119,7 @@ def test_layers_are_finest_at_the_face_and_springs_size_the_mesh() -> None:
     mean = 1e5
     deflection = mean * softness(PAIR)
     for opened, factor in ((1.0, 1.5), (2.0, 2.0), (8.0, 4.0)):
-        model = _WholeFace((opened * deflection,))
+        model = _WholeFace((opened * deflection,), COARSE.outermost)
         assert model.largest_line_load(PAIR, mean * 25e-3) == pytest.approx(factor * mean, rel=0.01)
         assert model.closer(PAIR) == pytest.approx(0.5 * opened * deflection)
 
