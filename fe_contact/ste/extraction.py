@@ -38,7 +38,8 @@ _HALVINGS = 30
 # least compliance of a smooth curve over that of its step: a cubic may be flat inside
 _LEAST_COMPLIANCE = 0.1
 # power of the force in which the deflection of a smooth step is a cubic: of 0, 1/4, 1/2 and 1 the one with
-# the smallest errors over loads five times apart, on ten drawn pairs (docs/decisions/0012)
+# the smallest errors over loads five times apart, chosen on the same ten drawn pairs (seed 7) whose errors
+# docs/decisions/0012 tabulates
 _POWER = 0.25
 # ratio of loads over which a cubic of the force in the deflection is close enough to that
 _CLOSE_LOADS = 1.5
