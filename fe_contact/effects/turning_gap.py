@@ -12,6 +12,7 @@ import numpy as np
 from fe_contact.contact.model import MeetingTeeth
 from fe_contact.flank.extent import Extent
 from fe_contact.geometry import ParallelAxes, RunOut, ToothFlank, Toothing, Wave
+from fe_contact.geometry.tooth_flank import tooth_surfaces
 from fe_contact.geometry.tooth_surfaces import ToothSurfaces, curvature_bound
 from fe_contact.types import FloatArray, IntArray
 from host.loops import inner, njit
@@ -65,7 +66,7 @@ class TurningGap:
             waves=gear.waves,
             flanks=flanks,
             largest=gear.run_out.eccentricity + 0.5 * gear.run_out.wobble + waves + deviation,
-            surfaces=ToothSurfaces.of(gear, flanks) if flanks else None,
+            surfaces=tooth_surfaces(gear, flanks) if flanks else None,
         )
 
     def __call__(self, teeth: MeetingTeeth) -> FloatArray:

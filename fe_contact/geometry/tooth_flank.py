@@ -157,7 +157,21 @@ def flanks_excess(
     roll_length, face : ndarray
         Where on them, m; `face` from mid-face. All broadcast.
     """
-    return ToothSurfaces.of(gear, flanks).excess(tooth, roll_length, face)
+    return tooth_surfaces(gear, flanks).excess(tooth, roll_length, face)
+
+
+def tooth_surfaces(gear: Tooth, flanks: Sequence[ToothFlank]) -> ToothSurfaces:
+    """Lay out flanks of a gear; teeth without an entry, also beyond the last one, are as designed."""
+    teeth = max((flank.tooth for flank in flanks), default=0)
+    amounts = np.zeros((teeth, 6))
+    grids: list[FlankGrid | None] = [None] * teeth
+    for flank in flanks:
+        amounts[flank.tooth - 1] = (
+            *(flank.profile_slope, flank.profile_form, flank.profile_form_waves),
+            *(flank.helix_slope, flank.helix_form, flank.helix_form_waves),
+        )
+        grids[flank.tooth - 1] = flank.flank_grid
+    return ToothSurfaces.of(gear, amounts, grids)
 
 
 def _form(height: FloatArray, waves: FloatArray, at: FloatArray) -> FloatArray:

@@ -14,7 +14,6 @@ from fe_contact.types import FloatArray, IntArray
 if TYPE_CHECKING:
     from fe_contact.flank.flank_grid import FlankGrid
     from fe_contact.flank.part import Tooth
-    from fe_contact.geometry.tooth_flank import ToothFlank
 
 
 class PackedGrids(NamedTuple):
@@ -88,17 +87,8 @@ class ToothSurfaces:
     nodes: tuple[FloatArray, ...]
 
     @classmethod
-    def of(cls, gear: Tooth, flanks: Sequence[ToothFlank]) -> ToothSurfaces:
-        """Lay out flanks of a gear; teeth without an entry, also beyond the last one, are as designed."""
-        teeth = max((flank.tooth for flank in flanks), default=0)
-        amounts = np.zeros((teeth, 6))
-        grids: list[FlankGrid | None] = [None] * teeth
-        for flank in flanks:
-            amounts[flank.tooth - 1] = (
-                *(flank.profile_slope, flank.profile_form, flank.profile_form_waves),
-                *(flank.helix_slope, flank.helix_form, flank.helix_form_waves),
-            )
-            grids[flank.tooth - 1] = flank.flank_grid
+    def of(cls, gear: Tooth, amounts: FloatArray, grids: Sequence[FlankGrid | None]) -> ToothSurfaces:
+        """Lay out the `amounts` and the surfaces of teeth of a gear; those beyond them are as designed."""
         ends = gear.form_roll_length, gear.tip_roll_length
         figures = np.array([grid_figures(grid, ends) for grid in grids]).reshape(-1, 3)
         slope, form, waves = np.abs(amounts[:, :3]).T
