@@ -269,7 +269,8 @@ def test_derivatives_are_the_changes_of_the_curve_in_the_units_of_the_question(
     assert "wheel.helix_crowning_um" not in found["by"]  # a plane case
     pinion = found["pinion"]
     assert np.shape(pinion["mean_um"]) == (len(pinion["roll_length_mm"]), len(pinion["face_position_mm"]))
-    assert np.sum(pinion["mean_um"]) == pytest.approx(1.0, rel=1e-6)
+    # removed everywhere it is what the gears lag, but for tip edges, which close it by their lever arms
+    assert np.sum(pinion["mean_um"]) == pytest.approx(1.0, rel=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -73,7 +73,8 @@ def test_the_summary_holds_the_known_figures(job: tuple[Path, str]) -> None:
     assert number(text, "mean contact force") == pytest.approx(2660.4, rel=0.002)
     assert 286.5 <= number(text, "spectrum: fundamental") <= 302.5
     _, helical = text.split("helical 23/67")
-    assert number(helical, "mean STE at 100 N m") == pytest.approx(14.41, rel=0.003)
+    # the cutter of a tooth thinned by 50 um stands deeper: 14.41 and 0.408 with the root of the nominal shift
+    assert number(helical, "mean STE at 100 N m") == pytest.approx(14.51, rel=0.003)
     assert number(helical, "peak-to-peak STE at 100 N m") == pytest.approx(0.408, rel=0.02)
 
 
