@@ -7,6 +7,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from fe_contact.allowed_error import AllowedError
+from fe_contact.analysis.checks.cycle_law import check_cycle
+from fe_contact.analysis.checks.table_laws import require_laws
 from fe_contact.analysis.cycle.envelope import CycleContact, chosen
 from fe_contact.analysis.pairs.pair_contact import operating_points
 from fe_contact.analysis.request.model_choice import decide
@@ -92,12 +94,14 @@ def deviating_cycle(
     InputError
         A value that cannot be used, by field name.
     SolveError
-        A point of the contact has no solution.
+        A point of the contact has no solution, or the curve breaks a law of mechanics.
     """
     contact, predicted = cycle_contact(pair, axes, options, run)
     ste, solved, errors = _solved(contact, predicted, options.allowed)
     teeth = pair.pinion.teeth, pair.wheel.teeth
-    return DeviatingCycle(teeth, contact.load, ste, solved, errors[0], errors[1:], predicted)
+    cycle = DeviatingCycle(teeth, contact.load, ste, solved, errors[0], errors[1:], predicted)
+    require_laws((check_cycle(contact, ste, errors[0]),), cycle)
+    return cycle
 
 
 def cycle_contact(

@@ -21,11 +21,12 @@ from fe_contact import (
     Wave,
     ste_database,
 )
+from fe_contact.analysis import deviating_cycle as cycle_module
 from fe_contact.analysis.cycle import envelope
 from fe_contact.analysis.cycle.envelope import CycleContact, Envelope
 from fe_contact.analysis.cycle.tangents import nominal_tangent, pitch_tangents
 from fe_contact.analysis.deviating_cycle import DeviatingCycle, cycle_contact, deviating_cycle
-from fe_contact.errors import InputError
+from fe_contact.errors import InputError, SolveError
 from fe_contact.planning import cost_of_derivatives
 from fe_contact.planning.cost_of_derivatives import BATCH, solved_pitches
 from fe_contact.ste.curve import DERIVATIVES, SOURCES, source_names
@@ -275,3 +276,17 @@ def test_a_table_that_needs_many_pitches_says_why_all_were_solved(monkeypatch):
     table = ste_database(made(1.0), TableAxes(torques=[40.0], pitches=120), OPTIONS)
     assert "do not keep the tolerance" in table.metadata.receipt["cycle"]["reason"]
     assert np.isfinite(table.residuals).all()
+
+
+def test_a_pitch_beyond_what_its_teeth_deviate_is_no_result(monkeypatch):
+    """A curve that single teeth lift by more than they deviate fails, with the place and both numbers."""
+
+    def lifted(*_: object) -> tuple:
+        ste, solved, errors = solve(*_)
+        ste[3, 5, 0] += 100e-6
+        return ste, solved, errors
+
+    solve = cycle_module._solved
+    monkeypatch.setattr(cycle_module, "_solved", lifted)
+    with pytest.raises(SolveError, match=r"lifting by single teeth: .* at position 3\.\d+, force .* bound"):
+        deviating_cycle(made(1.0), AXES, OPTIONS)
