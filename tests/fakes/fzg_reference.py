@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import csv
 import os
+import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 SETTING = "LOA_FZG_REFERENCE"
@@ -25,3 +27,22 @@ def geometry_listing(pair: str, kind: str) -> list[Row]:
         return []
     with path.open(encoding="utf-8", newline="") as lines:
         return [row for row in csv.DictReader(lines) if (row["pair"], row["kind"]) == (pair, kind)]
+
+
+_PROFILE = re.compile(r"Zahn-Nr\.: (\d+) (links|rechts) / (\d+)  Werte  z=")
+
+
+def profile_traces() -> dict[str, np.ndarray]:
+    """Return material removed (k,) in m along the profiles of the curve files, in even steps of roll length."""
+    traces = {}
+    for path in sorted(_folder.glob("*.mka")):
+        lines = path.read_text(encoding="utf-8").splitlines()
+        for number, line in enumerate(lines):
+            if match := _PROFILE.match(line):
+                tooth, flank, count = match.groups()
+                text = " ".join(lines[number + 1 : number + 1 + int(count) // 12])
+                values = np.array(text.split(), dtype=float)
+                measured = values[values > -1e6]
+                sign = {"links": 1.0, "rechts": -1.0}[flank]
+                traces[f"{path.stem[:11]} {tooth} {flank}"] = 1e-6 * sign * measured
+    return traces

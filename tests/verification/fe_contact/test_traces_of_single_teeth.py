@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from fzg_reference import needs_fzg_reference, profile_traces
 from tooth_traces import SHAPES, on_profile, sampled_gap, traced_pair
 
 from fe_contact import AnalysisOptions, Gear, GearPair, Run, TableAxes, ToothFlank
@@ -90,3 +91,13 @@ def test_random_traces_on_one_tooth_keep_the_lifting_bound(seed):
     for case in range(10):
         kind = ("spur", "internal")[case % 2]
         assert_lawful(traced_pair(kind, case // 2 % 2, SHAPES[(case + seed) % len(SHAPES)], draw), 100.0)
+
+
+@needs_fzg_reference
+@pytest.mark.parametrize("name", profile_traces())
+def test_measured_traces_on_one_tooth_keep_the_lifting_bound(name):
+    """Raw points of a measuring machine, burrs and edge breaks among them, on the pair they were taken of."""
+    removed = profile_traces()[name]
+    pinion, wheel = Gear(51, 1e-3, 10e-3, 12e-3), Gear(52, 1e-3, 10e-3, 12e-3)
+    roll = np.linspace(wheel.form_roll_length, wheel.tip_roll_length, removed.size)
+    assert_lawful(GearPair(pinion, traced(wheel, roll.tolist(), removed.tolist())), 10.0)
