@@ -68,6 +68,14 @@ class Gap(NamedTuple):
     bend: FloatArray
 
 
+def with_breaks(gap: Gap, count: int) -> Gap:
+    """Return gaps (...,) with at least so many breaks; those that come to them are at infinity."""
+    more = max(count - gap.place.shape[-1], 0)
+    width = [(0, 0)] * (gap.place.ndim - 1) + [(0, more)]
+    place = np.pad(gap.place, width, constant_values=np.inf)
+    return gap._replace(place=place, jump=np.pad(gap.jump, width), bend=np.pad(gap.bend, width))
+
+
 @njit(cache=True, error_model="numpy")
 def rounded(gap: Gap, least: FloatArray) -> Gap:
     """Return gaps whose curvature (n,) is nowhere below `least` in 1/m."""

@@ -10,12 +10,12 @@ import numpy as np
 from fe_contact.contact.model import ContactModel, MeetingTeeth
 from fe_contact.contact.parabolic_gap import moved_gap, touching_places
 from fe_contact.contact.rough_flanks import DeviatingTeeth
-from fe_contact.contact.strip import Gap, rounded
+from fe_contact.contact.strip import Gap, rounded, with_breaks
 from fe_contact.contact.touch import (
     ALLOWED,
     FLATTEST,
-    ROUGH,
     STEP,
+    WAVY,
     Touch,
     conjugate_touch,
     modified_touch,
@@ -27,7 +27,7 @@ from host.loops import njit
 
 _AT_ONCE = 16_384
 """Candidates whose gaps are found together: what they take stays in the cache of the processor."""
-_MOVING = ("s_1", "s_2", "gap", *Gap._fields)
+_MOVING = ("s_1", "s_2", "gap", "missed", *Gap._fields)
 """What the gaps of teeth change of touching points."""
 
 
@@ -73,14 +73,24 @@ def tooth_touch(
     -----
     Load patches stay where the common flanks touch: `moved` is theirs.
     """
-    changed = {name: getattr(touch, name).copy() for name in _MOVING}
     there = np.nonzero(touch.gap != np.inf)  # more than a third of the candidates cannot touch
-    for at in zip(*(np.array_split(each, there[0].size // _AT_ONCE + 1) for each in there), strict=True):
+    parts = list(zip(*(np.array_split(each, there[0].size // _AT_ONCE + 1) for each in there), strict=True))
+    beside = []
+    for at in parts:
         common = Touch(*(getattr(touch, name)[at] for name in touch.__dataclass_fields__))
-        beside = _beside(_Part(pair, model, common, face[at[1]], meeting[at]))
-        for name, values in zip(_MOVING, beside, strict=True):
-            changed[name][at] = values
-    return replace(touch, **changed)
+        beside.append(_beside(_Part(pair, model, common, face[at[1]], meeting[at])))
+    breaks = max((arrays[-1].shape[-1] for arrays in beside), default=0)
+    changed = _with_breaks(tuple(getattr(touch, name).copy() for name in _MOVING), breaks)
+    for at, arrays in zip(parts, beside, strict=True):
+        for every, values in zip(changed, _with_breaks(arrays, breaks), strict=True):
+            every[at] = values
+    return replace(touch, **dict(zip(_MOVING, changed, strict=True)))
+
+
+def _with_breaks(moving: tuple[FloatArray, ...], count: int) -> tuple[FloatArray, ...]:
+    """Return arrays of `_MOVING` with at least so many breaks."""
+    first = len(moving) - len(Gap._fields)
+    return *moving[:first], *with_breaks(Gap(*moving[first:]), count)
 
 
 def _beside(part: _Part) -> tuple[FloatArray, ...]:
@@ -93,6 +103,7 @@ def _beside(part: _Part) -> tuple[FloatArray, ...]:
     rough = np.flatnonzero(poor | _sharp(part))
     if rough.size:
         found = _searched(part.some(rough))
+        beside = _with_breaks(beside, found[-1].shape[-1])
         for values, replaced in zip(beside, found, strict=True):
             values[rough] = replaced
     return beside
@@ -114,7 +125,8 @@ def _stepped(part: _Part) -> tuple[tuple[FloatArray, ...], BoolArray]:
     teeth = part.gap(way)
     missed = teeth - level - way * (steepness + 0.5 * bend * way)
     poor = (np.abs(way) > half) | (np.abs(missed) > ALLOWED / common.curvature)
-    return (common.s_1 + way, common.s_2 - way, common.gap + least + teeth, *gap), poor
+    moved = common.s_1 + way, common.s_2 - way, common.gap + least + teeth, common.missed
+    return (*moved, *gap), poor
 
 
 @njit(cache=True, error_model="numpy")
@@ -175,10 +187,10 @@ def _step_on(
 
 
 def _sharp(part: _Part) -> BoolArray:
-    """Return where the flanks may be nearly as hollow as they are round, or more."""
+    """Return where deviations may be too wavy for one parabola."""
     common = part.common
     bend = part.deviating.bend(part.pair, rolls_at(part.pair, common.s_1, common.s_2), part.face)
-    return np.asarray(bend > ROUGH * common.curvature)
+    return np.asarray(bend > WAVY * common.curvature)
 
 
 def _searched(part: _Part) -> tuple[FloatArray, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -11,7 +11,8 @@ from fe_contact.contact.least_gap import least_gap, samples
 from fe_contact.contact.model import GapTerm
 from fe_contact.contact.parabolic_gap import moved_gap, touching_places
 from fe_contact.contact.rough_flanks import DesignedSurface, DeviatingTeeth
-from fe_contact.contact.strip import Gap, rounded
+from fe_contact.contact.rough_strip import BREAKS, rough_strip
+from fe_contact.contact.strip import Gap, rounded, with_breaks
 from fe_contact.geometry import ParallelAxes, Side, Toothing, corner_contact, edge_gap
 from fe_contact.hertz import relative_radius
 from fe_contact.types import BoolArray, FloatArray, IntArray
@@ -28,8 +29,9 @@ FLATTEST = 0.25
 """Least curvature of the gap over that of plain involutes."""
 ALLOWED = 1e-7
 """What the gap may be above its least value, over the relative radius: 0.5 nm at 5 mm."""
-ROUGH = 0.25
-"""Curvature of deviations over that of plain flanks above which a parabola misses nanometers."""
+ROUGH, WAVY = 0.25, 0.05
+"""Curvature of deviations over that of plain flanks above which flanks may touch at another crest, and above
+which no parabola describes them under load."""
 _MISSED = 10.0
 """How far the true gap after a step may be from its parabola, over that: what is left is of higher order."""
 _ALIKE = 1e-4
@@ -63,6 +65,8 @@ class Touch:
         Its breaks.
     moved : ndarray
         How far modifications move the touching point, or the middle of the strip, towards tip 1, m.
+    missed : ndarray
+        Error of the approach on rough flanks; see `RoughStrip`.
     roll_1 : ndarray
         Nominal roll lengths of gear 1, m.
     """
@@ -81,6 +85,7 @@ class Touch:
     jump: FloatArray
     bend: FloatArray
     moved: FloatArray
+    missed: FloatArray
     roll_1: FloatArray
 
     @property
@@ -140,7 +145,7 @@ def conjugate_touch(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, 
     return Touch(
         s_1, s_2, gap, radius, lever_1, lever_2,
         opening_2 - opening_1, 1.0 / radius, np.minimum(low, 0.0), np.maximum(high, 0.0), none, none, none,
-        np.zeros(gap.shape), roll_1,
+        np.zeros(gap.shape), np.zeros(gap.shape), roll_1,
     )  # fmt: skip
 
 
@@ -244,9 +249,10 @@ def _moved(
         if grid is not None
     )
     flanks = _Flanks(pair, here, faces, gaps, teeth, surfaces)
-    shift, now, about = _touching(flanks)
-    moved = {"s_1": here.s_1 + shift, "s_2": here.s_2 - shift, "gap": here.gap + now, "moved": shift}
-    moved |= about._asdict()
+    touching = _touching(flanks)
+    shift, about = touching.shift, touching.about
+    moved = {"s_1": here.s_1 + shift, "s_2": here.s_2 - shift, "gap": here.gap + touching.gap}
+    moved |= {"moved": shift + touching.off, "missed": touching.missed} | about._asdict()
     result = {}
     for name, values in moved.items():
         alike = plain[name].shape[1:] == values.shape[1:]
@@ -256,33 +262,47 @@ def _moved(
     return replace(touch, **result)
 
 
-def _touching(flanks: _Flanks) -> tuple[FloatArray, FloatArray, Gap]:
-    """Return where flanks touch (n,), the true gap there in m, and the gap about there.
+class _Touching(NamedTuple):
+    """Where flanks touch (n,), the true gap there, how far off the load lies, all in m; see `Touch`."""
+
+    shift: FloatArray
+    gap: FloatArray
+    off: FloatArray
+    missed: FloatArray
+    about: Gap
+
+
+def _touching(flanks: _Flanks) -> _Touching:
+    """Return where flanks touch.
 
     Gaps of few parabolas are solved from the lowest of a few samples on. Where the flanks are rougher than
     they are round, or the true gap is not what the parabolas say, it is followed downwards from many samples.
     """
-    sharp = flanks.sharp
+    sharp, wavy = flanks.rougher(ROUGH), flanks.rougher(WAVY)
     shift, now, poor, about = _by_parabolas(
         flanks if not sharp.any() else flanks.some(np.flatnonzero(~sharp))
     )
-    if not sharp.any() and not poor.any():
-        return shift, now, about
-    whole: _Arrays = (shift, now, *about)
+    none = np.zeros(shift.size)
+    if not wavy.any() and not poor.any():
+        return _Touching(shift, now, none, none, about)
+    rough = sharp.copy()
+    rough[~sharp] = poor
+    about = with_breaks(about, BREAKS) if wavy.any() else about
+    whole: _Arrays = (shift, now, none, none.copy(), *about)
     if sharp.any():
         every = tuple(np.zeros((sharp.size, *values.shape[1:])) for values in whole)
         whole = _replaced(every, np.flatnonzero(~sharp), whole)
-        rough = sharp.copy()
-        rough[~sharp] = poor
-    else:
-        rough = poor
-    at = np.flatnonzero(rough)
+    at = np.flatnonzero(rough | wavy)
     for part in np.array_split(at, at.size // _AT_ONCE + 1):
-        near = flanks.some(part)
-        place, least = near.least(whole[0][part])
-        _, beside = moved_gap(near.about(place), np.zeros(part.size))
-        whole = _replaced(whole, part, (place, least, *beside))
-    return whole[0], whole[1], Gap(*whole[2:])
+        near, again = flanks.some(part), np.flatnonzero(rough[part])
+        place, least = whole[0][part], whole[1][part]
+        if again.size:
+            place[again], least[again] = near.some(again).least(place[again])
+        off, missed, beside = near.beside(place, wavy=wavy[part])
+        beside = with_breaks(beside, about.place.shape[1])
+        whole = _replaced(whole, part, (place, least, off, missed, *beside))
+    shift, now, off, missed, *beside_all = whole
+    return _Touching(shift, now, off, missed, Gap(*beside_all))
 
 
 def _by_parabolas(flanks: _Flanks) -> tuple[FloatArray, FloatArray, BoolArray, Gap]:
@@ -360,9 +380,8 @@ class _Flanks:
         touch = self._touch
         return x * (touch.slope[of] + 0.5 * touch.curvature[of] * x) + self._removed(x, of)
 
-    @property
-    def sharp(self) -> BoolArray:
-        """Where the flanks may be nearly as hollow as they are round, or more: they may touch elsewhere."""
+    def rougher(self, part: float) -> BoolArray:
+        """Return where the flanks may be that much as hollow as they are round, or more."""
         touch = self._touch
         if not self._surfaces and self._teeth is None:
             return np.zeros(touch.s_1.size, dtype=bool)
@@ -370,7 +389,7 @@ class _Flanks:
         bend = sum((each.bend(self._pair, rolls) for each in self._surfaces), np.zeros(touch.s_1.size))
         if self._teeth is not None:
             bend = bend + self._teeth.bend(self._pair, rolls, self._face)
-        return np.asarray(bend > ROUGH * touch.curvature)
+        return np.asarray(bend > part * touch.curvature)
 
     def least(self, start: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return where the gap is least (n,), and the gap there, m; `start`: where it is low.
@@ -471,6 +490,37 @@ class _Flanks:
         ends = touch.low - x, touch.high - x
         # flanks hollowed out more than they are round would touch at several places
         return rounded(Gap(slope, curvature, *ends, position, jump, bends), FLATTEST * touch.curvature)
+
+    def beside(self, x: FloatArray, wavy: BoolArray) -> tuple[FloatArray, FloatArray, Gap]:
+        """Return how far the load lies from touching points at x (n,), m, what is missed, and the gap there.
+
+        That of `wavy` flanks is the one that gives way as they do; not where an edge touches.
+        """
+        touch = self._touch
+        (off, missed), (_, gap) = np.zeros((2, x.size)), moved_gap(self.about(x), np.zeros(x.size))
+        inside = np.flatnonzero(wavy & (gap.slope == 0.0) & (gap.low < 0.0) & (gap.high > 0.0))
+        if not inside.size:
+            return off, missed, gap
+
+        def within_flanks(way: FloatArray, of: IntArray) -> FloatArray:
+            """Return the gap, no nearer than plain flanks where bodies have ended: strips end there."""
+            at, gap = inside[of], self.gap_of(way, inside[of])
+            beyond = np.maximum(touch.low[at] - way, way - touch.high[at])
+            plain = now[at] + 0.5 * touch.curvature[at] * (way - x[at]) ** 2
+            return np.where(beyond > 0.0, np.maximum(gap, plain), gap)
+
+        now = self.gap(x)
+        strip = rough_strip(
+            within_flanks,
+            x[inside],
+            touch.curvature[inside],
+            self._largest_fall()[inside],
+        )
+        gap = with_breaks(gap, BREAKS)
+        felt = strip.gap._replace(low=gap.low[inside], high=gap.high[inside])
+        felt = with_breaks(felt, gap.place.shape[1])
+        off[inside], missed[inside] = strip.center, strip.missed
+        return off, missed, Gap(*_replaced(tuple(gap), inside, tuple(felt)))
 
     def _plain(self, x: FloatArray) -> FloatArray:
         """Return the gap of plain flanks at x, m."""

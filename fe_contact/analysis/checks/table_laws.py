@@ -14,6 +14,7 @@ from fe_contact.analysis.checks.lifting import deviations_in_mesh
 from fe_contact.analysis.checks.neighbors import approach_steps, largest_steps
 from fe_contact.analysis.pairs.pair_contact import OperatingPoint
 from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.contact.rough_strip import BREAKS, FLATTEST
 from fe_contact.contact.single_pair import single_pair_deflection
 from fe_contact.errors import SolveError
 from fe_contact.flank.extent import Extent
@@ -246,6 +247,8 @@ class _Place:
         )
         model = self.point.model
         flattest = FLATTEST_TOUCH if model.sloped or model.tooth_gaps else 1.0
+        if candidates.touch.place.shape[-1] >= BREAKS:  # several crests carry, over one wide strip
+            flattest = FLATTEST
         shape = len(share) // count, count, *share.shape[1:]
         carried = share.reshape(shape)[..., pairs - self.table.pair[0]] * self.table.force[:, None]
         with np.errstate(divide="ignore", invalid="ignore"):

@@ -14,6 +14,7 @@ from fe_contact.analysis.estimates.position_errors import (
     errors_by_halves,
     position_errors,
 )
+from fe_contact.analysis.estimates.rough_flank_errors import of_quantities, rough_flank_errors
 from fe_contact.analysis.estimates.table_sample import Nested, TableSample
 from fe_contact.analysis.estimates.tolerance_shares import interval_goal
 from fe_contact.analysis.pairs.pair_contact import OperatingPoints
@@ -115,7 +116,7 @@ def _largest_known(errors: FloatArray) -> list[float | None]:
 
 def estimate_errors(
     points: OperatingPoints,
-    solutions: list[ContactSolution],
+    solved: Solved,
     nested: Nested,
     positions: PositionErrors,
     plan: Plan,
@@ -124,12 +125,13 @@ def estimate_errors(
 
     Parameters
     ----------
-    solutions : list of ContactSolution
+    solved : list of (ContactProblem, ContactSolution)
         The table's.
     positions : PositionErrors
         The largest of the assessed operating points stand for every place.
     """
     made, nominal = plan.discretization, points.nominal.pair
+    solutions = [solution for _, solution in solved]
 
     def left(these: FloatArray, those: FloatArray, part: float) -> FloatArray:
         """Return a part of the differences of STE, at all points."""
@@ -143,7 +145,8 @@ def estimate_errors(
         np.broadcast_to(positions.band[:, :, None, None], (*positions.band.shape, *points.shape)),
         points.gathered([_contact_error(solution) for solution in solutions]),
         left(nested.table, nested.plane, CORRECTION_ERROR),
-        points.gathered([point_error(nominal, plan.load, lag, over_face=face) for lag in lags]),
+        points.gathered([point_error(nominal, plan.load, lag, over_face=face) for lag in lags])
+        + points.gathered([rough_flank_errors(*each) for each in solved]),
     )
 
 
@@ -185,7 +188,7 @@ slices and coarse meshes err in other harmonics than the table, whose own may ha
 
 def curve_errors(
     points: OperatingPoints,
-    solutions: list[ContactSolution],
+    solved: Solved,
     nested: Nested,
     positions: PositionErrors,
     plan: Plan,
@@ -196,6 +199,7 @@ def curve_errors(
     alignments that were solved again, and interpolated between them.
     """
     made, sample, pair = plan.discretization, nested.sample, points.nominal.pair
+    solutions = [solution for _, solution in solved]
     own, by_mesh, by_patches, by_slices, free_ends = _measured(points, nested, plan)
     if points.period > 1:
         own[BESIDE_MESH] = _beside_by_load(points, solutions, sample)
@@ -207,7 +211,8 @@ def curve_errors(
         "position": np.broadcast_to(
             positions.curves[:, :, None, None], (*positions.curves.shape, *points.shape)
         ),
-        METHOD: model_errors(pair, plan.load, own, over_face=isinstance(made, FaceDiscretization)),
+        METHOD: model_errors(pair, plan.load, own, over_face=isinstance(made, FaceDiscretization))
+        + points.gathered([of_quantities(rough_flank_errors(*each)) for each in solved]),
     }
     return np.stack([by_source[name] for name in AT_NODES])
 
@@ -456,7 +461,7 @@ def assessed_table(
     nested = Nested(sample, own, plane, patched, sample.solved(coarse, fine), sliced)
     positions = position_errors(nodes, fine, solutions, plan)
     ste, arms = nested.parts
-    measured = fine, solutions, ste, positions, plan
+    measured = fine, solved, ste, positions, plan
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
     bias = table_bias(table, fine, plan)
     goal = interval_goal(table, errors, checked.request, bias)

@@ -85,7 +85,7 @@ def _condensed_errors(
     nested = Nested(sample, own, plane, patched, coarse, solved(contacts.sliced, own))
     positions = errors_by_halves(table.position, solution.deflection, points.period)
     ste, arms = nested.parts
-    measured = points, [solution], ste, positions, plan
+    measured = points, [(run.problem, solution)], ste, positions, plan
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
     if contacts.coarse is None:
         errors[BY_MESH], band = _expected(table, plan, contacts.own)

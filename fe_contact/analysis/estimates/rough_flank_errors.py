@@ -1,0 +1,47 @@
+"""Errors of strips on rough flanks: what the even gap in place of the true one misses."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.contact.rough_strip import BREAKS
+from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, QUANTITIES
+from fe_contact.types import FloatArray
+
+BETWEEN_LOADS = 1.5
+"""Error of the even gap at any load over the largest at those that are solved, of nine contacts in ten."""
+AT_AN_EDGE = 0.25
+"""Of what crests give way beyond plain flanks, where a tip edge touches them: no gap is fitted there."""
+
+
+def rough_flank_errors(problem: ContactProblem, solution: ContactSolution) -> FloatArray:
+    """Return the errors (P, L) of the transmission error in m; zero where no flank is rough.
+
+    Contacts count by their force. Where pitches follow from derivatives, they have the largest of the others.
+    """
+    shape, force = solution.deflection.shape, np.moveaxis(solution.force, 1, 2)
+    touch = problem.candidates.touch
+    if touch.place.shape[-1] < BREAKS:
+        return np.zeros(shape)
+    rows = slice(len(force))
+    crests = touch.curvature[rows] * touch.radius[rows]
+    edge = (touch.low[rows] >= 0.0) | (touch.high[rows] <= 0.0)
+    ragged = np.abs(np.log(np.where(edge & (crests > 0.0), crests, 1.0)))
+    scaled = 2.0 / (np.pi * problem.modulus) * force / problem.candidates.width[rows][..., None]
+    of_gap = BETWEEN_LOADS * touch.missed[rows][..., None] * np.sqrt(scaled * touch.radius[rows][..., None])
+    missed = np.maximum(np.minimum(of_gap, scaled), 0.5 * AT_AN_EDGE * ragged[..., None] * scaled)
+    weight = force / np.maximum(force.sum(axis=1), 1e-300)[:, None]
+    error = (weight * missed).sum(axis=1)
+    return np.asarray(error) if len(error) == shape[0] else np.broadcast_to(error.max(axis=0), shape)
+
+
+def of_quantities(error: FloatArray) -> FloatArray:
+    """Return the errors (23, L) of the quantities of curves with errors (P, L) of their points, m.
+
+    Their signs are not known: a harmonic may have twice the mean.
+    """
+    mean, found = error.mean(axis=0), np.empty((QUANTITIES, error.shape[1]))
+    found[:] = 2.0 * mean
+    found[MEAN], found[PEAK_TO_PEAK] = mean, error.max(axis=0)
+    return found
