@@ -25,7 +25,7 @@ from fe_contact.types import FloatArray, IntArray
 from host.loops import inner, njit
 
 _RATIO = 1.6
-HALF_STRIPS: FloatArray = 0.0025 * _RATIO ** np.arange(8)
+HALF_STRIPS: FloatArray = np.array([0.0025 * _RATIO**k for k in range(8)])
 """Of plain flanks under the loads that are solved; rated gears have 0.01 to 0.04."""
 LOADS: FloatArray = 0.5 * HALF_STRIPS**2
 BREAKS = 2 * HALF_STRIPS.size

@@ -33,7 +33,7 @@ _PROFILE = re.compile(r"Zahn-Nr\.: (\d+) (links|rechts) / (\d+)  Werte  z=")
 
 
 def profile_traces() -> dict[str, np.ndarray]:
-    """Return material removed (k,) in m along the profiles of the curve files, in even steps of roll length."""
+    """Return material removed (k,) in m along the profiles of the curve files, evenly in roll length."""
     traces = {}
     for path in sorted(_folder.glob("*.mka")):
         lines = path.read_text(encoding="utf-8").splitlines()

@@ -99,7 +99,7 @@ def misses(seed: int, amplitude: float, length: float) -> list[tuple[float, floa
     ("amplitude", "length", "part"), [(1e-6, 0.6e-3, 0.4), (0.6e-6, 0.2e-3, 0.125), (0.3e-6, 0.12e-3, 0.125)]
 )
 def test_rough_flanks_give_way_as_half_planes_do(amplitude, length, part):
-    """Nearer than the parabola of the crest, eight times on short waves; nine of ten within what is stated."""
+    """Nearer than the crest's parabola, eight times on short waves; nine of ten within what is stated."""
     rows = [misses(seed, amplitude, length) for seed in range(6)]
     error, stated, crest = np.abs(np.concatenate(rows)).T
     assert np.sqrt(np.mean(error**2)) < part * np.sqrt(np.mean(crest**2))
