@@ -279,6 +279,9 @@ class Curve:
         Static transmission error, m.
     error : (Q,) array
         Half-width of its error band, m.
+    interval_error : float
+        Part of every band that interpolation between the nodes of load, misalignment and center distance
+        has, m: 0 on nodes, NaN where not estimated.
     pair : (N,) array
         Pair index of each column of `_load_share`; the stored pairs if all positions lie in [0, 1) or the
         period is longer than a pitch.
@@ -305,6 +308,7 @@ class Curve:
     position: FloatArray
     ste: FloatArray
     error: FloatArray
+    interval_error: float
     pair: NDArray[np.int64]
     load_share: FloatArray
     mean: Estimate
@@ -343,6 +347,7 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
         position=position,
         ste=values,
         error=sum(error_parts, np.zeros(position.size)),
+        interval_error=interval_error(database, point),
         pair=_pairs_seen(database, position),
         load_share=_load_share(database, position, point),
         mean=mean,
