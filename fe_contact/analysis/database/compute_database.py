@@ -134,10 +134,11 @@ def compute_pass(
     influences = _started_influences(planned, run, before) if full else iter([{}])
     requested = made.table
     assessed, made = _assessed(made, clock, run)
-    if made.table is not requested:
+    inserted = made.table is not requested  # which no prediction holds
+    if inserted:
         laws = _lawful(made)
     contact = _contact(made, clock)
-    if not repeated and made.derived is None and not run.workers.cost.since(before).tasks:
+    if not (repeated or inserted or made.derived or run.workers.cost.since(before).tasks):
         cost = {log_name(made.prediction.kind, name): time for name, time in clock.seconds.items()}
         record(run.cache, made.prediction.logged, cost)
     with clock.stage("effect ledger"):
