@@ -462,7 +462,8 @@ def assessed_table(made: SolvedTable, coarse: OperatingPoints) -> tuple[Assessed
         at_nodes, bias = _at_inserted(errors, refined), table_bias(refined, fine, plan)
         return interval_goal(refined, at_nodes, request, bias)
 
-    held_out = held_out_axes(made, None if request.options.tolerance is None else goal_of)
+    refined = request.options.tolerance is not None and not request.nodes_alone
+    held_out = held_out_axes(made, goal_of if refined else None)
     made = held_out.made
     of_points, of_curves = interval_errors((plan.load.size, *made.places.shape), held_out.axes)
     assessed = AssessedTable(

@@ -136,8 +136,10 @@ def _missed_intervals(table: SteDatabase, cells: FloatArray, between: FloatArray
     axes = zip(BETWEEN_NODES, (table.force, table.misalignment, table.center_distance_change), strict=True)
     missed = []
     for i, (name, nodes) in enumerate(axes):
-        share, used = (np.moveaxis(values, i, 0)[:-1] for values in (between[i], total))
-        beyond = np.where((used > 1.0) & (share > LEAST_SHARE), share, 0.0).max(axis=(1, 2), initial=0.0)
+        share, used, nodes_alone = (np.moveaxis(values, i, 0)[:-1] for values in (between[i], total, cells))
+        # where the nodes alone miss it, only an interval that does so by itself is named
+        named = (used > 1.0) & (share > LEAST_SHARE) & ((nodes_alone <= 1.0) | (share > 1.0))
+        beyond = np.where(named, share, 0.0).max(axis=(1, 2), initial=0.0)
         if beyond.size and beyond.max() > 0.0:
             k = int(np.argmax(beyond))
             interval = [float(nodes[k]), float(nodes[k + 1])]
