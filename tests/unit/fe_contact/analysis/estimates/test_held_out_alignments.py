@@ -4,11 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair, SteDatabase, analyze
 from fe_contact.analysis import tables
+from fe_contact.analysis.analyze import ste_database
+from fe_contact.analysis.checks.table_laws import check_laws
+from fe_contact.analysis.database import compute_database
 from fe_contact.analysis.estimates import held_out_alignments, inserted_places
+from fe_contact.analysis.request.request_check import check_request, checked_request
 from fe_contact.errors import DatabaseError
+from fe_contact.options import Run
 from fe_contact.ste.fields import DIMENSIONS
 
 DISTANCE = "center_distance_change"
@@ -19,10 +25,13 @@ GRID = tuple(
 """Arrays of the contact at the nodes."""
 
 
+GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+PAIR = GearPair(GEAR, GEAR, 80e-3)
+FIXED = {"model": "plane_strain", "torques": [100.0], "positions": 48, "tolerance": 0.02}
+
+
 def spur(**options) -> SteDatabase:
-    gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
-    fixed = {"model": "plane_strain", "torques": [100.0], "positions": 48, "tolerance": 0.02}
-    return analyze(GearPair(gear, gear, 80e-3), **(fixed | options))
+    return analyze(PAIR, **(FIXED | options))
 
 
 @pytest.fixture(scope="module")
@@ -119,6 +128,28 @@ def test_nothing_is_solved_twice(cache, monkeypatch) -> None:
     table = spur(center_distance_changes=CHANGES, cache=cache)
     assert len(table.metadata.receipt["passes"]) == 1
     assert sorted(solved) == pytest.approx(0.08 + table.center_distance_change, rel=1e-12)
+
+
+def test_laws_are_checked_with_what_was_inserted(cache, monkeypatch) -> None:
+    sizes = []
+
+    def checked(table, *contact):
+        sizes.append(table.center_distance_change.size)
+        return check_laws(table, *contact)
+
+    monkeypatch.setattr(compute_database, "check_laws", checked)
+    table = spur(center_distance_changes=CHANGES, cache=cache)
+    assert sizes == [2, table.center_distance_change.size]
+    assert table.center_distance_change.size > 2
+
+
+def test_a_study_that_reads_nodes_alone_gets_nothing_between_them(cache) -> None:
+    axes, options = table_request(center_distance_changes=CHANGES, **FIXED)
+    checked = check_request(PAIR, axes, options)
+    alone = checked_request(replace(checked.request, nodes_alone=True))
+    table = ste_database(alone, run=Run(cache=cache))
+    assert table.center_distance_change.tolist() == list(CHANGES)
+    assert table.metadata.receipt["tolerance"]["used_at_nodes"] <= 1.0
 
 
 def test_misalignments_are_inserted_until_every_interval_meets_the_tolerance(tmp_path) -> None:
