@@ -19,10 +19,8 @@ from fe_contact.ste.fields import DIMENSIONS
 
 DISTANCE = "center_distance_change"
 CHANGES = (0.0, 4e-4)
-GRID = tuple(
-    name for name, dimensions in DIMENSIONS.items() if {"position", "force", DISTANCE} <= set(dimensions)
-)
-"""Arrays of the contact at the nodes."""
+GRID = tuple(name for name, dimensions in DIMENSIONS.items() if {"position", DISTANCE} <= set(dimensions))
+"""Arrays of the contact at the nodes, without load and at support loads as well."""
 
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
@@ -88,8 +86,10 @@ def test_a_refined_table_answers_as_one_whose_caller_requested_all_nodes(refined
     for name in set(GRID) - {"error_estimate"}:  # interpolated at inserted nodes
         assert getattr(refined, name).tobytes() == getattr(whole, name).tobytes(), name
     for change in (3e-5, 1.7e-4, 3.9e-4):
-        ours, theirs = (one.curve(torque=100.0, center_distance_change=change) for one in (refined, whole))
-        assert np.array_equal(ours.ste, theirs.ste)
+        for torque in (70.0, 100.0):
+            point = {"torque": torque, "center_distance_change": change}
+            ours, theirs = (one.curve(**point) for one in (refined, whole))
+            assert np.array_equal(ours.ste, theirs.ste)
 
 
 def test_what_is_said_of_an_interval_holds_where_nothing_was_solved(refined, cache) -> None:
