@@ -70,7 +70,7 @@ class NodePlaces:
         """Return the error (Q,) of a point by interpolation along all three axes, m; NaN: not estimated."""
         total = np.zeros(self.force.left.size)
         if table.interval_error.size:
-            for axis in range(3):
+            for axis in np.flatnonzero(np.greater(table.interval_error.shape[1:], 1)).tolist():
                 total = total + self.of_interval(table.interval_error[axis], axis)
         return total
 
