@@ -19,9 +19,10 @@ from fe_contact.types import FloatArray
 SUBJECT = "tables between their nodes"
 SEED, TABLES = 73, 30
 POINTS = 5
-"""Loads between nodes of each table, and where it has them, misalignments there."""
+"""Points between nodes of each table."""
 TOLERANCE = 0.01
 _COVERAGE = 95.0
+_ALIGNMENT = "misalignment", "center_distance_change"
 UM = 1e-6
 
 
@@ -35,7 +36,7 @@ class BetweenNodes:
     met : bool
         Whether the table says that it meets its tolerance.
     inserted : int
-        Its inserted loads and misalignments.
+        Its inserted loads, misalignments and center distances.
     mean, ripple : (Q, 4) arrays
         Value, stated error less that which the solution at the point has in common, true difference, and
         allowed error of mean and peak-to-peak, m.
@@ -54,8 +55,12 @@ class BetweenNodes:
 def drawn_tables(
     seed: int = SEED, count: int = TABLES
 ) -> Iterator[tuple[PairCase, dict[str, Any], FloatArray]]:
-    """Yield pairs, the axes of their tables, and points between the nodes: loads, misalignments (2, 5)."""
-    draw = np.random.default_rng(seed)
+    """Yield pairs, the axes of their tables, and points between the nodes (3, 5).
+
+    These are loads in N, misalignments and changes of the center distance in m. A fifth of the tables has two
+    misalignments, a tenth, spur pairs in the plane, two center distances.
+    """
+    draw, apart = np.random.default_rng(seed), np.random.default_rng([seed, 1])
     for k, case in enumerate(drawn_pairs(seed, count)):
         rated = case.forces[1]
         steps = draw.uniform(1.8, 5.0, int(draw.integers(1, 3)))
@@ -69,7 +74,11 @@ def drawn_tables(
         if k % 5 == 2:
             axes["misalignments"] = (0.0, float(draw.uniform(8.0, 25.0)) * UM)
             where = draw.uniform(0.1, 0.9, POINTS) * axes["misalignments"][1]
-        yield case, axes, np.stack([load, where])
+        change = np.zeros(POINTS)
+        if k % 10 == 5:
+            axes["center_distance_changes"] = (0.0, float(apart.uniform(50.0, 200.0)) * UM)
+            change = apart.uniform(0.1, 0.9, POINTS) * axes["center_distance_changes"][1]
+        yield case, axes, np.stack([load, where, change])
 
 
 def between_nodes(
@@ -79,9 +88,10 @@ def between_nodes(
     options = {"tolerance": TOLERANCE, "cache": cache_dir}
     table = analyze(case.pair, **axes, **options)
     rows = []
-    for load, skew in at.T.tolist():
-        truth = _solved(case, table, load, skew, options)
-        rows.append(_row(table, truth, load, skew))
+    for point in at.T:
+        alignment = dict(zip(_ALIGNMENT, point[1:].tolist(), strict=True))
+        truth = _solved(case, table, float(point[0]), alignment, options)
+        rows.append(_row(table, truth, {"force": float(point[0])} | alignment))
     mean, ripple, outside = (np.array(each) for each in zip(*rows, strict=True))
     held = table.metadata.receipt["held_out"]
     inserted = sum(len(axis["inserted"]) for axis in held.values())
@@ -91,19 +101,19 @@ def between_nodes(
 
 
 def _solved(
-    case: PairCase, table: SteDatabase, load: float, skew: float, options: dict[str, Any]
+    case: PairCase, table: SteDatabase, load: float, alignment: dict[str, float], options: dict[str, Any]
 ) -> SteDatabase:
     """Return the table of a load and the highest one of `table`, on the same mesh."""
     return analyze(
         case.pair,
         normal_forces=[load, float(table.force[-1])],  # the highest load decides on the load patches
-        misalignments=(skew,),
+        misalignments=[alignment["misalignment"]],
+        center_distance_changes=[alignment["center_distance_change"]],
         **options,
     )
 
 
-def _row(table: SteDatabase, truth: SteDatabase, load: float, skew: float) -> tuple[Any, Any, float]:
-    point = {"force": load, "misalignment": skew}
+def _row(table: SteDatabase, truth: SteDatabase, point: dict[str, float]) -> tuple[Any, Any, float]:
     curve = table.curve(**point, at=truth.position)
     own, exact = table.curve(**point), truth.curve(**point)
     pairs = ((own.mean, exact.mean), (own.peak_to_peak, exact.peak_to_peak))

@@ -65,8 +65,6 @@ _TRIED_PER_NODE, _TRIED_PER_START = 9, 4
 _JUDGED = 3
 _SOLVED_MIDDLES = 0.25
 """Part of the intervals between fixed positions whose middles are solved, at most."""
-_HELD_OUT_DISTANCES = 16
-"""Positions at which an interval of center distances is assessed."""
 _PLANE_CHECK, _FACE_CHECK = 6e-3, 0.12
 """CPU seconds that the estimate of errors takes beside its solutions; over the face the table, too."""
 _TABLE_POINT = 2e-6
@@ -122,8 +120,8 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
         middles, assessed = _SOLVED_MIDDLES * kept, min(alignments[0] * alignments[1], _JUDGED)
         seconds += work.of(middles * alignments[1], 0) + work.in_pitches(middles * assessed, (some,), solved)
     held_out_loads = (loads - 1) * (WIDE_PROBES if loads - 1 <= WIDE_INTERVALS else 1)
-    held = rows * (held_out_loads + (alignments[0] - 1) * some)
-    apart = _HELD_OUT_DISTANCES * (alignments[1] - 1)
+    held = rows * (held_out_loads + WIDE_PROBES * (alignments[0] - 1) * some)
+    apart = rows * (alignments[1] - 1)
     seconds += work.of(apart, held + apart * some)
     seconds += _FACE_CHECK if made.slices > 1 else _PLANE_CHECK
     return seconds + _TABLE_POINT * kept * period * alignments[0] * alignments[1] * loads

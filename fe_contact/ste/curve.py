@@ -14,6 +14,7 @@ from fe_contact.ste.curve_quantities import BESIDE_MESH, QUANTITIES, Spectrum, e
 from fe_contact.ste.fields import SteFields
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.ste.mesh_force import MeshForce
+from fe_contact.ste.node_errors import NodePlaces, error_band
 from fe_contact.ste.plane_bias import OverFace, over_face, stored_bias
 from fe_contact.types import Estimate, FloatArray
 
@@ -105,43 +106,20 @@ def errors_by_source(table: SteFields, point: OperatingPoint) -> FloatArray:
 
     Linear between the nodes. NaN: not estimated.
     """
-    values = np.moveaxis(table.curve_error, (2, 3, 4), (0, 1, 2))
-    at_nodes = np.delete(values, np.s_[len(AT_NODES) : len(SOURCES)], axis=3)
-    for knots, at in _coordinates(table, point):
-        at_nodes = _linear(knots, at_nodes, at)
+    values, places = np.moveaxis(table.curve_error, (2, 3, 4), (0, 1, 2)), _places(table, point)
+    at_nodes = places.at_nodes(np.delete(values, np.s_[len(AT_NODES) : len(SOURCES)], axis=3))[0]
     between = [
-        _of_interval(values[..., source, :], table, point, i)
+        places.of_interval(values[..., source, :], i)[0]
         for i, source in enumerate(range(len(AT_NODES), len(SOURCES)))
     ]
     first, derivatives = np.split(at_nodes, [len(AT_NODES)])
     return np.concatenate([first, np.array(between), derivatives])
 
 
-def interval_error(table: SteFields, point: OperatingPoint) -> float:
-    """Return the largest error of a point of the curve by interpolation between the nodes of the axes, m.
-
-    That of its interval, of all axes together; 0 on nodes and for tables without. NaN: not estimated.
-    """
-    if not table.interval_error.size:
-        return 0.0
-    return float(sum(_of_interval(table.interval_error[i], table, point, i) for i in range(3)))
-
-
-def _coordinates(table: SteFields, point: OperatingPoint) -> tuple[tuple[FloatArray, float], ...]:
-    """Return the nodes of load, misalignment and center distance, each with the value of the point."""
-    return (
-        (table.force, point.force),
-        (table.misalignment, point.misalignment),
-        (table.center_distance_change, point.center_distance_change),
-    )
-
-
-def _of_interval(values: FloatArray, table: SteFields, point: OperatingPoint, axis: int) -> FloatArray:
-    """Return what values (F, M, D, ...) of intervals of an axis say at a point: zeros on its nodes."""
-    axes = _coordinates(table, point)
-    knots, at = axes[axis]
-    inside = at not in knots and knots[0] < at < knots[-1]
-    return _interval(values, axes, axis) if inside else np.zeros(values.shape[3:])
+def _places(table: SteFields, point: OperatingPoint) -> NodePlaces:
+    """Return the place of one point between the nodes of a table."""
+    at = point.force, point.misalignment, point.center_distance_change
+    return NodePlaces.of(table, *(np.array([value]) for value in at))
 
 
 def source_names(errors: FloatArray) -> tuple[str, ...]:
@@ -158,25 +136,7 @@ def all_sources(errors: FloatArray) -> FloatArray:
     return np.asarray(np.sqrt(np.square(errors).sum(axis=0)))
 
 
-def _linear(knots: FloatArray, values: FloatArray, at: float) -> FloatArray:
-    """Interpolate values (K, ...) linearly, held beyond the ends; a knot is not touched by its neighbors."""
-    left = int(np.clip(np.searchsorted(knots, at, side="right") - 1, 0, knots.size - 1))
-    if left == knots.size - 1 or at <= knots[left]:
-        return np.asarray(values[left])
-    part = (at - knots[left]) / (knots[left + 1] - knots[left])
-    return np.asarray((1.0 - part) * values[left] + part * values[left + 1])
-
-
-def _interval(values: FloatArray, axes: tuple[tuple[FloatArray, float], ...], axis: int) -> FloatArray:
-    """Errors (...) of the interval of one axis that holds the point, linear along the other two."""
-    knots, at = axes[axis]
-    values = np.moveaxis(values, axis, 0)[int(np.searchsorted(knots, at)) - 1]
-    for i, (others, where) in enumerate(axes):
-        values = values if i == axis else _linear(others, values, where)
-    return values
-
-
-# Load shares and error bands between the stored points.
+# Load shares between the stored points.
 
 
 def _pairs_seen(database: SteFields, position: FloatArray) -> NDArray[np.int64]:
@@ -279,6 +239,9 @@ class Curve:
         Static transmission error, m.
     error : (Q,) array
         Half-width of its error band, m.
+    interval_error : float
+        Part of every band that interpolation between the nodes of load, misalignment and center distance
+        has, m: 0 on nodes, NaN where not estimated.
     pair : (N,) array
         Pair index of each column of `_load_share`; the stored pairs if all positions lie in [0, 1) or the
         period is longer than a pitch.
@@ -305,6 +268,7 @@ class Curve:
     position: FloatArray
     ste: FloatArray
     error: FloatArray
+    interval_error: float
     pair: NDArray[np.int64]
     load_share: FloatArray
     mean: Estimate
@@ -343,6 +307,7 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
         position=position,
         ste=values,
         error=sum(error_parts, np.zeros(position.size)),
+        interval_error=float(_places(database, point).interval_error(database)[0]),
         pair=_pairs_seen(database, position),
         load_share=_load_share(database, position, point),
         mean=mean,
@@ -365,9 +330,7 @@ def _evaluate(
     alignment = (point.misalignment, point.center_distance_change)
     transverse = math.cos(database.facts.base_helix_angle)
     ste, _ = force.deflection_at(position, point.force * transverse, *alignment)
-    stored = at_operating_point(database, database.error_estimate, point)
-    error = interpolate(Axis(database.position, float(database.period)), stored, position)
-    error = error + interval_error(database, point)
+    error = error_band(database, position, _places(database, point))
     smallest_load = min([database.force[0], *database.support_force[:1]])
     if point.force >= smallest_load:
         return ste, error, np.zeros_like(ste)

@@ -49,13 +49,20 @@ OPTIONAL: dict[str, tuple[str, ...]] = {
     "load_arm_error": ("load_arm_source", *CURVE_ERROR[1:]),
     "pair_pressure": (*GRID, "pair"),
     "interval_error": ("axis", *CURVE_ERROR[2:]),
+    "misalignment_inserted": ("misalignment",),
+    "center_distance_inserted": ("center_distance_change",),
 }
 """Dimensions of the arrays that some tables do not have: they are empty there."""
+MISALIGNMENT, CENTER_DISTANCE = GRID[2:]
+INSERTED = {MISALIGNMENT: "misalignment_inserted", CENTER_DISTANCE: "center_distance_inserted"}
+"""Marks of inserted nodes by axis; those of loads are support loads between two of the axis."""
 INTEGER_TYPES: dict[str, type[np.signedinteger[Any]]] = {
     "pair": np.int64,
     "pairs_in_contact": np.int16,
     "support_pairs_in_contact": np.int16,
     "status": np.int8,
+    "misalignment_inserted": np.int8,
+    "center_distance_inserted": np.int8,
 }
 
 
@@ -128,6 +135,9 @@ class SteFields:
     pair_pressure : (P, F, M, D, N) array
         Largest contact pressure of each pair away from edges, Pa; `max_pressure` is that of all. Empty where
         the period is 1, and for older tables.
+    misalignment_inserted, center_distance_inserted : (M,), (D,) integer arrays
+        1 at nodes that were inserted to meet a tolerance between those requested, else 0. Empty where none
+        was inserted.
     """
 
     position: FloatArray
@@ -159,6 +169,8 @@ class SteFields:
     load_arm_error: FloatArray = field(default_factory=lambda: np.empty((0,) * len(CURVE_ERROR)))
     pair_pressure: FloatArray = field(default_factory=lambda: np.empty((0,) * (len(GRID) + 1)))
     interval_error: FloatArray = field(default_factory=lambda: np.empty((0,) * len(GRID)))
+    misalignment_inserted: NDArray[np.int8] = field(default_factory=lambda: np.empty(0, np.int8))
+    center_distance_inserted: NDArray[np.int8] = field(default_factory=lambda: np.empty(0, np.int8))
 
     def __post_init__(self) -> None:
         if np.size(self.support_force) == 0:
@@ -199,6 +211,26 @@ class SteFields:
         return np.asarray(self.support_force[inside])
 
     @property
+    def inserted_misalignment(self) -> FloatArray:
+        """Misalignments that nobody requested, m: with them interpolation meets a tolerance."""
+        return self.misalignment[~self.requested_rows(MISALIGNMENT)]
+
+    @property
+    def inserted_center_distance_change(self) -> FloatArray:
+        """Changes of the center distance that nobody requested, m, likewise."""
+        return self.center_distance_change[~self.requested_rows(CENTER_DISTANCE)]
+
+    def requested_nodes(self, axis: str) -> FloatArray:
+        """Return the nodes of an axis of alignments that were requested, m; `axis` is its name."""
+        nodes: FloatArray = getattr(self, axis)[self.requested_rows(axis)]
+        return nodes
+
+    def requested_rows(self, axis: str) -> BoolArray:
+        """Which nodes of an axis of alignments were requested; `axis` is its name."""
+        inserted = getattr(self, INSERTED[axis])
+        return np.asarray(inserted == 0) if inserted.size else np.ones(getattr(self, axis).size, bool)
+
+    @property
     def n_failed(self) -> int:
         """Number of grid points without a usable solution."""
         return int(np.count_nonzero(self.failed))
@@ -209,8 +241,12 @@ class SteFields:
         if self.period > 1:
             extent += f" over {self.period} base pitches"
         text = f"STE database: {extent}; force {self.force[0]:g} to {self.force[-1]:g} N"
-        if self.inserted_force.size:
-            text += f", {self.inserted_force.size} loads inserted"
+        inserted = {
+            "loads": self.inserted_force,
+            "misalignments": self.inserted_misalignment,
+            "center distances": self.inserted_center_distance_change,
+        }
+        text += "".join(f", {nodes.size} {name} inserted" for name, nodes in inserted.items() if nodes.size)
         return (
             f"{text}\nWARNING: {self.failure_message()}" if self.n_failed else f"{text}; all points converged"
         )
@@ -268,6 +304,9 @@ def _check_shapes(table: SteFields) -> None:
             name,
             f"have the dimensions {', '.join(OPTIONAL[name])}",
         )
+    for axis, name in INSERTED.items():
+        marks = getattr(table, name)
+        _refuse(marks.size > 0 and marks.shape != (sizes[axis],), name, f"have the dimension {axis}")
     intervals, nodes = table.interval_error, table.static_transmission_error.shape[1:]
     differs = intervals.size > 0 and intervals.shape != (3, *nodes)
     _refuse(differs, "interval_error", "have the dimensions 3, force, misalignment, center_distance_change")

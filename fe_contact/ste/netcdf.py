@@ -155,6 +155,8 @@ ATTRIBUTES: dict[str, tuple[str, str]] = {
         "largest error of the transmission error between each node and the next of the axes force, "
         "misalignment, center_distance_change",
     ),
+    "misalignment_inserted": ("1", "1 where the node was inserted to meet a tolerance, 0 where requested"),
+    "center_distance_inserted": ("1", "1 where the node was inserted to meet a tolerance, 0 where requested"),
     "support_force": (
         "N",
         "further loads that only carry the interpolation: those between two loads of the axis were inserted",

@@ -47,7 +47,7 @@ from model_studies.workers import InProcess, Workers
 
 # Lines of `loa analyze` about a tolerance: drafts while it refines, its passes, and whether it is met.
 
-_AXES = {
+_NODES = {
     "misalignment": ("misalignments", UM, "µm"),
     "center_distance_change": ("center distance changes", MM, "mm"),
 }
@@ -62,13 +62,13 @@ def _tolerance_lines(receipt: Json, newton_metre: float = 1.0) -> Iterator[str]:
     passes = receipt.get("passes", ())
     if len(passes) > 1:
         yield from (_pass(number, entry) for number, entry in enumerate(passes, 1))
-    axes = _AXES | {"force": ("torques", newton_metre, "N m")}
+    axes = _NODES | {"force": ("torques", newton_metre, "N m")}
     for beyond in kept.get("between_nodes", ()):
         name, unit, symbol = axes[beyond["axis"]]
         low, high = (f"{value / unit:.6g}" for value in beyond["between"])
         yield (
             f"between the {name} {low} and {high} {symbol} interpolation errs by "
-            f"{engineering(beyond['used'], 2)} times the tolerance: add a value there"
+            f"{engineering(beyond['used'], 2)} times the tolerance: {beyond['limit']}"
         )
 
 
@@ -225,9 +225,8 @@ def _cost(receipt: dict[str, Any], newton_metre: float = 1.0) -> str:
         text += f"\nperiod {pitches} base pitches; contact predicted {engineering(seconds, 2)} CPU s"
     if cycle := receipt.get("cycle"):
         text += f"\n{_of_cycle(cycle)}"
-    if inserted := receipt.get("held_out", {}).get("force", {}).get("inserted"):
-        loads = ", ".join(f"{force / newton_metre:.4g}" for force in inserted)
-        text += f"\nloads inserted for interpolation: {loads} N m"
+    for line in _inserted(receipt.get("held_out", {}), newton_metre):
+        text += f"\n{line}"
     if held_out := _held_out(receipt.get("held_out", {})):
         text += f"\nlargest error at held-out points between the nodes: {held_out} (in the errors there)"
     if allowed := receipt.get("misalignment_range"):
@@ -240,6 +239,14 @@ def _cost(receipt: dict[str, Any], newton_metre: float = 1.0) -> str:
     if missing:
         text += f"\nerrors NOT estimated: {', '.join(missing).replace('_', ' ')}"
     return text
+
+
+def _inserted(axes: dict[str, Any], newton_metre: float) -> Iterator[str]:
+    """Yield the values of each axis that were inserted to meet the tolerance; `newton_metre` in N."""
+    for axis, (name, unit, word) in ({"force": ("loads", newton_metre, "N m")} | _NODES).items():
+        if inserted := axes.get(axis, {}).get("inserted"):
+            values = ", ".join(f"{value / unit:.4g}" for value in inserted)
+            yield f"{name} inserted for interpolation: {values} {word}"
 
 
 def _held_out(axes: dict[str, Any]) -> str:

@@ -116,8 +116,10 @@ def positions(text: str) -> list[float]:
 
 
 def _rows(curve: dict[str, Any]) -> list[list[str]]:
-    lines = zip(curve["position"], curve["ste_um"], curve["load_share"], strict=True)
-    return [[repr(x), f"{ste:.9g}", *(f"{share:.6g}" for share in shares)] for x, ste, shares in lines]
+    shares = [[f"{share:.6g}" for share in row] for row in curve["load_share"]]
+    bands = [[f"{band:.3g}"] for band in curve["error_um"]] if "error_um" in curve else [[]] * len(shares)
+    lines = zip(curve["position"], curve["ste_um"], shares, bands, strict=True)
+    return [[repr(x), f"{ste:.9g}", *row, *band] for x, ste, row, band in lines]
 
 
 def _typed(row: list[str]) -> list[str]:
@@ -125,7 +127,8 @@ def _typed(row: list[str]) -> list[str]:
 
 
 def _columns(curve: dict[str, Any]) -> list[str]:
-    return ["position", "ste_um", *(f"load_share_{pair:+d}" for pair in curve["pair"])]
+    shares = [f"load_share_{pair:+d}" for pair in curve["pair"]]
+    return ["position", "ste_um", *shares, *(["ste_error_um"] if "error_um" in curve else [])]
 
 
 def _answer(database: SteDatabase, following: str, curve: dict[str, Any]) -> Iterator[str]:
@@ -154,6 +157,7 @@ def _answer(database: SteDatabase, following: str, curve: dict[str, Any]) -> Ite
         orders = ", ".join(name for name, _, _ in unknown)
         below = max(error for _, _, error in unknown if error)
         yield f"  {orders.replace(', harmonic', ',')}: below {engineering(below, 2)} µm, their error"
+    yield from _bands(curve)
     shares = np.array(curve["load_share"])
     carrying = (shares > 0.0).sum(axis=1)
     pairs = " to ".join(f"{number}" for number in dict.fromkeys([carrying.min(), carrying.max()]))
@@ -166,6 +170,17 @@ def _answer(database: SteDatabase, following: str, curve: dict[str, Any]) -> Ite
             yield f"  {gear}: largest pressure on {teeth_words(worst)}, {own['pressure_mpa']:.0f} MPa"
     yield ""
     yield f"next: loa {following}     all positions: --table, --csv"
+
+
+def _bands(curve: dict[str, Any]) -> Iterator[str]:
+    """Say what a single point of the curve may be wrong by, and what interpolation has of it."""
+    if "error_um" not in curve:
+        yield "  error of a point: not estimated"
+        return
+    words = f"  error of a point: up to {engineering(max(curve['error_um']), 2)} µm"
+    if interpolated := curve["interval_error_um"]:
+        words += f", {engineering(interpolated, 2)} µm of it by interpolation between the nodes"
+    yield words
 
 
 _Line = tuple[str, float, float | None]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import re
 from collections.abc import Callable, Sequence
-from typing import Annotated, Any, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import cbor2
 import numpy as np
@@ -47,6 +47,9 @@ from service.routes.media_types import CBOR, JSON, RAW, media_type, negotiated
 from service.routes.openapi import documented
 from service.routes.results import Key
 from service.routes.scopes import DirectRoute, ScopedRoute, answered_by, needs
+
+if TYPE_CHECKING:
+    from fe_contact.ste import SteDatabase
 
 # Bodies of force queries: JSON, CBOR, or raw columns of float64.
 
@@ -101,18 +104,20 @@ READ: dict[str, Callable[[bytes, Sequence[str]], FloatArray]] = {
     CBOR: _points_of_cbor,
     RAW: _points_of_raw,
 }
-WRITE: dict[str, Callable[[ForceAnswer], bytes]] = {
-    JSON: lambda answer: to_json(_plain(answer)),  # the shortest decimals that give the same float64
-    CBOR: lambda answer: cbor2.dumps(_plain(answer)),
-    RAW: lambda answer: np.array(answer, dtype="<f8").tobytes(),  # force, stiffness, validity: sum of flags
+WRITE: dict[str, Callable[[ForceAnswer, SteDatabase, FloatArray], bytes]] = {
+    JSON: lambda *answer: to_json(_plain(*answer)),  # the shortest decimals that give the same float64
+    CBOR: lambda *answer: cbor2.dumps(_plain(*answer)),
+    # force, stiffness, validity: sum of flags
+    RAW: lambda answer, _table, _points: np.array(answer, dtype="<f8").tobytes(),
 }
 
 
-def _plain(answer: ForceAnswer) -> dict[str, Any]:
+def _plain(answer: ForceAnswer, table: SteDatabase, points: FloatArray) -> dict[str, Any]:
     return {
         "force_n": answer.force_n.tolist(),
         "stiffness_n_per_um": answer.stiffness_n_per_um.tolist(),
         "validity": [_WORDS[flags] for flags in answer.validity.tolist()],
+        "force_error_n": answer.error_n(table, points),
     }
 
 
@@ -186,7 +191,8 @@ async def _answer(request: Request) -> Response:
 
     def work() -> bytes:
         table = opened or context.databases.get(context.store, key)
-        return WRITE[accepted](ForceAnswer.of(table.law, READ[sent](body, columns)))
+        points = READ[sent](body, columns)
+        return WRITE[accepted](ForceAnswer.of(table.law, points), table.database, points)
 
     small = len(body) <= _INLINE_BYTES and opened is not None and opened.compiled
     return Response(work() if small else await run_in_threadpool(work), media_type=accepted)

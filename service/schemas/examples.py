@@ -393,6 +393,7 @@ ANSWERS: dict[str, Any] = {
         "force_n": [1834.2, 2651.8],
         "stiffness_n_per_um": [371.5, 402.3],
         "validity": ["inside", "inside"],
+        "force_error_n": [4.1, 5.0],
     },
     "/v1/databases/{key}/ste": _LIVE,
     "/v1/plans": _PLAN,

@@ -6,6 +6,7 @@ import hashlib
 import json
 import struct
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -34,10 +35,22 @@ def table() -> SteDatabase:
 
 
 @pytest.fixture(scope="module")
-def client(table: SteDatabase, tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+def stated(table: SteDatabase) -> SteDatabase:
+    """The table with errors at its nodes and between them."""
+    draw = np.random.default_rng(11)
+    nodes = table.static_transmission_error.shape
+    return replace(
+        table,
+        error_estimate=draw.uniform(1e-8, 1e-7, nodes),
+        interval_error=draw.uniform(1e-8, 1e-7, (3, *nodes[1:])),
+    )
+
+
+@pytest.fixture(scope="module")
+def client(stated: SteDatabase, tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     directory = tmp_path_factory.mktemp("data")
     app = create_app(Settings(data_directory=directory))
-    table.to_netcdf(directory / "table.nc")
+    stated.to_netcdf(directory / "table.nc")
     app.state.context.store.put(KEY, "database", directory / "table.nc")
     with TestClient(app, raise_server_exceptions=False) as found:
         yield found
@@ -100,6 +113,29 @@ def test_every_encoding_gives_the_numbers_of_the_database(
     assert force == wanted.force.tolist()
     assert stiffness == (wanted.stiffness / 1e6).tolist()
     assert flags == wanted.validity.tolist() and len(set(flags)) > 6
+
+
+@pytest.mark.parametrize("accept", [JSON, CBOR])
+def test_the_error_of_a_force_is_that_of_the_curve_through_its_point(
+    client: TestClient, stated: SteDatabase, accept: str
+) -> None:
+    """In steps of the stiffness; none where the table holds no error."""
+    given = columns()
+    answer = ask(client, json.dumps(given).encode(), JSON, accept)
+    found = answer.json() if accept == JSON else cbor2.loads(answer.content)
+    inside = [words == "inside" for words in found["validity"]]
+    known = [error is not None for error in found["force_error_n"]]
+    assert set(known) == {True, False}
+    assert not any(error and not within for error, within in zip(known, inside, strict=True))
+    x, _, m, c = (np.array(column) for column in given.values())
+    forces = np.array(found["force_n"]) / np.cos(stated.facts.base_helix_angle)
+    for k in np.flatnonzero(known)[::20].tolist():
+        point = {"misalignment": 1e-6 * m[k], "center_distance_change": 1e-3 * c[k]}
+        if forces[k] < stated.force[0]:
+            continue
+        (band,) = stated.curve(force=float(forces[k]), at=x[k], **point).error
+        expected = 1e6 * found["stiffness_n_per_um"][k] * band
+        assert found["force_error_n"][k] == pytest.approx(expected, rel=1e-9)
 
 
 def test_the_client_gives_the_same(client: TestClient, tmp_path: Path) -> None:

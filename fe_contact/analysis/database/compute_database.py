@@ -12,6 +12,7 @@ import numpy as np
 from bounds import Finding
 from fe_contact.analysis.checks.assumptions import check_assumptions, settled, with_effects
 from fe_contact.analysis.checks.effect_ledger import effect_ledger
+from fe_contact.analysis.checks.law import LawCheck
 from fe_contact.analysis.checks.table_laws import check_laws, require_laws
 from fe_contact.analysis.estimates.assessed_table import (
     AssessedTable,
@@ -128,13 +129,16 @@ def compute_pass(
         lambda made, needed: solve_table(with_effects(made.checked, needed), clock, run, made),
         clock,
     )
-    support = [each.solution for each in made.support]
-    laws = check_laws(made.table, made.places.places, made.solved, support)
-    require_laws(laws, made.table)
+    laws = _lawful(made)
     full = _full(made)
     influences = _started_influences(planned, run, before) if full else iter([{}])
-    assessed, contact = _assessed(made, clock, run)
-    if not repeated and made.derived is None and not run.workers.cost.since(before).tasks:
+    requested = made.table
+    assessed, made = _assessed(made, clock, run)
+    inserted = made.table is not requested  # which no prediction holds
+    if inserted:
+        laws = _lawful(made)
+    contact = _contact(made, clock)
+    if not (repeated or inserted or made.derived or run.workers.cost.since(before).tasks):
         cost = {log_name(made.prediction.kind, name): time for name, time in clock.seconds.items()}
         record(run.cache, made.prediction.logged, cost)
     with clock.stage("effect ledger"):
@@ -177,26 +181,34 @@ def _full(made: SolvedTable) -> bool:
     return made.checked.request.options.receipt == "full"
 
 
-def _assessed(made: SolvedTable, clock: StageClock, run: Run) -> tuple[AssessedTable, Json]:
-    """Return the table's errors, and what its receipt says of the contact."""
-    full = _full(made)
+def _lawful(made: SolvedTable) -> tuple[LawCheck, ...]:
+    """Check the laws of a table; raises `SolveError` where one is broken."""
+    support = [each.solution for each in made.support]
+    laws = check_laws(made.table, made.places.places, made.solved, support)
+    require_laws(laws, made.table)
+    return laws
+
+
+def _contact(made: SolvedTable, clock: StageClock) -> Json:
+    """Return what the receipt of a table says of its contact."""
     with clock.stage("contact"):
         support = [(each.problem, each.solution) for each in made.support]
-        contact = _contact_receipt(made.solved, support, condition=full, known=made.condition)
-    if not full:
-        return unassessed_table(made.table, made.places, made.plan), contact
+        return _contact_receipt(made.solved, support, condition=_full(made), known=made.condition)
+
+
+def _assessed(made: SolvedTable, clock: StageClock, run: Run) -> tuple[AssessedTable, SolvedTable]:
+    """Return the errors of a table, and the table with the alignments that were inserted for a tolerance."""
+    if not _full(made):
+        return unassessed_table(made.table, made.places, made.plan), made
     stage = "error estimate"
     progress = by_cost(partial(run.progress, stage), made.prediction.parts[stage])
     report = partial(progress, "bodies")
     divided = replace(run, workers=made.places.workers)
     bodies = condensed_bodies(made.checked, made.plan, clock, divided, coarse=True, report=report)
     with clock.stage(stage):
-        coarse = made.places.on_bodies(bodies)
-        assessed = assessed_table(
-            made.table, made.places, coarse, made.solved, made.nodes, made.checked, made.plan
-        ).with_derivatives(made.derived)
+        assessed, made = assessed_table(made, made.places.on_bodies(bodies))
     run.progress(stage, 1.0)
-    return assessed, contact
+    return assessed.with_derivatives(made.derived), made
 
 
 def solved_findings(request: Request, table: SteDatabase) -> tuple[Finding, ...]:

@@ -424,12 +424,16 @@ def _beyond_between(table: SteDatabase) -> str:
     missed = table.metadata.receipt["tolerance"]["between_nodes"]
     if not missed:
         return "the table cannot be interpolated between its nodes"
-    words = [
-        f"{entry['axis'].replace('_', ' ')} {entry['between'][0]:.6g} and {entry['between'][1]:.6g}"
-        for entry in missed
-    ]
-    share = engineering(max(entry["used"] for entry in missed), 2)
-    return f"between {', '.join(words)} interpolation takes {share} of the tolerance: add a value there"
+    return "; ".join(map(_interval_words, missed))
+
+
+def _interval_words(entry: Json) -> str:
+    axis, (low, high) = entry["axis"].replace("_", " "), entry["between"]
+    share = engineering(entry["used"], 2)
+    return (
+        f"between {axis} {low:.6g} and {high:.6g} interpolation takes {share} of the tolerance: "
+        f"{entry['limit']}"
+    )
 
 
 def _ended(made: _Refinement, passes: Sequence[_Pass], cache: Path | None) -> str:

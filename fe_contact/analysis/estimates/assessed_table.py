@@ -9,6 +9,7 @@ import numpy as np
 
 from fe_contact.analysis.cycle.derived_pitches import DerivedCycle
 from fe_contact.analysis.estimates.held_out_axes import AxisError, held_out_axes
+from fe_contact.analysis.estimates.interval_goal import IntervalGoal
 from fe_contact.analysis.estimates.position_errors import (
     PositionErrors,
     errors_by_halves,
@@ -18,14 +19,13 @@ from fe_contact.analysis.estimates.rough_flank_errors import of_quantities, roug
 from fe_contact.analysis.estimates.table_sample import Nested, TableSample
 from fe_contact.analysis.estimates.tolerance_shares import interval_goal
 from fe_contact.analysis.pairs.pair_contact import OperatingPoints
-from fe_contact.analysis.request.request import Checked
-from fe_contact.analysis.request.solved_run import Solved
-from fe_contact.analysis.tables import PositionNodes
+from fe_contact.analysis.tables import SolvedTable
 from fe_contact.contact import ContactSolution
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.model_error import helical_share, model_errors, point_error
 from fe_contact.planning.plan import FaceDiscretization, Plan
 from fe_contact.planning.plane_bias import plane_bias
+from fe_contact.sampled import spread
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.curve import (
     AT_NODES,
@@ -49,6 +49,7 @@ from fe_contact.ste.curve_quantities import (
     quantity_changes,
 )
 from fe_contact.ste.database import SupportLoads, with_support_loads
+from fe_contact.ste.fields import CENTER_DISTANCE, MISALIGNMENT
 from fe_contact.ste.plane_bias import PlaneBias
 from fe_contact.types import FloatArray, Json, Status
 
@@ -431,52 +432,64 @@ class AssessedTable:
         return sources | bias | _summary(self.curve_error)
 
 
-def assessed_table(
-    table: SteDatabase,
-    fine: OperatingPoints,
-    coarse: OperatingPoints,
-    solved: Solved,
-    nodes: PositionNodes,
-    checked: Checked,
-    plan: Plan,
-) -> AssessedTable:
-    """Solve the table once more on each rougher discretization, and held-out points of its axes.
+def assessed_table(made: SolvedTable, coarse: OperatingPoints) -> tuple[AssessedTable, SolvedTable]:
+    """Solve a table once more on each rougher discretization, and held-out points of its axes.
 
     Parameters
     ----------
-    table : SteDatabase
-        As solved on `fine`.
-    fine, coarse : OperatingPoints
-        On the meshes of the run and on the coarse ones.
-    solved : list of (ContactProblem, ContactSolution)
-        Of every place.
+    made : SolvedTable
+        On the meshes of the run.
+    coarse : OperatingPoints
+        Its places on the coarse meshes.
+
+    Returns
+    -------
+    AssessedTable, SolvedTable
+        The errors, and the table with the alignments that were inserted, which they are of.
     """
-    made, solutions = plan.discretization, [solution for _, solution in solved]
+    table, plan, fine, nodes = made.table, made.plan, made.places, made.nodes
+    discretization, solutions = plan.discretization, [solution for _, solution in made.solved]
     axes = plan.load, table.misalignment, table.center_distance_change
     sample = TableSample.of(nodes.position, fine.period, axes)
     own = sample.taken(table)
-    plane = sample.solved(fine.in_plane_strain, fine) if made.corrected else own
-    sliced = sample.solved(fine.in_slices(made.coarse_slices), fine) if made.slices > 1 else own
+    plane = sample.solved(fine.in_plane_strain, fine) if discretization.corrected else own
+    slices = discretization.slices > 1
+    sliced = sample.solved(fine.in_slices(discretization.coarse_slices), fine) if slices else own
     patched = sample.solved(fine.in_plane_strain.in_coarse_patches, fine)
     nested = Nested(sample, own, plane, patched, sample.solved(coarse, fine), sliced)
     positions = position_errors(nodes, fine, solutions, plan)
     ste, arms = nested.parts
     measured = fine, solved, ste, positions, plan
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
-    bias = table_bias(table, fine, plan)
-    goal = interval_goal(table, errors, checked.request, bias)
-    between = held_out_axes(table, fine, checked.request.scene, checked.decided, solved, goal)
-    of_points, of_curves = interval_errors(errors.shape[2:], between)
-    return AssessedTable(
-        sources.total,
-        np.concatenate([errors, of_curves]),
-        load_arm_errors(fine, table, arms, plan),
+    request = made.checked.request
+
+    def goal_of(refined: SteDatabase) -> IntervalGoal:
+        at_nodes, bias = _at_inserted(errors, refined), table_bias(refined, fine, plan)
+        return interval_goal(refined, at_nodes, request, bias)
+
+    refined = request.options.tolerance is not None and not request.nodes_alone
+    held_out = held_out_axes(made, goal_of if refined else None)
+    made = held_out.made
+    of_points, of_curves = interval_errors((plan.load.size, *made.places.shape), held_out.axes)
+    assessed = AssessedTable(
+        _at_inserted(sources.total, made.table),
+        np.concatenate([_at_inserted(errors, made.table), of_curves]),
+        _at_inserted(load_arm_errors(fine, table, arms, plan), made.table),
         of_points,
-        between["force"].inserted if "force" in between else None,
+        held_out.loads,
         sources.to_json(),
-        {name: error.to_json() for name, error in between.items()},
-        bias,
+        {name: error.to_json() for name, error in held_out.axes.items()},
+        table_bias(made.table, fine, plan),
     )
+    return assessed, made
+
+
+def _at_inserted(errors: FloatArray, table: SteDatabase) -> FloatArray:
+    """Carry errors (..., m, d) at the requested alignments of a table on to all, (..., M, D), linearly."""
+    for axis, name in enumerate((MISALIGNMENT, CENTER_DISTANCE), start=-2):
+        requested = np.flatnonzero(table.requested_rows(name))
+        errors = spread(getattr(table, name), requested, errors, axis)
+    return errors
 
 
 def unassessed_table(table: SteDatabase, points: OperatingPoints, plan: Plan) -> AssessedTable:

@@ -55,11 +55,14 @@ class LoadErrors:
         What it does to mean, peak-to-peak and harmonics, m.
     inserted : SupportLoads, optional
         Solutions at further loads, with which the table has these errors, in all its base pitches.
+    limit : str
+        Why intervals that miss the goal got no further load; empty where all meet it.
     """
 
     error: FloatArray
     change: FloatArray
     inserted: SupportLoads | None
+    limit: str
 
 
 @dataclass(frozen=True)
@@ -87,10 +90,14 @@ class HeldOutLoads:
         """Measure the error of every interval; with a goal insert loads until it is met or halved enough."""
         force = self.table.force.tolist()
         probes, support, table = self._solved(self._missing(force, np.empty(0))), None, self.table
-        for _ in range(MOST_HALVINGS):
+        limit = ""
+        for left in range(MOST_HALVINGS, -1, -1):
             further = self._middles(table, probes, goal)
-            more = self._everywhere(np.array(further)) if further else None
+            if not further:
+                break
+            more = self._everywhere(np.array(further)) if left else None
             if more is None:
+                limit = "a load between them has no solution" if left else halvings_reached(MOST_HALVINGS)
                 break
             support = more if support is None else _joined(support, more)
             table = with_support_loads(self.table, self._first_pitch(support))
@@ -102,6 +109,7 @@ class HeldOutLoads:
             np.array([error[inside].max() for inside in within]),
             np.stack([change[:, inside].max(axis=1) for inside in within], axis=1),
             support,
+            limit,
         )
 
     def _middles(self, table: SteDatabase, probes: SupportLoads, goal: IntervalGoal | None) -> list[float]:
@@ -216,6 +224,11 @@ class HeldOutLoads:
         part = (load - force[above - 1]) / (force[above] - force[above - 1])
         lower, upper = (solution.force[np.ix_(self.rows, loads)] for loads in (above - 1, above))
         return Start(problem.candidates, lower + part[:, None] * (upper - lower))
+
+
+def halvings_reached(most: int) -> str:
+    """Say that an axis was halved as often as it may be."""
+    return f"the limit of {most} halvings is reached"
 
 
 def _ends(table: SteDatabase) -> list[float]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from fe_contact.allowed_error import AllowedError
+from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve import BETWEEN_NODES
 from fe_contact.types import FloatArray
 
@@ -42,3 +44,7 @@ class IntervalGoal:
         several = sum(size > 1 for size in self.used.shape)
         left = np.sqrt(np.maximum(1.0 - by_interval**2, 0.0) / several)
         return np.where(by_interval < 1.0, np.maximum(left, LEAST_SHARE), 1.0)
+
+
+GoalOf = Callable[[SteDatabase], IntervalGoal]
+"""Returns the goal of a table: inserted nodes have errors of their own."""

@@ -71,11 +71,9 @@ def used_at_nodes(shares: FloatArray, request: Request) -> FloatArray:
 
 def interval_goal(
     table: SteDatabase, at_nodes: FloatArray, request: Request, bias: PlaneBias | None
-) -> IntervalGoal | None:
-    """Return what errors at nodes (6, 23, F, M, D) in m leave to intervals; None without a tolerance."""
-    tolerance = request.options.tolerance
-    if tolerance is None:
-        return None
+) -> IntervalGoal:
+    """Return what errors at nodes (6, 23, F, M, D) in m leave of the tolerance of a request to intervals."""
+    tolerance = request.options.allowed
     shares = _with_bias(table, at_nodes, bias) / allowed_errors(table, tolerance)
     return IntervalGoal(tolerance, used_at_nodes(shares, request))
 
@@ -132,15 +130,19 @@ def _with_next(values: FloatArray, axis: int, chosen: np.ufunc) -> FloatArray:
 
 
 def _missed_intervals(table: SteDatabase, cells: FloatArray, between: FloatArray) -> list[Json]:
-    """Return the worst interval of each axis by which a table misses the tolerance."""
+    """Return the worst interval of each axis by which a table misses the tolerance, and why it stays so."""
+    total = np.sqrt(cells**2 + np.square(between).sum(axis=0))
+    held_out = table.metadata.receipt.get("held_out", {})
     axes = zip(BETWEEN_NODES, (table.force, table.misalignment, table.center_distance_change), strict=True)
     missed = []
     for i, (name, nodes) in enumerate(axes):
-        share = np.moveaxis(between[i], i, 0)[:-1]
-        total = np.hypot(np.moveaxis(cells, i, 0)[:-1], share)
-        beyond = np.where((total > 1.0) & (share > LEAST_SHARE), share, 0.0).max(axis=(1, 2), initial=0.0)
+        share, used, nodes_alone = (np.moveaxis(values, i, 0)[:-1] for values in (between[i], total, cells))
+        # where the nodes alone miss it, only an interval that does so by itself is named
+        named = (used > 1.0) & (share > LEAST_SHARE) & ((nodes_alone <= 1.0) | (share > 1.0))
+        beyond = np.where(named, share, 0.0).max(axis=(1, 2), initial=0.0)
         if beyond.size and beyond.max() > 0.0:
             k = int(np.argmax(beyond))
             interval = [float(nodes[k]), float(nodes[k + 1])]
-            missed.append({"axis": name, "used": float(beyond[k]), "between": interval})
+            limit = held_out.get(name, {}).get("limit") or "add a value there"
+            missed.append({"axis": name, "used": float(beyond[k]), "between": interval, "limit": limit})
     return missed

@@ -52,6 +52,8 @@ class Request:
         How the caller gave the load: "torques" or "normal_forces".
     registry : sequence of Effect
         The effects that there are.
+    nodes_alone : bool
+        Whether the table is read at its nodes alone: nothing is inserted between them for a tolerance.
     """
 
     pair: ParallelAxes
@@ -64,6 +66,7 @@ class Request:
     turned_on: Mapping[str, str] = field(default_factory=dict)
     loads_as: str = "torques"
     registry: Sequence[Effect] = field(default_factory=lambda: EFFECTS)
+    nodes_alone: bool = False
 
     @classmethod
     def over(cls, pair: ParallelAxes, axes: TableAxes, options: AnalysisOptions) -> Request:

@@ -91,7 +91,7 @@ def _curves(checked: Checked, corner_contact: str, run: Run) -> tuple[RippleCurv
     """Return both curves; every table neglects what it does not need itself."""
     whole, none = checked.request, np.zeros(1)
     effects = {**whole.options.effects, named(EFFECTS, "corner_contact"): corner_contact}
-    request = replace(whole, options=replace(whole.options, effects=effects))
+    request = replace(whole, options=replace(whole.options, effects=effects), nodes_alone=True)
     skews, changes = (np.union1d(none, each) for each in (whole.misalignment, whole.center_distance_change))
     skewed, moved = (
         ste_database(

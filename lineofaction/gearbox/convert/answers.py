@@ -12,7 +12,8 @@ from bounds.types import Json
 from fe_contact.ste import Curve, SteDatabase, ToothLoads
 from fe_contact.ste.curve import OperatingPoint
 from fe_contact.ste.curve_quantities import BY_SOURCE
-from fe_contact.types import Estimate
+from fe_contact.ste.fields import CENTER_DISTANCE, MISALIGNMENT
+from fe_contact.types import Estimate, FloatArray
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.problems import JobFailed
 from lineofaction.gearbox.units import MM, MPA, UM, as_typed, boundary_ledger
@@ -50,10 +51,13 @@ def curve_json(
         "period": curve.period,
         "position": curve.position.tolist(),
         "ste_um": (curve.ste / UM).tolist(),
+        **_bands(curve),
         "pair": curve.pair.tolist(),
         "load_share": curve.load_share.tolist(),
         **_figures(curve),
     }
+    if inserted := inserted_json(database):
+        answer["inserted"] = inserted
     if teeth := tooth_loads_json(database, curve.point):
         answer["tooth_loads"] = teeth
     if curve.period > 1:  # over one base pitch the orders are the harmonics
@@ -67,6 +71,28 @@ def curve_json(
             "The curve has points without a solution. Compute the table again with other settings."
         )
     return answer
+
+
+def _bands(curve: Curve) -> Json:
+    """Return the error of every point, and what interpolation between the nodes has of it; if estimated."""
+    bands = {"error_um": (curve.error / UM).tolist(), "interval_error_um": curve.interval_error / UM}
+    return {name: band for name, band in bands.items() if np.isfinite(band).all()}
+
+
+def inserted_json(database: SteDatabase) -> Json:
+    """Return the nodes that were inserted to meet a tolerance, by the names of the axes that have any."""
+    force, newton_metre = database.inserted_force, float(database.torque[-1] / database.force[-1])
+    axes = {
+        "torque_n_m": _typed(force, 1.0 / newton_metre),
+        "normal_force_n": force.tolist(),
+        "misalignment_um": _typed(database.inserted_misalignment, UM),
+        "center_distance_change_mm": _typed(database.inserted_center_distance_change, MM),
+    }
+    return {name: nodes for name, nodes in axes.items() if nodes}
+
+
+def _typed(values: FloatArray, unit: float) -> list[float]:
+    return [as_typed(float(value), unit) for value in values]
 
 
 GEARS = "pinion", "wheel"
@@ -178,15 +204,16 @@ def metadata_json(database: SteDatabase) -> Json:
         "position": database.position.tolist(),
         "torque_n_m": [as_typed(torque) for torque in database.torque],
         "normal_force_n": database.force.tolist(),
-        "misalignment_um": [as_typed(skew, UM) for skew in database.misalignment],
-        "center_distance_change_mm": [as_typed(change, MM) for change in database.center_distance_change],
+        "misalignment_um": _typed(database.requested_nodes(MISALIGNMENT), UM),
+        "center_distance_change_mm": _typed(database.requested_nodes(CENTER_DISTANCE), MM),
+        **({"inserted": inserted} if (inserted := inserted_json(database)) else {}),
         **({"tooth_loads": teeth} if any(teeth) else {}),
     }
 
 
 def _tooth_loads_by_load(database: SteDatabase) -> list[Json]:
     """Return the loads of teeth at every load, of the alignment nearest to zero; none with failed points."""
-    axes = database.misalignment, database.center_distance_change
+    axes = (database.requested_nodes(axis) for axis in (MISALIGNMENT, CENTER_DISTANCE))
     aligned = [float(axis[np.argmin(np.abs(axis))]) for axis in axes]
     if database.n_failed:
         return []

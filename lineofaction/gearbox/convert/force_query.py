@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from fe_contact.ste.node_errors import force_error
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.schemas.query import LIMITS, MOST_POINTS, QueryInput
@@ -15,6 +16,7 @@ from lineofaction.gearbox.units import N_PER_UM, factor
 
 if TYPE_CHECKING:
     from fe_contact.ste.compiled_force import CompiledForce
+    from fe_contact.ste.fields import SteFields
 
 _ROW = {"position": 0, "misalignment_um": 1, "center_distance_change_mm": 2, "deflection_um": 3}
 _FACTOR = {name: factor(name) for name in _ROW}
@@ -27,6 +29,14 @@ class ForceAnswer(NamedTuple):
     force_n: FloatArray
     stiffness_n_per_um: FloatArray
     validity: NDArray[np.int8]
+
+    def error_n(self, table: SteFields, points: FloatArray) -> list[float | None]:
+        """Return the error of the force at the points of a query (4, n) in N; None: not estimated."""
+        errors = force_error(table, points, self.force_n, self.stiffness_n_per_um * N_PER_UM)
+        return [
+            error if known else None
+            for error, known in zip(errors.tolist(), np.isfinite(errors), strict=True)
+        ]
 
     @staticmethod
     def of(law: CompiledForce, points: FloatArray) -> ForceAnswer:

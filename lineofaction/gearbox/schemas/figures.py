@@ -77,6 +77,14 @@ class TableFigures(Figures):
         pressure_mpa: float | None = None
         pressure_by_tooth_mpa: list[float] | None = None
 
+    class InsertedNodes(Part):
+        """Values of the axes that were inserted between those requested, to meet the tolerance."""
+
+        torque_n_m: list[float] = Field(default_factory=list)
+        normal_force_n: list[float] = Field(default_factory=list)
+        misalignment_um: list[float] = Field(default_factory=list)
+        center_distance_change_mm: list[float] = Field(default_factory=list)
+
     schema_version: int
     content_hash: str
     case: Json
@@ -90,6 +98,7 @@ class TableFigures(Figures):
     normal_force_n: list[float]
     misalignment_um: list[float]
     center_distance_change_mm: list[float]
+    inserted: InsertedNodes | None = None
     tooth_loads: list[dict[str, ToothLoads]] | None = None
 
 

@@ -319,6 +319,14 @@ class LiveCurve(BoundaryModel):
         description="Positions in base pitches; 0 = pitch point", examples=[[0.0, 0.5]]
     )
     ste_um: list[float] = Field(description="Static transmission error in µm", examples=[[9.7, 12.1]])
+    error_um: list[float] | None = Field(
+        default=None, description="Error of each point in µm", examples=[[0.06, 0.07]]
+    )
+    interval_error_um: float | None = Field(
+        default=None,
+        description="Part of it by interpolation between nodes: 0 at loads and alignments that are solved",
+        examples=[0.0],
+    )
     pair: list[int] = Field(description="Tooth pair of each column of load_share", examples=[[-1, 0]])
     load_share: list[list[float]] = Field(
         description="Share of each pair", examples=[[[0.5, 0.5], [0.0, 1.0]]]

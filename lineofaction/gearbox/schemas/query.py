@@ -104,3 +104,9 @@ class QueryOutput(BoundaryModel):
         "joined by +",
         examples=[["inside", "inside"]],
     )
+    force_error_n: list[float | None] | None = Field(
+        default=None,
+        description="Error of the force in N: that of the transmission error at the point, interpolation "
+        "between the nodes of the table included, times the stiffness; null: not estimated there",
+        examples=[[4.1, 5.0]],
+    )

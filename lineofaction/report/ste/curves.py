@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_contact.ste import Curve, SteDatabase
+from fe_contact.ste.fields import CENTER_DISTANCE, MISALIGNMENT
 from fe_contact.types import Estimate, IntArray
 from lineofaction.report.drawing.figure import (
     Axis,
@@ -33,9 +34,14 @@ _LIFT_OFF = 0.002  # loads up to this part of the largest serve lift-off
 
 
 def aligned_index(database: SteDatabase) -> tuple[int, int]:
-    """Return the indices on the misalignment and center-distance axes nearest to zero."""
-    axes = (database.misalignment, database.center_distance_change)
-    return int(np.argmin(np.abs(axes[0]))), int(np.argmin(np.abs(axes[1])))
+    """Return the indices on the misalignment and center-distance axes, of requested nodes nearest to zero."""
+    m, d = (_nearest(database, axis) for axis in (MISALIGNMENT, CENTER_DISTANCE))
+    return m, d
+
+
+def _nearest(database: SteDatabase, axis: str) -> int:
+    size = np.where(database.requested_rows(axis), np.abs(getattr(database, axis)), np.inf)
+    return int(np.argmin(size))
 
 
 def aligned(database: SteDatabase) -> tuple[float, float]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_contact.ste import Curve, SteDatabase
+from fe_contact.ste.fields import CENTER_DISTANCE, MISALIGNMENT
 from fe_contact.types import BoolArray
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
@@ -143,7 +144,7 @@ def deviation_curves(database: SteDatabase) -> Figure:
 
 def _deviations(database: SteDatabase) -> list[_Deviation]:
     misalignment, change = aligned(database)
-    skew, distance = database.misalignment, database.center_distance_change
+    skew, distance = (database.requested_nodes(axis) for axis in (MISALIGNMENT, CENTER_DISTANCE))
     deviations = []
     if skew.size > 1:
         axis = Axis("misalignment over the common face width, µm")
@@ -192,8 +193,9 @@ def has_face_load(database: SteDatabase) -> bool:
 def face_load(database: SteDatabase) -> Figure:
     """Draw load centroid and peak pressure at the middle load, one line per misalignment."""
     load, (_, d) = middle_load(database), aligned_index(database)
-    centroid = 1e3 * database.face_centroid[:, load, :, d]
-    pressure = 1e-6 * database.max_pressure[:, load, :, d]
+    skews = database.requested_rows(MISALIGNMENT)
+    centroid = 1e3 * database.face_centroid[:, load, skews, d]
+    pressure = 1e-6 * database.max_pressure[:, load, skews, d]
     label, oblique = load_labels(database)[load], database.facts.base_helix_angle
     waves = ", which fluctuates as the contact lines pass from slice to slice of the model" if oblique else ""
     return Figure(
@@ -220,7 +222,7 @@ def face_load(database: SteDatabase) -> Figure:
 def _lines(database: SteDatabase, values: FloatArray) -> tuple[Line, ...]:
     """Draw `values` (P, M) over the pitches shown, dark for the first misalignment."""
     position, rows = shown_rows(database)
-    names = [f"misalignment {number(1e6 * float(m), 3)} µm" for m in database.misalignment]
+    names = [f"misalignment {number(1e6 * float(m), 3)} µm" for m in database.requested_nodes(MISALIGNMENT)]
     return ordered_lines(position, names, values[rows].T, labeled=len(names) > 1)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from bounds import leftover
 from fe_contact.ste import Curve, SteDatabase
 from fe_contact.types import Estimate
-from lineofaction.gearbox.convert.answers import source_rows
+from lineofaction.gearbox.convert.answers import inserted_json, source_rows
 from lineofaction.gearbox.convert.effects import by_size, influence_place, influence_words, trifles_title
 from lineofaction.gearbox.units import boundary_ledger
 from lineofaction.report.drawing.figure import Figure, Table, number, um
@@ -46,6 +46,11 @@ from lineofaction.report.ste.stiffness import budget_figure, load_sharing, mesh_
 from lineofaction.report.ste.teeth import UNBOUNDED, tooth_headlines, tooth_sections
 
 _RESIDUALS = ("equilibrium", "penetration", "tension", "complementarity")
+_INSERTED = {
+    "torque_n_m": "torques, N m",
+    "misalignment_um": "misalignments, µm",
+    "center_distance_change_mm": "changes of the center distance, mm",
+}
 _DECISIONS = {
     "name": "effect",
     "cost": "cost",
@@ -211,6 +216,11 @@ def _accuracy(database: SteDatabase) -> Table:
     rows += [
         (f"largest residual, {name}", leftover(float(value), 2))
         for name, value in zip(_RESIDUALS, worst, strict=True)
+    ]
+    rows += [
+        (f"inserted to meet the tolerance, {_INSERTED[axis]}", ", ".join(number(x, 4) for x in nodes))
+        for axis, nodes in inserted_json(database).items()
+        if axis in _INSERTED
     ]
     return Table("Accuracy", ("quantity", "value"), tuple(rows))
 

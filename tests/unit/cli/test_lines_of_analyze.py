@@ -235,11 +235,12 @@ def test_passes_are_listed_where_there_are_several() -> None:
 
 
 def test_what_is_missed_between_loads_says_where_a_value_is_wanted() -> None:
-    beyond = {"axis": "misalignment", "used": 2.0, "between": [0.0, 3e-5]}
+    limit = {"limit": "add a value there"}
+    beyond = {"axis": "misalignment", "used": 2.0, "between": [0.0, 3e-5]} | limit
     (_, line) = _tolerance_lines({"tolerance": KEPT | {"between_nodes": [beyond]}})
     what = "interpolation errs by 2 times the tolerance: add a value there"
     assert line == f"between the misalignments 0 and 30 µm {what}"
-    beyond = {"axis": "force", "used": 2.0, "between": [400.0, 1200.0]}
+    beyond = {"axis": "force", "used": 2.0, "between": [400.0, 1200.0]} | limit
     (_, line) = _tolerance_lines({"tolerance": KEPT | {"between_nodes": [beyond]}}, 40.0)
     assert line == f"between the torques 10 and 30 N m {what}"
 

@@ -93,3 +93,25 @@ def test_positions_are_printed_where_they_are_requested(file: Path) -> None:
     assert whole[0].split()[:2] == some[0].split()[:2] == ["position", "ste_um"]
     assert len(some) == 3
     assert len(whole) == 1 + len(SteDatabase.from_netcdf(file).position)
+
+
+def test_the_error_of_a_point_names_the_part_of_interpolation(file: Path, curve: Json) -> None:
+    def said(**bands: Any) -> str:
+        lines = _answer(SteDatabase.from_netcdf(file), "report", curve | bands)
+        return next(line.strip() for line in lines if "error of a point" in line)
+
+    bands = {"error_um": [0.05, 0.2], "interval_error_um": 0.12}
+    assert said(**bands) == "error of a point: up to 0.2 µm, 0.12 µm of it by interpolation between the nodes"
+    assert said(**bands | {"interval_error_um": 0.0}) == "error of a point: up to 0.2 µm"
+
+
+def test_every_row_of_a_list_has_the_error_of_its_point(file: Path) -> None:
+    table = SteDatabase.from_netcdf(file)
+    header, *rows = loa("ste", file, "--torque", "30", "--at", "0,0.25,0.6", "--csv").stdout.splitlines()
+    assert header.split(",")[-1] == "ste_error_um"
+    errors = [float(row.split(",")[-1]) for row in rows]
+    curve = table.curve(torque=30.0, at=[0.0, 0.25, 0.6])
+    assert errors == pytest.approx((1e6 * curve.error).tolist(), rel=1e-2)
+    told = curve_json(table, torque_n_m=30.0)
+    assert told["interval_error_um"] == 1e6 * curve.interval_error
+    assert "inserted" not in told

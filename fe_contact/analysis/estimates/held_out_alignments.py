@@ -1,0 +1,241 @@
+"""Interpolation error between the alignments of a table, and the alignments that bring it down.
+
+A held-out alignment is solved at some positions and loads. Where the table misses it by more than a goal
+allows, the middle of the interval becomes a node, and both halves are measured again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from fe_contact.analysis.estimates.held_out_loads import halvings_reached
+from fe_contact.analysis.estimates.inserted_places import (
+    alignment_points,
+    take_compliance,
+    with_inserted_nodes,
+)
+from fe_contact.analysis.estimates.interval_goal import GoalOf
+from fe_contact.analysis.estimates.tolerance_shares import allowed_errors
+from fe_contact.analysis.pairs.contact_lines import deflected_operating_points
+from fe_contact.analysis.tables import SolvedTable
+from fe_contact.contact import Start
+from fe_contact.sampled import LOADS, sample_of, some_positions, spread
+from fe_contact.ste import SteDatabase
+from fe_contact.ste.curve_quantities import (
+    BESIDE_MESH,
+    FIRST_HARMONIC,
+    MEAN,
+    PEAK_TO_PEAK,
+    quantity_changes,
+)
+from fe_contact.ste.fields import CENTER_DISTANCE, GRID, MISALIGNMENT
+from fe_contact.types import BoolArray, FloatArray, IntArray
+
+MIDDLE, QUARTERS = (0.5,), (0.25, 0.5, 0.75)
+"""Held-out alignments in parts of an interval. Between three nodes or more the error of a cubic may vanish in
+the middle; with a goal the quarters are solved once the middle meets it."""
+AWAY = 1.4
+"""Error anywhere in an interval over the largest at its held-out alignments and the positions of the table:
+contacts begin and end at another alignment for every position."""
+MOST_HALVINGS = 5
+"""Halvings of an interval of requested alignments: 20 um become intervals of 0.6 um."""
+
+
+@dataclass(frozen=True)
+class AlignmentErrors:
+    """Error between the nodes of an axis of alignments.
+
+    Attributes
+    ----------
+    made : SolvedTable
+        With the alignments that were inserted.
+    error : ndarray, shape (I, F)
+        Largest difference of interpolant and solution in the interval after each node, m.
+    change : ndarray, shape (23, I, F)
+        What it does to mean, peak-to-peak and harmonics, m.
+    limit : str
+        Why intervals that miss the goal got no further node; empty where all meet it.
+    """
+
+    made: SolvedTable
+    error: FloatArray
+    change: FloatArray
+    limit: str
+
+
+@dataclass(frozen=True)
+class HeldOutAlignments:
+    """An axis of a table, held against solutions between its nodes.
+
+    On the other axis of alignments they are solved at the node nearest to zero. A longer period is assessed
+    in its first pitch, at some of its positions and loads.
+
+    Attributes
+    ----------
+    axis : str
+        "misalignment" or "center_distance_change".
+    goal_of : callable, optional
+        Nodes are inserted until their intervals meet the goal of the table.
+    """
+
+    axis: str
+    goal_of: GoalOf | None
+
+    def errors(self, made: SolvedTable) -> AlignmentErrors:
+        """Measure the error of every interval of a table; with a goal insert nodes until it is met."""
+        truths: dict[float, FloatArray] = {}
+        limit = ""
+        for left in range(MOST_HALVINGS, -1, -1):
+            further = self._further(made, truths)
+            if not further.size:
+                break
+            if not left:
+                limit = halvings_reached(MOST_HALVINGS)
+                break
+            more = with_inserted_nodes(made, self.axis, further)
+            if more is None:
+                limit = "a point between them has no solution"
+                break
+            made = more
+        self._solve(made, self._missing(made, truths, self._last_probes), truths)
+        error, change = self._spread(made, *self._missed(made, truths))
+        return AlignmentErrors(made, error, change, limit)
+
+    @property
+    def _last_probes(self) -> tuple[float, ...]:
+        """Held-out alignments of a finished axis: each center distance has a compliance of its own."""
+        return MIDDLE if self.goal_of is None and self.axis == CENTER_DISTANCE else QUARTERS
+
+    def _further(self, made: SolvedTable, truths: dict[float, FloatArray]) -> FloatArray:
+        """Return the middles of the intervals that miss the goal; solve the held-out points that tell."""
+        if self.goal_of is None:
+            return np.empty(0)
+        nodes = getattr(made.table, self.axis)
+        middles = nodes[:-1] + MIDDLE[0] * np.diff(nodes)
+        self._solve(made, self._missing(made, truths, MIDDLE), truths)
+        missed = self._beyond(made, truths)
+        if not missed.all():
+            self._solve(made, self._missing(made, truths, QUARTERS, ~missed), truths)
+            missed = self._beyond(made, truths)
+        return np.asarray(middles[missed])
+
+    def _beyond(self, made: SolvedTable, truths: Mapping[float, FloatArray]) -> BoolArray:
+        """Return which intervals (I,) of an axis miss the goal; those without a solution do not."""
+        assert self.goal_of is not None
+        _, change = self._spread(made, *self._missed(made, truths))
+        goal = self.goal_of(made.table)
+        # of (2, F, M, D), which has quantities in the place of positions
+        allowed = np.moveaxis(allowed_errors(made.table, goal.tolerance), GRID.index(self.axis), 1)
+        least = np.minimum(allowed[:, 1:], allowed[:, :-1])  # (2, I, F, others)
+        share = (change[[MEAN, PEAK_TO_PEAK]][..., None] / least).max(axis=(0, 2, 3))
+        return np.asarray(share > goal.shares(self.axis))
+
+    def _missing(
+        self,
+        made: SolvedTable,
+        truths: Mapping[float, FloatArray],
+        probes: tuple[float, ...],
+        of: BoolArray | None = None,
+    ) -> FloatArray:
+        """Return the held-out alignments of intervals of an axis that are not solved yet."""
+        nodes = getattr(made.table, self.axis)
+        known = np.array([*truths, *nodes])
+        chosen = np.ones(nodes.size - 1, bool) if of is None else of
+        wanted = [
+            low + part * (high - low)
+            for (low, high), wished in zip(pairwise(nodes.tolist()), chosen, strict=True)
+            if wished
+            for part in probes
+        ]
+        near = 1e-9 * np.diff(nodes).min()
+        return np.array([at for at in wanted if not np.any(np.abs(known - at) <= near)])
+
+    def _solve(self, made: SolvedTable, at: FloatArray, truths: dict[float, FloatArray]) -> None:
+        """Solve held-out alignments, (R, l) in m each; NaN where a solution did not converge."""
+        if not at.size:
+            return
+        rows, loads = self._sample(made)
+        table = made.table
+        other = np.array([self._other_node(table)])
+        points = alignment_points(made, {self.axis: at, self._other: other})
+        starts = None
+        position = made.nodes.position
+        if self.axis == MISALIGNMENT:  # all of one center distance, of which the table has the compliance
+            first = points.places[0]
+            take_compliance(made, first)
+            first.contact.keep_rows(first.model, position, rows)
+            starts = [self._start(made, rows, loads, skew) for skew in at.tolist()]
+        where = [position[rows]] * at.size
+        load = table.force[loads]
+        solved = deflected_operating_points(points.places, where, load, None, points.workers, starts=starts)
+        truths.update(zip(at.tolist(), (curves[..., 0] for curves in solved), strict=True))
+
+    def _start(self, made: SolvedTable, rows: IntArray, loads: IntArray, at: float) -> Start:
+        """Start a misalignment between the solutions at the nodes beside it."""
+        table = made.table
+        nodes, changes = table.misalignment, table.center_distance_change
+        above = int(np.searchsorted(nodes, at))
+        part = (at - nodes[above - 1]) / (nodes[above] - nodes[above - 1])
+        nearest = int(np.argmin(np.abs(changes)))
+        lower, upper = (made.solved[m * changes.size + nearest] for m in (above - 1, above))
+        first, second = (solution.force[np.ix_(rows, loads)] for _, solution in (lower, upper))
+        return Start(lower[0].candidates, first + part * (second - first))
+
+    def _missed(self, made: SolvedTable, truths: Mapping[float, FloatArray]) -> tuple[FloatArray, FloatArray]:
+        """Largest differences (I, l) in every interval and changes of the quantities (23, I, l), m."""
+        rows, loads = self._sample(made)
+        table, position = first_pitch(made.table), made.nodes.position[rows]
+        at = np.array(sorted(truths))
+        other = self._other_node(table)
+        alignment = (at[:, None], other) if self.axis == MISALIGNMENT else (other, at[:, None])
+        curves = table.ste(position[:, None, None], table.force[loads], *alignment)  # (R, probes, l)
+        truth = np.stack([truths[x] for x in at.tolist()], axis=1)
+        error = AWAY * np.abs(curves - truth).max(axis=0)
+        flat = curves.reshape(len(curves), -1), truth.reshape(len(truth), -1)
+        change = AWAY * quantity_changes(position, *flat, 1).reshape(-1, *truth.shape[1:])
+        # one pitch has no orders beside the mesh: they count as the harmonic that changes most
+        change[BESIDE_MESH] = change[FIRST_HARMONIC:].max(axis=0)
+        nodes = getattr(table, self.axis)
+        inside = [(at > low) & (at < high) for low, high in pairwise(nodes.tolist())]
+        return (
+            np.stack([error[own].max(axis=0) for own in inside]),
+            np.stack([change[:, own].max(axis=1) for own in inside], axis=1),
+        )
+
+    def _spread(
+        self, made: SolvedTable, error: FloatArray, change: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Carry errors (I, l) and changes (23, I, l) on to all loads of a table."""
+        force, (_, loads) = made.table.force, self._sample(made)
+        return spread(force, loads, error, 1), spread(force, loads, change, 2)
+
+    @property
+    def _other(self) -> str:
+        """The other axis of alignments."""
+        return MISALIGNMENT if self.axis == CENTER_DISTANCE else CENTER_DISTANCE
+
+    def _other_node(self, table: SteDatabase) -> float:
+        """Return the node of the other axis that is nearest to zero."""
+        return float(min(getattr(table, self._other).tolist(), key=abs))
+
+    def _sample(self, made: SolvedTable) -> tuple[IntArray, IntArray]:
+        """Return the positions of a pitch and the loads that are solved."""
+        rows = some_positions(made.nodes.position.size)
+        return rows, sample_of(made.table.force.size, LOADS)
+
+
+def first_pitch(table: SteDatabase) -> SteDatabase:
+    """Return the first base pitch of a longer period: at its own positions the rest does not matter."""
+    if table.period == 1:
+        return table
+    rows = int(np.searchsorted(table.position, 1.0))
+    arrays = {
+        name: getattr(table, name)[:rows]
+        for name, dimensions in table.stored.items()
+        if dimensions[0] == "position"
+    }
+    return replace(table, **arrays, period=1)

@@ -1,0 +1,148 @@
+"""Operating points between those of a solved table: solved by themselves and put between its own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from fe_contact.analysis.pairs.contact_lines import solve_operating_points
+from fe_contact.analysis.pairs.kept_contact import KeptContact
+from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoints, operating_points
+from fe_contact.analysis.request.solved_run import edges_left_out
+from fe_contact.analysis.tables import SolvedTable, assembled_table
+from fe_contact.contact import ContactProblem
+from fe_contact.ste import SteDatabase
+from fe_contact.ste.fields import CENTER_DISTANCE, INSERTED, MISALIGNMENT
+from fe_contact.types import FloatArray, Status
+
+Alignments = dict[str, FloatArray]
+"""Misalignments and changes of the center distance in m, by the name of the axis."""
+
+
+def with_inserted_nodes(made: SolvedTable, axis: str, further: FloatArray) -> SolvedTable | None:
+    """Return a solved table with further nodes of an axis of alignments; None if a point there failed.
+
+    Only the new operating points are solved, at the positions, loads and support loads of the table: what
+    it has stays as it is. The table marks the nodes as inserted; its errors are not estimated.
+
+    Parameters
+    ----------
+    axis : str
+        "misalignment" or "center_distance_change".
+    further : ndarray
+        Its nodes between those of the table, m.
+    """
+    axes = {name: getattr(made.table, name) for name in (MISALIGNMENT, CENTER_DISTANCE)}
+    axes[axis] = np.sort(np.concatenate([axes[axis], further]))
+    places = _merged_places(made, axes)
+    old = {id(place): k for k, place in enumerate(made.places.places)}
+    new = [place for place in places.places if id(place) not in old]
+    further_kept = _solved(made, replace(places, places=tuple(new)))
+    if further_kept is None:
+        return None
+    number = old | {id(place): len(old) + k for k, place in enumerate(new)}
+    order = [number[id(place)] for place in places.places]
+    kept, support = (
+        [[*own, *others][k] for k in order]
+        for own, others in zip((made.kept, made.support), further_kept, strict=True)
+    )
+    return replace(
+        made,
+        places=places,
+        kept=kept,
+        support=support,
+        solved=[(contact.problem, contact.solution) for contact in kept],
+        table=_marked(made, axes, places, (kept, support)),
+    )
+
+
+def alignment_points(made: SolvedTable, axes: Alignments) -> OperatingPoints:
+    """Return the operating points of alignments; center distances of the table have its compliances."""
+    scene = replace(
+        made.checked.request.scene,
+        misalignment=axes[MISALIGNMENT],
+        center_distance_change=axes[CENTER_DISTANCE],
+    )
+    points = operating_points(scene, made.checked.decided, made.places.nominal, made.places.workers)
+    distances = made.table.center_distance_change.tolist()
+    known = dict(zip(distances, (place.contact for place in made.places.places), strict=False))
+    places = [
+        replace(point, contact=known.get(distance, point.contact))
+        for (_, distance), point in zip(_alignments(axes), points.places, strict=True)
+    ]
+    return replace(points, places=tuple(places))
+
+
+def _merged_places(made: SolvedTable, axes: Alignments) -> OperatingPoints:
+    """Return the operating points of a table with more alignments; those it has are the same objects."""
+    own = {name: getattr(made.table, name) for name in axes}
+    old = dict(zip(_alignments(own), made.places.places, strict=True))
+    points = alignment_points(made, axes)
+    places = [
+        old.get(alignment, point) for alignment, point in zip(_alignments(axes), points.places, strict=True)
+    ]
+    return replace(points, places=tuple(places))
+
+
+def _alignments(axes: Alignments) -> list[tuple[float, float]]:
+    """Return the pairs of misalignment and center distance, this one running fastest."""
+    return list(product(axes[MISALIGNMENT].tolist(), axes[CENTER_DISTANCE].tolist()))
+
+
+def _solved(made: SolvedTable, places: OperatingPoints) -> list[list[KeptContact]] | None:
+    """Solve operating points at the loads and support loads of a table; None if a point failed."""
+    for place in places.places:
+        take_compliance(made, place)
+    loads = made.plan.load, made.plan.support
+    edges = edges_left_out(made.checked)
+    sets, _ = solve_operating_points(places, made.nodes.position, loads, conditioned=False, edges=edges)
+    needed = made.plan.load, made.table.support_force
+    for load, kept in zip(needed, sets, strict=True):
+        for contact in kept:
+            columns = np.isin(contact.solution.load, load)
+            if np.any(contact.solution.status[:, columns] != Status.CONVERGED):
+                return None
+    return sets
+
+
+def take_compliance(made: SolvedTable, place: OperatingPoint) -> None:
+    """Let the contact of a place have the compliance of the table's positions, if the table has it."""
+    contact, model, position = place.contact, place.model, made.nodes.position
+    if contact.kept(model, position) is not None:
+        return
+    problem = _problem_of(made, place)
+    if problem is not None:
+        plain = replace(problem, candidates=contact.candidates(model, position))
+        contact.take(model, plain)
+
+
+def _problem_of(made: SolvedTable, place: OperatingPoint) -> ContactProblem | None:
+    """Return the problem of the table's first operating point with the contact of a place."""
+    for own, kept in zip(made.places.places, made.kept, strict=True):
+        if own.contact is place.contact:
+            return kept.problem
+    return None
+
+
+def _marked(
+    made: SolvedTable,
+    axes: Alignments,
+    places: OperatingPoints,
+    kept: tuple[Sequence[KeptContact], Sequence[KeptContact]],
+) -> SteDatabase:
+    """Assemble the table of all operating points, and mark the nodes that were inserted."""
+    request = replace(
+        made.checked.request,
+        misalignment=axes[MISALIGNMENT],
+        center_distance_change=axes[CENTER_DISTANCE],
+    )
+    table = assembled_table(request, places, made.nodes, *kept)
+    marks: dict[str, Any] = {}
+    for axis, name in INSERTED.items():
+        inserted = ~np.isin(getattr(table, axis), getattr(made.checked.request, axis))
+        marks[name] = inserted.astype(np.int8) if inserted.any() else np.empty(0, np.int8)
+    return replace(table, **marks)

@@ -1,0 +1,136 @@
+"""Errors of a table at points between its nodes of load, misalignment and center distance.
+
+An error at nodes is linear between them, that of interpolation belongs to an interval: nothing on its nodes,
+the same anywhere else in it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from fe_contact.ste.fields import SteFields
+from fe_contact.ste.interpolation import Axis, Stencil
+from fe_contact.types import BoolArray, FloatArray, IntArray
+
+Values = FloatArray
+"""Of the nodes, (F, M, D, ...); those of an interval stand at its lower node."""
+
+
+@dataclass(frozen=True)
+class NodePlaces:
+    """Loads, misalignments and center distances of Q points between the nodes of a table.
+
+    Beyond the ends of an axis the end counts.
+    """
+
+    force: Stencil
+    misalignment: Stencil
+    center_distance_change: Stencil
+
+    @classmethod
+    def of(
+        cls, table: SteFields, force: FloatArray, misalignment: FloatArray, change: FloatArray
+    ) -> NodePlaces:
+        """Place normal forces in N, misalignments and changes of the center distance in m, each (Q,)."""
+        return cls(
+            Axis(table.force).stencil(force),
+            Axis(table.misalignment).stencil(misalignment),
+            Axis(table.center_distance_change).stencil(change),
+        )
+
+    @property
+    def stencils(self) -> tuple[Stencil, Stencil, Stencil]:
+        """Those of the three axes."""
+        return self.force, self.misalignment, self.center_distance_change
+
+    @property
+    def outside(self) -> BoolArray:
+        """Which points lie beyond an axis of alignments."""
+        return np.asarray(self.misalignment.outside | self.center_distance_change.outside)
+
+    def at_nodes(self, values: Values) -> FloatArray:
+        """Return errors at nodes (F, M, D, ...) at the points, (Q, ...)."""
+        return _linear(self.stencils, values)
+
+    def of_interval(self, values: Values, axis: int) -> FloatArray:
+        """Return errors (F, M, D, ...) of the intervals of an axis at the points, (Q, ...)."""
+        at = self.stencils[axis]
+        lower = np.moveaxis(values, axis, 0)[at.left]  # (Q, others ...)
+        others = [stencil for i, stencil in enumerate(self.stencils) if i != axis]
+        inside = (at.fraction > 0.0) & (at.fraction < 1.0)
+        every = np.arange(at.left.size)
+        stated = _linear(others, lower, (every,))
+        return np.where(inside.reshape(-1, *[1] * (stated.ndim - 1)), stated, 0.0)
+
+    def interval_error(self, table: SteFields) -> FloatArray:
+        """Return the error (Q,) of a point by interpolation along all three axes, m; NaN: not estimated."""
+        total = np.zeros(self.force.left.size)
+        if table.interval_error.size:
+            for axis in np.flatnonzero(np.greater(table.interval_error.shape[1:], 1)).tolist():
+                total = total + self.of_interval(table.interval_error[axis], axis)
+        return total
+
+
+def error_band(table: SteFields, position: FloatArray, places: NodePlaces) -> FloatArray:
+    """Return the half-width (n,) of the error band of the transmission error at points of a table, m.
+
+    That at the nodes, linear between them, and what interpolation between loads and alignments adds. Below
+    the smallest load the table holds no error. NaN: not estimated.
+
+    Parameters
+    ----------
+    position : ndarray, shape (n,)
+        Base pitches.
+    places : NodePlaces
+        Of all points, or a single one.
+    """
+    at = Axis(table.position, float(table.period)).stencil(position)
+    if places.force.left.size == 1:
+        stored = _linear((at,), places.at_nodes(np.moveaxis(table.error_estimate, 0, 3))[0])
+    else:
+        stored = _linear((at, *places.stencils), table.error_estimate)
+    return np.asarray(stored + places.interval_error(table))
+
+
+def force_error(table: SteFields, points: FloatArray, force: FloatArray, stiffness: FloatArray) -> FloatArray:
+    """Return the error (n,) of mesh forces in N: that of the transmission error under them times stiffness.
+
+    NaN where it is not estimated: beyond the axes, above the highest load, below the smallest, without
+    contact.
+
+    Parameters
+    ----------
+    points : ndarray, shape (4, n)
+        Positions in base pitches, misalignments, changes of the center distance, deflections, m.
+    force, stiffness : ndarray, shape (n,)
+        Transverse force in N and its derivative in the deflection, N/m.
+    """
+    position, misalignment, change, _ = points
+    normal = force / math.cos(table.facts.base_helix_angle)
+    places = NodePlaces.of(table, normal, misalignment, change)
+    smallest = min([table.force[0], *table.support_force[:1]])
+    outside = (normal < smallest) | (normal > table.force[-1]) | places.outside
+    return np.where(outside, np.nan, stiffness * error_band(table, position, places))
+
+
+def _linear(
+    stencils: tuple[Stencil, ...] | list[Stencil], values: FloatArray, rows: tuple[IntArray, ...] = ()
+) -> FloatArray:
+    """Interpolate values linearly over their first axes, (Q, ...); a knot is not touched by its neighbors.
+
+    `rows`: indices (Q,) of axes before those of the stencils.
+    """
+    total: FloatArray | float = 0.0
+    for corner in product(*((0,) if np.array_equal(at.left, at.right) else (0, 1) for at in stencils)):
+        weight = np.ones(stencils[0].left.size)
+        for at, side in zip(stencils, corner, strict=True):
+            weight = weight * (at.fraction if side else 1.0 - at.fraction)
+        index = tuple(at.right if side else at.left for at, side in zip(stencils, corner, strict=True))
+        term = values[(*rows, *index)]
+        weight = weight.reshape(-1, *[1] * (term.ndim - 1))
+        total = total + np.where(weight > 0.0, weight * term, 0.0)
+    return np.asarray(total)
