@@ -17,6 +17,7 @@ from fe_contact.contact.patch import Patches, load_vector
 from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices
 from fe_contact.contact.tooth_touch import tooth_touch
 from fe_contact.contact.touch import Touch, rolls_at
+from fe_contact.contact.touch_cache import cached_touch
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray
 from host.loops import njit
@@ -51,13 +52,20 @@ def in_pitches(
     """
     candidates = problem.candidates
     times = pitch.size // candidates.position.size
-    tiled: dict[str, FloatArray] = {
-        name: np.concatenate([values] * times) for name, values in vars(candidates.touch).items()
-    }
-    touch = Touch(**tiled)
-    if model.tooth_gaps:
-        meeting = pitch[:, None] - candidates.pair
-        touch = tooth_touch(pair, touch, model, meeting, candidates.face_position)
+
+    def find() -> Touch:
+        tiled = (np.concatenate([values] * times) for values in vars(candidates.touch).values())
+        touch = Touch(*tiled)
+        if not model.tooth_gaps:
+            return touch
+        return tooth_touch(pair, touch, model, pitch[:, None] - candidates.pair, candidates.face_position)
+
+    common = candidates.touch
+    touch = cached_touch(
+        (pair, model.gaps, model.tooth_gaps, model.corner_contact),
+        (common.roll_1, common.s_1, common.gap, candidates.face_position, candidates.pair, pitch),
+        find,
+    )
     moved = replace(
         candidates,
         position=np.tile(candidates.position, times) + pitch,

@@ -11,6 +11,7 @@ from fe_contact.contact.model import ContactModel
 from fe_contact.contact.patch import Patches, tip_patches
 from fe_contact.contact.problem import Candidates, LoadedSlices, Slices
 from fe_contact.contact.touch import Touch, conjugate_touch, flank_coordinate, modified_touch
+from fe_contact.contact.touch_cache import cached_touch
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.hertz import lateral_share, wedge_softness
 from fe_contact.types import FloatArray, IntArray
@@ -138,7 +139,12 @@ def with_gaps(pair: ParallelAxes, candidates: Candidates, model: ContactModel) -
     """
     if not model.gaps:
         return candidates
-    touch = modified_touch(pair, candidates.touch, candidates.face_position, model.gaps)
+    plain, face = candidates.touch, candidates.face_position
+    touch = cached_touch(
+        (pair, model.gaps),
+        (plain.roll_1, plain.s_1, plain.gap, face),
+        lambda: modified_touch(pair, plain, face, model.gaps),
+    )
     return candidates.touching(touch)
 
 

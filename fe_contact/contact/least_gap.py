@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
 from fe_contact.types import FloatArray, IntArray
+from host.loops import inner, njit
 
 TrueGap = Callable[[FloatArray, IntArray], FloatArray]
 """Gap in m at ways (k,) in m along the flanks of the contacts (k,)."""
@@ -41,94 +44,221 @@ def least_gap(
     taken by the gap there alone.
     """
     value = gap(x, of)
-    first = np.searchsorted(of, np.arange(allowed.size))
-    last = np.append(first[1:], of.size) - 1
-    here = np.arange(of.size)
-    left, right = np.maximum(here - 1, first[of]), np.minimum(here + 1, last[of])
-    ways, values = (np.stack([each[left], each, each[right]]) for each in (x, value))
-    promise = value - _DEEPER * _gain(ways, values)[1]
-    place, least = x[first].copy(), np.full(allowed.size, np.inf)
+    first = np.searchsorted(of, np.arange(allowed.size + 1))
+    promise = _promises(x, value, first)
+    place, least = x[first[:-1]].copy(), np.full(allowed.size, np.inf)
     for _ in range(_VALLEYS):
-        lowest = np.minimum.reduceat(promise, first)
-        on = np.flatnonzero(lowest < least - allowed)
+        on, ways, values = _lowest_valleys(x, value, promise, first, least - allowed)
         if not on.size:
             break
-        best = np.flatnonzero(promise == lowest[of])
-        best = best[np.unique(of[best], return_index=True)[1]][on]
-        promise[best] = np.inf
-        ways_on, values_on = _followed(gap, on, ways[:, best], values[:, best], allowed[on])
-        lower = values_on < least[on]
-        place[on[lower]], least[on[lower]] = ways_on[lower], values_on[lower]
+        _follow(gap, on, ways, values, allowed[on])
+        lower = values[1] < least[on]
+        place[on[lower]], least[on[lower]] = ways[1, lower], values[1, lower]
     return place, least
 
 
-def _gain(ways: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return lowest places of parabolas through three points (3, n), and how far they are below the middle.
-
-    Where the middle is not the lowest of three points it is the place, and nothing is gained.
-    """
-    before, after = ways[1] - ways[0], ways[2] - ways[1]
-    up, down = values[0] - values[1], values[2] - values[1]
-    turn = (before > 0.0) & (after > 0.0) & (up >= 0.0) & (down >= 0.0) & (up + down > 0.0)
-    before, after = np.where(turn, before, 1.0), np.where(turn, after, 1.0)
-    rise, fall = down / after, up / before
-    bend = np.where(turn, (rise + fall) / (before + after), 1.0)  # half the curvature
-    slope = (rise * before - fall * after) / (before + after)
-    place = np.where(turn, ways[1] - 0.5 * slope / bend, ways[1])
-    return place, np.where(turn, 0.25 * slope**2 / bend, 0.0)
-
-
-def _followed(
-    gap: TrueGap, of: IntArray, ways: FloatArray, values: FloatArray, allowed: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Follow gaps of contacts `of` (n,) down between three points (3, n), the middle the lowest or an end."""
+def _follow(
+    gap: TrueGap, contact: IntArray, ways: FloatArray, values: FloatArray, allowed: FloatArray
+) -> None:
+    """Follow gaps of contacts (n,) down between three points (3, n), the middle the lowest or an end."""
     on: IntArray = np.arange(allowed.size)
     for k in range(_STEPS):
-        at, heights = ways[:, on], values[:, on]
-        place, gained = _gain(at, heights)
-        longer = np.where(at[2] - at[1] > at[1] - at[0], 2, 0)
-        side = at[longer, np.arange(on.size)]
-        at_end = (at[0] == at[1]) | (at[1] == at[2])
-        halved = at_end | (k % _HALVED == _HALVED - 1)
-        nearest = _NEAREST * (at[2] - at[0])
-        towards = np.where(place == at[1], side - at[1], place - at[1])
-        place = at[1] + np.copysign(np.maximum(np.abs(place - at[1]), nearest), towards)
-        place = np.where(halved, 0.5 * (at[1] + side), np.clip(place, at[0], at[2]))
-        height = gap(place, of[on])
-        ways[:, on], values[:, on] = _narrowed(at, heights, place, height)
-        more = (gained > allowed[on]) | (heights[1] - height > allowed[on]) | (k < _LEAST_STEPS)
-        on = on[more]
+        place, gained = _refinements(ways, values, on, k % _HALVED == _HALVED - 1)
+        height = gap(place, contact[on])
+        on = _narrow(ways, values, (on, place, height, gained), allowed, k < _LEAST_STEPS)
         if not on.size:
             break
-    return ways[1], values[1]
 
 
-def _narrowed(
-    ways: FloatArray, values: FloatArray, place: FloatArray, height: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return the points (3, n) about the lowest of three and a new one."""
-    lower, right = height < values[1], place > ways[1]
-    outer = np.where(right, 2, 0)
-    column = np.arange(place.size)
-    new_ways, new_values = ways.copy(), values.copy()
-    # the new point is the middle: the old one is its end on the other side; else it is an end itself
-    end = np.where(lower, 2 - outer, outer)
-    new_ways[end, column] = np.where(lower, ways[1], place)
-    new_values[end, column] = np.where(lower, values[1], height)
-    new_ways[1], new_values[1] = np.where(lower, place, ways[1]), np.where(lower, height, values[1])
-    return new_ways, new_values
+@inner(error_model="numpy")
+def _parabola(ways: FloatArray, values: FloatArray, i: int) -> tuple[float, float]:
+    """Return the lowest place of the parabola through three points, and how far it is below the middle.
 
-
-def samples(
-    nodes: FloatArray, origin: FloatArray, window: tuple[FloatArray, FloatArray]
-) -> tuple[FloatArray, IntArray]:
-    """Return the ways from `origin` (n,) to all of the nodes (k,), increasing, within windows, and of which.
-
-    All in m along the flank; windows as ways from the origin.
+    Where the middle is not the lowest of the three it is the place, and nothing is gained.
     """
-    low, high = (np.searchsorted(nodes, origin + end) for end in window)
-    count = np.maximum(high - low, 0)
-    of = np.repeat(np.arange(origin.size), count)
-    begin = np.cumsum(count) - count
-    node = np.arange(of.size) - begin[of] + low[of]
-    return nodes[node] - origin[of], of
+    before, after = ways[1, i] - ways[0, i], ways[2, i] - ways[1, i]
+    up, down = values[0, i] - values[1, i], values[2, i] - values[1, i]
+    if not (before > 0.0 and after > 0.0 and up >= 0.0 and down >= 0.0 and up + down > 0.0):
+        return ways[1, i], 0.0
+    rise, fall = down / after, up / before
+    bend = (rise + fall) / (before + after)  # half the curvature
+    slope = (rise * before - fall * after) / (before + after)
+    return ways[1, i] - 0.5 * slope / bend, 0.25 * (slope * slope) / bend
+
+
+@inner(error_model="numpy")
+def _about(x: FloatArray, at: int, first: int, last: int, triple: FloatArray, i: int) -> None:
+    """Fill column i of `triple` (3, n) with a sample and its neighbors; at an end it is a neighbor itself."""
+    triple[0, i], triple[1, i], triple[2, i] = x[max(at - 1, first)], x[at], x[min(at + 1, last)]
+
+
+@njit(cache=True, error_model="numpy")
+def _promises(x: FloatArray, value: FloatArray, first: IntArray) -> FloatArray:
+    """Return how low the gap may be about each sample; contact n has those from first[n] to first[n + 1]."""
+    promise = np.empty(x.size)
+    ways, values = np.empty((3, 1)), np.empty((3, 1))
+    for n in range(first.size - 1):
+        for at in range(first[n], first[n + 1]):
+            _about(x, at, first[n], first[n + 1] - 1, ways, 0)
+            _about(value, at, first[n], first[n + 1] - 1, values, 0)
+            promise[at] = value[at] - _DEEPER * _parabola(ways, values, 0)[1]
+    return promise
+
+
+@njit(cache=True, error_model="numpy")
+def _lowest_valleys(
+    x: FloatArray, value: FloatArray, promise: FloatArray, first: IntArray, bound: FloatArray
+) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Take the most promising sample of each contact where it promises less than `bound` (n,), once.
+
+    Returns those contacts (m,), and samples and gaps about there (3, m).
+    """
+    on = np.empty(bound.size, dtype=np.int64)
+    ways, values = np.empty((3, bound.size)), np.empty((3, bound.size))
+    count = 0
+    for n in range(bound.size):
+        best = first[n]
+        for at in range(first[n] + 1, first[n + 1]):
+            if promise[at] < promise[best]:
+                best = at
+        if promise[best] < bound[n]:
+            promise[best] = np.inf
+            _about(x, best, first[n], first[n + 1] - 1, ways, count)
+            _about(value, best, first[n], first[n + 1] - 1, values, count)
+            on[count] = n
+            count += 1
+    return on[:count], ways[:, :count].copy(), values[:, :count].copy()
+
+
+@njit(cache=True, error_model="numpy")
+def _refinements(
+    ways: FloatArray, values: FloatArray, on: IntArray, halving: bool
+) -> tuple[FloatArray, FloatArray]:
+    """Return where to look next between points (3, n) of contacts `on` (m,), and what a parabola gains."""
+    places, gains = np.empty(on.size), np.empty(on.size)
+    for m in range(on.size):
+        i = on[m]
+        low, middle, high = ways[0, i], ways[1, i], ways[2, i]
+        place, gains[m] = _parabola(ways, values, i)
+        longer = high if high - middle > middle - low else low
+        if halving or middle in (low, high):
+            places[m] = 0.5 * (middle + longer)
+        else:
+            towards = longer - middle if place == middle else place - middle
+            way = max(abs(place - middle), _NEAREST * (high - low))
+            places[m] = min(max(middle + math.copysign(way, towards), low), high)
+    return places, gains
+
+
+@njit(cache=True, error_model="numpy")
+def _narrow(
+    ways: FloatArray,
+    values: FloatArray,
+    new: tuple[IntArray, FloatArray, FloatArray, FloatArray],
+    allowed: FloatArray,
+    always: bool,
+) -> IntArray:
+    """Narrow points (3, n) about the lowest of three and a new one, and return which contacts go on.
+
+    `new` has contacts, places, gaps there, and what was gained by the parabola, (m,).
+    """
+    on, places, heights, gains = new
+    more, count = np.empty(on.size, dtype=np.int64), 0
+    for m in range(on.size):
+        i, place, height = on[m], places[m], heights[m]
+        lower, outer = height < values[1, i], 2 if place > ways[1, i] else 0
+        if always or gains[m] > allowed[i] or values[1, i] - height > allowed[i]:
+            more[count] = i
+            count += 1
+        if lower:  # the new point is the middle: the old one is its end on the other side
+            ways[2 - outer, i], values[2 - outer, i] = ways[1, i], values[1, i]
+            ways[1, i], values[1, i] = place, height
+        else:
+            ways[outer, i], values[outer, i] = place, height
+    return more[:count]
+
+
+class Nodes(NamedTuple):
+    """Coordinates at which gaps of n contacts are looked at, in sorted lists one after the other.
+
+    Attributes
+    ----------
+    s : ndarray
+        Coordinates along the flank, m.
+    start : ndarray of int, shape (L + 1,)
+        Where the lists begin.
+    list_of : ndarray of int, shape (K, n)
+        Lists of each contact.
+    origin : ndarray, shape (K, n)
+        Coordinates of the contact by which those of each list count, m.
+    """
+
+    s: FloatArray
+    start: IntArray
+    list_of: IntArray
+    origin: FloatArray
+
+
+@njit(cache=True, error_model="numpy")
+def samples(
+    window: tuple[FloatArray, FloatArray],
+    begin: FloatArray,
+    parts: FloatArray,
+    nodes: Nodes,
+    alike: FloatArray,
+) -> tuple[FloatArray, IntArray]:
+    """Return ways in m at which gaps are looked at, and their contacts, ordered by contact and way.
+
+    Within windows (n,): a place (n,) to begin at, `parts` (k,) of the window, and nodes. Of those that are no
+    further from the one below than `alike` (n,) in m there is none.
+    """
+    low, high = window
+    nearest, beyond = _nodes_within(window, nodes)
+    most = (parts.size + 1) * low.size + (beyond - nearest).sum()
+    x, of = np.empty(most), np.empty(most, dtype=np.int64)
+    first = 0
+    for n in range(low.size):
+        last = first
+        for part in parts:
+            x[last] = low[n] + (high[n] - low[n]) * part
+            last += 1
+        last = _insert(x, min(max(begin[n], low[n]), high[n]), first, last)
+        for k in range(len(nodes.origin)):
+            for node in range(nearest[k, n], beyond[k, n]):
+                last = _insert(x, nodes.s[node] - nodes.origin[k, n], first, last)
+        count, below = first, -np.inf
+        for at in range(first, last):
+            here = x[at]
+            if here - below > alike[n]:
+                x[count], of[count] = here, n
+                count += 1
+            below = here
+        first = count
+    return x[:first], of[:first]
+
+
+@inner(error_model="numpy")
+def _nodes_within(window: tuple[FloatArray, FloatArray], nodes: Nodes) -> tuple[IntArray, IntArray]:
+    """Return the first node (K, n) within each window, and the first one beyond it."""
+    nearest, beyond = (
+        np.empty(nodes.origin.shape, dtype=np.int64),
+        np.empty(nodes.origin.shape, dtype=np.int64),
+    )
+    for k in range(len(nodes.origin)):
+        for n in range(window[0].size):
+            start, stop = nodes.start[nodes.list_of[k, n]], nodes.start[nodes.list_of[k, n] + 1]
+            along, origin = nodes.s[start:stop], nodes.origin[k, n]
+            nearest[k, n] = start + np.searchsorted(along, origin + window[0][n])
+            beyond[k, n] = start + np.searchsorted(along, origin + window[1][n])
+    return nearest, beyond
+
+
+@inner(error_model="numpy")
+def _insert(x: FloatArray, value: float, first: int, last: int) -> int:
+    """Put a value in its place among those from `first` to `last`, which increase; return the new `last`."""
+    at = last
+    while at > first and x[at - 1] > value:
+        x[at] = x[at - 1]
+        at -= 1
+    x[at] = value
+    return last + 1

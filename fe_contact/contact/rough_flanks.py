@@ -55,15 +55,14 @@ class DeviatingTeeth(NamedTuple):
         """Bound of highest less lowest gap along the profiles, m."""
         return np.asarray(sum((term.spread(self.meeting) for term in self.gaps), np.zeros(())))
 
-    def nodes(self, pair: ParallelAxes) -> list[tuple[int, IntArray, FloatArray]]:
-        """Return gear, candidates and nodes of the teeth that meet, roll lengths in m, tooth by tooth."""
+    def nodes(self, pair: ParallelAxes) -> list[tuple[int, list[FloatArray], IntArray]]:
+        """Return of each gap its gear, nodes of its teeth as roll lengths in m, and which tooth meets."""
         sets = []
         for term in self.gaps:
-            teeth, of_tooth = np.unique(term.tooth(self.meeting), return_inverse=True)
-            order = np.argsort(of_tooth, kind="stable")
-            ends = np.searchsorted(of_tooth[order], np.arange(teeth.size + 1))
-            for tooth, begin, end in zip(teeth, ends[:-1], ends[1:], strict=True):
-                sets.append((term.gear, order[begin:end], term.nodes(pair, int(tooth))))
+            teeth = term.tooth(self.meeting)
+            numbers = np.flatnonzero(np.bincount(teeth))
+            lists = [term.nodes(pair, int(tooth)) for tooth in numbers]
+            sets.append((term.gear, lists, np.searchsorted(numbers, teeth)))
         return sets
 
     def some(self, of: IntArray | slice) -> DeviatingTeeth:

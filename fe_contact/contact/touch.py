@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from fe_contact.contact.least_gap import least_gap, samples
+from fe_contact.contact.least_gap import Nodes, least_gap, samples
 from fe_contact.contact.model import GapTerm
 from fe_contact.contact.parabolic_gap import moved_gap, touching_places
 from fe_contact.contact.rough_flanks import DesignedSurface, DeviatingTeeth
@@ -16,6 +17,7 @@ from fe_contact.contact.strip import Gap, rounded, with_breaks
 from fe_contact.geometry import ParallelAxes, Side, Toothing, corner_contact, edge_gap
 from fe_contact.hertz import relative_radius
 from fe_contact.types import BoolArray, FloatArray, IntArray
+from host.loops import njit
 
 _FLAT = 100.0
 _SAMPLES = 17
@@ -377,8 +379,11 @@ class _Flanks:
         """Return the gap in m at ways x (k,) of some of the touching points (k,)."""
         if self.cut_tips:
             return self.some(of).gap(x)
-        touch = self._touch
-        return x * (touch.slope[of] + 0.5 * touch.curvature[of] * x) + self._removed(x, of)
+        touch, gears = self._touch, (self._pair.pinion, self._pair.wheel)
+        doubled = 2.0 * gears[0].base_radius, 2.0 * gears[1].base_radius
+        flanks = touch.s_1, touch.s_2, touch.slope, touch.curvature
+        plain, *rolls = _plain_at_ways(x, of, flanks, doubled, float(gears[1].sign))
+        return plain + self._removed_at((rolls[0], rolls[1]), of)
 
     def rougher(self, part: float) -> BoolArray:
         """Return where the flanks may be that much as hollow as they are round, or more."""
@@ -401,15 +406,9 @@ class _Flanks:
         reach = (np.sqrt(steepness**2 + 2.0 * touch.curvature * fall) - steepness) / touch.curvature
         reach = np.maximum(1.1 * reach, self.step)  # a valley at its end has samples to either side
         low, high = np.maximum(self.first, -reach), np.minimum(self.last, reach)
-        even = low + (high - low) * np.linspace(0.0, 1.0, _SAMPLES)[:, None]
-        every: IntArray = np.arange(start.size)
-        parts = [(each, every) for each in (*even, np.clip(start, low, high))]
-        parts += self._nodes_within(low, high)
-        x, of = (np.concatenate(each) for each in zip(*parts, strict=True))
-        order = np.lexsort((x, of))
-        x, of = x[order], of[order]
-        new = np.append(True, (np.diff(of) > 0) | (np.diff(x) > _ALIKE * self.step[of[1:]]))
-        return least_gap(self.gap_of, x[new], of[new], self.allowed)
+        parts = np.linspace(0.0, 1.0, _SAMPLES)
+        x, of = samples((low, high), start, parts, self._nodes(), _ALIKE * self.step)
+        return least_gap(self.gap_of, x, of, self.allowed)
 
     def _largest_fall(self) -> FloatArray:
         """Return a bound of how much less may be removed within the reach than at the touching points, m."""
@@ -418,25 +417,26 @@ class _Flanks:
             fall = fall + self._teeth.spread
         if self._gaps:
             part = np.linspace(0.0, 1.0, _SAMPLES)[:, None]
-            samples = self._designed(self.first + (self.last - self.first) * part)
-            fall = fall + np.maximum(self._designed(np.zeros(fall.size)) - samples.min(axis=0), 0.0)
+            ways = np.concatenate([np.zeros((1, fall.size)), self.first + (self.last - self.first) * part])
+            rolls = rolls_at(self._pair, self._touch.s_1 + ways, self._touch.s_2 - ways)
+            designed = self._designed(rolls, slice(None))
+            fall = fall + np.maximum(designed[0] - designed[1:].min(axis=0), 0.0)
         return fall
 
-    def _nodes_within(self, low: FloatArray, high: FloatArray) -> list[tuple[FloatArray, IntArray]]:
-        """Return ways to the nodes of all gaps between `low` and `high`, and of which touching points."""
+    def _nodes(self) -> Nodes:
+        """Return the nodes of all gaps along the flanks; those of the wheel run the other way."""
         touch, pair = self._touch, self._pair
-        every: IntArray = np.arange(low.size)
-        sets = [(each.gear, every, each.nodes) for each in self._surfaces]
+        count = touch.s_1.size
+        sets = [(each.gear, [each.nodes], np.zeros(count, dtype=np.int64)) for each in self._surfaces]
         sets += [] if self._teeth is None else self._teeth.nodes(pair)
-        parts = []
-        for gear, of, nodes in sets:
-            s = np.sort(flank_coordinate((pair.pinion, pair.wheel)[gear], nodes))
-            if gear == 0:
-                x, each = samples(s, touch.s_1[of], (low[of], high[of]))
-            else:
-                x, each = samples(-s[::-1], -touch.s_2[of], (low[of], high[of]))
-            parts.append((x, of[each]))
-        return parts
+        along, list_of = [np.zeros(0)], np.zeros((len(sets), count), dtype=np.int64)
+        for k, (gear, lists, of) in enumerate(sets):
+            sign, toothing = (1.0, pair.pinion) if gear == 0 else (-1.0, pair.wheel)
+            list_of[k] = of + len(along)
+            along += [np.sort(sign * flank_coordinate(toothing, nodes)) for nodes in lists]
+        start = np.cumsum([0, *(each.size for each in along)])
+        gears = np.array([gear for gear, _, _ in sets], dtype=bool)[:, None]
+        return Nodes(np.concatenate(along), start, list_of, np.where(gears, -touch.s_2, touch.s_1))
 
     def lowest_sample(self) -> tuple[FloatArray, FloatArray]:
         """Return where the gap is least among samples all over the reach and at 0, and the gap there, m.
@@ -451,7 +451,10 @@ class _Flanks:
         may = np.flatnonzero(least > 0.0) if bounded else np.arange(lowest.size)
         part, near = np.linspace(0.0, 1.0, _SAMPLES)[:, None], self.some(may)
         x = near.first + (near.last - near.first) * part
-        gap = near._plain(x) if bounded else np.array([near.gap(way) for way in x])
+        if bounded:
+            gap = near._plain(x)
+        else:
+            gap = np.array([near.gap(way) for way in x]) if self.cut_tips else near.gap(x)
         if bounded:
             below = gap < least[may]
             gap[below] += near._removed(x[below], np.nonzero(below)[1])
@@ -528,18 +531,19 @@ class _Flanks:
 
     def _removed(self, x: FloatArray, of: IntArray | slice = slice(None)) -> FloatArray:
         """Return what is removed at x, m, of some of the touching points."""
-        removed = self._designed(x, of)
-        if self._teeth is not None:
-            rolls = rolls_at(self._pair, self._touch.s_1[of] + x, self._touch.s_2[of] - x)
-            removed = removed + self._teeth.some(of).gap(self._pair, rolls, self._face[of])
-        return removed
+        return self._removed_at(rolls_at(self._pair, self._touch.s_1[of] + x, self._touch.s_2[of] - x), of)
 
-    def _designed(self, x: FloatArray, of: IntArray | slice = slice(None)) -> FloatArray:
-        """Return the part of it that all teeth have in common."""
-        rolls = rolls_at(self._pair, self._touch.s_1[of] + x, self._touch.s_2[of] - x)
-        return np.asarray(
-            sum((term(self._pair, *rolls, self._face[of]) for term in self._gaps), np.zeros(()))
-        )
+    def _removed_at(self, rolls: tuple[FloatArray, FloatArray], of: IntArray | slice) -> FloatArray:
+        """Return the same at roll lengths of both gears."""
+        removed = self._designed(rolls, of)
+        if self._teeth is None:
+            return removed
+        return removed + self._teeth.some(of).gap(self._pair, rolls, self._face[of])
+
+    def _designed(self, rolls: tuple[FloatArray, FloatArray], of: IntArray | slice) -> FloatArray:
+        """Return the part of it that all teeth have in common, at roll lengths of both gears."""
+        terms = (term(self._pair, *rolls, self._face[of]) for term in self._gaps)
+        return np.asarray(sum(terms, np.zeros(())))
 
     def _excess(self, side: Side, x: FloatArray) -> FloatArray:
         """Return how much further apart than their parabola plain flanks are behind a cut tip, m.
@@ -573,6 +577,29 @@ class _Flanks:
         """Return where x is to the root of the gear whose tip leaves on that side, on round flanks."""
         flattest = _FLAT * self._pair.wheel.base_radius
         return np.asarray((x < 0.0 if side == "exit" else x > 0.0) & (self._touch.radius < flattest))
+
+
+@njit(cache=True, error_model="numpy")
+def _plain_at_ways(
+    x: FloatArray,
+    of: IntArray,
+    flanks: tuple[FloatArray, FloatArray, FloatArray, FloatArray],
+    doubled: tuple[float, float],
+    sign: float,
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the gap of plain flanks at ways x (k,) from some of the touching points (k,), and where it is.
+
+    In m: the gap, and roll lengths of both gears. `flanks` are flank coordinates, slope and curvature of the
+    touching points; `doubled` two base radii of each gear, `sign` that of the wheel.
+    """
+    s_1, s_2, slope, curvature = flanks
+    plain, roll_1, roll_2 = np.empty(x.size), np.empty(x.size), np.empty(x.size)
+    for k in range(x.size):
+        n, way = of[k], x[k]
+        plain[k] = way * (slope[n] + 0.5 * curvature[n] * way)
+        roll_1[k] = math.sqrt(doubled[0] * max(s_1[n] + way, 0.0))
+        roll_2[k] = math.sqrt(doubled[1] * max(sign * (s_2[n] - way), 0.0))
+    return plain, roll_1, roll_2
 
 
 def rolls_at(pair: ParallelAxes, s_1: FloatArray, s_2: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -78,12 +78,12 @@ class TurningGap:
         shape = np.broadcast_shapes(teeth.meeting.shape, roll.shape, face.shape)
         meeting = np.broadcast_to(teeth.meeting, shape).ravel()
         roll, face = (np.broadcast_to(each, shape).ravel() for each in (roll, face))
-        excess = np.zeros(meeting.size)
+        gap = np.zeros(meeting.size)
         if self._harmonics.size:
-            _add_harmonics(excess, self._harmonics, self._turning(pair, gear), meeting, roll, face)
+            _take_harmonics(gap, self._harmonics, self._turning(pair, gear), meeting, roll, face)
         if self.surfaces is not None:
-            excess += self.surfaces.excess(self.tooth(meeting), roll, face)
-        return np.asarray(-excess.reshape(shape))
+            gap -= self.surfaces.excess(self.tooth(meeting), roll, face)
+        return gap.reshape(shape)
 
     def extent(self, pair: ParallelAxes, meeting: IntArray) -> Extent:
         """Return bounds of what turns with the gear, and of the flanks of the teeth that meet."""
@@ -121,7 +121,7 @@ class TurningGap:
 
     def tooth(self, meeting: IntArray) -> IntArray:
         """Return which teeth meet, the first is 0."""
-        return meeting % self.period % self.teeth
+        return _teeth_of(np.ascontiguousarray(meeting), self.period, self.teeth)
 
     def nodes(self, pair: ParallelAxes, tooth: int) -> FloatArray:
         """Return roll lengths of the gear in m, between two of which its profile turns back once at most."""
@@ -204,18 +204,31 @@ class Turning(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy")
-def _add_harmonics(
-    excess: FloatArray,
+def _teeth_of(meeting: IntArray, period: int, teeth: int) -> IntArray:
+    """Return which teeth meet; divisions are slow, and most candidates in turn are of one pair."""
+    tooth = np.empty_like(meeting)
+    before, after = meeting.ravel(), tooth.ravel()
+    for k in range(before.size):
+        if k and before[k] == before[k - 1]:
+            after[k] = after[k - 1]
+        else:
+            after[k] = before[k] % period % teeth
+    return tooth
+
+
+@njit(cache=True, error_model="numpy")
+def _take_harmonics(
+    gap: FloatArray,
     harmonics: FloatArray,
     turning: Turning,
     meeting: IntArray,
     roll: FloatArray,
     face: FloatArray,
 ) -> None:
-    """Add harmonics (H, 6) of the turn of a gear at points (k,), `face` from its own mid-face, m."""
+    """Take harmonics (H, 6) of the turn of a gear off a gap at points (k,); `face` from its mid-face, m."""
     inclined = turning.per_face * turning.face_width
-    turn, along = np.empty(excess.size), np.empty(excess.size)
-    for k in range(excess.size):
+    turn, along = np.empty(gap.size), np.empty(gap.size)
+    for k in range(gap.size):
         along[k] = face[k] / turning.face_width
         tooth = float(meeting[k] % turning.period) / turning.teeth
         rolled = (roll[k] - turning.pitch_point) * turning.per_roll
@@ -223,9 +236,9 @@ def _add_harmonics(
     for h in range(len(harmonics)):
         amplitude, over_face, order, waves, inclination, phase = harmonics[h]
         advance, late = waves + inclination * order * inclined, phase / (2.0 * math.pi)
-        for k in range(excess.size):
+        for k in range(gap.size):
             angle = order * turn[k] + advance * along[k] - late
-            excess[k] += (amplitude + over_face * along[k]) * _cosine(angle)
+            gap[k] -= (amplitude + over_face * along[k]) * _cosine(angle)
 
 
 _TERMS = tuple((-1.0) ** k * math.pi ** (2 * k + 1) / math.factorial(2 * k + 1) for k in range(10))

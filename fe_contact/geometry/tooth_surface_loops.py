@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fe_contact.flank.bicubic import bicubic_at
+from fe_contact.flank.bicubic import cell_value, cell_weights
 from fe_contact.types import FloatArray, IntArray
 from host.loops import inner, njit
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from fe_contact.geometry.tooth_surfaces import PackedGrids
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def surfaces_excess(
     tooth: IntArray,
     roll_length: FloatArray,
@@ -32,8 +32,10 @@ def surfaces_excess(
     excess = np.zeros(tooth.size)
     across, along = np.zeros(4), np.zeros(4)
     middle, half = 0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0])
+    i, j, before = 0, 0, -1  # cells and tooth of the point before: many points in turn are of one profile
     for k in range(tooth.size):
         if tooth[k] >= len(amounts):
+            before = -1
             continue
         slope, form, waves, helix, helix_form, helix_waves = amounts[tooth[k]]
         u = min(max((roll_length[k] - middle) / half, -1.0), 1.0)
@@ -41,14 +43,19 @@ def surfaces_excess(
         excess[k] = 0.5 * (slope * u + helix * v) + _form(form, waves, u) + _form(helix_form, helix_waves, v)
         grid = grids.of_tooth[tooth[k]]
         if grid >= 0:
-            (m, n, size), (row, column, node) = grids.sizes[grid], grids.starts[grid]
-            axes = grids.roll[row : row + m], grids.face[column : column + n]
-            nodes = grids.nodes[:, node : node + size]
-            excess[k] -= bicubic_at(axes, nodes, middle + half * u, face[k], across, along)
+            rows, columns = grids.sizes[grid, 0], grids.sizes[grid, 1]
+            row, column, node = grids.starts[grid]
+            i = cell_weights(grids.roll, (row, rows), middle + half * u, i, across)
+            if tooth[k] != before or face[k] != face[k - 1]:
+                j = cell_weights(grids.face, (column, columns), face[k], j, along)
+            before = tooth[k]
+            excess[k] -= cell_value(grids.nodes, node + i * columns + j, columns, across, along)
+        else:
+            before = -1
     return excess
 
 
-@inner()
+@inner(error_model="numpy")
 def _form(height: float, waves: float, at: float) -> float:
     """Return a shape of this height whose mean line over -1 to 1 is zero: a measurement splits it so."""
     if height == 0.0:
