@@ -459,7 +459,7 @@ def assessed_table(made: SolvedTable, coarse: OperatingPoints) -> tuple[Assessed
     nested = Nested(sample, own, plane, patched, sample.solved(coarse, fine), sliced)
     positions = position_errors(nodes, fine, solutions, plan)
     ste, arms = nested.parts
-    measured = fine, solved, ste, positions, plan
+    measured = fine, made.solved, ste, positions, plan
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
     request = made.checked.request
 
