@@ -19,6 +19,7 @@ from fe_contact.analysis.estimates.rough_flank_errors import of_quantities, roug
 from fe_contact.analysis.estimates.table_sample import Nested, TableSample
 from fe_contact.analysis.estimates.tolerance_shares import interval_goal
 from fe_contact.analysis.pairs.pair_contact import OperatingPoints
+from fe_contact.analysis.request.solved_run import Solved
 from fe_contact.analysis.tables import SolvedTable
 from fe_contact.contact import ContactSolution
 from fe_contact.geometry import ParallelAxes
