@@ -129,17 +129,12 @@ class ToothGap(Protocol):
     def largest(self) -> float:
         """Bound of the gap in m, of whichever tooth."""
 
-    def extent(self, pair: ParallelAxes, meeting: IntArray) -> Extent:
-        """Return bounds of the gap all over the usable flanks of the teeth that meet, arrays as `meeting`."""
+    @property
+    def extents(self) -> Extent:
+        """Bounds of the gap all over the usable flanks, arrays over the teeth of the gear, or numbers."""
 
     def tooth(self, meeting: IntArray) -> IntArray:
         """Return which of its teeth meet, the first is 0."""
-
-    def bend(self, teeth: MeetingTeeth) -> FloatArray:
-        """Return a bound of its curvature along the flanks at touching points, 1/m."""
-
-    def spread(self, meeting: IntArray) -> FloatArray:
-        """Return a bound of highest less lowest gap along the profiles of teeth that meet, m."""
 
     def nodes(self, pair: ParallelAxes, tooth: int) -> FloatArray:
         """Return roll lengths in m, between two of which the profile of a tooth turns back once at most."""
@@ -205,7 +200,7 @@ class ContactModel:
     def extent(self, pair: ParallelAxes, meeting: IntArray) -> Extent:
         """Return bounds of all gaps of the pairs of teeth that meet, arrays as `meeting`."""
         alike = sum((term.extent(pair) for term in self.gaps), Extent())
-        of_teeth = sum((term.extent(pair, meeting) for term in self.tooth_gaps), alike)
+        of_teeth = sum((term.extents.at(term.tooth(meeting)) for term in self.tooth_gaps), alike)
         none = np.zeros(meeting.shape)
         return of_teeth + Extent(none, none, none)
 

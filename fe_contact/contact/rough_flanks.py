@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
 
 from fe_contact.contact.model import MeetingTeeth, ToothGap
+from fe_contact.flank.extent import Extent
 from fe_contact.geometry import FlankGrid, ParallelAxes
-from fe_contact.geometry.tooth_surfaces import curvature_bound, grid_figures, profile_nodes
+from fe_contact.geometry.tooth_surfaces import profile_nodes
 from fe_contact.types import FloatArray, IntArray
 
 
 class DesignedSurface(NamedTuple):
-    """How rough a surface on all teeth of a gear is; see `ToothSurfaces`."""
+    """Extent and nodes of a surface on all teeth of a gear; see `ToothSurfaces`."""
 
     gear: int
-    kink: float
-    curvature: float
-    spread: float
+    extent: Extent
     nodes: FloatArray
 
     @classmethod
@@ -26,12 +26,7 @@ class DesignedSurface(NamedTuple):
         """Return that of a surface of the pinion, gear 0, or the wheel."""
         toothing = (pair.pinion, pair.wheel)[gear]
         ends = toothing.form_roll_length, toothing.tip_roll_length
-        return cls(gear, *grid_figures(grid, ends), profile_nodes(ends, 0.0, grid))
-
-    def bend(self, pair: ParallelAxes, rolls: tuple[FloatArray, FloatArray]) -> FloatArray:
-        """Return a bound of its curvature along the flanks at roll lengths of both gears, 1/m."""
-        base_radius = (pair.pinion, pair.wheel)[self.gear].base_radius
-        return curvature_bound(base_radius / rolls[self.gear], rolls, self.kink, self.curvature)
+        return cls(gear, grid.extent(ends), profile_nodes(ends, 0.0, grid))
 
 
 class DeviatingTeeth(NamedTuple):
@@ -45,15 +40,9 @@ class DeviatingTeeth(NamedTuple):
         there = MeetingTeeth(pair, self.meeting, *rolls, face)
         return np.asarray(sum((term(there) for term in self.gaps), np.zeros(())))
 
-    def bend(self, pair: ParallelAxes, rolls: tuple[FloatArray, FloatArray], face: FloatArray) -> FloatArray:
-        """Return a bound of their curvature along the flanks, 1/m."""
-        there = MeetingTeeth(pair, self.meeting, *rolls, face)
-        return np.asarray(sum((term.bend(there) for term in self.gaps), np.zeros(())))
-
-    @property
-    def spread(self) -> FloatArray:
-        """Bound of highest less lowest gap along the profiles, m."""
-        return np.asarray(sum((term.spread(self.meeting) for term in self.gaps), np.zeros(())))
+    def extents(self) -> list[tuple[int, Extent]]:
+        """Return of each gap its gear and its extent on the teeth that meet."""
+        return [(term.gear, term.extents.at(term.tooth(self.meeting))) for term in self.gaps]
 
     def nodes(self, pair: ParallelAxes) -> list[tuple[int, list[FloatArray], IntArray]]:
         """Return of each gap its gear, nodes of its teeth as roll lengths in m, and which tooth meets."""
@@ -68,3 +57,12 @@ class DeviatingTeeth(NamedTuple):
     def some(self, of: IntArray | slice) -> DeviatingTeeth:
         """Return those of some of the candidates."""
         return self._replace(meeting=self.meeting[of])
+
+
+def curvature_bound(
+    pair: ParallelAxes, extents: Iterable[tuple[int, Extent]], rolls: tuple[FloatArray, FloatArray]
+) -> FloatArray:
+    """Return a bound of the curvature along flanks by gaps of either gear at roll lengths of both, 1/m."""
+    gears = pair.pinion, pair.wheel
+    bounds = (extent.curvature(gears[gear].base_radius, gear, rolls) for gear, extent in extents)
+    return np.asarray(sum(bounds, np.zeros(rolls[0].shape)))

@@ -9,7 +9,7 @@ import numpy as np
 
 from fe_contact.contact.model import ContactModel, MeetingTeeth
 from fe_contact.contact.parabolic_gap import moved_gap, touching_places
-from fe_contact.contact.rough_flanks import DeviatingTeeth
+from fe_contact.contact.rough_flanks import DeviatingTeeth, curvature_bound
 from fe_contact.contact.strip import Gap, rounded, with_breaks
 from fe_contact.contact.touch import (
     ALLOWED,
@@ -189,7 +189,8 @@ def _step_on(
 def _sharp(part: _Part) -> BoolArray:
     """Return where deviations may be too wavy for one parabola."""
     common = part.common
-    bend = part.deviating.bend(part.pair, rolls_at(part.pair, common.s_1, common.s_2), part.face)
+    rolls = rolls_at(part.pair, common.s_1, common.s_2)
+    bend = curvature_bound(part.pair, part.deviating.extents(), rolls)
     return np.asarray(bend > WAVY * common.curvature)
 
 

@@ -11,9 +11,10 @@ import numpy as np
 from fe_contact.contact.least_gap import Nodes, least_gap, samples
 from fe_contact.contact.model import GapTerm
 from fe_contact.contact.parabolic_gap import moved_gap, touching_places
-from fe_contact.contact.rough_flanks import DesignedSurface, DeviatingTeeth
+from fe_contact.contact.rough_flanks import DesignedSurface, DeviatingTeeth, curvature_bound
 from fe_contact.contact.rough_strip import BREAKS, rough_strip
 from fe_contact.contact.strip import Gap, rounded, with_breaks
+from fe_contact.flank.extent import Extent
 from fe_contact.geometry import ParallelAxes, Side, Toothing, corner_contact, edge_gap
 from fe_contact.hertz import relative_radius
 from fe_contact.types import BoolArray, FloatArray, IntArray
@@ -391,10 +392,12 @@ class _Flanks:
         if not self._surfaces and self._teeth is None:
             return np.zeros(touch.s_1.size, dtype=bool)
         rolls = rolls_at(self._pair, touch.s_1, touch.s_2)
-        bend = sum((each.bend(self._pair, rolls) for each in self._surfaces), np.zeros(touch.s_1.size))
-        if self._teeth is not None:
-            bend = bend + self._teeth.bend(self._pair, rolls, self._face)
-        return np.asarray(bend > part * touch.curvature)
+        return np.asarray(curvature_bound(self._pair, self._extents(), rolls) > part * touch.curvature)
+
+    def _extents(self) -> list[tuple[int, Extent]]:
+        """Return gear and extent of the gaps that may be rough."""
+        surfaces = [(each.gear, each.extent) for each in self._surfaces]
+        return surfaces if self._teeth is None else surfaces + self._teeth.extents()
 
     def least(self, start: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return where the gap is least (n,), and the gap there, m; `start`: where it is low.
@@ -412,9 +415,9 @@ class _Flanks:
 
     def _largest_fall(self) -> FloatArray:
         """Return a bound of how much less may be removed within the reach than at the touching points, m."""
-        fall = np.full(self.step.size, sum(each.spread for each in self._surfaces))
-        if self._teeth is not None:
-            fall = fall + self._teeth.spread
+        fall = np.zeros(self.step.size)
+        for _, extent in self._extents():
+            fall = fall + extent.spread
         if self._gaps:
             part = np.linspace(0.0, 1.0, _SAMPLES)[:, None]
             ways = np.concatenate([np.zeros((1, fall.size)), self.first + (self.last - self.first) * part])

@@ -137,7 +137,7 @@ class Effect:
         extent = sum((term.extent(scene.pair) for term in model.gaps), Extent())
         for term in model.tooth_gaps:
             teeth = np.arange((scene.pair.pinion, scene.pair.wheel)[term.gear].teeth)
-            gaps = term.extent(scene.pair, teeth)
+            gaps = term.extents.at(term.tooth(teeth))
             extent += Extent(float(np.min(gaps.low)), float(np.max(gaps.high)))
         return extent
 

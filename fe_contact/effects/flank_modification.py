@@ -103,7 +103,7 @@ def _part_extent(part: FlankPart, gear: Tooth, tip_form: float) -> Extent:
     """Bound a part by its values on a lattice, and by what it can do between the points."""
     grid: FlankGrid | None = getattr(part, "flank_grid", None)
     if grid is not None:
-        return grid.extent
+        return grid.extent((gear.form_roll_length, gear.tip_roll_length))
     roll = np.linspace(gear.form_roll_length, tip_form, _ALONG_PROFILE)
     face = np.linspace(-0.5, 0.5, _ALONG_FACE) * gear.face_width
     removed = part.removed(gear, *np.meshgrid(roll, face, indexing="ij"))

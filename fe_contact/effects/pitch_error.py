@@ -32,9 +32,10 @@ class _PitchGap:
         """Bound of the gap, m."""
         return max(self.teeth)
 
-    def extent(self, pair: ParallelAxes, meeting: IntArray) -> Extent:
-        """Return the gap itself: it is the same all over a flank."""
-        gap = np.array(self.teeth)[self.tooth(meeting)]
+    @property
+    def extents(self) -> Extent:
+        """Bounds of the gap: itself, as it is the same all over a flank."""
+        gap = np.array(self.teeth)
         return Extent(gap, gap)
 
     def __call__(self, teeth: MeetingTeeth) -> FloatArray:
@@ -45,16 +46,8 @@ class _PitchGap:
         """Return which teeth meet, the first is 0."""
         return meeting % self.period % len(self.teeth)
 
-    def bend(self, teeth: MeetingTeeth) -> FloatArray:
-        """Return zeros: the gap is the same all over a flank."""
-        return np.zeros(teeth.meeting.shape)
-
-    def spread(self, meeting: IntArray) -> FloatArray:
-        """Return zeros, see `bend`."""
-        return np.zeros(meeting.shape)
-
     def nodes(self, _pair: ParallelAxes, _tooth: int) -> FloatArray:
-        """Return none, see `bend`."""
+        """Return none: the gap is the same all over a flank."""
         return np.zeros(0)
 
 

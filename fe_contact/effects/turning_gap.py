@@ -13,7 +13,7 @@ from fe_contact.contact.model import MeetingTeeth
 from fe_contact.flank.extent import Extent
 from fe_contact.geometry import ParallelAxes, RunOut, ToothFlank, Toothing, Wave
 from fe_contact.geometry.tooth_flank import tooth_surfaces
-from fe_contact.geometry.tooth_surfaces import ToothSurfaces, curvature_bound
+from fe_contact.geometry.tooth_surfaces import ToothSurfaces
 from fe_contact.types import FloatArray, IntArray
 from host.loops import inner, njit
 
@@ -31,6 +31,8 @@ class TurningGap:
         0 is the pinion, 1 the wheel.
     teeth : int
         Of that gear.
+    base_radius : float
+        Of that gear, m.
     period : int
         Base pitches after which it is taken to repeat.
     turn : float
@@ -43,6 +45,7 @@ class TurningGap:
 
     gear: int
     teeth: int
+    base_radius: float
     period: int
     turn: float
     run_out: RunOut
@@ -60,6 +63,7 @@ class TurningGap:
         return cls(
             gear=index,
             teeth=gear.teeth,
+            base_radius=gear.base_radius,
             period=period,
             turn=abs(gear.tip_roll_length - gear.form_roll_length) / gear.base_radius,
             run_out=gear.run_out,
@@ -85,39 +89,27 @@ class TurningGap:
             gap -= self.surfaces.excess(self.tooth(meeting), roll, face)
         return gap.reshape(shape)
 
-    def extent(self, pair: ParallelAxes, meeting: IntArray) -> Extent:
-        """Return bounds of what turns with the gear, and of the flanks of the teeth that meet."""
-        gear = self._toothing(pair)
-        out = self.run_out.eccentricity + 0.5 * self.run_out.wobble
+    @cached_property
+    def extents(self) -> Extent:
+        """Bounds of what turns with the gear, and of the flanks of its teeth, arrays (T,)."""
+        out, radius = self.run_out.eccentricity + 0.5 * self.run_out.wobble, self.base_radius
         waves = sum(wave.amplitude for wave in self.waves)
-        steep = sum(wave.order * wave.amplitude for wave in self.waves) + out
-        turning = Extent(-out - waves, out + waves, steep / gear.base_radius)
-        low, high, slope = np.zeros((3, gear.teeth))
-        for flank in self.flanks:
-            extent, tooth = flank.extent(gear), flank.tooth - 1
-            low[tooth], high[tooth], slope[tooth] = extent.low, extent.high, extent.slope
-        return turning + Extent(low, high, slope).at(self.tooth(meeting))
-
-    def bend(self, teeth: MeetingTeeth) -> FloatArray:
-        """Return a bound of its curvature along the flanks at touching points, 1/m."""
-        gear, roll = self._toothing(teeth.pair), self._roll(teeth.roll_1, teeth.roll_2)
         amplitude, along, order = self._harmonics[:, :3].T
         height = amplitude + 0.5 * along
-        whole, part = float(height @ order**2), float(height @ order) * gear.base_radius
-        bend = whole / roll**2 + part / roll**3
-        if self.surfaces is None:
-            return np.asarray(bend + np.zeros(teeth.meeting.shape))
-        figures = (self._of_tooth(each, teeth.meeting) for each in (self.surfaces.kinks, self.surfaces.bends))
-        rolls = teeth.roll_1, teeth.roll_2
-        return np.asarray(bend + curvature_bound(gear.base_radius / roll, rolls, *figures))
-
-    def spread(self, meeting: IntArray) -> FloatArray:
-        """Return a bound of highest less lowest gap along a profile, m."""
-        amplitude, along, order = self._harmonics[:, :3].T
-        harmonics = float((amplitude + 0.5 * along) @ np.minimum(order * self.turn, 2.0))
-        if self.surfaces is None:
-            return np.full(meeting.shape, harmonics)
-        return np.asarray(harmonics + self._of_tooth(self.surfaces.spreads, meeting))
+        steep = float(height @ order)
+        turning = Extent(
+            low=-out - waves,
+            high=out + waves,
+            slope=steep / radius,
+            spread=float(height @ np.minimum(order * self.turn, 2.0)),
+            bend=float(height @ order**2) / radius**2,
+            turn=steep * radius,
+        )
+        count = 0 if self.surfaces is None else len(self.surfaces.amounts)
+        flanks = Extent() if self.surfaces is None else self.surfaces.extents
+        designed = self.teeth - count
+        of_teeth = (np.pad(np.zeros(count) + values, (0, designed)) for values in vars(flanks).values())
+        return turning + Extent(*of_teeth)
 
     def tooth(self, meeting: IntArray) -> IntArray:
         """Return which teeth meet, the first is 0."""
@@ -138,13 +130,6 @@ class TurningGap:
 
     def _roll(self, roll_1: FloatArray, roll_2: FloatArray) -> FloatArray:
         return roll_2 if self.gear else roll_1
-
-    def _of_tooth(self, values: FloatArray, meeting: IntArray) -> FloatArray:
-        """Return values (T,) of teeth for those that meet; 0 of teeth as designed."""
-        tooth = self.tooth(meeting)
-        every = np.zeros(max(int(tooth.max(initial=0)) + 1, values.size))
-        every[: values.size] = values
-        return every[tooth]
 
     @cached_property
     def _harmonics(self) -> FloatArray:

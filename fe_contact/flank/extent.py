@@ -1,12 +1,15 @@
-"""Extent of a gap between flanks: how far it opens and closes at most, and how fast it changes."""
+"""Extent of a gap between flanks: how far it opens and closes, how fast it changes and how it bends."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from fe_contact.types import FloatArray, IntArray
+
+_KINK = 1000.0
+"""Relative radii over which a jump of the slope counts as a curvature: what it hides is below 1 nm then."""
 
 
 @dataclass(frozen=True)
@@ -19,15 +22,26 @@ class Extent:
         Bounds from below and above, m.
     slope : float or ndarray
         Bound of its change per way along the line of action, m/m.
+    spread : float or ndarray
+        Bound of its highest less its lowest value along a profile, m.
+    kink, bend : float or ndarray
+        Bounds of jumps of the slope, and of the curvature in 1/m, over the roll length.
+    turn : float or ndarray
+        Slope times the square of the base radius of what turns with a gear, m^2: its angle grows with the
+        root of the length along the flank, so that it bends by that, too.
     """
 
     low: FloatArray | float = 0.0
     high: FloatArray | float = 0.0
     slope: FloatArray | float = 0.0
+    spread: FloatArray | float = 0.0
+    kink: FloatArray | float = 0.0
+    bend: FloatArray | float = 0.0
+    turn: FloatArray | float = 0.0
 
     def __add__(self, other: Extent) -> Extent:
         """Return the extent of the sum of two gaps."""
-        return Extent(self.low + other.low, self.high + other.high, self.slope + other.slope)
+        return Extent(*(getattr(self, name) + getattr(other, name) for name in _NAMES))
 
     @property
     def reach(self) -> float:
@@ -40,6 +54,29 @@ class Extent:
         return float(max(np.max(self.high), 0.0) - min(np.min(self.low), 0.0))
 
     def at(self, index: IntArray) -> Extent:
-        """Return the extents at indices into its arrays."""
-        low, high, slope = (np.asarray(values)[index] for values in (self.low, self.high, self.slope))
-        return Extent(low, high, slope)
+        """Return the extents at indices into its arrays; numbers hold everywhere."""
+        return Extent(*(_at(getattr(self, name), index) for name in _NAMES))
+
+    def curvature(self, base_radius: float, gear: int, rolls: tuple[FloatArray, FloatArray]) -> FloatArray:
+        """Return a bound of the curvature along the flanks of a gear, 1/m.
+
+        Parameters
+        ----------
+        base_radius : float
+            Of the gear that the gap belongs to, m.
+        gear : int
+            0 of the pinion, 1 of the wheel.
+        rolls : (ndarray, ndarray)
+            Roll lengths of both gears, m.
+        """
+        roll = rolls[gear]
+        per_length = base_radius / roll  # roll length over length along the flank
+        kinks = _KINK * self.kink * per_length * (1.0 / rolls[0] + 1.0 / rolls[1])
+        return np.asarray(self.bend * per_length**2 + self.turn / roll**3 + kinks)
+
+
+_NAMES = tuple(field.name for field in fields(Extent))
+
+
+def _at(values: FloatArray | float, index: IntArray) -> FloatArray | float:
+    return values[index] if isinstance(values, np.ndarray) else values

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -101,19 +101,37 @@ class FlankGrid:
         )
         return np.asarray(removed.reshape(roll_length.shape))
 
-    @cached_property
-    def extent(self) -> Extent:
-        """Bounds of the material removed, in m, and of its slope over the roll length.
+    def extent(self, ends: tuple[float, float]) -> Extent:
+        """Bounds of the material removed of a gear whose usable profile has these `ends`, roll lengths in m.
 
-        Between nodes the surface leaves them by no more than it is allowed to, and is at most three times as
-        steep as the chord: it would turn back.
+        At the ends of the grid the slope drops to zero.
+        """
+        roll, slope, inside = self.roll_length, np.abs(self.nodes[1]).max(axis=1), self._extent
+        kink = max(slope[0] if roll[0] > min(ends) else 0.0, slope[-1] if roll[-1] < max(ends) else 0.0)
+        return replace(inside, kink=float(kink))
+
+    @cached_property
+    def _extent(self) -> Extent:
+        """The extent of a surface between its nodes.
+
+        It leaves them by no more than it is allowed to, and is at most three times as steep as the chord: it
+        would turn back. A cubic is most curved at one of the ends of its cell.
         """
         values, axes = np.array(self.removed), (np.array(self.roll_length), np.array(self.face_position))
         heights = (float(np.max(_sagitta(values, axis, i))) for i, axis in enumerate(axes))
         between = 0.0 if self.neutral else LARGEST_INVENTION + sum(heights)
-        chord = np.abs(np.diff(values, axis=0)) / np.diff(axes[0])[:, None]
-        low, high = float(values.min()) - between, float(values.max()) + between
-        return Extent(low, high, _STEEPEST * float(chord.max()))
+        step, slope = np.diff(axes[0])[:, None], self.nodes[1]
+        rise = np.diff(values, axis=0)
+        bend = 6.0 * rise / step**2
+        first = bend - (4.0 * slope[:-1] + 2.0 * slope[1:]) / step
+        last = bend - (2.0 * slope[:-1] + 4.0 * slope[1:]) / step
+        return Extent(
+            low=float(values.min()) - between,
+            high=float(values.max()) + between,
+            slope=_STEEPEST * float((np.abs(rise) / step).max()),
+            spread=float(np.ptp(values, axis=0).max()),
+            bend=float(max(np.abs(first).max(), np.abs(last).max())),
+        )
 
     @cached_property
     def nodes(self) -> FloatArray:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Hashable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bounds import Declared, Kind, between, declared, described, inside, integers, required
 from fe_contact.errors import InputError, declared_fields
-from fe_contact.flank.extent import Extent
 from fe_contact.flank.flank_grid import FlankGrid
 from fe_contact.flank.over_flank import SURFACE, check_reach
 from fe_contact.geometry.tooth_surfaces import ToothSurfaces
@@ -83,24 +83,12 @@ class ToothFlank:
         across = bool(self._surface) and self._surface[0].varies_along_face
         return bool(self.helix_slope or self.helix_form or across)
 
-    @property
+    @cached_property
     def largest(self) -> float:
         """Bound of the deviation, m."""
         grids = (abs(value) for grid in self._surface for row in grid.removed for value in row)
         slopes = 0.5 * (abs(self.profile_slope) + abs(self.helix_slope))
         return slopes + abs(self.profile_form) + abs(self.helix_form) + max(grids, default=0.0)
-
-    def extent(self, gear: Tooth) -> Extent:
-        """Return the extent of the gap that the flank makes: material missing, less that in excess."""
-        slopes = 0.5 * (abs(self.profile_slope) + abs(self.helix_slope))
-        profile, helix = self.profile_form, self.helix_form
-        forms = [_form_extent(profile, self.profile_form_waves), _form_extent(helix, self.helix_form_waves)]
-        # u and v run over 2: the form of a profile is steepest at the ends, or at a zero of its waves
-        per_u = 0.5 * abs(self.profile_slope)
-        waves = 0.5 * math.pi * self.profile_form_waves
-        per_u += abs(profile) * (waves or 2.0)
-        steep = Extent(-slopes, slopes, 2.0 * per_u / abs(gear.tip_roll_length - gear.form_roll_length))
-        return sum((grid.extent for grid in self._surface), sum(forms, steep))
 
     @property
     def shape(self) -> Hashable:
@@ -180,12 +168,6 @@ def _form(height: FloatArray, waves: FloatArray, at: FloatArray) -> FloatArray:
     if waves.any():
         shape = np.where(waves == 0.0, shape, 0.5 * np.cos(math.pi * waves * at))
     return np.asarray(height * shape)
-
-
-def _form_extent(height: float, waves: int) -> Extent:
-    """Return the extent of the gap of a form deviation: its excess is 1/3 - u^2 of it, or half a cosine."""
-    ends = (-0.5 * height, 0.5 * height) if waves else (-height / 3.0, 2.0 * height / 3.0)
-    return Extent(min(ends), max(ends))
 
 
 def repeats_after(values: tuple[Hashable, ...]) -> int:

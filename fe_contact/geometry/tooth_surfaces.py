@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from fe_contact.flank.extent import Extent
 from fe_contact.types import FloatArray, IntArray
 
 if TYPE_CHECKING:
@@ -69,10 +70,8 @@ class ToothSurfaces:
     amounts : ndarray, shape (T, 6)
         Slopes and forms of each tooth in the order of meshing, m, and the numbers of their waves.
     grids : PackedGrids
-    kinks, bends : ndarray, shape (T,)
-        Bounds of jumps of the slope along the profile, and of the curvature in 1/m, over the roll length.
-    spreads : ndarray, shape (T,)
-        Bound of highest less lowest excess along a profile, m.
+    extents : Extent
+        Of the gaps that they make, arrays (T,): material missing, less that in excess.
     nodes : tuple of ndarray
         Roll lengths in m of each tooth between two of which its profile turns back once at most.
     """
@@ -81,28 +80,20 @@ class ToothSurfaces:
     face_width: float
     amounts: FloatArray
     grids: PackedGrids
-    kinks: FloatArray
-    bends: FloatArray
-    spreads: FloatArray
+    extents: Extent
     nodes: tuple[FloatArray, ...]
 
     @classmethod
     def of(cls, gear: Tooth, amounts: FloatArray, grids: Sequence[FlankGrid | None]) -> ToothSurfaces:
         """Lay out the `amounts` and the surfaces of teeth of a gear; those beyond them are as designed."""
         ends = gear.form_roll_length, gear.tip_roll_length
-        figures = np.array([grid_figures(grid, ends) for grid in grids]).reshape(-1, 3)
-        slope, form, waves = np.abs(amounts[:, :3]).T
-        phase = np.maximum(math.pi * waves, 2.0)  # a parabola: 1/3 - u^2 falls by 2 u
-        bend = np.where(waves > 0.0, 0.5 * form * phase**2, 2.0 * form) * (2.0 / (ends[1] - ends[0])) ** 2
         return cls(
             ends=ends,
             face_width=gear.face_width,
             amounts=amounts,
             grids=PackedGrids.of(grids),
-            kinks=figures[:, 0],
-            bends=bend + figures[:, 1],
-            spreads=slope + form + figures[:, 2],
-            nodes=tuple(profile_nodes(ends, *each) for each in zip(waves, grids, strict=True)),
+            extents=_extents(ends, amounts, grids),
+            nodes=tuple(profile_nodes(ends, *each) for each in zip(amounts[:, 2], grids, strict=True)),
         )
 
     def excess(self, tooth: IntArray, roll_length: FloatArray, face: FloatArray) -> FloatArray:
@@ -143,38 +134,27 @@ def profile_nodes(ends: tuple[float, float], waves: float, grid: FlankGrid | Non
     return np.unique(np.concatenate(parts))
 
 
-def grid_figures(grid: FlankGrid | None, ends: tuple[float, float]) -> tuple[float, float, float]:
-    """Return bounds of the slope's jumps, of the curvature and of highest less lowest value of a surface.
-
-    Within a cell a cubic is most curved at one of its ends; at the ends of the grid the slope drops to zero.
-    """
-    if grid is None:
-        return 0.0, 0.0, 0.0
-    value, slope = grid.nodes[:2]
-    axis = np.array(grid.roll_length)
-    step, kinks = np.diff(axis)[:, None], [0.0]
-    bend = 6.0 * np.diff(value, axis=0) / step**2
-    first = bend - (4.0 * slope[:-1] + 2.0 * slope[1:]) / step
-    last = bend - (2.0 * slope[:-1] + 4.0 * slope[1:]) / step
-    if axis[0] > min(ends):
-        kinks.append(np.abs(slope[0]).max())
-    if axis[-1] < max(ends):
-        kinks.append(np.abs(slope[-1]).max())
-    return max(kinks), float(max(np.abs(first).max(), np.abs(last).max())), float(np.ptp(value, axis=0).max())
-
-
-_KINK = 1000.0
-"""Relative radii over which a jump of the slope counts as a curvature: what it hides is below 1 nm then."""
+def _extents(ends: tuple[float, float], amounts: FloatArray, grids: Sequence[FlankGrid | None]) -> Extent:
+    """Return the extents (T,) of the gaps of teeth by their `amounts` (T, 6) and surfaces."""
+    surfaces = [Extent() if grid is None else grid.extent(ends) for grid in grids]
+    parts = (np.array([getattr(each, field.name) for each in surfaces]) for field in fields(Extent))
+    slope, helix = np.abs(amounts[:, 0]), np.abs(amounts[:, 3])
+    tilted, (_, form, waves) = 0.5 * (slope + helix), np.abs(amounts[:, :3]).T
+    profile, across = _form_ends(*amounts[:, 1:3].T), _form_ends(*amounts[:, 4:6].T)
+    # the profile runs over 2: its form is steepest at the ends, or at a zero of its waves
+    steep, phase = 2.0 / abs(ends[1] - ends[0]), math.pi * waves
+    per_part = 0.5 * slope + form * np.where(waves > 0.0, 0.5 * phase, 2.0)
+    bend = np.where(waves > 0.0, 0.5 * form * np.maximum(phase, 2.0) ** 2, 2.0 * form)
+    return Extent(
+        low=profile[0] + across[0] - tilted,
+        high=profile[1] + across[1] + tilted,
+        slope=per_part * steep,
+        spread=slope + form,
+        bend=bend * steep**2,
+    ) + Extent(*parts)
 
 
-def curvature_bound(
-    per_length: FloatArray,
-    rolls: tuple[FloatArray, FloatArray],
-    kink: FloatArray | float,
-    bend: FloatArray | float,
-) -> FloatArray:
-    """Return a bound of the curvature along the flanks by figures over the roll length, 1/m.
-
-    `per_length` is roll length over length along the flank; `rolls` are those of both gears, m.
-    """
-    return np.asarray(bend * per_length**2 + _KINK * kink * per_length * (1.0 / rolls[0] + 1.0 / rolls[1]))
+def _form_ends(height: FloatArray, waves: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the bounds of gaps by form deviations: their excess is 1/3 - u^2 of it, or half a cosine."""
+    ends = np.where(waves > 0.0, [-0.5 * height, 0.5 * height], [-height / 3.0, 2.0 * height / 3.0])
+    return ends.min(axis=0), ends.max(axis=0)

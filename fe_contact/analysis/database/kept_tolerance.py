@@ -287,8 +287,20 @@ def _of_all_passes(passes: Sequence[_Pass], kept: SteDatabase, reason: str) -> S
     """Return the table of one pass with the receipt of all, and the reason why there was no further one."""
     receipt = kept.metadata.receipt | _summed([done.cost for done in passes])
     receipt["tolerance"] = receipt["tolerance"] | {"reason": reason}
+    receipt["prediction"] = receipt["prediction"] | _predicted(passes)
     receipt["passes"] = [done.to_json() | {"kept": done.table is kept} for done in passes]
     return replace(kept, metadata=replace(kept.metadata, receipt=receipt))
+
+
+def _predicted(passes: Sequence[_Pass]) -> Json:
+    """Add up what was predicted of every pass before it began; memory is the largest."""
+    predictions = [done.table.metadata.receipt["prediction"] for done in passes if done.table is not None]
+    stages = {
+        name: sum(prediction["stages"][name] for prediction in predictions)
+        for name in predictions[0]["stages"]
+    }
+    memory = max(prediction["memory_bytes"] for prediction in predictions)
+    return {"stages": stages, "cpu_seconds": sum(stages.values()), "memory_bytes": memory}
 
 
 def _summed(costs: Sequence[Json]) -> Json:

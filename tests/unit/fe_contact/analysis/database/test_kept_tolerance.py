@@ -164,19 +164,26 @@ def test_refining_is_deterministic_and_its_cost_that_of_all_passes(from_draft):
 
 
 def test_passes_share_condensed_bodies(from_draft, monkeypatch):
-    """Positions that are searched more closely need no new bodies, without a cache either."""
+    """Positions that are searched more closely need no new bodies, without a cache either.
+
+    The prediction is that of all passes, each before it began, as the cost is that of all.
+    """
     computed: list[list[str]] = []
+    predicted: list[float] = []
 
     def counted(checked, case, run, decided, clock) -> _Computed:
         done = compute_pass(checked, case, run, decided, clock)
         computed.append(sorted(file.name for file in run.cache.glob("compliance-*")))
+        predicted.append(receipt(done.table)["prediction"]["cpu_seconds"])
         return done
 
     monkeypatch.setattr(kept_tolerance, "compute_pass", counted)
     refine_positions(monkeypatch)
-    analyze(SPUR, tolerance=AllowedError(0.001, 0.0), **PLANE)
+    table = analyze(SPUR, tolerance=AllowedError(0.001, 0.0), **PLANE)
     assert len(computed) > 1
     assert all(names == computed[0] != [] for names in computed)
+    prediction = receipt(table)["prediction"]
+    assert prediction["cpu_seconds"] == pytest.approx(sum(predicted)) == sum(prediction["stages"].values())
 
 
 def refine_positions(monkeypatch) -> None:
