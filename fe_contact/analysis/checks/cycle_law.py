@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from fe_contact.analysis.checks.law import Law, LawCheck
@@ -26,9 +28,8 @@ def check_cycle(contact: CycleContact, ste: FloatArray, error: FloatArray) -> La
     pair, pitches = contact.point.contact.pair, np.arange(contact.pitches)
     _, alike = contact.nominal()
     meeting = pitches[:, None] - np.unique(alike.problem.candidates.pair)
-    terms = [term.extent(pair, meeting) for term in contact.point.model.tooth_gaps]
-    low = sum((np.asarray(term.low) for term in terms), np.zeros(meeting.shape)).min(axis=1)
-    high = sum((np.asarray(term.high) for term in terms), np.zeros(meeting.shape)).max(axis=1)
+    extent = replace(contact.point.model, gaps=()).extent(pair, meeting)
+    low, high = np.min(extent.low, axis=1), np.max(extent.high, axis=1)
     alone = single_pair_deflection(pair, alike.problem, contact.load)
     alone = np.where(np.isfinite(alone), alone, alike.solution.deflection)
     room = alone + error
