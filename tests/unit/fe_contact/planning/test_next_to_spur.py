@@ -11,6 +11,8 @@ import pytest
 from fe_contact import FlankModification, Gear, GearPair, SteDatabase, analyze
 from fe_contact.ste.curve import AT_NODES
 
+# both pairs have the sectors of one level, whichever it is
+pytestmark = pytest.mark.usefixtures("coarse_sectors")
 HELIX_DEG = 0.02
 RELIEVED = FlankModification(tip_relief=8e-6, tip_relief_length=0.8e-3)
 
