@@ -1,7 +1,8 @@
 """Largest line load and K_Hbeta of misaligned pairs against full contact that resolves the free ends.
 
-`python -m benchmarks.full_contact_line_load` solves the peers anew on two meshes each and prints their
-largest loads: some 6 CPU minutes. Rows of the reference are the finer mesh and its difference from the other.
+`python -m benchmarks.full_contact_line_load` solves the peers anew and prints their largest loads, some 90
+CPU s a mesh. Of the first pair of each kind rows of the reference are the finer mesh and its difference from
+another one; the others have one mesh and the relative difference of that pair.
 """
 
 from __future__ import annotations
@@ -15,7 +16,15 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.figures import Figure
-from fe_contact import AnalysisOptions, Gear, GearPair, LoadDistribution, OperatingPoint, flank_results
+from fe_contact import (
+    AnalysisOptions,
+    FlankModification,
+    Gear,
+    GearPair,
+    LoadDistribution,
+    OperatingPoint,
+    flank_results,
+)
 from fe_contact.full_contact import (
     HelicalMesh,
     Resolution,
@@ -27,38 +36,97 @@ from fe_contact.types import FloatArray
 
 REFERENCE = Path(__file__).parents[1] / "tests" / "reference" / "full_contact_line_load.csv"
 SUBJECT = "line load at free ends against full contact"
+PLAIN = FlankModification()
 STRETCHES, SLICES = 90, 15
 """Over the face, of flank results in their usual slices: lengths over which a peak is taken."""
 PeerMesh = Resolution | HelicalMesh
-MESHES: tuple[tuple[PeerMesh, PeerMesh], ...] = (
-    (Resolution(2.0, layers=11, outermost=0.05), Resolution(2.0, layers=6, outermost=0.1)),
-    (HelicalMesh(0.15, 8, 11, 57), HelicalMesh(0.2, 6, 11, 57)),
-)
-"""Finer and coarser mesh of the peer of each case."""
+SPUR_MESH, HELICAL_MESH = Resolution(2.0, layers=11, outermost=0.05), HelicalMesh(0.15, 8, 15, 57)
 
 
 @dataclass(frozen=True)
 class LineLoadCase:
-    """A pair at one position in base pitches and one torque in N m, at misalignments in m."""
+    """A pair at one position in base pitches and one torque in N m, at misalignments in m.
+
+    Attributes
+    ----------
+    meshes : tuple
+        Of the peer, the finest first.
+    edge : int or None
+        Pair index of the peer's line that ends at a tip edge.
+    """
 
     name: str
     pair: GearPair
     position: float
     torque: float
     misalignments: tuple[float, ...]
+    meshes: tuple[PeerMesh, ...]
+    edge: int | None = None
 
 
 def line_load_cases() -> tuple[LineLoadCase, ...]:
-    """Return a spur pair, one of its teeth in contact, and a helical pair, two lines in contact."""
+    """Return spur and helical pairs; the first of either kind set the stated error, the others not."""
+    return (*_pairs_on_two_meshes(), *_fresh_spur_pairs(), *_fresh_helical_pairs())
+
+
+def _pairs_on_two_meshes() -> tuple[LineLoadCase, ...]:
     spur = Gear(20, 3e-3, 12e-3, 30e-3)
-    angle = math.radians(18.0)
-    pinion = Gear(19, 3e-3, 14e-3, 30e-3, helix_angle=angle)
-    wheel = Gear(29, 3e-3, 14e-3, 40e-3, helix_angle=-angle)
-    distance = pinion.reference_radius + wheel.reference_radius
     return (
-        LineLoadCase("spur 20/20", GearPair(spur, spur, 60e-3), 0.05, 30.0, (0.0, 15e-6)),
-        LineLoadCase("helical 19/29", GearPair(pinion, wheel, distance), 0.2, 40.0, (12e-6,)),
+        LineLoadCase(
+            "spur 20/20",
+            GearPair(spur, spur, 60e-3),
+            0.05,
+            30.0,
+            (0.0, 15e-6),
+            (SPUR_MESH, Resolution(2.0, layers=6, outermost=0.1)),
+        ),
+        LineLoadCase(
+            "helical 19/29",
+            _helical(19, 29, 18.0, 3e-3, 14e-3),
+            0.2,
+            40.0,
+            (12e-6,),
+            (HelicalMesh(0.15, 8, 11, 57), HelicalMesh(0.2, 6, 11, 57)),
+        ),
     )
+
+
+def _fresh_spur_pairs() -> tuple[LineLoadCase, ...]:
+    pinion = Gear(17, 2.5e-3, 14e-3, 18e-3, profile_shift_coefficient=0.25)
+    wheel = Gear(43, 2.5e-3, 14e-3, 40e-3, profile_shift_coefficient=-0.25)
+    crowned = Gear(25, 3e-3, 20e-3, 30e-3, modification=FlankModification(helix_crowning=6e-6))
+    shifted = GearPair(pinion, wheel, 75e-3)
+    of_crowned, at = GearPair(crowned, Gear(35, 3e-3, 20e-3, 40e-3), 90e-3), (0.0, 20e-6, 40e-6)
+    return (
+        LineLoadCase("spur 17/43", shifted, 0.05, 28.0, (10e-6, 25e-6), (SPUR_MESH,)),
+        LineLoadCase("spur 25/35, crowned", of_crowned, 0.3, 85.0, at, (SPUR_MESH,)),
+    )
+
+
+def _fresh_helical_pairs() -> tuple[LineLoadCase, ...]:
+    crowned = _helical(17, 40, 15.0, 2e-3, 20e-3, FlankModification(helix_crowning=5e-6))
+    again, meshes = _helical(19, 29, 18.0, 3e-3, 14e-3), (HELICAL_MESH,)
+    return (
+        LineLoadCase("helical 17/40, crowned", crowned, 0.1, 30.0, (25e-6,), meshes),
+        LineLoadCase("helical 17/40, crowned, edge", crowned, 0.1, 30.0, (10e-6,), meshes, -1),
+        LineLoadCase("helical 19/29, at 0.7", again, 0.7, 40.0, (-12e-6,), meshes),
+        LineLoadCase("helical 19/29, at 0.7, edge", again, 0.7, 40.0, (25e-6,), meshes, 1),
+        LineLoadCase("helical 22/23", _helical(22, 23, 12.0, 2.5e-3, 12e-3), 0.0, 28.0, (10e-6, 0.0), meshes),
+    )
+
+
+BORES = {17: 18e-3, 40: 30e-3, 19: 30e-3, 29: 40e-3, 22: 25e-3, 23: 25e-3}
+"""Of the helical gears by their teeth, m."""
+
+
+def _helical(
+    first: int, second: int, helix: float, module: float, face: float, modification: FlankModification = PLAIN
+) -> GearPair:
+    """Return a helical pair at its sum of reference radii; the helix angle in degrees."""
+    angle = math.radians(helix)
+    pinion = Gear(first, module, face, BORES[first], helix_angle=angle, modification=modification)
+    wheel = Gear(second, module, face, BORES[second], helix_angle=-angle)
+    return GearPair(pinion, wheel, pinion.reference_radius + wheel.reference_radius)
 
 
 @dataclass(frozen=True)
@@ -93,8 +161,14 @@ def compared(case: LineLoadCase, level: str) -> Iterator[ComparedPeak]:
     for misalignment in case.misalignments:
         point = OperatingPoint(torque=case.torque, misalignment=misalignment)
         flanks = flank_results(case.pair, point, options, at=[case.position])
-        load, factor = flanks.largest_line_load, flanks.largest_face_load_factor
-        relative = {"line_load_n_per_mm": load.error / load.value, "k_h_beta": factor.error / factor.value}
+        relative = {
+            quantity: estimate.error / estimate.value if estimate.value else math.nan
+            for quantity, estimate in (
+                ("line_load_n_per_mm", flanks.largest_line_load),
+                ("k_h_beta", flanks.largest_face_load_factor),
+                ("edge_line_load_n_per_mm", flanks.edge_line_load),
+            )
+        }
         for row in rows:
             if float(row["misalignment_um"]) == round(1e6 * misalignment, 6):
                 length, quantity = 1e-3 * float(row["length_mm"]), row["quantity"]
@@ -105,7 +179,9 @@ def compared(case: LineLoadCase, level: str) -> Iterator[ComparedPeak]:
 
 
 def _peak(flanks: LoadDistribution, quantity: str, length: float) -> float:
-    """Return the largest mean over a length of the face: of lines clear of edges, or of the face load."""
+    """Return the largest mean over a length of the face: of lines clear of edges, at edges, of all."""
+    if quantity == "edge_line_load_n_per_mm":
+        return 1e-3 * flanks.edge_line_load.value
     stretches = max(round(length / flanks.slice_width), 1)
     if quantity == "k_h_beta":
         return float(_means(flanks.face_load, stretches).max() / flanks.face_load.mean())
@@ -155,16 +231,33 @@ def face_load_factor(loads: tuple[LineLoad, ...], face_width: float, length: flo
     return whole.largest_mean(length) / float(np.mean(total))
 
 
+Row = tuple[float, str, float, float]
+"""Misalignment in um, quantity, length of the face in mm, and its peak there."""
+
+
+def peer_rows(case: LineLoadCase, mesh: PeerMesh) -> Iterator[Row]:
+    """Yield the peaks of a peer on one mesh."""
+    width = case.pair.face_width
+    for misalignment, loads in peer_loads(case, mesh):
+        by_pair = {load.ahead: load for load in loads}
+        for part in (SLICES, STRETCHES):
+            length = width / part
+            at = 1e6 * misalignment, 1e3 * length
+            clear = max(load.largest_mean(length) for ahead, load in by_pair.items() if ahead != case.edge)
+            yield at[0], "line_load_n_per_mm", at[1], 1e-3 * clear
+            if case.edge is None:
+                yield at[0], "k_h_beta", at[1], face_load_factor(loads, width, length)
+        if case.edge in by_pair:
+            peak = by_pair[case.edge].largest_mean(width / SLICES)
+            yield at[0], "edge_line_load_n_per_mm", 1e3 * width / SLICES, 1e-3 * peak
+
+
 def publish() -> None:
-    """Print the peaks of both meshes of each peer."""
-    for case, meshes in zip(line_load_cases(), MESHES, strict=True):
-        for mesh in meshes:
-            for misalignment, loads in peer_loads(case, mesh):
-                (own,) = (load for load in loads if load.ahead == 0)
-                for part in (SLICES, STRETCHES):
-                    length = case.pair.face_width / part
-                    factor = face_load_factor(loads, case.pair.face_width, length)
-                    print(case.name, mesh, misalignment, length, own.largest_mean(length), factor)
+    """Print the peaks of all peers on their meshes."""
+    for case in line_load_cases():
+        for mesh in case.meshes:
+            for row in peer_rows(case, mesh):
+                print(case.name, mesh, *row)
 
 
 if __name__ == "__main__":

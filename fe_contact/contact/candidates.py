@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fe_contact.contact.free_end import ENDLESS, FreeEnds, end_softness
 from fe_contact.contact.model import ContactModel
 from fe_contact.contact.patch import Patches, tip_patches
 from fe_contact.contact.problem import Candidates, LoadedSlices, Slices
@@ -199,7 +200,29 @@ def _loaded_slices(
         corner_2=_corner_softness(pair.wheel),
         law_length=max(rule.half_width, rule.law_length, min(LAW_LENGTH * width, LONGEST_LAW * module)),
         edge_load=rule.edge_load,
+        end_1=_free_ends(pair, pair.pinion, 0.0, slices),
+        end_2=_free_ends(pair, pair.wheel, pair.axial_offset, slices),
     )
+
+
+def _free_ends(pair: ParallelAxes, gear: Toothing, middle: float, slices: Slices) -> FreeEnds:
+    """Return the ends of a gear that are those of the common face; none in a plane.
+
+    `middle`: its mid-face from the pinion's, m.
+    """
+    if slices.center.size == 1:
+        return ENDLESS
+    low, high = (middle + part * gear.face_width for part in (-0.5, 0.5))
+    near = _FLUSH * gear.face_width
+    return FreeEnds(
+        low if abs(low - pair.common_face[0]) <= near else -math.inf,
+        high if abs(high - pair.common_face[1]) <= near else math.inf,
+        end_softness(gear.material.poissons_ratio),
+    )
+
+
+_FLUSH = 1e-6
+"""Faces that stand apart by less than this part of their width end together."""
 
 
 def _shift(s: FloatArray, offset: FloatArray, tip: float, radius: FloatArray, rule: PatchRule) -> FloatArray:

@@ -32,7 +32,7 @@ _TOLERANCE, _PLAIN_TOLERANCE = 1e-9, 1e-6
 _STEPS = 100
 
 
-_WIDTH, _FREE, _MODULUS, _MIDDLE, _HALF = range(5)
+_WIDTH, _FREE, _MODULUS, _MIDDLE, _HALF, _LENGTH = range(6)
 """Columns of `LocalLaw.strip`."""
 
 
@@ -43,12 +43,13 @@ class LocalLaw(NamedTuple):
     ----------
     gap : ndarray, shape (m, 4 + 3 B)
         About the touching points, a `gap_table`.
-    strip : ndarray, shape (m, 5)
+    strip : ndarray, shape (m, 6)
         Length of contact line of each in m; half strip in m up to which its gap is a parabola alone; contact
         modulus E* in Pa, less where a tip corner yields; middle and half length of the strip found last, from
-        which the next one is searched, m: a half length of zero is none yet.
+        which the next one is searched, m: a half length of zero is none yet; reference length in m, greater
+        near free ends.
     length : float
-        Reference length, m.
+        Reference length away from free ends, m.
     """
 
     gap: FloatArray
@@ -59,9 +60,10 @@ class LocalLaw(NamedTuple):
 @inner(error_model="numpy")
 def local_law(gap: FloatArray, width: FloatArray, modulus: FloatArray, length: float) -> LocalLaw:
     """Return the law of a table of gaps under which no strip is known yet."""
-    strip = np.zeros((width.size, 5))
+    strip = np.zeros((width.size, 6))
     for i in range(width.size):
         strip[i, _WIDTH], strip[i, _FREE], strip[i, _MODULUS] = width[i], free_strip(gap, i), modulus[i]
+        strip[i, _LENGTH] = length
     return LocalLaw(gap, strip, length)
 
 
@@ -89,7 +91,7 @@ def approach(law: LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
     beyond = half > most
     if beyond:
         half, (_, rigid) = most, strip_load(law.gap, i, most, modulus)
-    slope = k * (math.log(law.length / half) - 0.25)
+    slope = k * (math.log(law.strip[i, _LENGTH] / half) - 0.25)
     return rigid + slope * p, slope / width, beyond
 
 
@@ -99,7 +101,7 @@ def plain_approach(law: LocalLaw, i: int, force: float) -> float:
     p, (k, least, most) = force / law.strip[i, _WIDTH], _limits(law, i)
     curvature = float(law.gap[i, CURVATURE])
     half = min(max(math.sqrt(2.0 * k * p / curvature), least), most)
-    return float(0.25 * curvature * half * half + k * p * (math.log(law.length / half) - 0.25))
+    return float(0.25 * curvature * half * half + k * p * (math.log(law.strip[i, _LENGTH] / half) - 0.25))
 
 
 @inner(error_model="numpy")
@@ -129,20 +131,20 @@ def _force_at(law: LocalLaw, i: int, value: float) -> tuple[float, float]:
     width, free, modulus = law.strip[i, _WIDTH], law.strip[i, _FREE], law.strip[i, _MODULUS]
     middle, half, curvature = 0.0, law.strip[i, _HALF], law.gap[i, CURVATURE]
     if half <= free:
-        half = _plain_strip(curvature, law.length, value, half)
+        half = _plain_strip(curvature, law.strip[i, _LENGTH], value, half)
     else:
         middle = law.strip[i, _MIDDLE]
     if half <= free:
-        load, slope = _plain_load(curvature, law.length, modulus, half, value)
+        load, slope = _plain_load(curvature, law.strip[i, _LENGTH], modulus, half, value)
     else:
         _, least, most = _limits(law, i)
         guess = max(half, least)
-        middle, half, first, rigid = strip_at(law.gap, i, value, law.length, middle, guess)
+        middle, half, first, rigid = strip_at(law.gap, i, value, law.strip[i, _LENGTH], middle, guess)
         carried = 0.5 * math.pi * modulus * half * first
         if not least < half < most:
             half, middle = _strip_at(law, i, value, guess), 0.0
             carried, rigid = strip_load(law.gap, i, half, modulus)
-        load, slope = _load_on(half, carried, rigid, law.length, modulus, value)
+        load, slope = _load_on(half, carried, rigid, law.strip[i, _LENGTH], modulus, value)
     law.strip[i, _MIDDLE], law.strip[i, _HALF] = middle, half
     return width * load, width * slope
 
@@ -166,7 +168,8 @@ def _load_on(
 @inner(error_model="numpy")
 def _limits(law: LocalLaw, i: int) -> tuple[float, float, float]:
     """Return k = 2/(pi E*) in 1/Pa, and the least and the largest half strip that the formulas take, m."""
-    return 2.0 / (math.pi * law.strip[i, _MODULUS]), SMALLEST_STRIP * law.length, LARGEST_STRIP * law.length
+    length = law.strip[i, _LENGTH]
+    return 2.0 / (math.pi * law.strip[i, _MODULUS]), SMALLEST_STRIP * length, LARGEST_STRIP * length
 
 
 @inner(error_model="numpy")
@@ -214,7 +217,7 @@ def _strip_at(law: LocalLaw, i: int, value: float, half: float) -> float:
     last_half, last_error = 0.0, math.inf
     for _ in range(_STEPS):
         load, rigid = strip_load(law.gap, i, half, law.strip[i, _MODULUS])
-        error = math.log((rigid + k * load * (math.log(law.length / half) - 0.25)) / value)
+        error = math.log((rigid + k * load * (math.log(law.strip[i, _LENGTH] / half) - 0.25)) / value)
         if error < 0.0:
             below = half
         else:
@@ -249,7 +252,9 @@ class PointProblems(NamedTuple):
     gap, motion_arm, torque_arm, width : ndarray, shape (P, m)
     about : ndarray, shape (P, m, 4 + 3 B)
         A `gap_table`.
-    modulus : ndarray, shape (Q, m)
+    length : float
+        Reference length away from free ends, m.
+    lengths, modulus : ndarray, shape (Q, m)
     """
 
     bodies: FloatArray
@@ -264,6 +269,7 @@ class PointProblems(NamedTuple):
     width: FloatArray
     about: FloatArray
     length: float
+    lengths: FloatArray
     modulus: FloatArray
 
 
@@ -288,6 +294,7 @@ def point_problems(problem: ContactProblem) -> PointProblems:
         rows(c.width),
         gap_table(c.gap_about),
         float(c.slices.law_length),
+        rows(problem.law_length),
         rows(2.0 / (math.pi * (first + second))),
     )
 
@@ -372,6 +379,7 @@ def problem_on(every: PointProblems, bodies: RowBodies, p: int) -> tuple[PointPr
     here = np.flatnonzero(~(every.gap[p] == np.inf))  # also those that are not a number
     radius = every.radius[p % every.radius.shape[0]][bodies.there]
     law = local_law(every.about[p][here], every.width[p][here], every.modulus[row][here], every.length)
+    law.strip[:, _LENGTH] = every.lengths[row][here]
     point = here % points
     first = pairs[here // points] * count + bodies.first[point]
     arms = every.motion_arm[p][here], every.torque_arm[p][here]

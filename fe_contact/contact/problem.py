@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import scipy
 
+from fe_contact.contact.free_end import ENDLESS, SMOOTH, FreeEnds, end_excess
 from fe_contact.contact.patch import Patches
 from fe_contact.contact.strip import Gap, StripMiddles, gap_table, rolling_radii, strip_middles
 from fe_contact.contact.touch import Touch
@@ -127,6 +128,8 @@ class LoadedSlices:
         local law, what is further in the finite elements.
     edge_load : float
         See `PatchRule`.
+    end_1, end_2 : FreeEnds
+        Of the bodies of either gear, in the face positions of the slices.
     """
 
     pair: IntArray
@@ -141,11 +144,18 @@ class LoadedSlices:
     corner_2: float
     law_length: float
     edge_load: float
+    end_1: FreeEnds = ENDLESS
+    end_2: FreeEnds = ENDLESS
 
     @property
     def width(self) -> float:
         """Width of a slice along the contact line, m."""
         return self.slice_width / math.cos(self.base_helix_angle)
+
+    @property
+    def endless(self) -> bool:
+        """Whether the contact runs to no free end."""
+        return self.end_1 == ENDLESS and self.end_2 == ENDLESS
 
     def half_planes(self, first: float, second: float) -> tuple[FloatArray, FloatArray]:
         """Return 2 (1 - nu^2)/(pi E) of both gears under each patch (P, m): more at the own tip edge."""
@@ -346,13 +356,14 @@ class ContactProblem:
     def bodies(self) -> FloatArray:
         """The compliance (Q, n, n) without what load patches move within the reference length, m/N.
 
-        That is k ln(l/a)/w of each gear on slices of the width w: in the local law instead. Patches are
-        displaced to where modified flanks press, by no more than that length.
+        That is k [ln(l/a) + e(a) - e(l)]/w of each gear on slices of the width w, e that of free ends: in the
+        local law instead. Patches are displaced to where modified flanks press, by no more than that length.
         """
         slices = self.candidates.slices
         k_1, k_2 = self.half_planes
-        near = k_1 * np.log(slices.law_length / slices.patch_1.law_width)
-        near = near + k_2 * np.log(slices.law_length / slices.patch_2.law_width)
+        patch_1, patch_2 = slices.patch_1.law_width, slices.patch_2.law_width
+        near = k_1 * (np.log(slices.law_length / patch_1) + self._end_excess(slices.end_1, patch_1))
+        near = near + k_2 * (np.log(slices.law_length / patch_2) + self._end_excess(slices.end_2, patch_2))
         near = slices.mean(near) / slices.width
         compliance, diagonal = self.compliance.copy(), np.arange(slices.pair.size)
         if self.tilt.size and self.candidates.touch.moved.any():
@@ -360,6 +371,28 @@ class ContactProblem:
             _displace(compliance, self.tilt, self.candidates.on_mean(way))
         compliance[:, diagonal, diagonal] -= np.where(slices.present, near, 0.0)
         return compliance
+
+    @property
+    def law_length(self) -> FloatArray:
+        """Reference length of the local law of each candidate (Q, m), m: greater near free ends.
+
+        There the strip gives way more by k p [e(h) - e(l)]: as much as by a longer reference length. Its half
+        width h is that of the load that patches at tip edges follow.
+        """
+        slices, (first, second) = self.candidates.slices, self.half_planes
+        if slices.endless:
+            return np.full(first.shape, slices.law_length)
+        strip = np.sqrt(slices.edge_load * self.candidates.radius[: len(first)])
+        more = first * self._end_excess(slices.end_1, strip) + second * self._end_excess(slices.end_2, strip)
+        return np.asarray(slices.law_length * np.exp(more / (first + second)))
+
+    def _end_excess(self, ends: FreeEnds, strip: FloatArray) -> FloatArray:
+        """Return e of half strips (Q, m) less that of the reference length."""
+        candidates = self.candidates
+        if candidates.slices.endless:
+            return np.zeros(strip.shape)
+        length = SMOOTH * candidates.slices.law_length
+        return end_excess(ends, candidates.face_position, candidates.point_width, strip, length)
 
     @property
     def rolling(self) -> FloatArray:

@@ -76,15 +76,14 @@ class _SinglePairs:
 
     def _strips(self, load: FloatArray) -> FloatArray:
         """Return what strips add (Q, J, L), m: 2/p times the integral of k p [ln(l/b) + 1/4] over p."""
-        problem, slices = self.problem, self.problem.candidates.slices
-        shape = self.share.shape
+        problem, shape = self.problem, self.share.shape
         k = np.broadcast_to(sum(problem.half_planes), (shape[0], shape[1] * shape[2])).reshape(shape)
         radius = problem.candidates.radius[: shape[0]].reshape(shape)
         line = np.divide(1.0, self.length, out=np.zeros(self.length.shape), where=self.length > 0.0)
         line_load = line[..., None, None] * load
         strip = half_width(line_load, radius[..., None], problem.modulus)
         with np.errstate(divide="ignore"):
-            depth = np.maximum(np.log(slices.law_length / strip), NARROWEST) + 0.5
+            depth = np.maximum(np.log(problem.law_length.reshape(shape)[..., None] / strip), NARROWEST) + 0.5
         depth = np.where(line_load > 0.0, depth, 0.0)
         return np.asarray(np.einsum("qjm,qjm,qjml->qjl", self.share, k, line_load * depth, optimize=True))
 

@@ -14,7 +14,7 @@ def test_stated_errors_of_a_draft_cover_full_contact(case: LineLoadCase) -> None
     assert {peak.quantity for peak in peaks} >= {"line_load_n_per_mm"}
     for peak in peaks:
         assert peak.covered, peak
-        assert peak.stated < 0.12 * peak.value
+        assert peak.stated < (0.3 if peak.quantity.startswith("edge") else 0.12) * peak.value
 
 
 @pytest.mark.nightly

@@ -78,12 +78,15 @@ def check_laws(
     return tuple(sorted(worst.values(), key=lambda law: -math.inf if law.broken else -law.ratio))
 
 
-def require_laws(laws: Sequence[LawCheck], partial: object) -> None:
-    """Raise `SolveError` naming every broken law, its place and both numbers, with the `partial` result."""
+def require_laws(laws: Sequence[LawCheck], partial: object, result: str = "table") -> None:
+    """Raise `SolveError` naming every broken law, its place and both numbers, with the `partial` result.
+
+    `result`: what it is, a noun in the singular.
+    """
     broken = [law.words for law in laws if law.broken]
     if broken:
         raise SolveError(
-            f"the table breaks a law of mechanics and is no result: {'; '.join(broken)}", partial
+            f"the {result} breaks a law of mechanics and is no result: {'; '.join(broken)}", partial
         )
 
 

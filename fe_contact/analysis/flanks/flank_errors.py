@@ -1,4 +1,4 @@
-"""Errors of the largest line load, K_Hbeta and the largest pressure, by rougher discretizations.
+"""Errors of the largest line loads, K_Hbeta and the largest pressure, by rougher discretizations.
 
 The model's part is set against full contact that resolves the free ends
 (benchmarks/full_contact_line_load.py).
@@ -18,21 +18,24 @@ from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
 from fe_contact.errors import MeshError, SolveError
 from fe_contact.types import FloatArray
 
-FIGURES = ("line_load", "face_load_factor", "largest_face_load_factor", "pressure")
+FIGURES = ("line_load", "face_load_factor", "largest_face_load_factor", "pressure", "edge_line_load")
 """Fields of `FlankErrors`."""
-REMAINING = np.array([1.5, 1.5, 1.5, 1.0])
+REMAINING = np.array([1.5, 1.5, 1.5, 1.0, 1.5])
 """Part that is left of the changes of the figures by positions, slices, patches and meshes, as searches of
 flanks have it (benchmarks/limit_coverage.py)."""
 FREE_ENDS = {
     "line_load": 0.015,
     "face_load_factor": 0.015,
     "largest_face_load_factor": 0.015,
-    "pressure": 0.01,
+    "pressure": 0.015,
+    "edge_line_load": 0.03,
 }
-"""Part of the figures that the law of a slice leaves open at the free ends of the face: a spur pair is off by
-0.2 to 0.8 % there, a helical one by 0.9 to 2 %, of which its reference leaves 1.3 % open."""
-IN_THE_PLANE = {"line_load": 2e-3, "pressure": 2e-3}
-"""The same of a plane model, which has no ends: pressures of full contact are Hertz's within 0.2 %."""
+"""Part of the figures that the model leaves open: of three spur and three helical pairs at 14 alignments
+the line load clear of edges is off by -2.1 to +1.5 %, of which the references leave 1.4 % open, the pressure
+by -0.8 to +1.8 %, the load at an edge over a slice by -1.9 to +0.2 %."""
+IN_THE_PLANE = {"line_load": 2e-3, "pressure": 5e-3, "edge_line_load": 5e-3}
+"""The same of a plane model, which has no ends: largest pressures of full contact, plain, relieved and
+crowned, are within 0.5 % of it, loads at a tip edge within 0.2 %."""
 
 
 def with_errors(
@@ -82,7 +85,7 @@ def _changes(
 
 
 def _change(finer: LoadDistribution, rougher: LoadDistribution) -> FloatArray:
-    """Return the changes of the figures, not finite for a pressure of 0: all contacts are at edges."""
+    """Return the changes of the figures, not finite where one is 0: all contacts are at edges, or none is."""
     values, others = _figures(finer), _figures(rougher)
     ratio = np.divide(others, values, out=np.full(values.size, np.inf), where=values > 0.0)
     return np.asarray(ratio - 1.0)
@@ -95,5 +98,6 @@ def _figures(flanks: LoadDistribution) -> FloatArray:
         flanks.cycle_face_load_factor,
         flanks.largest_face_load_factor,
         flanks.largest_pressure,
+        flanks.edge_line_load,
     )
     return np.array([estimate.value for estimate in estimates])

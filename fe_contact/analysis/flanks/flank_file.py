@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bounds import Finding, warn_of
+from fe_contact.analysis.checks.table_laws import require_laws
 from fe_contact.analysis.flanks.flank_errors import with_errors
+from fe_contact.analysis.flanks.flank_laws import check_flank_laws
 from fe_contact.analysis.flanks.load_distribution import (
     FlankErrors,
     FlankScene,
@@ -217,7 +219,8 @@ def flank_results(
     """Solve the contact of one load and alignment, and return load, pressure and gap on the flanks.
 
     Raises `InputError`: a value that cannot be used, by field name; `MeshError`, `SolveError`: no acceptable
-    mesh, positions without a solution, or a violated assumption if `on_violation` is "fail".
+    mesh, positions without a solution, results that break a law of mechanics (`partial` has them), or a
+    violated assumption if `on_violation` is "fail".
 
     Parameters
     ----------
@@ -244,9 +247,12 @@ def flank_results(
         misalignment=float(request.misalignment[0]),
         center_distance_change=float(request.center_distance_change[0]),
     )
+    laws = check_flank_laws(results, solved.problem)
+    require_laws(laws, results, "load distribution")
     with clock.stage("error estimate"):
         results = with_errors(results, solved, run.cache)
-    results = replace(results, metadata=Metadata(receipt=receipt | clock.to_json()))
+    receipt = receipt | clock.to_json() | {"laws": [law.to_json() for law in laws]}
+    results = replace(results, metadata=Metadata(receipt=receipt))
     warn_of(unexpected(request.findings, _findings(results)))
     return replace(results, metadata=_metadata(checked, results, case))
 

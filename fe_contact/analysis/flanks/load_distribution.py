@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -93,6 +93,11 @@ def _flank_scene(
     )
 
 
+EDGE_STRETCHES = 6
+"""Stretches of the face over which a line load at an edge is averaged: a slice of the usual ones."""
+Stretches = TypeVar("Stretches", FloatArray, BoolArray)
+
+
 @dataclass(frozen=True)
 class FlankErrors:
     """Errors of figures of flank results over their values, or why there are none.
@@ -101,6 +106,8 @@ class FlankErrors:
     ----------
     line_load, pressure : float or None
         Of the largest ones clear of edges. None: not estimated.
+    edge_line_load : float or None
+        Of the largest one at edges, as a mean over a slice.
     face_load_factor, largest_face_load_factor : float or None
         Of K_Hbeta over the cycle, and of the largest one at a position.
     reason : str
@@ -111,6 +118,7 @@ class FlankErrors:
     face_load_factor: float | None = None
     largest_face_load_factor: float | None = None
     pressure: float | None = None
+    edge_line_load: float | None = None
     reason: str = "one solution tells no error"
 
 
@@ -200,9 +208,22 @@ class LoadDistribution:
         return _estimate(float(np.max(clear, initial=0.0)), self.errors.line_load, "N/m")
 
     @property
-    def edge_line_load(self) -> float:
-        """Largest line load at an edge, N/m: it peaks over less than a slice where a line ends at a tip."""
-        return float(np.max(np.where(self.at_edge, self.line_load, 0.0), initial=0.0))
+    def edge_length(self) -> float:
+        """Length of the face over which a line load at an edge is averaged, m: that of a usual slice."""
+        return self.slice_width * min(EDGE_STRETCHES, self.face_position.size)
+
+    @property
+    def edge_line_load(self) -> Estimate:
+        """Largest line load at an edge, N/m: the mean over `edge_length` about it; 0 for none.
+
+        It peaks over less than a slice where a line ends at a tip edge, by up to a third.
+        """
+        stretches = min(EDGE_STRETCHES, self.face_position.size)
+        at_edge = np.broadcast_to(self.at_edge, self.force.shape) & (self.force > 0.0)
+        edges = _windows(at_edge, stretches).any(axis=-1)
+        means = _windows(self.line_load, stretches).mean(axis=-1)
+        largest = np.max(np.where(edges, means, 0.0), initial=0.0)
+        return _estimate(float(largest), self.errors.edge_line_load, "N/m")
 
     @property
     def largest_pressure(self) -> Estimate:
@@ -357,6 +378,11 @@ def _loaded_gap(problem: ContactProblem, force: FloatArray, deflection: FloatArr
 def _estimate(value: float, relative: float | None, unit: str) -> Estimate:
     """Return a figure with its error; NaN where none is estimated."""
     return Estimate(value, math.nan if relative is None else relative * abs(value), unit)
+
+
+def _windows(values: Stretches, count: int) -> Stretches:
+    """Return so many stretches beside each other of values (..., K), (..., K + 1 - count, count)."""
+    return np.lib.stride_tricks.sliding_window_view(values, count, axis=-1)
 
 
 def _largest_over_mean(values: FloatArray) -> FloatArray:

@@ -382,11 +382,13 @@ def _headlines(flanks: LoadDistribution) -> Iterator[Headline]:
 
 
 def _edge_load(flanks: LoadDistribution) -> str:
-    """Name the line load at edges apart; nothing where none is reached."""
-    if flanks.edge_line_load <= 0.0:
+    """Name the line load at edges apart, a mean over a slice; nothing where none is reached."""
+    load = flanks.edge_line_load
+    if load.value <= 0.0:
         return ""
-    load = number(flanks.edge_line_load / N_PER_MM, 3)
-    return f"; {load} N/mm at the edges, indicative: error not estimated"
+    band = error_words(load, "N/mm", N_PER_MM, flanks.errors.reason)
+    over = f", mean over {number(1e3 * flanks.edge_length, 2)} mm" if flanks.face_position.size > 1 else ""
+    return f"; {number(load.value / N_PER_MM, 3)} N/mm at the edges, {band}{over}"
 
 
 def _length_words(flanks: LoadDistribution) -> str:
@@ -412,7 +414,7 @@ def _making(flanks: LoadDistribution, *, alone: bool) -> tuple[Section, ...]:
     metadata = flanks.metadata
     if not metadata.receipt:
         return ()
-    cost = {name: value for name, value in metadata.receipt.items() if name != "plan"}
+    cost = {name: value for name, value in metadata.receipt.items() if name not in ("plan", "laws")}
     made = {**metadata.software_versions, "content_hash": metadata.content_hash}
     section = Section(
         "Receipt of the flank results",

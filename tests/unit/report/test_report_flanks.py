@@ -203,7 +203,7 @@ def test_load_and_alignment_are_said(flanks: LoadDistribution) -> None:
 def test_every_headline_has_its_error_or_says_why_there_is_none(flanks: LoadDistribution) -> None:
     bare = PAGE.page(flanks).headlines
     assert all(h.remark.startswith("error not estimated: one solution tells no error") for h in bare)
-    errors = FlankErrors(0.05, 0.02, 0.03, 0.01, "none is missing")
+    errors = FlankErrors(0.05, 0.02, 0.03, 0.01, 0.04, "none is missing")
     stated = PAGE.page(replace(flanks, errors=errors)).headlines
     load, pressure = 1e-3 * flanks.line_load.max(), 1e-6 * flanks.pressure.max()
     bands = [float(re.match(r"± ([\d.]+)", h.remark)[1]) for h in stated]  # type: ignore[index]
@@ -213,6 +213,24 @@ def test_every_headline_has_its_error_or_says_why_there_is_none(flanks: LoadDist
     assert sum("±" in line for line in lines) == 2
     part = f"peak over {number(1e3 * flanks.slice_width, 2)} mm of the face"
     assert sum(part in line for line in lines) == 2 and sum(part in h.remark for h in stated) == 2
+
+
+def test_the_line_load_at_edges_is_the_mean_over_a_slice_with_its_error(flanks: LoadDistribution) -> None:
+    p, j, k = np.unravel_index(flanks.line_load.argmax(), flanks.line_load.shape)
+    at_edge = np.zeros(flanks.force.shape, dtype=bool)
+    at_edge[p, j, k] = True
+    count = min(6, flanks.face_position.size)
+    errors = FlankErrors(edge_line_load=0.03)
+    edged = replace(flanks, at_edge=at_edge, errors=errors)
+    first = range(max(k - count + 1, 0), min(k, flanks.face_position.size - count) + 1)
+    windows = [flanks.line_load[p, j, i : i + count].mean() for i in first]
+    assert edged.edge_line_load.value == pytest.approx(max(windows), rel=1e-12)
+    assert edged.edge_line_load.error == pytest.approx(0.03 * max(windows), rel=1e-12)
+    load = PAGE.page(edged).headlines[1].remark
+    assert re.search(r"; [\d.]+ N/mm at the edges, ± [\d.]+ N/mm, mean over [\d.]+ mm", load)
+    bare = PAGE.page(replace(edged, errors=FlankErrors())).headlines[1].remark
+    assert "at the edges, error not estimated" in bare
+    assert "at the edges" not in PAGE.page(flanks).headlines[1].remark
 
 
 def test_another_pair_than_the_databases_is_said_loudly(

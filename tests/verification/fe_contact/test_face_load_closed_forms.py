@@ -25,6 +25,7 @@ from fe_contact.effects.flank_modification import ModificationGap
 from fe_contact.effects.misalignment import MisalignmentGap
 from fe_contact.effects.shaft_deflection import _SeatCompliance, _ShaftCompliance
 from fe_contact.geometry import Shaft
+from fe_contact.material import Material
 
 SOURCE = "thin slices, closed form"
 WIDTH = 20e-3
@@ -192,7 +193,8 @@ RIGID = 2e-17
 Forces follow from the local approach, a difference of motions: the stiffer the bodies, the more rounding.
 """
 
-GEAR = Gear(teeth=20, normal_module=4e-3, face_width=WIDTH, bore_diameter=40e-3)
+NARROW = Material(210e9, 0.0)  # without lateral contraction: its free ends are as stiff as the middle
+GEAR = Gear(teeth=20, normal_module=4e-3, face_width=WIDTH, bore_diameter=40e-3, material=NARROW)
 PAIR = GearPair(GEAR, GEAR, 80e-3)
 
 

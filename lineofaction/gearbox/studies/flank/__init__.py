@@ -32,7 +32,13 @@ class FlankFigures(Figures):
     load_centroid_mm: tuple[float, float]
     largest_line_load_n_per_mm: float = Field(description="Where no strip reaches an edge of a flank")
     largest_line_load_error_n_per_mm: float | None = None
-    edge_line_load_n_per_mm: float | None = Field(default=None, description="At edges; no error is estimated")
+    edge_line_load_n_per_mm: float | None = Field(
+        default=None, description="At edges, mean over `edge_length_mm`; 0: no edge is reached"
+    )
+    edge_line_load_error_n_per_mm: float | None = None
+    edge_length_mm: Annotated[float | None, Source("edge_length")] = Field(
+        default=None, description="Length along the face over which a line load at an edge is averaged"
+    )
     peak_length_mm: Annotated[float | None, Source("slice_width")] = Field(
         default=None, description="Length along the face over which line load and K_Hbeta take their peak"
     )

@@ -58,7 +58,7 @@ class _FlankStudy(PointStudy[FlankFigures, LoadDistribution]):
             "largest_face_load_factor": flanks.face_load_factor.max(),
             "load_centroid": (centroid.min(), centroid.max()),
             "largest_line_load_n_per_mm": flanks.largest_line_load.value * MM,
-            "edge_line_load_n_per_mm": flanks.edge_line_load * MM,
+            "edge_line_load_n_per_mm": flanks.edge_line_load.value * MM,
             "largest_pressure_mpa": flanks.clear_pressure.max() * 1e-6,
             "edge_pressure_mpa": flanks.edge_pressure * 1e-6,
         }
@@ -73,6 +73,7 @@ def _errors(flanks: LoadDistribution) -> Json:
         "k_h_beta_error": flanks.cycle_face_load_factor.error,
         "largest_face_load_factor_error": flanks.largest_face_load_factor.error,
         "largest_line_load_error_n_per_mm": flanks.largest_line_load.error * MM,
+        "edge_line_load_error_n_per_mm": flanks.edge_line_load.error * MM,
         "largest_pressure_error_mpa": flanks.largest_pressure.error / MPA,
     }
 

@@ -227,5 +227,9 @@ def test_meshes_of_pinion_and_ring_meet_where_the_load_is(hand: float, cache: Pa
         most = gear.points[gear.von_mises.argmax()]
         assert most[2] == pytest.approx(-0.5 * pair.face_width, rel=1e-6)
         near = 0.4 * pair.pinion.normal_module  # two elements of the draft flank
-        assert np.linalg.norm(other.points - most, axis=1).min() < near
+        stressed = gear.points[
+            gear.von_mises > 0.9 * gear.von_mises.max()
+        ]  # nodes that rounding may exchange
+        apart = np.linalg.norm(other.points - stressed[:, None], axis=2)
+        assert apart.min() < near
         assert gear.residual < 1e-10
