@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks.nodes_between import between_nodes, covered, drawn_tables, within
 
-DAY = (0, 3, 5)
+DAY = (0, 3, 8)
 """Spur pairs in the plane, external and internal, with loads up to five times apart."""
 
 
