@@ -33,10 +33,10 @@ def content_hash(case: Json, solver_version: str, schema_version: int) -> str:
     return hashlib.sha256(canonical).hexdigest()
 
 
-SCHEMA_VERSION = 5
+SCHEMA_VERSION = 6
 """Version 1 states no errors of the model; up to 2 the largest pressure is that of edges, too; up to 3 orders
 beside the mesh have no errors of their own; up to 4 the errors of a plane hold its bias, bands between nodes
-not the error of their interval."""
+not the error of their interval; up to 5 all alignments are requested ones."""
 
 
 @dataclass(frozen=True)
