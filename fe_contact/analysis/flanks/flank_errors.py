@@ -6,6 +6,7 @@ The model's part is set against full contact that resolves the free ends
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +16,7 @@ import numpy as np
 from fe_contact.analysis.flanks.load_distribution import FlankErrors, LoadDistribution, load_distribution
 from fe_contact.analysis.flanks.rougher_solutions import halves, rougher_solutions
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
+from fe_contact.contact import ContactProblem
 from fe_contact.errors import MeshError, SolveError
 from fe_contact.types import FloatArray
 
@@ -61,7 +63,20 @@ def with_errors(
         for name, part in zip(FIGURES, left.tolist(), strict=True)
         if name in model and np.isfinite(part)
     }
-    return replace(flanks, errors=FlankErrors(**errors, reason=reason))
+    kink = _kink_length(flanks, solved.problem)
+    return replace(flanks, errors=FlankErrors(**errors, reason=reason, kink_length=kink))
+
+
+def _kink_length(flanks: LoadDistribution, problem: ContactProblem) -> float:
+    """Return the strip of the largest pressure in m if a relief begins in it with a kink, else 0."""
+    position, pair, stretch = np.unravel_index(flanks.clear_pressure.argmax(), flanks.force.shape)
+    pressure = float(flanks.pressure[position, pair, stretch])
+    contact = position, pair * flanks.face_position.size + stretch
+    line_load = float(flanks.force[position, pair, stretch] / problem.candidates.width[contact])
+    half = 2.0 * line_load / (math.pi * pressure)
+    about = problem.candidates.gap_at(contact)
+    kinked = bool(np.any((about.jump > 0.0) & (np.abs(about.place) < half)))
+    return 2.0 * half if kinked else 0.0
 
 
 def _model(flanks: LoadDistribution) -> tuple[dict[str, float], str]:

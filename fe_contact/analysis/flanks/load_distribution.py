@@ -112,6 +112,9 @@ class FlankErrors:
         Of K_Hbeta over the cycle, and of the largest one at a position.
     reason : str
         Why those that are None are not estimated.
+    kink_length : float
+        Strip of the largest pressure where a relief begins in it with a kink, m, else 0: the true pressure is
+        infinite at the kink, the stated one 4/pi times the mean over this length.
     """
 
     line_load: float | None = None
@@ -120,6 +123,7 @@ class FlankErrors:
     pressure: float | None = None
     edge_line_load: float | None = None
     reason: str = "one solution tells no error"
+    kink_length: float = 0.0
 
 
 @dataclass(frozen=True)

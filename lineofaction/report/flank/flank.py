@@ -370,7 +370,7 @@ def _headlines(flanks: LoadDistribution) -> Iterator[Headline]:
     at, reason = _operating_point(flanks), flanks.errors.reason
     pressure, load = flanks.largest_pressure, flanks.largest_line_load
     band = error_words(pressure, "MPa", MPA, reason)
-    remark = f"{band}; {at}{edge_words(flanks.edge_pressure)}"
+    remark = f"{band}{_kink_words(flanks)}; {at}{edge_words(flanks.edge_pressure)}"
     yield Headline("largest flank pressure", f"{number(pressure.value / MPA)} MPa", remark)
     band = error_words(load, "N/mm", N_PER_MM, reason)
     remark = f"{band}{_length_words(flanks)}; {at}{_edge_load(flanks)}"
@@ -379,6 +379,15 @@ def _headlines(flanks: LoadDistribution) -> Iterator[Headline]:
         factor = flanks.cycle_face_load_factor
         remark = f"{error_words(factor, '', 1.0, reason)}{_length_words(flanks)}; {at}"
         yield Headline("K_Hbeta over the cycle", number(factor.value, 3), remark)
+
+
+def _kink_words(flanks: LoadDistribution) -> str:
+    """Say over which length the largest pressure is a mean where a kink makes it infinite; else nothing."""
+    length = flanks.errors.kink_length
+    if length <= 0.0:
+        return ""
+    over = number(1e3 * length, 2)
+    return f", infinite at the kink of a relief: 4/pi times the mean over {over} mm of profile"
 
 
 def _edge_load(flanks: LoadDistribution) -> str:

@@ -233,6 +233,12 @@ def test_the_line_load_at_edges_is_the_mean_over_a_slice_with_its_error(flanks: 
     assert "at the edges" not in PAGE.page(flanks).headlines[1].remark
 
 
+def test_a_pressure_at_a_kink_says_over_which_length_it_is_averaged(flanks: LoadDistribution) -> None:
+    kinked = replace(flanks, errors=FlankErrors(kink_length=0.21e-3))
+    assert "4/pi times the mean over 0.21 mm of profile" in PAGE.page(kinked).headlines[0].remark
+    assert "kink" not in PAGE.page(flanks).headlines[0].remark
+
+
 def test_another_pair_than_the_databases_is_said_loudly(
     flanks: LoadDistribution, database: SteDatabase, tmp_path: Path
 ) -> None:

@@ -164,3 +164,15 @@ def test_the_receipt_has_the_worst_place_under_each_law() -> None:
     laws = flank_results(spur(), point, options, at=AT).metadata.receipt["laws"]
     assert {law["law"] for law in laws} >= {fault.law for fault in BREAKS.values()}
     assert all(0.0 <= law["ratio"] <= 1.0 for law in laws)
+
+
+@pytest.mark.parametrize(("shape", "kinked"), [("linear", True), ("parabolic", False)])
+def test_a_kink_under_the_largest_pressure_names_the_strip(shape: str, kinked: bool) -> None:
+    """Pairs at the start of a relief: the strip on it is that of pressure and line load."""
+    relief = FlankModification(tip_relief=15e-6, tip_relief_length=1.5e-3, tip_relief_shape=shape)
+    gear = Gear(20, 3e-3, 12e-3, 30e-3, modification=relief)
+    point, options = OperatingPoint(torque=100.0), AnalysisOptions(level="draft", model="plane_strain")
+    found = flank_results(GearPair(gear, gear, 60e-3), point, options, at=[0.44])
+    place = np.unravel_index(found.clear_pressure.argmax(), found.force.shape)
+    strip = 4.0 * found.line_load[place] / (math.pi * found.pressure[place])
+    assert found.errors.kink_length == pytest.approx(strip if kinked else 0.0, rel=1e-9)
