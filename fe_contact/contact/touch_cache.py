@@ -12,7 +12,7 @@ import numpy as np
 from fe_contact.contact.touch import Touch
 from fe_contact.types import FloatArray, IntArray
 
-_MOST, _MOST_BYTES = 8, 64_000_000
+_MOST, _MOST_BYTES = 8, 32_000_000
 """Entries, and bytes of all of them: the last ones of one process."""
 
 

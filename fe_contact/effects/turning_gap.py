@@ -113,7 +113,8 @@ class TurningGap:
 
     def tooth(self, meeting: IntArray) -> IntArray:
         """Return which teeth meet, the first is 0."""
-        return _teeth_of(np.ascontiguousarray(meeting), self.period, self.teeth)
+        tooth = _teeth_of(np.ravel(meeting), self.period, self.teeth)
+        return tooth.reshape(np.shape(meeting))
 
     def nodes(self, pair: ParallelAxes, tooth: int) -> FloatArray:
         """Return roll lengths of the gear in m, between two of which its profile turns back once at most."""
@@ -190,14 +191,13 @@ class Turning(NamedTuple):
 
 @njit(cache=True, error_model="numpy")
 def _teeth_of(meeting: IntArray, period: int, teeth: int) -> IntArray:
-    """Return which teeth meet; divisions are slow, and most candidates in turn are of one pair."""
-    tooth = np.empty_like(meeting)
-    before, after = meeting.ravel(), tooth.ravel()
-    for k in range(before.size):
-        if k and before[k] == before[k - 1]:
-            after[k] = after[k - 1]
+    """Return which teeth (k,) meet; divisions are slow, and most candidates in turn are of one pair."""
+    tooth = np.empty(meeting.size, dtype=np.int64)
+    for k in range(meeting.size):
+        if k and meeting[k] == meeting[k - 1]:
+            tooth[k] = tooth[k - 1]
         else:
-            after[k] = before[k] % period % teeth
+            tooth[k] = meeting[k] % period % teeth
     return tooth
 
 
