@@ -383,8 +383,11 @@ class ContactProblem:
         if slices.endless:
             return np.full(first.shape, slices.law_length)
         strip = np.sqrt(slices.edge_load * self.candidates.radius[: len(first)])
-        more = first * self._end_excess(slices.end_1, strip) + second * self._end_excess(slices.end_2, strip)
-        return np.asarray(slices.law_length * np.exp(more / (first + second)))
+        more = self._end_excess(slices.end_1, strip)
+        if slices.end_2 != slices.end_1:
+            of_second = second / (first + second)
+            more = (1.0 - of_second) * more + of_second * self._end_excess(slices.end_2, strip)
+        return np.asarray(slices.law_length * np.exp(more))
 
     def _end_excess(self, ends: FreeEnds, strip: FloatArray) -> FloatArray:
         """Return e of half strips (Q, m) less that of the reference length."""
