@@ -40,6 +40,10 @@ def lateral_share(poissons_ratio: float) -> float:
     return 0.25 * math.pi * (1.0 - 2.0 * poissons_ratio) / (1.0 - poissons_ratio)
 
 
+STRIP_DISTANCE = 64.0 / (9.0 * math.pi**2)
+"""Mean distance of a point under a punch from one of the strip's load, over half the strip, 0.72."""
+
+
 def contact_modulus(first: Material, second: Material) -> float:
     """Contact modulus E* in Pa, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 [1]_."""
     return 1.0 / (1.0 / first.plane_strain_modulus + 1.0 / second.plane_strain_modulus)

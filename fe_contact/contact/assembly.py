@@ -12,11 +12,12 @@ import numpy as np
 from fe_contact.compliance import FlankCompliance, FlankCompliance3D
 from fe_contact.contact.candidates import with_gaps
 from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, face_loads
+from fe_contact.contact.flank_slope import rolls_at
 from fe_contact.contact.model import ContactModel
 from fe_contact.contact.patch import Patches, load_vector
 from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices
 from fe_contact.contact.tooth_touch import tooth_touch
-from fe_contact.contact.touch import Touch, rolls_at
+from fe_contact.contact.touch import Touch
 from fe_contact.contact.touch_cache import cached_touch
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray
@@ -131,11 +132,18 @@ def face_contact_problem(
         False drops what the load on one tooth moves on another.
     """
     compliance = np.zeros((*candidates.slices.present.shape, candidates.slices.pair.size))
+    diagonals = []
     for gear in _face_gears(candidates.slices, compliances, axial_offset, couple_teeth):
         for rows, added in gear.compliances():
             compliance[rows] += added
+        diagonals.append(np.einsum("pii->pi", compliance).copy())
     planes, modulus = _half_planes(compliances)
-    return ContactProblem(candidates, compliance, modulus, *planes)
+    return ContactProblem(candidates, compliance, modulus, *planes, share_1=share_of_pinion(*diagonals))
+
+
+def share_of_pinion(pinion: FloatArray, both: FloatArray) -> FloatArray:
+    """Return the share of gear 1 in compliances (P, n), 0.5 where there is none."""
+    return np.asarray(np.divide(pinion, both, out=np.full(both.shape, 0.5), where=both > 0.0))
 
 
 def with_face_tilt(
@@ -300,13 +308,22 @@ def contact_problem(
     compliance, tilt = np.zeros((2, *slices.present.shape, slices.pair.size))
     touch = slices.touch
     sides = ((slices.patch_1, touch.lever_1, 1.0), (slices.patch_2, touch.lever_2, -1.0))
+    diagonals = []
     for flank, (patch, lever, tip), direction in zip(compliances, sides, (-1, 1), strict=True):
         blocks = _tooth_blocks(flank, direction * slices.pair)
         rows = np.ascontiguousarray  # one order in memory: compiled once
         laid = np.array([patch.center, patch.half_width, patch.edge_share])
         _add_gear(flank.s, blocks, laid, rows(lever), tip, slices.present, couple_teeth, compliance, tilt)
+        diagonals.append(np.einsum("pii->pi", compliance).copy())
     planes, modulus = _half_planes(compliances)
-    return ContactProblem(candidates, compliance / slices.width, modulus, *planes, tilt / slices.width)
+    return ContactProblem(
+        candidates,
+        compliance / slices.width,
+        modulus,
+        *planes,
+        tilt / slices.width,
+        share_of_pinion(*diagonals),
+    )
 
 
 def _half_planes(

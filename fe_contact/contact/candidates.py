@@ -11,10 +11,10 @@ from fe_contact.contact.free_end import ENDLESS, FreeEnds, end_softness
 from fe_contact.contact.model import ContactModel
 from fe_contact.contact.patch import Patches, tip_patches
 from fe_contact.contact.problem import Candidates, LoadedSlices, Slices
-from fe_contact.contact.touch import Touch, conjugate_touch, flank_coordinate, modified_touch
+from fe_contact.contact.touch import FLAT, Touch, conjugate_touch, flank_coordinate, modified_touch
 from fe_contact.contact.touch_cache import cached_touch
 from fe_contact.geometry import ParallelAxes, Toothing
-from fe_contact.hertz import lateral_share, wedge_softness
+from fe_contact.hertz import STRIP_DISTANCE, lateral_share, wedge_softness
 from fe_contact.types import FloatArray, IntArray
 
 LAW_LENGTH = 0.45
@@ -186,14 +186,15 @@ def _loaded_slices(
     module = pair.pinion.normal_module
     patch_1 = _patches(touch.s_1, touch.offset_1, tip_1, shift_1, radius, rule)
     patch_2 = _patches(touch.s_2, touch.offset_2, tip_2, shift_2, radius, rule)
-    bulge_1, bulge_2 = _bulge(pair.pinion, patch_1), _bulge(pair.wheel, patch_2)
+    curvatures = _flank_curvature(pair.pinion, patch_1), _flank_curvature(pair.wheel, patch_2)
+    first, second = (lateral_share(gear.material.poissons_ratio) for gear in (pair.pinion, pair.wheel))
     return LoadedSlices(
         pair=np.repeat(index, slices.center.size),
         face_position=np.tile(slices.center, index.size),
         present=np.repeat(meets, slices.center.size, axis=1),
         touch=middle,
-        patch_1=replace(patch_1, count=slices.points, bulge=bulge_1),
-        patch_2=replace(patch_2, count=slices.points, bulge=bulge_2),
+        patch_1=replace(patch_1, count=slices.points, bulge=first * curvatures[0]),
+        patch_2=replace(patch_2, count=slices.points, bulge=second * curvatures[1]),
         slice_width=slices.width,
         base_helix_angle=pair.base_helix_angle,
         corner_1=_corner_softness(pair.pinion),
@@ -202,6 +203,8 @@ def _loaded_slices(
         edge_load=rule.edge_load,
         end_1=_free_ends(pair, pair.pinion, 0.0, slices),
         end_2=_free_ends(pair, pair.wheel, pair.axial_offset, slices),
+        lateral_shares=(first, second),
+        turned_normals=_turned_normals(pair, curvatures, rule),
     )
 
 
@@ -239,14 +242,29 @@ def _patches(
     return tip_patches(s + shift, offset, tip, rule.half_width, rule.lengths(offset, radius))
 
 
-def _bulge(gear: Toothing, patches: Patches) -> FloatArray:
-    """Return what curved flanks under patches add to a half plane, 1/m; see `lateral_share`.
+def _flank_curvature(gear: Toothing, patches: Patches) -> FloatArray:
+    """Return the curvature of flanks under patches in the normal section, 1/m; below zero if hollow.
 
-    On the fillet, below the involute, the curvature is that half a patch above its base.
+    On the fillet, below the involute, it is that half a patch above its base.
     """
     along = np.maximum(np.abs(patches.center), 0.5 * patches.half_width)
-    radius = gear.sign * np.sqrt(2.0 * gear.base_radius * along) / math.cos(gear.base_helix_angle)
-    return lateral_share(gear.material.poissons_ratio) / radius
+    return math.cos(gear.base_helix_angle) / (gear.sign * np.sqrt(2.0 * gear.base_radius * along))
+
+
+def _turned_normals(
+    pair: ParallelAxes, curvatures: tuple[FloatArray, FloatArray], rule: PatchRule
+) -> FloatArray:
+    """Return by how much normals turn over the mean distance of two points of the strip, rad.
+
+    The strip is that of `PatchRule.edge_load`. Both flanks have its curvature there: the softer one follows
+    the stiffer one.
+    """
+    first, second = (1.0 / gear.material.plane_strain_modulus for gear in (pair.pinion, pair.wheel))
+    relative = curvatures[0] + curvatures[1]
+    flattest = math.cos(pair.base_helix_angle) / (FLAT * pair.wheel.base_radius)
+    strip = np.sqrt(rule.edge_load / np.maximum(relative, flattest))
+    curvature = (second * curvatures[0] - first * curvatures[1]) / (first + second)
+    return np.asarray(STRIP_DISTANCE * np.minimum(strip, rule.half_width) * curvature)
 
 
 def _corner_softness(gear: Toothing) -> float:

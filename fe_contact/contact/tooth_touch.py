@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fe_contact.contact.flank_slope import rolls_at
 from fe_contact.contact.model import ContactModel, MeetingTeeth
 from fe_contact.contact.parabolic_gap import moved_gap, touching_places
 from fe_contact.contact.rough_flanks import DeviatingTeeth, curvature_bound
@@ -19,7 +20,6 @@ from fe_contact.contact.touch import (
     Touch,
     conjugate_touch,
     modified_touch,
-    rolls_at,
 )
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray
@@ -27,7 +27,8 @@ from host.loops import njit
 
 _AT_ONCE = 16_384
 """Candidates whose gaps are found together: what they take stays in the cache of the processor."""
-_MOVING = ("s_1", "s_2", "gap", "missed", *Gap._fields)
+_SLOPES = ("lag", "slope_1", "slope_2", "turn_1", "turn_2")
+_MOVING = ("s_1", "s_2", "gap", "missed", *_SLOPES, *Gap._fields)
 """What the gaps of teeth change of touching points."""
 
 
@@ -71,7 +72,8 @@ def tooth_touch(
 
     Notes
     -----
-    Load patches stay where the common flanks touch: `moved` is theirs.
+    Load patches stay where the common flanks touch: `moved` is theirs. What differs from tooth to tooth
+    counts as a lag: a pitch error of gear 2 turns its flank, and as much of a lag closes it on any slope.
     """
     there = np.nonzero(touch.gap != np.inf)  # more than a third of the candidates cannot touch
     parts = list(zip(*(np.array_split(each, there[0].size // _AT_ONCE + 1) for each in there), strict=True))
@@ -126,7 +128,8 @@ def _stepped(part: _Part) -> tuple[tuple[FloatArray, ...], BoolArray]:
     missed = teeth - level - way * (steepness + 0.5 * bend * way)
     poor = (np.abs(way) > half) | (np.abs(missed) > ALLOWED / common.curvature)
     moved = common.s_1 + way, common.s_2 - way, common.gap + least + teeth, common.missed
-    return (*moved, *gap), poor
+    slopes = (getattr(common, name) for name in _SLOPES)
+    return (*moved, *slopes, *gap), poor
 
 
 @njit(cache=True, error_model="numpy")

@@ -8,6 +8,7 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
+from fe_contact.contact.flank_slope import flank_slope, rolls_at
 from fe_contact.contact.least_gap import Nodes, least_gap, samples
 from fe_contact.contact.model import GapTerm
 from fe_contact.contact.parabolic_gap import moved_gap, touching_places
@@ -20,7 +21,8 @@ from fe_contact.hertz import relative_radius
 from fe_contact.types import BoolArray, FloatArray, IntArray
 from host.loops import njit
 
-_FLAT = 100.0
+FLAT = 100.0
+"""Largest relative radius of curvature over the base radius of gear 2."""
 _SAMPLES = 17
 _PASSES, _CUT_TIP_PASSES = 2, 4
 """How often the touching point is looked for, from the lowest sample on; where a tip is cut, further off."""
@@ -41,6 +43,8 @@ _ALIKE = 1e-4
 """Distance of samples over the step of differences below which they are one."""
 _AT_ONCE = 8192
 """Touching points that are followed together: what they take stays in the cache of the processor."""
+_AT_EDGE = 1e-12
+"""Distance from an edge in m below which a touching point is at it."""
 _NEAR = 1e-4
 """Of `STEP`: step of differences of the exact gap, whose slope is nowhere rounded."""
 _Arrays: TypeAlias = tuple[FloatArray, ...]
@@ -70,6 +74,13 @@ class Touch:
         How far modifications move the touching point, or the middle of the strip, towards tip 1, m.
     missed : ndarray
         Error of the approach on rough flanks; see `RoughStrip`.
+    lag : ndarray
+        Lag of gear 2 that closes a depth removed there, over that depth.
+    slope_1, slope_2 : ndarray
+        How fast what is removed from each flank grows over its roll length towards the tip, of a ring towards
+        the root; zero at its edge.
+    turn_1, turn_2 : ndarray
+        Their changes along the flanks towards tip 1, 1/m.
     roll_1 : ndarray
         Nominal roll lengths of gear 1, m.
     """
@@ -89,6 +100,11 @@ class Touch:
     bend: FloatArray
     moved: FloatArray
     missed: FloatArray
+    lag: FloatArray
+    slope_1: FloatArray
+    slope_2: FloatArray
+    turn_1: FloatArray
+    turn_2: FloatArray
     roll_1: FloatArray
 
     @property
@@ -144,21 +160,41 @@ def conjugate_touch(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, 
     s_1, s_2 = flank_coordinate(pair.pinion, touched_1), flank_coordinate(pair.wheel, touched_2)
     high = flank_coordinate(pair.pinion, tip_1) - s_1
     low = s_2 - flank_coordinate(pair.wheel, tip_2)
-    none = np.zeros((*gap.shape, 0))
+    none, plain = np.zeros((*gap.shape, 0)), np.zeros(gap.shape)
     return Touch(
         s_1, s_2, gap, radius, lever_1, lever_2,
         opening_2 - opening_1, 1.0 / radius, np.minimum(low, 0.0), np.maximum(high, 0.0), none, none, none,
-        np.zeros(gap.shape), np.zeros(gap.shape), roll_1,
+        plain, plain, _lag_at_edges(pair, lever_1, lever_2), plain, plain, plain, plain, roll_1,
     )  # fmt: skip
 
 
+def _lag_at_edges(pair: ParallelAxes, lever_1: FloatArray, lever_2: FloatArray) -> FloatArray:
+    """Return the lag of gear 2 (P, n) that closes a depth removed at tip edges, over that depth; 1 elsewhere.
+
+    The edge of a flank is removed along its normal, which the angle between the flanks takes off the normal
+    of the mate; and of a lag of gear 2 its edge closes the part of the lever arm only.
+    """
+    lag = np.ones(lever_2.shape)
+    at = np.nonzero((lever_1 != 1.0) | (lever_2 != 1.0))
+    levers = (pair.pinion, lever_1[at]), (pair.wheel, lever_2[at])
+    angle = sum(_angle_at_edge(gear, lever) for gear, lever in levers)
+    lag[at] = np.cos(angle) / lever_2[at]
+    return lag
+
+
+def _angle_at_edge(gear: Toothing, lever: FloatArray) -> FloatArray:
+    """Return the angle in rad between the normal of a flank at its tip edge and a force of this lever arm."""
+    arm = gear.base_radius / gear.tip_radius
+    return np.asarray(np.arccos(lever * arm) - np.arccos(arm))
+
+
 def _relative_radius(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray) -> FloatArray:
-    """Return the relative radius of curvature in m, at most `_FLAT` base radii of gear 2.
+    """Return the relative radius of curvature in m, at most `FLAT` base radii of gear 2.
 
     Off the line of action the edge of a ring gear may meet its pinion where the pinion is the flatter one:
     flanks that part at the edge would close in again further away. There they count as flat.
     """
-    flattest = _FLAT * pair.wheel.base_radius
+    flattest = FLAT * pair.wheel.base_radius
     radius = relative_radius(roll_1, pair.wheel.sign * roll_2)
     return np.where((radius >= 0.0) & (radius <= flattest), radius, flattest)
 
@@ -182,7 +218,9 @@ def modified_touch(
     than the modification on the line of action by R m'^2/2, some tenths of a micrometer. About the touching
     point of plain involutes the modifications are parabolas, from one break of theirs to the next.
 
-    At a tip edge the lag that closes what is removed exceeds it by the lever arm (`docs/theory/contact.md`).
+    As gear 2 lags, its flank turns back and meets the mate with a part that lies as much further out: the lag
+    that closes what is removed exceeds it by the slope of that flank, at a tip edge by the lever arm
+    (`docs/theory/contact.md`).
 
     Parameters
     ----------
@@ -198,37 +236,11 @@ def modified_touch(
     moving = tuple(term for term in gaps if term.along_profile)
     steady = tuple(term for term in gaps if not term.along_profile)
     moved = _moved(pair, touch, face, moving, teeth) if moving or teeth else touch
-    if moving:
-        moved = replace(moved, gap=moved.gap + _lag_at_edges(pair, moved, face, moving))
+    if not steady:
+        return moved
     roll_2 = pair.mating_roll_length(touch.roll_1)
-    gap = moved.gap + sum(term(pair, touch.roll_1, roll_2, face) for term in steady)
-    return replace(moved, gap=gap + _lag_at_edges(pair, moved, face, steady) if steady else gap)
-
-
-def _lag_at_edges(
-    pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]
-) -> FloatArray:
-    """Return by how much the lag (P, n) that closes a depth removed at tip edges exceeds that depth, m.
-
-    The edge of a flank is removed along its normal, which the angle between the flanks takes off the normal
-    of the mate; and of a lag of gear 2 its edge closes the part of the lever arm only.
-    """
-    excess = np.zeros(touch.gap.shape)
-    at = np.nonzero(np.isfinite(touch.gap) & ((touch.lever_1 != 1.0) | (touch.lever_2 != 1.0)))
-    roll_1, along = touch.roll_1[at], np.broadcast_to(face, excess.shape)[at]
-    nominal = roll_1, pair.mating_roll_length(roll_1)
-    touching = rolls_at(pair, touch.s_1[at], touch.s_2[at])
-    removed = sum(term(pair, *(touching if term.along_profile else nominal), along) for term in gaps)
-    levers = (pair.pinion, touch.lever_1[at]), (pair.wheel, touch.lever_2[at])
-    angle = sum(_angle_at_edge(gear, lever) for gear, lever in levers)
-    excess[at] = removed * (np.cos(angle) / touch.lever_2[at] - 1.0)
-    return excess
-
-
-def _angle_at_edge(gear: Toothing, lever: FloatArray) -> FloatArray:
-    """Return the angle in rad between the normal of a flank at its tip edge and a force of this lever arm."""
-    arm = gear.base_radius / gear.tip_radius
-    return np.asarray(np.arccos(lever * arm) - np.arccos(arm))
+    removed = sum(term(pair, touch.roll_1, roll_2, face) for term in steady)
+    return replace(moved, gap=moved.gap + removed * moved.lag)
 
 
 def _moved(
@@ -254,8 +266,9 @@ def _moved(
     flanks = _Flanks(pair, here, faces, gaps, teeth, surfaces)
     touching = _touching(flanks)
     shift, about = touching.shift, touching.about
-    moved = {"s_1": here.s_1 + shift, "s_2": here.s_2 - shift, "gap": here.gap + touching.gap}
-    moved |= {"moved": shift + touching.off, "missed": touching.missed} | about._asdict()
+    moved = {"s_1": here.s_1 + shift, "s_2": here.s_2 - shift}
+    moved |= {"moved": shift + touching.off, "missed": touching.missed}
+    moved |= flanks.closed(shift, touching.gap) | about._asdict()
     result = {}
     for name, values in moved.items():
         alike = plain[name].shape[1:] == values.shape[1:]
@@ -528,6 +541,51 @@ class _Flanks:
         off[inside], missed[inside] = strip.center, strip.missed
         return off, missed, Gap(*_replaced(tuple(gap), inside, tuple(felt)))
 
+    def closed(self, x: FloatArray, now: FloatArray) -> dict[str, FloatArray]:
+        """Return gap, lag, slopes and turns of a `Touch` at x.
+
+        `now` is the gap at x less that of plain flanks at 0, m. On the flank of gear 2 its slope turns the
+        normal, at an edge the normal is that of the mate. Gaps of teeth count as lags.
+        """
+        touch, (place_1, place_2), (end_1, end_2) = self._touch, self._places(x), self._ends
+        slope_1, turn_1 = self._slope_of(0, x, place_1 >= end_1)
+        slope_2, turn_2 = self._slope_of(1, x, place_2 >= end_2)
+        turned = 1.0 / (1.0 - slope_2)
+        at_edge = (place_1 >= end_1) | (place_2 >= end_2)
+        rolls = rolls_at(self._pair, place_1, place_2)
+        depth = now + np.where(at_edge, self._designed(rolls) * (touch.lag - 1.0), 0.0)
+        of_teeth = self._of_teeth(rolls)
+        # by a relief, off the line of action
+        clear_of_edge_2 = ~at_edge & (touch.lever_2 != 1.0) & (slope_2 != 0.0)
+        plain = touch.gap * np.where(clear_of_edge_2, touch.lever_2 * turned, 1.0)
+        return {
+            "gap": plain + (depth - of_teeth) * turned + of_teeth,
+            "lag": np.where(at_edge, touch.lag, 1.0) * turned,
+            "slope_1": slope_1,
+            "slope_2": slope_2,
+            "turn_1": turn_1,
+            "turn_2": turn_2,
+        }
+
+    def _places(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the flank coordinates of both gears at x, m."""
+        return self._touch.s_1 + x, self._touch.s_2 - x
+
+    @property
+    def _ends(self) -> list[float]:
+        """Flank coordinates of the edges of both gears, those that a cut tip leaves, m."""
+        gears = (self._pair.pinion, self._pair.wheel)
+        return [float(flank_coordinate(gear, gear.tip_form_roll_length)) - _AT_EDGE for gear in gears]
+
+    def _slope_of(self, gear: int, x: FloatArray, at_edge: BoolArray) -> tuple[FloatArray, FloatArray]:
+        """Return the slope of what is removed from all flanks of a gear at x, and its change along them."""
+        near = _NEAR * self.step
+        here, beside = (
+            flank_slope(self._pair, gear, self._designed, self._places(way), self.step)
+            for way in (x, x + near)
+        )
+        return np.where(at_edge, 0.0, here), np.where(at_edge, 0.0, (beside - here) / near)
+
     def _plain(self, x: FloatArray) -> FloatArray:
         """Return the gap of plain flanks at x, m."""
         return np.asarray(x * (self._touch.slope + 0.5 * self._touch.curvature * x))
@@ -538,12 +596,19 @@ class _Flanks:
 
     def _removed_at(self, rolls: tuple[FloatArray, FloatArray], of: IntArray | slice) -> FloatArray:
         """Return the same at roll lengths of both gears."""
-        removed = self._designed(rolls, of)
-        if self._teeth is None:
-            return removed
-        return removed + self._teeth.some(of).gap(self._pair, rolls, self._face[of])
+        return self._designed(rolls, of) + self._of_teeth(rolls, of)
 
-    def _designed(self, rolls: tuple[FloatArray, FloatArray], of: IntArray | slice) -> FloatArray:
+    def _of_teeth(
+        self, rolls: tuple[FloatArray, FloatArray], of: IntArray | slice = slice(None)
+    ) -> FloatArray | float:
+        """Return the part of it that differs from tooth to tooth, at roll lengths of both gears."""
+        if self._teeth is None:
+            return 0.0
+        return self._teeth.some(of).gap(self._pair, rolls, self._face[of])
+
+    def _designed(
+        self, rolls: tuple[FloatArray, FloatArray], of: IntArray | slice = slice(None)
+    ) -> FloatArray:
         """Return the part of it that all teeth have in common, at roll lengths of both gears."""
         terms = (term(self._pair, *rolls, self._face[of]) for term in self._gaps)
         return np.asarray(sum(terms, np.zeros(())))
@@ -578,7 +643,7 @@ class _Flanks:
 
     def _behind(self, side: Side, x: FloatArray) -> BoolArray:
         """Return where x is to the root of the gear whose tip leaves on that side, on round flanks."""
-        flattest = _FLAT * self._pair.wheel.base_radius
+        flattest = FLAT * self._pair.wheel.base_radius
         return np.asarray((x < 0.0 if side == "exit" else x > 0.0) & (self._touch.radius < flattest))
 
 
@@ -603,11 +668,3 @@ def _plain_at_ways(
         roll_1[k] = math.sqrt(doubled[0] * max(s_1[n] + way, 0.0))
         roll_2[k] = math.sqrt(doubled[1] * max(sign * (s_2[n] - way), 0.0))
     return plain, roll_1, roll_2
-
-
-def rolls_at(pair: ParallelAxes, s_1: FloatArray, s_2: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Roll lengths in m of flank coordinates of both gears."""
-    return (
-        np.sqrt(2.0 * pair.pinion.base_radius * np.maximum(s_1, 0.0)),
-        np.sqrt(2.0 * pair.wheel.base_radius * np.maximum(pair.wheel.sign * s_2, 0.0)),
-    )

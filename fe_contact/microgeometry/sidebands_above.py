@@ -16,8 +16,8 @@ from typing import Any, Literal
 import numpy as np
 
 from fe_contact.contact import Candidates
+from fe_contact.contact.flank_slope import rolls_at
 from fe_contact.contact.load_weights import load_weights
-from fe_contact.contact.touch import rolls_at
 from fe_contact.effects import EFFECTS
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes, Toothing

@@ -16,9 +16,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fe_contact.contact import Candidates, ContactModel, ContactProblem, ContactSolution
+from fe_contact.contact.flank_slope import rolls_at
 from fe_contact.contact.load_weights import load_sums, load_weights
 from fe_contact.contact.model import MeetingTeeth
-from fe_contact.contact.touch import rolls_at
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from fe_contact.contact import ContactProblem, ContactSolution, contact_pressure
-from fe_contact.contact.touch import rolls_at
+from fe_contact.contact.flank_slope import rolls_at
 from fe_contact.errors import DatabaseError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import Metadata, PairFacts

@@ -14,7 +14,7 @@ from fe_contact.contact import PatchRule, contact_pressure
 from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, face_loads
 from fe_contact.contact.patch import Patches, load_vector, tip_patches
 from fe_contact.contact.strip import Gap
-from fe_contact.hertz import half_width, lateral_share, peak_pressure
+from fe_contact.hertz import STRIP_DISTANCE, half_width, lateral_share, peak_pressure
 
 
 def flank(ends: np.ndarray) -> np.ndarray:
@@ -201,6 +201,36 @@ def test_patch_on_a_disc_moves_as_its_law_width_says(poissons_ratio):
     law = np.log(patches.law_width[1] / patches.law_width[0]) * (1.0 - poissons_ratio) / math.pi
     difference = approach(widths[0]) - approach(widths[1])
     assert difference == pytest.approx(law, rel=0.0, abs=0.5 * (widths[1] / radius) ** 2)
+
+
+def test_a_strip_whose_normals_turn_gives_way_by_its_mean_distance():
+    """Hertz by boundary elements whose points also move by epsilon |x - y|, as on surfaces with one normal.
+
+    The approach changes by epsilon p STRIP_DISTANCE half-widths, to first order.
+    """
+    count, radius, p = 400, 1.0, 0.02
+    half = math.sqrt(2.0 * p * radius)  # k = 1, so that E* = 2/pi
+    ends = 1.2 * half * np.sin(np.linspace(-0.5, 0.5, count + 1) * np.pi)
+    middle, width = 0.5 * (ends[1:] + ends[:-1]), np.diff(ends)
+    a, b = middle[:, None] - ends[None, :-1], middle[:, None] - ends[None, 1:]
+    logarithm = -(a * np.log(np.abs(a)) - a - b * np.log(np.abs(b)) + b)
+    distance = np.abs(middle[:, None] - middle) * width
+
+    def approach(epsilon):
+        kernel, active = logarithm + epsilon * distance, np.ones(count, dtype=bool)
+        while True:
+            inside = kernel[np.ix_(active, active)]
+            pressed = np.linalg.solve(
+                np.block([[inside, -np.ones((active.sum(), 1))], [width[active][None], np.zeros((1, 1))]]),
+                np.append(-0.5 * middle[active] ** 2 / radius, p),
+            )
+            if pressed[:-1].min() >= 0.0:
+                return pressed[-1]
+            active[np.flatnonzero(active)[pressed[:-1] < 0.0]] = False
+
+    step = 1e-3 / half
+    rate = (approach(step) - approach(-step)) / (2.0 * step)
+    assert rate == pytest.approx(STRIP_DISTANCE * half * p, rel=0.01)
 
 
 @pytest.mark.parametrize("slope", [0.2, 0.01, 1e-3, 0.0, -1e-3, -5e-3])

@@ -206,11 +206,14 @@ def two_position_problem() -> ContactProblem:
         corner_2=1.0,
         law_length=LENGTH,
         edge_load=0.0,
+        lateral_shares=(0.0, 0.0),
+        turned_normals=0.0 * full,
     )
     candidates = SimpleNamespace(  # what the sweep reads of its candidates
         position=np.array([0.0, 0.5]),
         pair=np.array([0, 1]),
         slices=slices,
+        touch=SimpleNamespace(slope_1=0.0 * full, slope_2=0.0 * full),
         curves=np.ones((1, 1)),
         heights=np.ones((1, 1)),
         gap=np.array([[1e-6, math.inf], [0.0, 0.0]]),

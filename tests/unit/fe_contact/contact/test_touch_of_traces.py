@@ -14,7 +14,9 @@ from fe_contact.contact import (
     in_pitches,
     with_gaps,
 )
+from fe_contact.contact.flank_slope import rolls_at
 from fe_contact.contact.least_gap import least_gap
+from fe_contact.contact.model import MeetingTeeth
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.geometry import FlankModification, RunOut, ToothFlank, Wave
 
@@ -46,7 +48,11 @@ def assert_least(pair, pitches=(1, 2, 3)):
         levers = candidates.touch.lever_1[at], candidates.touch.lever_2[at]
         on_line = (levers[0] == 1.0) & (levers[1] == 1.0)
         at, least = tuple(index[on_line] for index in at), least[on_line]
-    above = candidates.gap[at] - least
+    touch = candidates.touch
+    rolls = rolls_at(pair, touch.s_1[at], touch.s_2[at])
+    teeth = MeetingTeeth(pair, meeting[at], *rolls, candidates.face_position[at[1]])
+    of_teeth = model.gap_of_teeth(teeth)  # a lag, while the slope of gear 2 turns what is designed
+    above = (candidates.gap[at] - of_teeth) / (touch.lag[at] if model.gaps else 1.0) + of_teeth - least
     assert above.max() < 1e-9
     assert above.min() > -RESOLVED
     assert np.all(candidates.touch.curvature[at] > 0.0)

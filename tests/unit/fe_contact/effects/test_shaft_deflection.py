@@ -11,7 +11,7 @@ import pytest
 
 from fe_contact.contact import ContactModel, ContactProblem, PatchRule, Slices, contact_candidates
 from fe_contact.contact import with_compliances as with_added
-from fe_contact.contact.touch import rolls_at
+from fe_contact.contact.flank_slope import rolls_at
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.effects.shaft_deflection import ShaftDeflection, _SeatCompliance, _ShaftCompliance
 from fe_contact.geometry import Gear, GearPair, InternalGearPair, ParallelAxes, RingGear, Shaft

@@ -1,0 +1,337 @@
+"""Small changes of the flanks under contact strips: depth, lag, the places of patches, the turn of forces."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property, partial
+
+import numpy as np
+
+from fe_contact.contact.flank_slope import flank_slope, rolls_at
+from fe_contact.contact.model import Break, GapTerm
+from fe_contact.contact.problem import Candidates, ContactProblem
+from fe_contact.contact.strip import means_past_break
+from fe_contact.contact.touch import STEP
+from fe_contact.geometry import ParallelAxes
+from fe_contact.types import BoolArray, FloatArray, IntArray
+
+_NODE = math.sqrt(0.75)
+"""Outer ones of three samples in parts of half a strip, the third in its middle."""
+_AT_TOUCH = 1e-3
+"""Way of differences by which touching points move, over that by which normals turn."""
+
+
+@dataclass(frozen=True)
+class Strips:
+    """Strips of k contacts, about their touching points.
+
+    Attributes
+    ----------
+    s_1, s_2 : ndarray, shape (k,)
+        Flank coordinates of the touching points, m.
+    roll_1 : ndarray, shape (k,)
+        Roll length of gear 1 on the line of action, m.
+    face : ndarray, shape (k,)
+        Distance from the pinion's mid-face, m.
+    middle, half : ndarray, shape (k,)
+        Of the strip from the touching point on, m.
+    """
+
+    pair: ParallelAxes
+    s_1: FloatArray
+    s_2: FloatArray
+    roll_1: FloatArray
+    face: FloatArray
+    middle: FloatArray
+    half: FloatArray
+
+    def removed(self, gap: GapTerm) -> FloatArray:
+        """Return the mean of a gap over the strips (k,), m."""
+        if not gap.along_profile:
+            rolls = self.roll_1, self.pair.mating_roll_length(self.roll_1)
+            return np.asarray(gap(self.pair, *rolls, self.face))
+        smooth, breaks = self._parted(gap)
+        bend = (smooth[2] - 2.0 * smooth[1] + smooth[0]) / _NODE**2
+        mean = smooth[1] + 0.25 * bend
+        return np.asarray(mean + sum(self._past(*each)[0] for each in breaks))
+
+    def slopes(self, gap: GapTerm) -> FloatArray:
+        """Return the mean slope of a gap over the strips (k,)."""
+        smooth, breaks = self._parted(gap)
+        slope = (smooth[2] - smooth[0]) / (2.0 * _NODE * self.half)
+        return np.asarray(slope + sum(each.side * self._past(each, distance)[1] for each, distance in breaks))
+
+    @cached_property
+    def _nodes(self) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
+        """Three places of each strip along the flank (3, k), and the roll lengths there."""
+        x = self.middle + self.half * np.array([-_NODE, 0.0, _NODE])[:, None]
+        return x, rolls_at(self.pair, self.s_1 + x, self.s_2 - x)
+
+    def _parted(self, gap: GapTerm) -> tuple[FloatArray, list[tuple[Break, FloatArray]]]:
+        """Return a gap without its breaks at three places of each strip (3, k); breaks and distances."""
+        x, rolls = self._nodes
+        breaks = [(each, each.distance(self.s_1, self.s_2)) for each in gap.breaks(self.pair, self.face)]
+        of_breaks = sum(each.height(x - distance) for each, distance in breaks)
+        return gap(self.pair, *rolls, self.face) - of_breaks, breaks
+
+    def _past(self, start: Break, distance: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the means over the strips of what a break removes, m, and of its slope."""
+        beyond = start.side * (distance - self.middle)  # from the middle to the break
+        jump, bend = (np.broadcast_to(value, beyond.shape) for value in (start.jump, start.bend))
+        return means_past_break(beyond, self.half, jump, bend)
+
+    def nodes(
+        self, gear: int, roll_length: FloatArray, face_position: FloatArray, x: FloatArray
+    ) -> Iterator[tuple[IntArray, FloatArray]]:
+        """Yield the four nodes of a grid about places x (X, k) along the flank, and their parts there."""
+        roll = rolls_at(self.pair, self.s_1 + x, self.s_2 - x)[gear]
+        along = np.broadcast_to(self.face - gear * self.pair.axial_offset, x.shape)
+        (i, part), (j, other) = _between(roll_length, roll), _between(face_position, along)
+        for a, in_roll in ((0, 1.0 - part), (1, part)):
+            for b, in_face in ((0, 1.0 - other), (1, other)):
+                yield (i + a) * face_position.size + j + b, in_roll * in_face
+
+
+@dataclass(frozen=True)
+class ClosingLag:
+    """How small gaps change the lag that closes the rigid flanks, beside their depth under the strips.
+
+    Attributes
+    ----------
+    strips : Strips
+        Of k contacts.
+    excess : ndarray, shape (k,)
+        Normal approach taken away per depth removed at the touching point, less that depth.
+    lag : ndarray, shape (k,)
+        The same per slope of gear 2's flank (`flank_slope`): how far that flank lags, m.
+    way : ndarray, shape (k,)
+        Way of the touching point per slope of the gap, m; zero where an edge or a break holds it.
+    at_break : ndarray of bool, shape (k,)
+        Whether a break holds the touching point, so that it moves with the break.
+    turns : tuple of ndarray, shape (k,)
+        Change of the slope of either flank along that way, 1/m.
+    """
+
+    strips: Strips
+    excess: FloatArray
+    lag: FloatArray
+    way: FloatArray
+    at_break: BoolArray
+    turns: tuple[FloatArray, FloatArray]
+
+    @classmethod
+    def of(cls, strips: Strips, candidates: Candidates, at: tuple[IntArray, ...]) -> ClosingLag:
+        """Take those of candidates at positions and numbers (k,)."""
+        touch, arm = candidates.touch, candidates.motion_arm[at]
+        lag = arm * np.where(touch.low[at] < 0.0, touch.gap[at] * touch.lag[at], 0.0)
+        near_break = (np.abs(touch.place[at]) < _AT_TOUCH * STEP * touch.radius[at][:, None]).any(axis=1)
+        free = touch.slope[at] == 0.0
+        way = np.where(free & ~near_break, -1.0 / touch.curvature[at], 0.0)
+        at_break = near_break & ~free
+        excess = arm * touch.lag[at] - math.cos(candidates.base_helix_angle)
+        return cls(strips, excess, lag, way, at_break, (touch.turn_1[at], touch.turn_2[at]))
+
+    def opened(self, gap: GapTerm, over: GapTerm) -> FloatArray:
+        """Return the normal approach (k,) in m that a gap takes away so over another near it."""
+        if gap.along_profile or over.along_profile:
+            return self.excess * self._change(gap, over, 0.0) + self.lag * self.slope(1, gap, over)
+        roll = self.strips.roll_1
+        nominal = roll, self.strips.pair.mating_roll_length(roll)
+        return self.excess * self._difference(gap, over, nominal)
+
+    def slope(self, gear: int, gap: GapTerm, over: GapTerm) -> FloatArray:
+        """Return how much steeper the flank of a gear is by a gap than by another near it (k,)."""
+        places, difference = (self.strips.s_1, self.strips.s_2), partial(self._difference, gap, over)
+        steeper = flank_slope(self.strips.pair, gear, difference, places, self._step)
+        return np.asarray(steeper + self.turns[gear] * self._moved(gap, over))
+
+    def _moved(self, gap: GapTerm, over: GapTerm) -> FloatArray:
+        """Return how far the touching points move (k,), m: those at breaks with these."""
+        strips, near = self.strips, _AT_TOUCH * self._step
+        slope = (self._change(gap, over, near) - self._change(gap, over, -near)) / (2.0 * near)
+        moved = self.way * slope
+        breaks = (each.breaks(strips.pair, strips.face) for each in (gap, over))
+        for after, before in zip(*breaks, strict=True):
+            there, here = (each.distance(strips.s_1, strips.s_2) for each in (after, before))
+            moved = np.where(self.at_break & (np.abs(here) < near), there - here, moved)
+        return np.asarray(moved)
+
+    def nodes(
+        self, gear: int, roll_length: FloatArray, face_position: FloatArray
+    ) -> Iterator[tuple[IntArray, FloatArray]]:
+        """Yield nodes (k,) of a grid on a gear, and the normal approach that a depth at each takes away."""
+        none = np.zeros(self.excess.size)
+        for node, part in self.strips.nodes(gear, roll_length, face_position, none[None]):
+            yield node[0], self.excess * part[0]
+        for node, slope in self.slope_nodes(1, gear, roll_length, face_position):
+            yield node, self.lag * slope
+
+    def slope_nodes(
+        self, of: int, gear: int, roll_length: FloatArray, face_position: FloatArray
+    ) -> Iterator[tuple[IntArray, FloatArray]]:
+        """Yield nodes (k,) of a grid on a gear, and the slope of the flank of gear `of` per depth there."""
+        strips, pair = self.strips, self.strips.pair
+        per_step = 0.5 * self.turns[of] * self.way / self._step
+        if of == gear:
+            toothing, roll = (pair.pinion, pair.wheel)[of], rolls_at(pair, strips.s_1, strips.s_2)[of]
+            steeper = 0.5 * roll / (self._step * toothing.base_radius)
+            per_step = per_step + steeper * (1.0 if of == 0 else -1.0)
+        for side in (1.0, -1.0):
+            for node, part in strips.nodes(gear, roll_length, face_position, (side * self._step)[None]):
+                yield node[0], side * per_step * part[0]
+
+    @cached_property
+    def _step(self) -> FloatArray:
+        """Way of differences along the flank (k,), m."""
+        strips, path = self.strips, self.strips.pair.path_of_contact
+        return STEP / strips.pair.relative_curvature(np.clip(strips.roll_1, path.start, path.end))
+
+    def _change(self, gap: GapTerm, over: GapTerm, x: FloatArray | float) -> FloatArray:
+        """Return a gap less another at x (k,) from the touching points, m."""
+        strips = self.strips
+        return self._difference(gap, over, rolls_at(strips.pair, strips.s_1 + x, strips.s_2 - x))
+
+    def _difference(self, gap: GapTerm, over: GapTerm, rolls: tuple[FloatArray, FloatArray]) -> FloatArray:
+        pair, face = self.strips.pair, self.strips.face
+        return np.asarray(gap(pair, *rolls, face) - over(pair, *rolls, face))
+
+
+@dataclass(frozen=True)
+class FollowingPatches:
+    """How patches follow the slope of small gaps, and what motions of the bodies that adds.
+
+    Attributes
+    ----------
+    problem : ContactProblem
+    held : ndarray, shape (P, L, n)
+        Forces on the slices, N.
+    at_rest : Strips
+        Strips under a small load of all candidates, by which patches follow; k = P m.
+    index : ndarray of int, shape (k,)
+        Of each among all positions and candidates, flattened.
+    way : ndarray, shape (k,)
+        Motion of its patch towards tip 1 per slope of the gap, m; patches of a slice move by their mean.
+    """
+
+    problem: ContactProblem
+    held: FloatArray
+    at_rest: Strips
+    index: IntArray
+    way: FloatArray
+
+    @classmethod
+    def of(cls, pair: ParallelAxes, problem: ContactProblem, force: FloatArray) -> FollowingPatches:
+        """Take those of a solved problem."""
+        c, held = problem.candidates, problem.candidates.on_slices(force)
+        touch, rest = c.touch, c.strips
+        free = (rest.slope == 0.0) & (np.abs(touch.moved) < c.slices.law_length) & np.isfinite(c.gap)
+        loaded = np.repeat(held.any(axis=1), c.pair.size // held.shape[2], axis=1)
+        at = np.nonzero(free & loaded)
+        places = touch.s_1[at], touch.s_2[at], touch.roll_1[at], c.face_position[at[1]]
+        at_rest = Strips(pair, *places, rest.middle[at], rest.half[at])
+        way = -math.cos(c.base_helix_angle) / rest.curvature[at]
+        return cls(problem, held, at_rest, np.ravel_multi_index(at, c.gap.shape), way)
+
+    def opened(self, slopes: FloatArray) -> FloatArray:
+        """Return what normal approach small slopes (k,) take away from the candidates (P, L, m), m."""
+        c, moved = self.problem.candidates, np.zeros(self.problem.candidates.gap.shape)
+        moved.flat[self.index] = self.way * slopes
+        by_slice = c.on_mean(moved)[:, None]
+        rolled = by_slice * self._tilts + self._times(by_slice * self.held, back=True)
+        return c.at_points(rolled)
+
+    @cached_property
+    def _tilts(self) -> FloatArray:
+        """Under the forces, (P, L, n)."""
+        return self._times(self.held)
+
+    def by_slope(self, weight: FloatArray, rows: FloatArray) -> FloatArray:
+        """Return what the slope of a gap at each strip adds (Q, k) to sums `rows` (Q, P, L), m.
+
+        Of the transmission error, to which motions at the candidates add by their `weight` (P, L, m).
+        """
+        c = self.problem.candidates
+        pressed = c.on_slices(weight)
+        by_slice = pressed * self._tilts + self.held * self._times(pressed)
+        by_point = _at_points(c, np.einsum("apl,pln->apn", rows, by_slice))
+        return np.asarray(by_point.reshape(len(rows), -1)[:, self.index] * self.way)
+
+    def _times(self, values: FloatArray, *, back: bool = False) -> FloatArray:
+        """Return the tilts by forces (P, L, n); `back`: the motions of the others by what is displaced."""
+        return _times(self.problem.tilt, values, back=back)
+
+
+@dataclass(frozen=True)
+class TurnedForces:
+    """How slopes of small gaps change the motions of the bodies by the forces that they turn.
+
+    Attributes
+    ----------
+    problem : ContactProblem
+    held, moved : ndarray, shape (P, L, n)
+        Forces on the slices in N, and what they move in m.
+    closing : ClosingLag
+        Of the k candidates whose slices carry.
+    index : ndarray of int, shape (k,)
+        Of each among all positions and candidates, flattened.
+    """
+
+    problem: ContactProblem
+    held: FloatArray
+    moved: FloatArray
+    closing: ClosingLag
+    index: IntArray
+
+    @classmethod
+    def of(cls, pair: ParallelAxes, problem: ContactProblem, force: FloatArray) -> TurnedForces:
+        """Take those of a solved problem."""
+        c, held = problem.candidates, problem.candidates.on_slices(force)
+        loaded = np.repeat(held.any(axis=1), c.pair.size // held.shape[2], axis=1)
+        at = np.nonzero(loaded & np.isfinite(c.gap))
+        none = np.zeros(at[0].size)
+        places = c.touch.s_1[at], c.touch.s_2[at], c.touch.roll_1[at], c.face_position[at[1]]
+        closing = ClosingLag.of(Strips(pair, *places, none, none), c, at)
+        return cls(
+            problem, held, _times(problem.bodies, held), closing, np.ravel_multi_index(at, c.gap.shape)
+        )
+
+    def opened(self, gap: GapTerm, over: GapTerm) -> FloatArray:
+        """Return what normal approach a gap takes away so over another near it (P, L, m), m."""
+        c, slopes = self.problem.candidates, np.zeros((2, *self.problem.candidates.gap.shape))
+        for gear, slope in enumerate(slopes):
+            slope.flat[self.index] = self.closing.slope(gear, gap, over)
+        turned = self.problem.turned_by(*(c.on_mean(slope) for slope in slopes))[:, None]
+        return c.at_points(turned * self.moved + _times(self.problem.bodies, turned * self.held))
+
+    def by_slope(self, gear: int, weight: FloatArray, rows: FloatArray) -> FloatArray:
+        """Return what the slope of a flank of a gear adds (Q, k) to sums `rows` (Q, P, L), m.
+
+        Of the transmission error, to which motions at the candidates add by their `weight` (P, L, m).
+        """
+        pressed = self.problem.candidates.on_slices(weight)
+        by_slice = pressed * self.moved + self.held * _times(self.problem.bodies, pressed)
+        slopes = np.zeros((2, len(weight), by_slice.shape[2]))
+        slopes[gear] = 1.0
+        mean = np.einsum("apl,pln->apn", rows, by_slice) * self.problem.turned_by(*slopes)
+        return _at_points(self.problem.candidates, mean).reshape(len(rows), -1)[:, self.index]
+
+
+def _at_points(c: Candidates, by_slice: FloatArray) -> FloatArray:
+    """Return sums by slices (Q, P, n) for the candidates of which these take the mean, (Q, P, m)."""
+    on_slice = np.isfinite(c.gap).reshape(len(c.gap), by_slice.shape[2], -1).sum(axis=2)
+    return np.repeat(by_slice / np.maximum(on_slice, 1), c.pair.size // by_slice.shape[2], axis=2)
+
+
+def _times(matrices: FloatArray, values: FloatArray, *, back: bool = False) -> FloatArray:
+    """Return matrices (Q, n, n), or `back` transposed, times values (P, L, n), P a multiple of Q."""
+    by_pitch = values.reshape(-1, len(matrices), *values.shape[1:])
+    how = "qij,tqli->tqlj" if back else "qij,tqlj->tqli"
+    return np.asarray(np.einsum(how, matrices, by_pitch, optimize=True)).reshape(values.shape)
+
+
+def _between(nodes: FloatArray, at: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Return the interval of each place, and the part of it that lies before; outside: at an end."""
+    i = np.clip(np.searchsorted(nodes, at, side="right") - 1, 0, nodes.size - 2)
+    return i, np.clip((at - nodes[i]) / (nodes[i + 1] - nodes[i]), 0.0, 1.0)
