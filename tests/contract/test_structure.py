@@ -11,20 +11,20 @@ import structure
 ROOT = Path(__file__).parents[2]
 
 BUDGETS = {
-    ("fe_contact",): (47_900, 906),
+    ("fe_contact",): (50_000, 940),
     ("dynamics",): (46_044, 920),
-    ("lineofaction.gearbox",): (29_198, 597),
-    ("lineofaction.report",): (13_321, 247),
-    ("service",): (15_255, 361),
+    ("lineofaction.gearbox",): (29_300, 600),
+    ("lineofaction.report",): (13_400, 250),
+    ("service",): (15_300, 361),
     ("lineofaction.client",): (2_944, 55),
-    ("lineofaction.cli",): (6_003, 88),
+    ("lineofaction.cli",): (6_050, 88),
     ("lineofaction.hardcases",): (3_841, 35),
     ("bounds", "host", "model_studies"): (4_549, 157),
 }
 """Lines and public names (functions and classes at the top of a file) at most; who raises one says why."""
 PAGE = 8_280
 """Lines of scripts, style and markup of the page at most: docs/decisions/0011-page-without-framework.md."""
-MOST_FILES = 903
+MOST_FILES = 918
 LONGEST = 600
 WRITTEN = (".js", ".css", ".html")
 MOST_PRIVATE = 225
