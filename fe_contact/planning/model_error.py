@@ -46,8 +46,8 @@ def _flank_tilt(pair: ParallelAxes, force: FloatArray) -> FloatArray:
 
 
 FLOOR = (4e-4, 4.6e-4, 2.2e-3)
-"""Of mean, peak-to-peak and harmonics of plain flanks: more than the 0.03 and 0.04 % that calibrating pairs ask
-for (docs/lab/accuracy.md)."""
+"""Of mean, peak-to-peak and harmonics of plain flanks: more than the 0.03 and 0.04 % that calibrating pairs
+ask for (docs/lab/accuracy.md)."""
 MODIFIED_FLOOR = (4e-4, 4.6e-4, 2.2e-3)
 """The same where flanks are modified: in the plane points on reliefs are as far off as on plain flanks, the
 mean of four pairs by 0.01 %."""
