@@ -152,7 +152,9 @@ class ClosingLag:
         strips, near = self.strips, _AT_TOUCH * self._step
         slope = (self._change(gap, over, near) - self._change(gap, over, -near)) / (2.0 * near)
         moved = self.way * slope
-        breaks = (each.breaks(strips.pair, strips.face) for each in (gap, over))
+        breaks = [each.breaks(strips.pair, strips.face) for each in (gap, over)]
+        if len(breaks[0]) != len(breaks[1]):
+            return np.asarray(moved)  # a relief that is none yet holds nothing
         for after, before in zip(*breaks, strict=True):
             there, here = (each.distance(strips.s_1, strips.s_2) for each in (after, before))
             moved = np.where(self.at_break & (np.abs(here) < near), there - here, moved)

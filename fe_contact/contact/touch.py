@@ -561,8 +561,9 @@ class _Flanks:
         return {
             "gap": plain + (depth - of_teeth) * turned + of_teeth,
             "lag": np.where(at_edge, touch.lag, 1.0) * turned,
-            "slope_1": slope_1,
-            "slope_2": slope_2,
+            # off the line of action the lever arms of the edge have a part of it, at the edge all
+            "slope_1": np.where(place_1 >= end_1, 0.0, slope_1 - (1.0 - touch.lever_1)),
+            "slope_2": np.where(place_2 >= end_2, 0.0, slope_2 - (1.0 - touch.lever_2)),
             "turn_1": turn_1,
             "turn_2": turn_2,
         }
