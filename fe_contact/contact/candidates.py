@@ -251,18 +251,23 @@ def _flank_curvature(gear: Toothing, patches: Patches) -> FloatArray:
     return math.cos(gear.base_helix_angle) / (gear.sign * np.sqrt(2.0 * gear.base_radius * along))
 
 
+_USUAL_LOAD = 60e6
+"""Normal force over face width and module, Pa: about the rated one."""
+
+
 def _turned_normals(
     pair: ParallelAxes, curvatures: tuple[FloatArray, FloatArray], rule: PatchRule
 ) -> FloatArray:
     """Return by how much normals turn over the mean distance of two points of the strip, rad.
 
-    The strip is that of `PatchRule.edge_load`. Both flanks have its curvature there: the softer one follows
-    the stiffer one.
+    The strip is that of a usual load, the same whatever loads are asked together. Both flanks have its
+    curvature there: the softer one follows the stiffer one.
     """
     first, second = (1.0 / gear.material.plane_strain_modulus for gear in (pair.pinion, pair.wheel))
     relative = curvatures[0] + curvatures[1]
     flattest = math.cos(pair.base_helix_angle) / (FLAT * pair.wheel.base_radius)
-    strip = np.sqrt(rule.edge_load / np.maximum(relative, flattest))
+    squared = 4.0 / math.pi * _USUAL_LOAD * pair.pinion.normal_module * (first + second)
+    strip = np.sqrt(squared / np.maximum(relative, flattest))
     curvature = (second * curvatures[0] - first * curvatures[1]) / (first + second)
     return np.asarray(STRIP_DISTANCE * np.minimum(strip, rule.half_width) * curvature)
 

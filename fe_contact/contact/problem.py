@@ -326,11 +326,13 @@ class Candidates:
         return self.touching(replace(touch, moved=touch.moved + there.strips.middle - self.strips.middle))
 
 
+_USUAL_STRIP = 0.02
+"""Half strip over the relative radius of curvature: rated gears have 0.01 to 0.04."""
 ALONG_FLANK = 1.1
 """How far bodies move along a flank over its roll angle and how far they move across it, under a load.
 
 A gear that turned about its axis would have 1, teeth in finite elements have 1.0 to 1.4 (12 to 90 teeth and
-ring gears). So that points on reliefs of 7 pairs are as far off full contact as those of plain flanks.
+ring gears). Chosen on five pairs: points on reliefs are as far off full contact as those of plain flanks.
 """
 
 
@@ -415,12 +417,12 @@ class ContactProblem:
         """Reference length of the local law of each candidate (Q, m), m: greater near free ends.
 
         There the strip gives way more by k p [e(h) - e(l)]: as much as by a longer reference length. Its half
-        width h is that of the load that patches at tip edges follow.
+        width h is a usual one: the length is the same whatever loads are asked together.
         """
         slices, (first, second) = self.candidates.slices, self.half_planes
         if slices.endless:
             return np.full(first.shape, slices.law_length)
-        strip = np.sqrt(slices.edge_load * self.candidates.radius[: len(first)])
+        strip = _USUAL_STRIP * self.candidates.radius[: len(first)]
         more = self._end_excess(slices.end_1, strip)
         if slices.end_2 != slices.end_1:
             of_second = second / (first + second)

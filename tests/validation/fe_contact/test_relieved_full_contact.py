@@ -249,12 +249,13 @@ def test_the_stated_errors_of_a_soft_gear_hold_and_are_not_much_too_large(record
     ):
         told = f"within the stated {100.0 * stated / height:.2g} %"
         record_figure(f"{name} STE of a soft wheel, 40 N m", 100.0 * off / height, told, "%", SOFT_SOURCE)
-        assert off < stated + 1e-3 * ste.mean() * (name == "mean")
-        assert stated < 4.0 * off
+        uncertain = 1e-3 * ste.mean() * (name == "mean")
+        assert off < stated + uncertain
+        assert stated < 4.0 * (off + uncertain)
 
 
 def test_what_unlike_gears_leave_out_grows_with_the_load_and_with_the_unlikeness():
-    """Of the mean beyond the floor: patches follow the flanks, so that little more is left at 10 N m."""
+    """Of the mean beyond the floor: patches follow the flanks, so that little more is left at 5 N m."""
 
     def stated(table: SteDatabase, torque: float) -> np.ndarray:
         curve = table.curve(torque=torque)
@@ -263,7 +264,7 @@ def test_what_unlike_gears_leave_out_grows_with_the_load_and_with_the_unlikeness
 
     like = Gear(36, 3e-3, 20e-3, bore_diameter=45e-3, material=Material(9e9, 0.35))
     both = GearPair(replace(like, teeth=24, bore_diameter=30e-3), like, 90e-3)
-    loads = analyze(pair(9e9), torques=[10.0, RATED], model="plane_strain", level="draft")
-    assert (stated(loads, RATED) > 1.5 * stated(loads, 10.0)).all()
+    loads = analyze(pair(9e9), torques=[5.0, RATED], model="plane_strain", level="draft")
+    assert (stated(loads, RATED) > 1.5 * stated(loads, 5.0)).all()
     force = loads.force[-1:]
     assert _flank_tilt(pair(9e9), force) > 1.5 * _flank_tilt(both, force)
