@@ -18,9 +18,9 @@ from fe_contact.contact.candidates import (
 )
 from fe_contact.contact.flank_forces import contact_pressure, face_flank_forces, plane_flank_forces
 from fe_contact.contact.model import Break, ContactModel
+from fe_contact.contact.plain_touch import flank_coordinate
 from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices, Slices
 from fe_contact.contact.sweep import ContactSolution, Start, solve_contact
-from fe_contact.contact.touch import flank_coordinate
 
 __all__ = [
     "Break",

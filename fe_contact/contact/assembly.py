@@ -15,9 +15,9 @@ from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, f
 from fe_contact.contact.flank_slope import rolls_at
 from fe_contact.contact.model import ContactModel
 from fe_contact.contact.patch import Patches, load_vector
+from fe_contact.contact.plain_touch import Touch
 from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices
 from fe_contact.contact.tooth_touch import tooth_touch
-from fe_contact.contact.touch import Touch
 from fe_contact.contact.touch_cache import cached_touch
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray

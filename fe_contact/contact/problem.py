@@ -12,8 +12,8 @@ import scipy
 
 from fe_contact.contact.free_end import ENDLESS, SMOOTH, FreeEnds, end_excess
 from fe_contact.contact.patch import Patches
+from fe_contact.contact.plain_touch import Touch
 from fe_contact.contact.strip import Gap, StripMiddles, gap_table, rolling_radii, strip_middles
-from fe_contact.contact.touch import Touch
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray
 from host.loops import njit

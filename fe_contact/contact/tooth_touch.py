@@ -10,17 +10,10 @@ import numpy as np
 from fe_contact.contact.flank_slope import rolls_at
 from fe_contact.contact.model import ContactModel, MeetingTeeth
 from fe_contact.contact.parabolic_gap import moved_gap, touching_places
+from fe_contact.contact.plain_touch import Touch, conjugate_touch
 from fe_contact.contact.rough_flanks import DeviatingTeeth, curvature_bound
 from fe_contact.contact.strip import Gap, rounded, with_breaks
-from fe_contact.contact.touch import (
-    ALLOWED,
-    FLATTEST,
-    STEP,
-    WAVY,
-    Touch,
-    conjugate_touch,
-    modified_touch,
-)
+from fe_contact.contact.touch import ALLOWED, FLATTEST, STEP, WAVY, modified_touch
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray
 from host.loops import njit

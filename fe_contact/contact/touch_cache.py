@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fe_contact.contact.touch import Touch
+from fe_contact.contact.plain_touch import Touch
 from fe_contact.types import FloatArray, IntArray
 
 _MOST, _MOST_BYTES = 8, 32_000_000

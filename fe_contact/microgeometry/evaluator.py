@@ -19,7 +19,8 @@ from fe_contact.contact import (
     in_pitches,
     solve_contact,
 )
-from fe_contact.contact.touch import Touch, modified_touch
+from fe_contact.contact.plain_touch import Touch
+from fe_contact.contact.touch import modified_touch
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.objective import Limits

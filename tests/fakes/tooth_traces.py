@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from fe_contact.contact.model import MeetingTeeth
-from fe_contact.contact.touch import conjugate_touch
+from fe_contact.contact.plain_touch import conjugate_touch
 from fe_contact.geometry import FlankGrid, Gear, GearPair, InternalGearPair, RingGear, ToothFlank
 
 KINDS = ("spur", "helical", "internal")

@@ -22,7 +22,7 @@ from fe_contact.analysis.tables import table_of_solution
 from fe_contact.contact import ContactModel
 from fe_contact.contact.flank_slope import rolls_at
 from fe_contact.contact.model import MeetingTeeth
-from fe_contact.contact.touch import conjugate_touch
+from fe_contact.contact.plain_touch import conjugate_touch
 from fe_contact.errors import InputError
 from fe_contact.geometry import Gear
 from fe_contact.options import AnalysisOptions, TableAxes

@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from fe_contact.contact.touch import conjugate_touch, modified_touch
+from fe_contact.contact.plain_touch import conjugate_touch
+from fe_contact.contact.touch import modified_touch
 from fe_contact.effects.flank_modification import ModificationGap
 from fe_contact.geometry import (
     FlankModification,

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from fe_contact.analysis.estimates.table_sample import TableSample
 from fe_contact.analysis.pairs.pair_contact import PairContact
 from fe_contact.contact import ContactModel, with_gaps
-from fe_contact.contact.touch import Touch
+from fe_contact.contact.plain_touch import Touch
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray, IntArray
 

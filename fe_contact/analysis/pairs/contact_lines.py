@@ -28,6 +28,7 @@ from fe_contact.contact import (
     solve_contact,
 )
 from fe_contact.contact.assembly import together
+from fe_contact.contact.plain_touch import Touch
 from fe_contact.contact.problem import condition_numbers
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.cost_model import unit_work
@@ -253,7 +254,8 @@ def _joined(line: _Line, blocks: list[_SolvedBlock]) -> _SolvedBlock:
     kept = []
     for k, parts in enumerate(zip(*problems, strict=True)):
         candidates = _joined_candidates([part.candidates for part in parts])
-        problem = replace(parts[0], candidates=candidates, compliance=compliance, tilt=tilt)
+        share = np.concatenate([np.broadcast_to(p.share_1, p.compliance.shape[:2]) for p in parts])
+        problem = replace(parts[0], candidates=candidates, compliance=compliance, tilt=tilt, share_1=share)
         sets = zip(*(block.kept[k] for block in blocks), strict=True)
         kept.append(tuple(_joined_contact(list(each), problem, line.pitches) for each in sets))
     known = [block.condition for block in blocks if block.condition is not None]
@@ -276,16 +278,23 @@ def _joined_candidates(parts: list[Candidates]) -> Candidates:
     return replace(
         parts[0],
         position=_rows([part.position for part in parts], 1),
-        touch=_joined_arrays([part.touch for part in parts], 1),
+        touch=_joined_touch([part.touch for part in parts]),
         width=_rows([part.width for part in parts], 1),
         slices=replace(
             slices[0],
             present=_rows([part.present for part in slices], 1),
-            touch=_joined_arrays([part.touch for part in slices], 1),
+            touch=_joined_touch([part.touch for part in slices]),
             patch_1=_joined_arrays([part.patch_1 for part in slices], 1),
             patch_2=_joined_arrays([part.patch_2 for part in slices], 1),
+            turned_normals=_rows([part.turned_normals for part in slices], 1),
         ),
     )
+
+
+def _joined_touch(parts: list[Touch]) -> Touch:
+    """Put touching points together; only blocks where flanks are rough have the breaks of their strips."""
+    breaks = max(part.place.shape[-1] for part in parts)
+    return _joined_arrays([part.with_breaks(breaks) for part in parts], 1)
 
 
 def _joined_arrays(parts: list[Arrays], pitches: int, same: tuple[str, ...] = ()) -> Arrays:

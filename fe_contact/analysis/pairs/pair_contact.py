@@ -36,7 +36,7 @@ from fe_contact.contact import (
     with_face_tilt,
     with_flanks,
 )
-from fe_contact.contact.touch import Touch
+from fe_contact.contact.plain_touch import Touch
 from fe_contact.effects import ContactScene, acting, compose, contributed
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.cost_model import condensed_teeth

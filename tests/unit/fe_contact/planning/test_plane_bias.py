@@ -75,7 +75,7 @@ def test_no_error_of_a_plane_holds_what_it_leaves_out(cache: Path) -> None:
     assert np.all((ratio > 0.7) & (ratio < 1.1))
     for force in plain.force:
         one, other = plain.curve(force=force), reference.curve(force=force)
-        assert one.mean.error == pytest.approx(other.mean.error, rel=0.2)
+        assert 0.7 < one.mean.error / other.mean.error < 1.1
         assert one.over_face is not None and other.over_face is None
         assert one.over_face.mean.error > one.mean.error
 

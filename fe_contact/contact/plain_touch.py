@@ -1,0 +1,172 @@
+"""Touching points of plain involutes, with or without tip edges, and what is known of a touching point."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fe_contact.contact.strip import Gap, with_breaks
+from fe_contact.geometry import ParallelAxes, Side, Toothing, corner_contact
+from fe_contact.hertz import relative_radius
+from fe_contact.types import BoolArray, FloatArray, IntArray
+
+FLAT = 100.0
+"""Largest relative radius of curvature over the base radius of gear 2."""
+
+
+@dataclass(frozen=True)
+class Touch:
+    """Touching points of the rigid gears; arrays (P, n).
+
+    Attributes
+    ----------
+    s_1, s_2 : ndarray
+        Flank coordinates, m.
+    gap : ndarray
+        On the line of action, m; infinite = the pair cannot touch.
+    radius : ndarray
+        Relative radius of curvature in the transverse section, m.
+    lever_1, lever_2 : ndarray
+        Lever arms of the common normal over the base radii.
+    slope, curvature, low, high : ndarray
+        Gap about the touching points in the transverse section, towards tip 1; see `strip.Gap`.
+    place, jump, bend : ndarray, shape (P, n, B)
+        Its breaks.
+    moved : ndarray
+        How far modifications move the touching point, or the middle of the strip, towards tip 1, m.
+    missed : ndarray
+        Error of the approach on rough flanks; see `RoughStrip`.
+    lag : ndarray
+        Lag of gear 2 that closes a depth removed there, over that depth.
+    slope_1, slope_2 : ndarray
+        How fast what is removed from each flank grows over its roll length towards the tip, of a ring towards
+        the root; zero at its edge.
+    turn_1, turn_2 : ndarray
+        Their changes along the flanks towards tip 1, 1/m.
+    roll_1 : ndarray
+        Nominal roll lengths of gear 1, m.
+    """
+
+    s_1: FloatArray
+    s_2: FloatArray
+    gap: FloatArray
+    radius: FloatArray
+    lever_1: FloatArray
+    lever_2: FloatArray
+    slope: FloatArray
+    curvature: FloatArray
+    low: FloatArray
+    high: FloatArray
+    place: FloatArray
+    jump: FloatArray
+    bend: FloatArray
+    moved: FloatArray
+    missed: FloatArray
+    lag: FloatArray
+    slope_1: FloatArray
+    slope_2: FloatArray
+    turn_1: FloatArray
+    turn_2: FloatArray
+    roll_1: FloatArray
+
+    @property
+    def offset_1(self) -> FloatArray:
+        """Arc distance to the tip edge of gear 1, m; -phi R at an edge that touches as flanks open by phi."""
+        return np.where(self.high > 0.0, self.high, np.minimum(self.slope, 0.0) / self.curvature)
+
+    @property
+    def offset_2(self) -> FloatArray:
+        """The same at the tip edge of gear 2."""
+        return np.where(self.low < 0.0, -self.low, -np.maximum(self.slope, 0.0) / self.curvature)
+
+    def with_breaks(self, count: int) -> Touch:
+        """Return the same with at least so many breaks; those that come to them are at infinity."""
+        gap = with_breaks(Gap(*(getattr(self, name) for name in Gap._fields)), count)
+        return replace(self, **gap._asdict())
+
+    def rows(self, keep: IntArray) -> Touch:
+        """Keep some positions."""
+        return Touch(*(getattr(self, name)[keep] for name in self.__dataclass_fields__))
+
+    def columns(self, keep: BoolArray) -> Touch:
+        """Keep some pairs."""
+        return Touch(*(getattr(self, name)[:, keep] for name in self.__dataclass_fields__))
+
+
+def conjugate_touch(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, corners: bool) -> Touch:
+    """Touching points of plain involutes.
+
+    Parameters
+    ----------
+    roll_1, roll_2 : ndarray, shape (P, n)
+        Nominal roll lengths, m; beyond A and E too.
+    corners : bool
+        Whether tip edges may touch before A and after E.
+    """
+    tip_1, tip_2 = pair.pinion.tip_roll_length, pair.wheel.tip_roll_length
+    beyond_1, beyond_2 = roll_1 - tip_1, pair.wheel.sign * (roll_2 - tip_2)
+    gap = np.where((beyond_1 <= 0.0) & (beyond_2 <= 0.0), 0.0, np.inf)
+    touched_1 = np.clip(roll_1, pair.path_of_contact.start, tip_1)
+    ends_2 = float(pair.mating_roll_length(pair.path_of_contact.end)), tip_2
+    touched_2 = np.clip(roll_2, min(ends_2), max(ends_2))
+    lever_1, lever_2 = np.ones((2, *gap.shape))
+    opening_1, opening_2 = np.zeros((2, *gap.shape))
+    sides: tuple[tuple[Side, FloatArray, FloatArray, FloatArray], ...] = (
+        ("approach", beyond_2, touched_1, opening_2),
+        ("exit", beyond_1, touched_2, opening_1),
+    )
+    for side, overshoot, touched, opening in sides if corners else ():
+        at = np.nonzero(overshoot > 0.0)
+        corner = corner_contact(pair, side, overshoot[at])
+        valid = tuple(index[corner.valid] for index in at)
+        gap[valid], touched[valid] = corner.gap[corner.valid], corner.flank_roll_length[corner.valid]
+        opening[valid] = corner.slope_angle[corner.valid]
+        lever_1[valid] = corner.lever_arm_ratio_pinion[corner.valid]
+        lever_2[valid] = corner.lever_arm_ratio_wheel[corner.valid]
+    radius = _relative_radius(pair, touched_1, touched_2)
+    s_1, s_2 = flank_coordinate(pair.pinion, touched_1), flank_coordinate(pair.wheel, touched_2)
+    high = flank_coordinate(pair.pinion, tip_1) - s_1
+    low = s_2 - flank_coordinate(pair.wheel, tip_2)
+    none, plain = np.zeros((*gap.shape, 0)), np.zeros(gap.shape)
+    return Touch(
+        s_1, s_2, gap, radius, lever_1, lever_2,
+        opening_2 - opening_1, 1.0 / radius, np.minimum(low, 0.0), np.maximum(high, 0.0), none, none, none,
+        plain, plain, _lag_at_edges(pair, lever_1, lever_2), plain, plain, plain, plain, roll_1,
+    )  # fmt: skip
+
+
+def _lag_at_edges(pair: ParallelAxes, lever_1: FloatArray, lever_2: FloatArray) -> FloatArray:
+    """Return the lag of gear 2 (P, n) that closes a depth removed at tip edges, over that depth; 1 elsewhere.
+
+    The edge of a flank is removed along its normal, which the angle between the flanks takes off the normal
+    of the mate; and of a lag of gear 2 its edge closes the part of the lever arm only.
+    """
+    lag = np.ones(lever_2.shape)
+    at = np.nonzero((lever_1 != 1.0) | (lever_2 != 1.0))
+    levers = (pair.pinion, lever_1[at]), (pair.wheel, lever_2[at])
+    angle = sum(_angle_at_edge(gear, lever) for gear, lever in levers)
+    lag[at] = np.cos(angle) / lever_2[at]
+    return lag
+
+
+def _angle_at_edge(gear: Toothing, lever: FloatArray) -> FloatArray:
+    """Return the angle in rad between the normal of a flank at its tip edge and a force of this lever arm."""
+    arm = gear.base_radius / gear.tip_radius
+    return np.asarray(np.arccos(lever * arm) - np.arccos(arm))
+
+
+def _relative_radius(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray) -> FloatArray:
+    """Return the relative radius of curvature in m, at most `FLAT` base radii of gear 2.
+
+    Off the line of action the edge of a ring gear may meet its pinion where the pinion is the flatter one:
+    flanks that part at the edge would close in again further away. There they count as flat.
+    """
+    flattest = FLAT * pair.wheel.base_radius
+    radius = relative_radius(roll_1, pair.wheel.sign * roll_2)
+    return np.where((radius >= 0.0) & (radius <= flattest), radius, flattest)
+
+
+def flank_coordinate(gear: Toothing, roll: FloatArray | float) -> FloatArray:
+    """Flank coordinate s in m of a roll length; negative on a ring gear (see `FlankProfile`)."""
+    return np.asarray(gear.sign * np.square(roll) / (2.0 * gear.base_radius))
