@@ -326,8 +326,8 @@ class Candidates:
         return self.touching(replace(touch, moved=touch.moved + there.strips.middle - self.strips.middle))
 
 
-_USUAL_STRIP = 0.02
-"""Half strip over the relative radius of curvature: rated gears have 0.01 to 0.04."""
+_USUAL_STRIP = 0.012
+"""Half strip over the relative radius of curvature; gears under rated loads have 0.01 to 0.04."""
 ALONG_FLANK = 1.1
 """How far bodies move along a flank over its roll angle and how far they move across it, under a load.
 
