@@ -14,6 +14,7 @@ from fe_contact.analysis.checks.lifting import deviations_in_mesh
 from fe_contact.analysis.checks.neighbors import approach_steps, largest_steps
 from fe_contact.analysis.pairs.pair_contact import OperatingPoint
 from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.contact.plain_touch import Touch
 from fe_contact.contact.rough_strip import BREAKS, FLATTEST
 from fe_contact.contact.single_pair import single_pair_deflection
 from fe_contact.errors import SolveError
@@ -34,6 +35,12 @@ LEVERS = 2.0
 """Change of a compliance over the difference of lever arms: 1.3 where it was largest in 160 random pairs."""
 FLATTEST_TOUCH = 0.2
 """Least curvature of touching flanks over that of plain ones."""
+
+
+def flattest_touch(touch: Touch) -> float:
+    """Return the least curvature of modified flanks over plain ones; of crests that of their strip."""
+    return FLATTEST if touch.place.shape[-1] >= BREAKS else FLATTEST_TOUCH
+
 
 _RIGID = Law("lifting of rigid gears", "transmission error without load", "µm", 1e6)
 _LOADED = Law("lifting under load", "transmission error", "µm", 1e6)
@@ -249,9 +256,7 @@ class _Place:
             for each in (candidates.width, candidates.radius)
         )
         model = self.point.model
-        flattest = FLATTEST_TOUCH if model.sloped or model.tooth_gaps else 1.0
-        if candidates.touch.place.shape[-1] >= BREAKS:  # several crests carry, over one wide strip
-            flattest = FLATTEST
+        flattest = flattest_touch(candidates.touch) if model.sloped or model.tooth_gaps else 1.0
         shape = len(share) // count, count, *share.shape[1:]
         carried = share.reshape(shape)[..., pairs - self.table.pair[0]] * self.table.force[:, None]
         with np.errstate(divide="ignore", invalid="ignore"):

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_contact.analysis.checks.law import Law, LawCheck
-from fe_contact.analysis.checks.table_laws import BALANCE, FLATTEST_TOUCH, STRAIGHT
+from fe_contact.analysis.checks.table_laws import BALANCE, STRAIGHT, flattest_touch
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.contact import ContactProblem
 from fe_contact.hertz import half_width, peak_pressure
@@ -130,7 +130,7 @@ class _Flanks:
         near = np.abs(about.place) < 2.0 * longest[:, None]
         bends, kinks = (np.where(near, np.abs(each), 0.0).sum(axis=-1) for each in (about.bend, about.jump))
         parabola = (bends == 0.0) & (kinks == 0.0) & (np.abs(about.curvature * plain - 1.0) < STRAIGHT)
-        radius = np.where(parabola, plain, plain / FLATTEST_TOUCH)
+        radius = np.where(parabola, plain, plain / flattest_touch(candidates.touch))
         longest = np.where(parabola, half_width(load, plain, modulus), longest)
         kinked = 0.5 * (about.curvature + bends) * longest + (kinks + np.abs(about.slope)) / math.pi
         pressure = flanks.pressure.reshape(rows, -1)[loaded]
@@ -140,7 +140,8 @@ class _Flanks:
 
     def _longest(self, places: _Places, load: FloatArray) -> FloatArray:
         """Return the half strips (k,) in m under line loads in N/m on flanks as flat as they can be."""
-        radius = self.problem.candidates.radius[places] / FLATTEST_TOUCH
+        candidates = self.problem.candidates
+        radius = candidates.radius[places] / flattest_touch(candidates.touch)
         return half_width(load, radius, self.problem.modulus)
 
     def _among(self, places: _Places) -> Callable[..., str]:

@@ -7,7 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fe_contact import FlankGrid, FlankModification, Gear, GearPair, analyze
+from fe_contact import (
+    AnalysisOptions,
+    FlankGrid,
+    FlankModification,
+    Gear,
+    GearPair,
+    OperatingPoint,
+    analyze,
+    flank_results,
+)
 
 MODULE, FACE = 3e-3, 18e-3
 POSITION = [0.7883, 0.795, 0.8017, 0.8083, 0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]
@@ -48,3 +57,10 @@ def test_rough_flanks_give_way_as_full_contact_does(tmp_path):
         assert error.max() < 0.03 * np.mean(curve.ste)
         assert error.mean() < 0.008 * np.mean(curve.ste)
         assert np.mean(error <= curve.error) >= 0.9
+
+
+def test_flank_results_of_crests_far_apart_break_no_law():
+    """Two crests share a light load: their strip is wider than that of the flattest plain flanks."""
+    options, position = AnalysisOptions(model="plane_strain", level="draft"), np.arange(128) / 1024
+    flanks = flank_results(rough_pair(), OperatingPoint(torque=5.0), options, at=position.tolist())
+    assert {law["law"] for law in flanks.metadata.receipt["laws"]} >= {"pressure carries the line load"}
