@@ -80,10 +80,14 @@ class Touch:
         """The same at the tip edge of gear 2."""
         return np.where(self.low < 0.0, -self.low, -np.maximum(self.slope, 0.0) / self.curvature)
 
+    @property
+    def about(self) -> Gap:
+        """The gap about the touching points in the transverse section."""
+        return Gap(*(getattr(self, name) for name in Gap._fields))
+
     def with_breaks(self, count: int) -> Touch:
         """Return the same with at least so many breaks; those that come to them are at infinity."""
-        gap = with_breaks(Gap(*(getattr(self, name) for name in Gap._fields)), count)
-        return replace(self, **gap._asdict())
+        return replace(self, **with_breaks(self.about, count)._asdict())
 
     def rows(self, keep: IntArray) -> Touch:
         """Keep some positions."""

@@ -113,8 +113,7 @@ def _stepped(part: _Part) -> tuple[tuple[FloatArray, ...], BoolArray]:
     bend = (before - 2.0 * here + after) / half**2
     steepness = (after - before) / (2.0 * half) - bend * middle
     level = here - middle * (steepness + 0.5 * bend * middle)
-    gap = Gap(*(getattr(common, name) for name in Gap._fields))
-    gap, way, least, far = _free_steps(gap, steepness, bend)
+    gap, way, least, far = _free_steps(common.about, steepness, bend)
     if far.any():
         _step_on(common, gap, (steepness, bend), (way, least), np.flatnonzero(far))
     teeth = part.gap(way)
@@ -173,7 +172,7 @@ def _step_on(
     far: IntArray,
 ) -> None:
     """Step over breaks and to edges, in the place of what `_free_steps` returned of those candidates."""
-    plain = Gap(*(getattr(common, name)[far] for name in Gap._fields))
+    plain = Gap(*(values[far] for values in common.about))
     slope, curvature = plain.slope + teeth[0][far], plain.curvature + teeth[1][far]
     whole = rounded(plain._replace(slope=slope, curvature=curvature), FLATTEST * plain.curvature)
     way = touching_places(whole, plain.low, plain.high)

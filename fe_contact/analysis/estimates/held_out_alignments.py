@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from fe_contact.analysis.estimates.held_out_loads import halvings_reached
+from fe_contact.analysis.estimates.held_out_loads import AWAY, halvings_reached
 from fe_contact.analysis.estimates.inserted_places import (
     alignment_points,
     take_compliance,
@@ -38,9 +38,6 @@ from fe_contact.types import BoolArray, FloatArray, IntArray
 MIDDLE, QUARTERS = (0.5,), (0.25, 0.5, 0.75)
 """Held-out alignments in parts of an interval. Between three nodes or more the error of a cubic may vanish in
 the middle; with a goal the quarters are solved once the middle meets it."""
-AWAY = 1.4
-"""Error anywhere in an interval over the largest at its held-out alignments and the positions of the table:
-contacts begin and end at another alignment for every position."""
 MOST_HALVINGS = 5
 """Halvings of an interval of requested alignments: 20 um become intervals of 0.6 um."""
 
