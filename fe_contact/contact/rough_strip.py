@@ -31,7 +31,7 @@ LOADS: FloatArray = 0.5 * HALF_STRIPS**2
 BREAKS = 2 * HALF_STRIPS.size
 _USUAL = 4
 """Load whose centroid is that of the patch: a half strip of 0.016."""
-_CELLS = 80
+_CELLS = 48
 _LEAST_WINDOW, _LARGEST_WINDOW = 2.7, 12.0
 """Half of what is looked at over the half strip of plain flanks: flanks lie on crests beside the first one as
 far out as deviations make up for what round flanks part, and load makes them yield."""
@@ -41,10 +41,10 @@ _NARROWER, _WIDER = math.exp(-10.0), math.e
 """Bounds of a strip over that of plain flanks."""
 _GROWTH = 1.15
 """Least growth of a strip from one load to the next: a gap as steep as a wall stays steep behind it."""
-_STEPS, _TOLERANCE = 200, 3e-4
+_STEPS, _TOLERANCE = 200, 2e-3
 """Of the conjugate gradients, and the change of the forces over the load that ends them: the approach has its
 square."""
-_HALVINGS = 40
+_HALVINGS = 24
 _AT_ONCE = 512
 """Contacts whose gaps are sampled together."""
 
