@@ -114,7 +114,9 @@ def test_a_killed_process_is_replaced_and_loses_only_what_it_answers(
     counted = re.search(r'loa_requests_total\{[^}]*route="/v1/jobs",status="200"} ([\d.]+)', figures)
     assert counted is not None
     answered = sum(len(caller.answers) for caller in callers)
-    assert answered <= float(counted.group(1)) <= answered + 2 * CALLERS
+    # A process counts an answer after it is sent: killed in between, it leaves one that is not counted.
+    uncounted = len(victims[:2])
+    assert answered - uncounted <= float(counted.group(1)) <= answered + 2 * CALLERS
     until(lambda: _status(address, job)["status"] == "successful")
     assert _status(address, job)["attempts"] == 1
 
