@@ -13,11 +13,12 @@ from fastapi import FastAPI
 from service.access.capacity import capacity
 from service.access.identities import open_identities
 from service.folders import DirectoryLock
-from service.live.pool import KeptAnswers, LivePool
+from service.live.kept_answers import KeptAnswers
+from service.live.live_worker import live_pool
 from service.management.figures import Metrics, process_registry
 from service.queue.scheduler import job_machinery
 from service.queue.watcher import Watcher
-from service.reading.pool import ReadingPool
+from service.reading.reader import reading_pool
 from service.routes import cases, documents, drafts, events, health, jobs, processes, queries, results
 from service.routes.access import Access, Admission
 from service.routes.context import Context
@@ -119,7 +120,7 @@ def _lifespan(context: Context, lock: DirectoryLock | None) -> Callable[[FastAPI
 
 def _context(settings: Settings, registry: Registry, works: bool) -> Context:
     parts = job_machinery(settings, registry, works=works)
-    pools, engine = (LivePool.of(settings), ReadingPool(settings.data_directory)), parts.engine
+    pools, engine = (live_pool(settings), reading_pool(settings.data_directory)), parts.engine
     kept = KeptAnswers(settings.data_directory / CACHE_DIRECTORY / "figures")
     writes = WriteCheck(Deployment(engine, parts.store))
     watcher = Watcher(engine, partial(events.event_of, registry=registry))

@@ -1,16 +1,18 @@
 """The live worker process: many short questions, one after the other, with what they share kept in memory.
 
 Started as ``python -m service.live.child DESCRIPTOR MEMORY_MB`` in a session of its own. Orders are
-lines on standard input; when that closes the service is gone, and the whole process group is killed. Answers
-go to DESCRIPTOR. Standard error is the log.
+lines on standard input; a line ``{"stop": N}`` stops the work on the Nth of them. When the input closes the
+service is gone, and the whole process group is killed. Answers go to DESCRIPTOR. Standard error is the log.
 """
 
 from __future__ import annotations
 
+import _thread
 import importlib
 import json
 import os
 import queue
+import signal
 import sys
 import threading
 import traceback
@@ -38,22 +40,62 @@ def main() -> None:
     begin_work()
     lower_priority(_NICENESS)
     orders: queue.SimpleQueue[bytes] = queue.SimpleQueue()
-    threading.Thread(target=_listen, args=(orders,), daemon=True).start()
+    stop = _Stop()
+    signal.signal(signal.SIGINT, stop.heed)
+    threading.Thread(target=_listen, args=(orders, stop), daemon=True).start()
     hold_to(int(sys.argv[2]))
     with os.fdopen(int(sys.argv[1]), "wb") as channel:
         head = AnswerHead("")
         while head.kind != "memory":
-            head, body = worked(LiveOrder.from_line(orders.get()))
+            head, body = stop.stoppable(LiveOrder.from_line(orders.get()))
             channel.write(head.line() + body)
             channel.flush()
 
 
-def _listen(orders: queue.SimpleQueue[bytes]) -> None:
+def _listen(orders: queue.SimpleQueue[bytes], stop: _Stop) -> None:
     """Take orders from standard input; kill the process group when the service is gone."""
     with os.fdopen(0, "rb") as stream:
         for line in stream:
-            orders.put(line)
+            if line.startswith(b'{"stop"'):
+                stop.ask_for(json.loads(line)["stop"])
+            else:
+                orders.put(line)
     kill_own_group()
+
+
+class _Stopped(BaseException):
+    """The work is of no use any more; nothing but `_Stop` catches it."""
+
+
+class _Stop:
+    """Stops the work on one order in the main thread, and none that came after it."""
+
+    def __init__(self) -> None:
+        self._begun, self._at_work, self._asked = 0, False, 0
+
+    def stoppable(self, order: LiveOrder) -> tuple[AnswerHead, bytes]:
+        """Do the work on the next order."""
+        self._begun += 1
+        answer = AnswerHead("stopped"), b""
+        try:
+            self._at_work = True
+            if self._asked != self._begun:
+                answer = worked(order)
+            self._at_work = False
+        except _Stopped:
+            pass
+        return answer
+
+    def ask_for(self, number: int) -> None:
+        """Let the main thread stop the work on an order; from any thread."""
+        self._asked = number
+        _thread.interrupt_main()
+
+    def heed(self, _signal: int, _frame: object) -> None:
+        """Stop what is at work, if it is that order."""
+        if self._at_work and self._asked == self._begun:
+            self._at_work = False
+            raise _Stopped
 
 
 def written(answer: Json) -> bytes:

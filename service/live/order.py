@@ -53,8 +53,8 @@ class AnswerHead(_Message):
     Attributes
     ----------
     kind : str
-        "answer"; "problem": the bytes are problem details; "defect": the log says more, there are no bytes;
-        "memory": none was left, there are no bytes, and the worker ends.
+        "answer"; "problem": the bytes are problem details; the others have no bytes: "defect": the log says
+        more; "stopped": whoever asked wants it no more; "memory": none was left, and the worker ends.
     length : int
         Number of bytes that follow.
     """

@@ -23,7 +23,7 @@ from lineofaction.gearbox.schemas.toml import toml_text
 from service.access.keyring import Scope
 from service.live.order import LiveOrder
 from service.page.files import examples
-from service.routes.context import Context, Ctx, key_of
+from service.routes.context import Context, Ctx, asker_of
 from service.routes.media_types import JSON
 from service.routes.openapi import documented
 from service.routes.scopes import ScopedRoute, needs
@@ -152,8 +152,7 @@ async def case_from_toml(body: CaseText, context: Ctx, request: Request) -> Resp
 
 
 async def _read_by(context: Context, entry: str, body: BaseModel, request: Request) -> Response:
-    caller, order = key_of(request), LiveOrder(entry, body.model_dump(mode="json"))
-    answer = context.reader.ask(order, None if caller is None else caller.name)
+    answer = context.reader.ask(LiveOrder(entry, body.model_dump(mode="json")), asker_of(request))
     return Response(await asyncio.wrap_future(answer), media_type=JSON)
 
 

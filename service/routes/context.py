@@ -13,13 +13,14 @@ from sqlalchemy import Engine
 
 from lineofaction.gearbox.loading import LOADING
 from service.access.keyring import Holder
-from service.live.pool import KeptAnswers, LivePool
+from service.live.kept_answers import KeptAnswers
+from service.live.question_pool import QuestionPool
+from service.live.turns import Asker
 from service.project import COMMON
 from service.queue.scheduler import Scheduler
 from service.queue.submissions import Submissions
 from service.queue.terms import ANYBODY
 from service.queue.watcher import Watcher
-from service.reading.pool import ReadingPool
 from service.settings import Settings
 from service.store.deployment import WriteCheck
 from service.store.results import ResultStore
@@ -149,8 +150,8 @@ class Context:
     submissions: Submissions
     scheduler: Scheduler | None
     store: ResultStore
-    live: LivePool
-    reader: ReadingPool
+    live: QuestionPool
+    reader: QuestionPool
     kept: KeptAnswers
     engine: Engine
     writes: WriteCheck
@@ -197,6 +198,12 @@ def context_of(request: Request) -> Context:
 def key_of(request: Request) -> Holder | None:
     """Return who sent a request, None on a service without keys; see `service.routes.access`."""
     return getattr(request.state, "caller", None)
+
+
+def asker_of(request: Request, slider: str | None = None) -> Asker:
+    """Return who asks a question by a request; `slider`: see `Asker`."""
+    key = key_of(request)
+    return Asker(slider=slider) if key is None else Asker(key.name, slider)
 
 
 def caller_of(request: Request) -> Holder:

@@ -14,15 +14,25 @@ from fastapi import APIRouter, Header, Query, Response
 from pydantic import BaseModel, create_model
 
 from lineofaction.gearbox.loading import on_demand
-from lineofaction.gearbox.problems import BadInput, Fault, LiveUnavailable, NoSuchProcess, QueueFull
+from lineofaction.gearbox.problems import (
+    BadInput,
+    Fault,
+    LiveUnavailable,
+    NoSuchProcess,
+    QueueFull,
+    TooManyHeld,
+)
 from lineofaction.gearbox.registry import NETCDF
 from lineofaction.gearbox.schemas.model import MOST_FAULTS, BoundaryModel
 from lineofaction.gearbox.schemas.reading import validated
+from service.access.capacity import NOBODY
 from service.access.keyring import Holder, Scope
 from service.live.order import LiveOrder
+from service.live.turns import Asker
 from service.origin import Origin
 from service.queue.entry import BatchCase
 from service.queue.terms import (
+    ANYBODY,
     Label,
     Terms,
     check_priority,
@@ -205,7 +215,7 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         name=process.id.replace("-", "_"),
         summary=process.title,
         description=process.description,
-        responses=documented(QueueFull, LiveUnavailable)
+        responses=documented(QueueFull, TooManyHeld, LiveUnavailable)
         | {201: answer("The job", "Location", "Preference-Applied")},
     )
 
@@ -222,7 +232,7 @@ def _submit(
     looked = now()
     stored = context.store.find(key, process.kind) is not None
     if not stored and terms.max_cost_s is not None:
-        refuse_beyond(terms.max_cost_s, _predicted(context, process, inputs))
+        refuse_beyond(terms.max_cost_s, _predicted(context, process, inputs, caller))
     job = context.submissions.submit(
         process.id, key, inputs, stored=stored, looked=looked, caller=caller, terms=terms, name=name
     )
@@ -232,13 +242,16 @@ def _submit(
     return status_info(job, context.registry)
 
 
-def _predicted(context: Context, process: Process, inputs: dict[str, Any]) -> dict[str, float]:
+def _predicted(
+    context: Context, process: Process, inputs: dict[str, Any], caller: Holder
+) -> dict[str, float]:
     """Return the CPU seconds by stage that the plan of a process predicts; none where it has no plan."""
     if not process.plan:
         return {}
     cache = str(context.settings.data_directory / "compliance")
     order = LiveOrder(process.plan, {**inputs, "time_budget_s": None, "cache": cache})
-    stages: dict[str, float] = json.loads(context.live.ask(order).result())["prediction"]["stages"]
+    asker = Asker(NOBODY if caller is ANYBODY else caller.name, submits=True)
+    stages: dict[str, float] = json.loads(context.live.ask(order, asker).result())["prediction"]["stages"]
     return stages
 
 

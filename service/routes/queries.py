@@ -32,6 +32,7 @@ from lineofaction.gearbox.problems import (
     NotFound,
     QueueFull,
     Superseded,
+    TooManyHeld,
     UnsupportedMediaType,
 )
 from lineofaction.gearbox.schemas.faults import fault_of, innermost
@@ -42,7 +43,7 @@ from lineofaction.gearbox.schemas.query import LIMITS, QueryInput, QueryOutput, 
 from service.access.keyring import Scope
 from service.live.order import LiveOrder
 from service.project import address_of
-from service.routes.context import Context, Ctx, context_of
+from service.routes.context import Context, Ctx, asker_of, context_of
 from service.routes.media_types import CBOR, JSON, RAW, media_type, negotiated
 from service.routes.openapi import documented
 from service.routes.results import Key
@@ -229,10 +230,12 @@ STE, PLAN = "service.live.work:live_ste", "service.live.work:live_plan"
     "/databases/{key}/ste",
     summary="Transmission error with other flanks",
     response_model=LiveOutput,
-    responses=documented(QueueFull, Superseded, NotAnalyzed, LiveUnavailable, NotFound, DamagedFile),
+    responses=documented(
+        QueueFull, TooManyHeld, Superseded, NotAnalyzed, LiveUnavailable, NotFound, DamagedFile
+    ),
 )
 @needs(Scope.READ, body=LiveInput)
-async def live_ste(key: Key, body: LiveInput, context: Ctx) -> Response:
+async def live_ste(key: Key, body: LiveInput, context: Ctx, request: Request) -> Response:
     """Curves of the gears of a database with other flanks, torques, misalignment and center distance.
 
     They come from the compliance in the cache, without finite elements, and say what they may be wrong by.
@@ -241,27 +244,24 @@ async def live_ste(key: Key, body: LiveInput, context: Ctx) -> Response:
     question = body.model_dump(mode="json", exclude_none=True)
     place = address_of(context.project, key)
     inputs = {"key": place, "file": str(stored.path), "cache": _cache(context), "question": question}
-    return await _live_answer(context, LiveOrder(STE, inputs), body.caller)
+    asker = asker_of(request, body.caller and f"curves {context.project} {body.caller}")
+    answer = context.live.ask(LiveOrder(STE, inputs), asker, subject=place, lasting=body.condense)
+    return Response(await asyncio.wrap_future(answer), media_type=JSON)
 
 
 @live_router.post(
     "/plans",
     summary="Plan and cost of a run",
     response_model=PlanBody,
-    responses=documented(QueueFull, Superseded, LiveUnavailable),
+    responses=documented(QueueFull, TooManyHeld, Superseded, LiveUnavailable),
 )
 @needs(Scope.READ, body=PlanRequest)
-async def plan(body: PlanRequest, context: Ctx) -> Response:
+async def plan(body: PlanRequest, context: Ctx, request: Request) -> Response:
     """Predicted time by stage, memory and error of every mesh, and the effect ledger; nothing is computed."""
     inputs = body.inputs.model_dump(mode="json")
     order = LiveOrder(PLAN, {**inputs, "cache": _cache(context)})
-    return await _live_answer(context, order, body.caller)
-
-
-async def _live_answer(context: Context, order: LiveOrder, caller: str | None) -> Response:
-    name = None if caller is None else f"{order.entry} {context.project} {caller}"
-    body = await asyncio.wrap_future(context.live.ask(order, name))
-    return Response(body, media_type="application/json")
+    answer = context.live.ask(order, asker_of(request, body.caller and f"plan {body.caller}"))
+    return Response(await asyncio.wrap_future(answer), media_type=JSON)
 
 
 def _cache(context: Context) -> str:

@@ -14,12 +14,19 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import FileResponse, JSONResponse, Response
 
 from lineofaction.gearbox.loading import on_demand
-from lineofaction.gearbox.problems import BadInput, DamagedFile, LiveUnavailable, NotFound, QueueFull
+from lineofaction.gearbox.problems import (
+    BadInput,
+    DamagedFile,
+    LiveUnavailable,
+    NotFound,
+    QueueFull,
+    TooManyHeld,
+)
 from lineofaction.gearbox.registry import NETCDF, RESULT_KINDS, RESULTS, SUFFIX
 from lineofaction.gearbox.schemas.model import HASH
 from service.access.keyring import Scope
 from service.live.order import LiveOrder
-from service.routes.context import Context, Ctx
+from service.routes.context import Context, Ctx, asker_of
 from service.routes.media_types import (
     HTML,
     JSON,
@@ -60,7 +67,7 @@ async def _kept_answer(
         return Response(status_code=304, headers=headers)
     body = await run_in_threadpool(context.kept.find, tag)
     if body is None:
-        body = body_of(await asyncio.wrap_future(context.live.ask(order)))
+        body = body_of(await asyncio.wrap_future(context.live.ask(order, asker_of(request))))
         await run_in_threadpool(context.kept.keep, tag, body)
     return Response(body, media_type=media_type, headers=headers)
 
@@ -217,7 +224,7 @@ _INERT = {"Content-Security-Policy": "sandbox; default-src 'none'; style-src 'un
             content={JSON: {}, HTML: {"schema": {"type": "string"}, "example": "<!DOCTYPE html>..."}},
         ),
         304: _UNMODIFIED_ANSWER,
-        **documented(NotFound, QueueFull, LiveUnavailable, DamagedFile),
+        **documented(NotFound, QueueFull, TooManyHeld, LiveUnavailable, DamagedFile),
     },
 )
 @needs(Scope.READ)
@@ -265,7 +272,7 @@ _MOST_MOTIONS = 1_000_000
     responses={
         200: answer("Motions to choose from, and the one of a number", *_VERSION, model=MotionBody),
         304: _UNMODIFIED_ANSWER,
-        **documented(NotFound, BadInput, QueueFull, LiveUnavailable, DamagedFile),
+        **documented(NotFound, BadInput, QueueFull, TooManyHeld, LiveUnavailable, DamagedFile),
     },
 )
 @needs(Scope.READ)
@@ -310,7 +317,7 @@ def _named(description: str) -> object:
             content={WAV: {"schema": FILE}},
         ),
         304: _UNMODIFIED_ANSWER,
-        **documented(NotFound, BadInput, QueueFull, LiveUnavailable, DamagedFile),
+        **documented(NotFound, BadInput, QueueFull, TooManyHeld, LiveUnavailable, DamagedFile),
     },
 )
 @needs(Scope.READ)

@@ -16,6 +16,7 @@ _asked: list[str] = []
 def echo(inputs: dict[str, Any]) -> dict[str, Any]:
     """Return what was asked, everything asked before, and who answers."""
     _asked.append(inputs["word"])
+    time.sleep(inputs.get("seconds", 0.0))
     if "wait_for" in inputs:
         while not Path(inputs["wait_for"]).exists():
             time.sleep(0.005)
@@ -24,7 +25,18 @@ def echo(inputs: dict[str, Any]) -> dict[str, Any]:
 
 def hang(_inputs: dict[str, Any]) -> dict[str, Any]:
     while True:
-        time.sleep(1.0)
+        time.sleep(0.05)
+
+
+def plan(inputs: dict[str, Any]) -> dict[str, Any]:
+    """Return a plan; never, where a budget is stated."""
+    return hang(inputs) if inputs.get("time_budget_s") else {"prediction": {"stages": {"all": 0.5}}}
+
+
+def deaf(_inputs: dict[str, Any]) -> dict[str, Any]:
+    """Work where Python heeds nothing."""
+    time.sleep(1000.0)
+    return {}
 
 
 def die(_inputs: dict[str, Any]) -> dict[str, Any]:

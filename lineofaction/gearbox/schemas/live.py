@@ -104,7 +104,8 @@ class LiveInput(BoundaryModel):
     )
     caller: Caller | None = Field(
         default=None,
-        description="Name of the caller; a later request of the same caller replaces its waiting one",
+        description="Name of a series of requests within the access key; a later one replaces the one that "
+        "waits, and stops the one that is answered",
         examples=["slider-1"],
     )
 
@@ -127,7 +128,8 @@ class PlanRequest(BoundaryModel):
     inputs: PlanInputs = Field(description="Inputs of the plan")
     caller: Caller | None = Field(
         default=None,
-        description="Name of the caller; a later request of the same caller replaces its waiting one",
+        description="Name of a series of requests within the access key; a later one replaces the one that "
+        "waits, and stops the one that is answered",
         examples=["form-1"],
     )
 

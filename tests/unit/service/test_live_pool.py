@@ -1,11 +1,11 @@
-"""The live worker: one question at a time, the newest of a caller wins, and no death of it is for long."""
+"""The live worker: one question at a time, an obsolete one stopped, and no death of it is for long."""
 
 from __future__ import annotations
 
 import json
 import os
 import signal
-import threading
+import time
 from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
@@ -17,10 +17,13 @@ from own_process import children, command, python
 from running_service import PATIENCE_S, lives, until
 from structlog.testing import capture_logs
 
-from lineofaction.gearbox.problems import LiveUnavailable, QueueFull, ServiceError, Superseded, Unexpected
+from lineofaction.gearbox.problems import LiveUnavailable, ServiceError, Superseded, Unexpected
 from service.live.child import worked
+from service.live.kept_answers import KeptAnswers
+from service.live.live_worker import AnswerTimes, LiveWorker
 from service.live.order import LiveOrder
-from service.live.pool import KeptAnswers, LiveLimits, LivePool
+from service.live.question_pool import QuestionPool
+from service.live.turns import Asker, Limits
 from service.version import modules_digest
 
 WORK = "live_fake_work"
@@ -40,9 +43,17 @@ def answer(future: Future[bytes]) -> dict[str, Any]:
     return found
 
 
+class LivePool(QuestionPool):
+    """A pool with one live worker."""
+
+    def __init__(self, folder: Path, times: AnswerTimes | None = None, *, idle_s: float = 600.0) -> None:
+        self.worker = LiveWorker(folder, 512, times)
+        super().__init__([self.worker], Limits(in_all=4), "live requests", idle_s=idle_s)
+
+
 @pytest.fixture
 def pool(tmp_path: Path) -> Iterator[LivePool]:
-    made = LivePool(tmp_path, 512, LiveLimits(waiting=3))
+    made = LivePool(tmp_path, AnswerTimes(obsolete_s=0.1))
     yield made
     made.stop()
 
@@ -51,37 +62,56 @@ def test_one_worker_answers_all_in_turn_and_is_nice(pool: LivePool) -> None:
     first = answer(pool.ask(order("echo", word="a")))
     second = answer(pool.ask(order("echo", word="b")))
     assert (first["asked"], second["asked"]) == (["a"], ["a", "b"])
-    assert first["pid"] == second["pid"] == pool.worker_pid != os.getpid()
+    assert first["pid"] == second["pid"] == pool.worker.pid != os.getpid()
     assert first["nice"] == min(os.nice(0) + 5, 19)
 
 
-def test_the_newest_question_of_a_caller_wins(pool: LivePool, tmp_path: Path) -> None:
-    gate = tmp_path / "gate"
-    running = pool.ask(order("echo", word="runs", wait_for=str(gate)), "slider")
+SLIDER = Asker(slider="slider")
+
+
+def test_an_answer_that_becomes_obsolete_is_stopped_and_the_worker_goes_on(pool: LivePool) -> None:
+    first = answer(pool.ask(order("echo", word="a")))["pid"]
+    running = pool.ask(order("hang"), SLIDER)
     until(running.running)
-    obsolete = pool.ask(order("echo", word="obsolete"), "slider")
-    other = pool.ask(order("echo", word="other"), "form")
-    newest = pool.ask(order("echo", word="newest"), "slider")
+    newest = pool.ask(order("echo", word="newest"), SLIDER)
     with pytest.raises(Superseded):
-        obsolete.result(timeout=PATIENCE_S)
-    gate.touch()
-    assert answer(running)["asked"] == ["runs"]
-    assert answer(other)["asked"][1:] in (["other"], ["newest", "other"])
-    assert sorted(answer(newest)["asked"] + ["other"])[:1] == ["newest"]
+        running.result(timeout=PATIENCE_S)
+    found = answer(newest)
+    assert (found["asked"], found["pid"]) == (["a", "newest"], first)  # it has lost nothing
 
 
-def test_the_queue_is_bounded_and_says_when_to_ask_again(pool: LivePool, tmp_path: Path) -> None:
-    gate = tmp_path / "gate"
-    running = pool.ask(order("echo", word="runs", wait_for=str(gate)))
+def test_one_that_heeds_no_stop_is_killed(tmp_path: Path) -> None:
+    pool = LivePool(tmp_path, AnswerTimes(obsolete_s=0.1, to_stop_s=0.3))
+    running = pool.ask(order("deaf"), SLIDER)
     until(running.running)
-    waiting = [pool.ask(order("echo", word=str(k)), f"caller {k}") for k in range(3)]
-    with pytest.raises(QueueFull) as caught:
-        pool.ask(order("echo", word="one too many"))
-    assert (caught.value.status, caught.value.retry_after_s) == (429, 1)
-    replaced = pool.ask(order("echo", word="instead"), "caller 0")
+    newest = pool.ask(order("echo", word="newest"), SLIDER)
+    with pytest.raises(Superseded):
+        running.result(timeout=PATIENCE_S)
+    assert answer(newest)["asked"] == ["newest"]
+    pool.stop()
+
+
+def test_no_stop_hits_what_comes_after_it(pool: LivePool) -> None:
+    """Each is made obsolete about when it ends: it has its answer or is stopped, the next one is answered."""
+    for k in range(40):
+        older = pool.ask(order("echo", word=f"older {k}", seconds=0.1 + 2.5e-4 * k), SLIDER)
+        until(older.running)
+        newer = pool.ask(order("echo", word=f"newer {k}"), SLIDER)
+        assert answer(newer)["asked"][-1] == f"newer {k}"
+        assert isinstance(older.exception(timeout=PATIENCE_S), Superseded | None)
+
+
+def test_work_that_serves_the_newer_question_is_not_stopped(pool: LivePool, tmp_path: Path) -> None:
+    gate = tmp_path / "gate"
+    running = pool.ask(
+        order("echo", word="bodies", wait_for=str(gate)), SLIDER, subject="a pair", lasting=True
+    )
+    until(running.running)
+    newer = pool.ask(order("echo", word="curves"), SLIDER, subject="a pair")
+    time.sleep(0.3)
     gate.touch()
-    assert answer(replaced)["asked"][0] == "runs"
-    assert [answer(future)["asked"][-1] for future in waiting[1:]] == ["1", "2"]
+    assert answer(running)["asked"] == ["bodies"]
+    assert answer(newer)["asked"] == ["bodies", "curves"]
 
 
 @pytest.mark.parametrize(("name", "text"), [("die", "ended. Repeat the request"), ("hog", "512 MB")])
@@ -101,38 +131,13 @@ def test_one_killed_in_the_middle_of_an_answer_is_told_and_those_that_wait_are_a
     gate = tmp_path / "never"
     asked = pool.ask(order("echo", word="a", wait_for=str(gate)))
     waits = pool.ask(order("echo", word="b"))
-    until(lambda: asked.running() and pool.worker_pid is not None)
-    first = pool.worker_pid
+    until(lambda: asked.running() and pool.worker.pid is not None)
+    first = pool.worker.pid
     os.kill(first or 0, signal.SIGKILL)
     with pytest.raises(LiveUnavailable, match="ended"):
         asked.result(timeout=PATIENCE_S)
     assert answer(waits)["asked"] == ["b"]
     assert first is not None and not lives(first)
-
-
-def test_sixteen_at_once_get_their_own_answers_and_the_seventeenth_is_refused(tmp_path: Path) -> None:
-    pool, gate = LivePool(tmp_path, 512), tmp_path / "gate"
-    try:
-        running = pool.ask(order("echo", word="first", wait_for=str(gate)))
-        until(running.running)
-        futures: dict[str, Future[bytes]] = {}
-
-        def ask(word: str) -> None:
-            futures[word] = pool.ask(order("echo", word=word), f"caller {word}")
-
-        callers = [threading.Thread(target=ask, args=(str(k),)) for k in range(16)]
-        for caller in callers:
-            caller.start()
-        for caller in callers:
-            caller.join()
-        with pytest.raises(QueueFull):
-            pool.ask(order("echo", word="one too many"))
-        gate.touch()
-        assert {word: answer(future)["asked"][-1] for word, future in futures.items()} == {
-            str(k): str(k) for k in range(16)
-        }
-    finally:
-        pool.stop()
 
 
 SERVE = """
@@ -179,12 +184,12 @@ def test_one_that_dies_unseen_after_an_answer_is_replaced_once(
     first = answer(pool.ask(order("echo", word="a")))["pid"]
     os.kill(first, signal.SIGKILL)
     until(lambda: not lives(first))
-    monkeypatch.setattr("service.live.pool._LiveWorker.alive", True)
+    monkeypatch.setattr("service.live.live_worker._LiveProcess.alive", True)
     assert answer(pool.ask(order("echo", word="b")))["pid"] != first
 
 
 def test_what_takes_too_long_is_ended(tmp_path: Path) -> None:
-    pool = LivePool(tmp_path, 512, LiveLimits(answer_s=1.0))
+    pool = LivePool(tmp_path, AnswerTimes(longest_s=1.0))
     with capture_logs() as log, pytest.raises(LiveUnavailable, match="longer than 1 s"):
         pool.ask(order("hang")).result(timeout=PATIENCE_S)
     (pid,) = [entry["pid"] for entry in log if entry["event"] == "live worker started"]
@@ -193,17 +198,17 @@ def test_what_takes_too_long_is_ended(tmp_path: Path) -> None:
 
 
 def test_an_idle_worker_ends_and_another_takes_the_next_question(tmp_path: Path) -> None:
-    pool = LivePool(tmp_path, 512, LiveLimits(idle_s=0.05))
+    pool = LivePool(tmp_path, idle_s=0.05)
     first = answer(pool.ask(order("echo", word="a")))["pid"]
-    until(lambda: pool.worker_pid is None and not lives(first))
+    until(lambda: pool.worker.pid is None and not lives(first))
     assert answer(pool.ask(order("echo", word="b")))["asked"] == ["b"]
     pool.stop()
 
 
 def test_a_stop_ends_the_worker_in_the_middle_of_an_answer(pool: LivePool) -> None:
     asked, waits = pool.ask(order("hang")), pool.ask(order("echo", word="a"))
-    until(lambda: asked.running() and pool.worker_pid is not None)
-    pid = pool.worker_pid
+    until(lambda: asked.running() and pool.worker.pid is not None)
+    pid = pool.worker.pid
     pool.stop()
     for future in (asked, waits):
         with pytest.raises(LiveUnavailable):
@@ -238,13 +243,13 @@ def test_words_and_numbers_come_as_they_are() -> None:
 SERVICE = """
 import sys
 from pathlib import Path
-from service.live.pool import LivePool
-from service.live.child import worked
+from service.live.live_worker import LiveWorker
 from service.live.order import LiveOrder
-pool = LivePool(Path(sys.argv[1]), 512)
-pool.ask(LiveOrder("live_fake_work:echo", {"word": "a"})).result()
-print("worker", pool.worker_pid, flush=True)
-pool.ask(LiveOrder("live_fake_work:hang", {})).result()
+from service.live.turns import Question
+worker = LiveWorker(Path(sys.argv[1]), 512)
+worker.answer(Question(LiveOrder("live_fake_work:echo", {"word": "a"})))
+print("worker", worker.pid, flush=True)
+worker.answer(Question(LiveOrder("live_fake_work:hang", {})))
 """
 
 

@@ -11,30 +11,20 @@ import select
 import threading
 import time
 import uuid
-from collections import OrderedDict
-from concurrent.futures import Future
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import structlog
 
 from host import READING, Ended, ending_signal, kill_group, missing_protections
-from lineofaction.gearbox.problems import (
-    LiveUnavailable,
-    QueueFull,
-    ServiceError,
-    TooLarge,
-    TooManyHeld,
-    Unexpected,
-)
+from lineofaction.gearbox.problems import LiveUnavailable, ServiceError, TooLarge, Unexpected
 from service.folders import own_folder, remove_left
 from service.live.order import AnswerHead, LiveOrder, propagated
+from service.live.question_pool import QuestionPool
+from service.live.turns import Limits, Question
 from service.reading.child import LONGEST_S, MOST_ANSWER_BYTES
 from service.worker.forks import ChildProcess, Ends, Forks
-
-# The reader seen from the service: start, ask, end, and leave nothing behind.
-
 
 WORK = "service.reading.child"
 MODULES = (
@@ -61,7 +51,7 @@ class _Pipes:
     answers: int
 
 
-class _Reader:
+class _Children:
     """Starts a child for each question, forked from a warm process where the system forks. For any thread.
 
     Each child has a folder of its own below `home`.
@@ -176,100 +166,41 @@ def _heard(descriptor: int, end: float) -> tuple[AnswerHead, bytes] | None:
     return (head, body) if len(body) == head.length else None
 
 
-AT_ONCE = 4
-MOST_WAITING = 16
-_AGAIN_S = 1
+class Reader:
+    """Has files read for one question after the other, each by a child of its own; see `QuestionWorker`."""
 
+    def __init__(self, children: _Children) -> None:
+        self._children = children
 
-@dataclass(frozen=True)
-class _Question:
-    """What one caller waits for."""
-
-    order: LiveOrder
-    answer: Future[bytes] = field(default_factory=Future)
-
-
-class ReadingPool:
-    """Has files read, each by a process of its own.
-
-    `data_directory`: where folders of readers and their logs are; folders that were left there are removed.
-    """
-
-    def __init__(self, data_directory: Path) -> None:
-        self._home = data_directory / "reading"
-        self._reader = _Reader(self._home, data_directory / "log")
-        self._waiting: OrderedDict[str, _Question] = OrderedDict()
-        self._running: dict[str, threading.Thread] = {}
-        self._changed = threading.Lock()
-        self._stopping = False
-        remove_left(self._home)
-        if missing := missing_protections():
-            logger.warning("this system does not confine the readers of files", missing=missing)
-
-    def ask(self, order: LiveOrder, caller: str | None = None) -> Future[bytes]:
-        """Enter a question; the future holds the bytes of its JSON answer, or the error.
-
-        Parameters
-        ----------
-        order : LiveOrder
-            Its work is called as ``function(inputs, folder)``.
-        caller : str, optional
-            Whose other questions come one after the other; default: nobody else's.
-
-        Raises
-        ------
-        TooManyHeld
-            A question of the caller waits already.
-        QueueFull
-            Too many wait.
-        LiveUnavailable
-            The service stops.
-        """
-        name, question = caller or uuid.uuid4().hex, _Question(order)
-        with self._changed:
-            if self._stopping:
-                raise LiveUnavailable("The service stops.")
-            if name in self._waiting:
-                text = f"A file of key {name!r} is being read, and another waits. Try again soon."
-                raise TooManyHeld.after(_AGAIN_S, text)
-            if len(self._waiting) >= MOST_WAITING:
-                raise QueueFull.after(_AGAIN_S, f"{MOST_WAITING} files wait to be read. Try again soon.")
-            self._waiting[name] = question
-            self._begin()
-        return question.answer
+    def answer(self, question: Question) -> bytes:
+        """Return the JSON answer of the child; raises as `_Children.read`."""
+        return self._children.read(question.order)
 
     def stop(self) -> None:
-        """Refuse what waits, end the readers; a question that comes later begins anew."""
-        with self._changed:
-            self._stopping = True
-            for question in self._waiting.values():
-                question.answer.set_exception(LiveUnavailable("The service stops."))
-            self._waiting.clear()
-            running = list(self._running.values())
-        self._reader.stop()
-        for thread in running:
-            thread.join()
-        self._reader.close()
-        self._stopping = False
+        """End all children; see `QuestionWorker`."""
+        self._children.stop()
 
-    def _begin(self) -> None:
-        """Let those that have waited longest begin, one of each caller."""
-        for name in list(self._waiting):
-            if len(self._running) < AT_ONCE and name not in self._running:
-                question = self._waiting.pop(name)
-                self._running[name] = threading.Thread(
-                    target=self._settle, args=(name, question), daemon=True
-                )
-                self._running[name].start()
+    def rest(self) -> None:
+        """Leave the process that children are forked from to the other readers; see `QuestionWorker`."""
 
-    def _settle(self, name: str, question: _Question) -> None:
-        """Give a question its answer or its error, and let the next begin."""
-        try:
-            if question.answer.set_running_or_notify_cancel():
-                question.answer.set_result(self._reader.read(question.order))
-        except Exception as error:  # noqa: BLE001 (whoever asked is told)
-            question.answer.set_exception(error)
-        finally:
-            with self._changed:
-                del self._running[name]
-                self._begin()
+    def close(self) -> None:
+        """End the process that children are forked from; see `QuestionWorker`."""
+        self._children.close()
+
+
+AT_ONCE = 4
+LIMITS = Limits(held=2, in_all=20)
+
+
+def reading_pool(data_directory: Path) -> QuestionPool:
+    """Return the pool that has files of callers read.
+
+    Works of its orders are called as ``function(inputs, folder)``. `data_directory`: where folders of readers
+    and their logs are; folders that were left there are removed.
+    """
+    home = data_directory / "reading"
+    remove_left(home)
+    if missing := missing_protections():
+        logger.warning("this system does not confine the readers of files", missing=missing)
+    children = _Children(home, data_directory / "log")
+    return QuestionPool([Reader(children) for _ in range(AT_ONCE)], LIMITS, "files to read")

@@ -1,0 +1,60 @@
+"""Answers that are kept: they depend on stored results and on this program only."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import uuid
+from pathlib import Path
+
+import structlog
+
+from service.folders import evict
+from service.store.files import PARTIAL
+
+logger = structlog.get_logger(__name__)
+
+MOST_BYTES = 200_000_000
+
+
+class KeptAnswers:
+    """Bodies of answers in a folder, by tag; what was not used for longest goes first.
+
+    Parameters
+    ----------
+    folder : Path
+        Made with the first answer. Several processes may use it at once.
+    most_bytes : int
+        What it holds at most.
+    """
+
+    def __init__(self, folder: Path, most_bytes: int = MOST_BYTES) -> None:
+        self._folder, self._most_bytes = folder, most_bytes
+
+    def find(self, tag: str) -> bytes | None:
+        """Return the body of a tag, None if it is not kept."""
+        path = self._path(tag)
+        try:
+            body = path.read_bytes()
+            os.utime(path)
+        except OSError:
+            return None
+        return body
+
+    def keep(self, tag: str, body: bytes) -> None:
+        """Keep a body; where that is impossible it is computed again."""
+        path = self._path(tag)
+        draft = path.with_name(f"{path.name}.{uuid.uuid4().hex[:8]}{PARTIAL}")
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            draft.write_bytes(body)
+            draft.replace(path)
+            evict(self._folder, self._most_bytes)
+        except OSError as error:
+            with contextlib.suppress(OSError):
+                draft.unlink()
+            logger.warning("answer not kept", error=str(error))
+
+    def _path(self, tag: str) -> Path:
+        return self._folder / f"{hashlib.sha256(tag.encode()).hexdigest()}.json"

@@ -1,0 +1,272 @@
+"""The live worker seen from the service: start, ask, stop an answer that nobody waits for, end."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import select
+import subprocess
+import sys
+import threading
+import time
+import uuid
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+
+import structlog
+
+from host import child_environment, kill_group
+from lineofaction.gearbox.problems import LiveUnavailable, ServiceError, Superseded, Unexpected
+from service.folders import own_folder, remove_left
+from service.live.order import AnswerHead, propagated
+from service.live.question_pool import QuestionPool
+from service.live.turns import Limits, Question
+from service.settings import LEAST_MEMORY_MB, Settings
+from service.worker.usage import machine_memory_mb
+
+_PIECE = 1 << 16
+_LOOK_S = 0.1
+"""Time between two looks whether somebody still waits."""
+
+logger = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True)
+class AnswerTimes:
+    """Longest time for one answer, with the start of the worker, s, and when an obsolete one is stopped."""
+
+    longest_s: float = 60.0
+    obsolete_s: float = 1.0
+    """Time after which it is stopped: a slider that never rests has an answer now and then."""
+    to_stop_s: float = 5.0
+    """Time after which a worker that does not heed the stop is killed."""
+
+
+class _WorkerGone(Exception):
+    """The process ended, or did not answer in time."""
+
+    def __init__(self, *, late: bool = False) -> None:
+        super().__init__()
+        self.late = late
+
+
+class _LiveProcess:
+    """One child process that answers one order after the other, leader of a session of its own."""
+
+    def __init__(self, log: Path, memory_limit_mb: int, home: Path) -> None:
+        self._rest, self._orders = b"", 0
+        self._folder = ExitStack()
+        drafts = self._folder.enter_context(own_folder(home))
+        self.has_answered = False
+        self._channel, theirs = os.pipe()
+        try:
+            with log.open("ab") as stream:
+                self._process = subprocess.Popen(
+                    [sys.executable, "-m", "service.live.child", str(theirs), str(memory_limit_mb)],
+                    stdin=subprocess.PIPE,
+                    stdout=stream,
+                    stderr=stream,
+                    pass_fds=(theirs,),
+                    start_new_session=True,
+                    env=child_environment(TMPDIR=str(drafts)),
+                )
+        except OSError:
+            os.close(self._channel)
+            self._folder.close()
+            raise
+        finally:
+            os.close(theirs)
+
+    @property
+    def pid(self) -> int:
+        return self._process.pid
+
+    @property
+    def alive(self) -> bool:
+        return self._process.poll() is None
+
+    def ask(self, question: Question, times: AnswerTimes) -> tuple[str, bytes]:
+        """Return kind and bytes of the answer.
+
+        Raises `_WorkerGone`: the process ended or took too long; it is of no more use.
+        """
+        self._orders += 1
+        self._write(question.order.line())
+        self._await_line(question, times)
+        line, _, self._rest = self._rest.partition(b"\n")
+        head = AnswerHead.from_line(line)
+        pieces, missing = [self._rest], head.length - len(self._rest)
+        end = time.monotonic() + times.longest_s
+        while missing > 0:
+            pieces.append(self._piece(max(end - time.monotonic(), 0.0)))
+            if not pieces[-1]:
+                raise _WorkerGone(late=True)
+            missing -= len(pieces[-1])
+        body, self._rest = b"".join(pieces), b""
+        self.has_answered = True
+        return head.kind, body
+
+    def _await_line(self, question: Question, times: AnswerTimes) -> None:
+        """Wait for the head of the answer; stop the work on it where the question becomes obsolete."""
+        begin = time.monotonic()
+        end, stopped = begin + times.longest_s, False
+        while b"\n" not in self._rest:
+            instant = time.monotonic()
+            if instant >= end:
+                raise _WorkerGone(late=True)
+            if question.obsolete and not stopped and instant >= begin + times.obsolete_s:
+                self._write(json.dumps({"stop": self._orders}).encode() + b"\n")
+                end, stopped = min(end, instant + times.to_stop_s), True
+            self._rest += self._piece(min(end - instant, _LOOK_S))
+
+    def _write(self, line: bytes) -> None:
+        assert self._process.stdin is not None
+        try:
+            self._process.stdin.write(line)
+            self._process.stdin.flush()
+        except BrokenPipeError:
+            raise _WorkerGone from None
+
+    def _piece(self, within_s: float) -> bytes:
+        """Return the next bytes, none if none came in time; raises `_WorkerGone` where the process ended."""
+        ready, _, _ = select.select([self._channel], [], [], within_s)
+        if not ready:
+            return b""
+        piece = os.read(self._channel, _PIECE)
+        if not piece:
+            raise _WorkerGone
+        return piece
+
+    def end_group(self) -> None:
+        """Kill the process and what it started; whoever asks it is told that it is gone. Any thread may."""
+        if self._process.returncode is None:
+            with contextlib.suppress(ProcessLookupError):
+                kill_group(self.pid)
+
+    def close(self) -> None:
+        """Kill, reap, close the pipes; by the thread that asks. Idempotent."""
+        self.end_group()
+        self._process.wait()
+        self._folder.close()
+        if self._process.stdin is not None:
+            with contextlib.suppress(BrokenPipeError):
+                self._process.stdin.close()
+        if self._channel >= 0:
+            os.close(self._channel)
+            self._channel = -1
+
+
+class LiveWorker:
+    """Answers questions by a child process, which it starts, watches, replaces and ends."""
+
+    def __init__(self, data_directory: Path, memory_limit_mb: int, times: AnswerTimes | None = None) -> None:
+        self._home, self._log = data_directory / "live", data_directory / "log" / "live.log"
+        self._memory_limit_mb, self._times = memory_limit_mb, times or AnswerTimes()
+        self._lock = threading.RLock()
+        self._process: _LiveProcess | None = None
+        self._stopping = False
+
+    @property
+    def pid(self) -> int | None:
+        """Process id of the worker, None while there is none."""
+        process = self._process
+        return None if process is None else process.pid
+
+    def answer(self, question: Question) -> bytes:
+        """Return the JSON answer; see `QuestionWorker`."""
+        try:
+            kind, body = self._asked(question)
+        except _WorkerGone as gone:
+            logger.warning("live worker gone", late=gone.late, entry=question.order.entry)
+            self._end_process()
+            raise self._cause(gone, question) from None
+        if kind == "problem":
+            raise propagated(body)
+        if kind == "stopped":
+            raise _superseded()
+        if kind == "memory":
+            self._end_process()
+            may_have = f"it may have {self._memory_limit_mb} MB"
+            raise LiveUnavailable(f"The live worker ran out of memory: {may_have}. Submit a job instead.")
+        if kind == "defect":
+            reference = uuid.uuid4().hex[:12]
+            logger.error(
+                "live question failed", entry=question.order.entry, reference=reference, log=str(self._log)
+            )
+            raise Unexpected(reference)
+        return body
+
+    def stop(self) -> None:
+        """End the process in the middle of an answer; see `QuestionWorker`."""
+        with self._lock:
+            self._stopping = True
+            if self._process is not None:
+                self._process.end_group()
+
+    def rest(self) -> None:
+        """End the process; see `QuestionWorker`."""
+        self._end_process()
+
+    def close(self) -> None:
+        """End the process; see `QuestionWorker`."""
+        self._end_process()
+        self._stopping = False
+
+    def _cause(self, gone: _WorkerGone, question: Question) -> Exception:
+        if self._stopping:
+            return LiveUnavailable("The service stops.")
+        if question.obsolete:
+            return _superseded()
+        if gone.late:
+            late = f"It took longer than {self._times.longest_s:g} s and was ended. Submit a job instead"
+            return LiveUnavailable(f"{late}; repeat the request to continue the computation of a compliance.")
+        return LiveUnavailable("The live worker ended. Repeat the request.")
+
+    def _asked(self, question: Question) -> tuple[str, bytes]:
+        """Return kind and bytes of the answer; a process that ended after its last one is replaced once."""
+        process = self._ready()
+        try:
+            return process.ask(question, self._times)
+        except _WorkerGone as gone:
+            if gone.late or not process.has_answered:
+                raise
+        self._end_process()
+        return self._ready().ask(question, self._times)
+
+    def _ready(self) -> _LiveProcess:
+        with self._lock:
+            if self._stopping:
+                raise LiveUnavailable("The service stops.")
+            if self._process is not None and not self._process.alive:
+                self._end_process()
+            if self._process is None:
+                self._log.parent.mkdir(parents=True, exist_ok=True)
+                self._process = _LiveProcess(self._log, self._memory_limit_mb, self._home)
+                logger.info("live worker started", pid=self._process.pid)
+            return self._process
+
+    def _end_process(self) -> None:
+        with self._lock:
+            process, self._process = self._process, None
+            if process is not None:
+                process.close()
+
+
+def _superseded() -> ServiceError:
+    return Superseded("A later request of the same caller replaced it.")
+
+
+WORKERS = 3
+"""Processes at most: one for submissions that wait for a predicted cost, two for all others."""
+LIMITS = Limits(held=64, in_all=512)
+
+
+def live_pool(settings: Settings) -> QuestionPool:
+    """Return the pool of live questions of a service; a worker may have as much memory as one computation."""
+    share = settings.memory_limit_mb or machine_memory_mb() // settings.workers
+    memory = max(share, LEAST_MEMORY_MB)
+    remove_left(settings.data_directory / "live")
+    workers = [LiveWorker(settings.data_directory, memory) for _ in range(WORKERS)]
+    return QuestionPool(workers, LIMITS, "live requests", for_submissions=1)

@@ -1,0 +1,154 @@
+"""The pool that answers questions while their callers wait: some workers, and whose turn it is.
+
+A worker begins with the first question that no other is free for, and ends when nothing was asked for a
+while. A question goes to the worker that has its subject in memory, if that is free.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+from collections.abc import Sequence
+from concurrent.futures import Future
+from typing import Protocol
+
+from lineofaction.gearbox.problems import LiveUnavailable
+from service.live.order import LiveOrder
+from service.live.turns import Asker, Limits, Question, Turns
+
+_SUBJECTS = 64
+"""Most subjects of which the pool remembers the worker."""
+
+
+class QuestionWorker(Protocol):
+    """Answers one question after the other, in a process other than the service's."""
+
+    def answer(self, question: Question) -> bytes:
+        """Return the JSON answer; raises `ServiceError`, `Superseded` if the question became obsolete."""
+
+    def rest(self) -> None:
+        """Give back what is held while nobody asks; the next question begins anew."""
+
+    def stop(self) -> None:
+        """End what is answered now, whose caller is told that the service stops. Any thread may."""
+
+    def close(self) -> None:
+        """End all processes, once nothing is answered; the next question begins anew."""
+
+
+class QuestionPool:
+    """Passes questions to workers, in turn by key.
+
+    Parameters
+    ----------
+    workers : sequence of QuestionWorker
+    limits : Limits
+    what : str
+        What the questions are, plural, as refusals name them.
+    for_submissions : int
+        How many of the workers, the first ones, answer only questions that submissions wait for.
+    idle_s : float
+        Time without a question after which a worker ends.
+    """
+
+    def __init__(
+        self,
+        workers: Sequence[QuestionWorker],
+        limits: Limits,
+        what: str,
+        *,
+        for_submissions: int = 0,
+        idle_s: float = 600.0,
+    ) -> None:
+        self._workers, self._turns = workers, Turns(limits, what)
+        self._for_submissions, self._idle_s = for_submissions, idle_s
+        self._changed = threading.Condition()
+        self._threads: dict[int, threading.Thread] = {}
+        self._idle: set[int] = set()
+        self._worker_of: OrderedDict[str, int] = OrderedDict()
+        self._stopping = False
+
+    def ask(
+        self, order: LiveOrder, asker: Asker | None = None, *, subject: str = "", lasting: bool = False
+    ) -> Future[bytes]:
+        """Enter a question; the future holds the bytes of its JSON answer, or the error.
+
+        Parameters are those of `Question`. Raises `TooManyHeld` and `QueueFull`: see `Turns.enter`;
+        `LiveUnavailable`: the service stops.
+        """
+        question = Question(order, asker or Asker(), subject, lasting)
+        with self._changed:
+            if self._stopping:
+                raise LiveUnavailable("The service stops.")
+            self._turns.enter(question)
+            self._begin_worker(question)
+            self._changed.notify_all()
+        return question.answer
+
+    def stop(self) -> None:
+        """Refuse what waits, end the workers; a question that comes later begins them anew."""
+        with self._changed:
+            self._stopping = True
+            for question in self._turns.empty():
+                question.refuse(LiveUnavailable("The service stops."))
+            threads = list(self._threads.values())
+            self._changed.notify_all()
+        for worker in self._workers:
+            worker.stop()
+        for thread in threads:
+            thread.join()
+        for worker in self._workers:
+            worker.close()
+        self._stopping = False
+
+    def _begin_worker(self, question: Question) -> None:
+        """Begin a worker, where none is free for a question."""
+        fitting = [i for i in range(len(self._workers)) if self._serves(i, question)]
+        if self._idle.isdisjoint(fitting):
+            for number in fitting:
+                if number not in self._threads:
+                    thread = threading.Thread(target=self._loop, args=(number,), daemon=True)
+                    self._threads[number] = thread
+                    thread.start()
+                    return
+
+    def _serves(self, number: int, question: Question) -> bool:
+        return question.asker.submits or number >= self._for_submissions
+
+    def _loop(self, number: int) -> None:
+        while (question := self._next(number)) is not None:
+            try:
+                if question.answer.set_running_or_notify_cancel():
+                    question.answer.set_result(self._workers[number].answer(question))
+            except Exception as error:  # noqa: BLE001 (whoever asked is told)
+                question.answer.set_exception(error)
+            with self._changed:
+                self._turns.ended(question)
+                self._changed.notify_all()
+
+    def _next(self, number: int) -> Question | None:
+        """Return the question that a worker answers next; None, the worker at rest, when stopped or idle."""
+        with self._changed:
+            self._idle.add(number)
+            question = self._changed.wait_for(lambda: self._turn(number) or self._stopping, self._idle_s)
+            self._idle.discard(number)
+            if isinstance(question, Question):
+                self._remember(question.subject, number)
+                return question
+            self._workers[number].rest()
+            del self._threads[number]
+            return None
+
+    def _turn(self, number: int) -> Question | None:
+        def fits(question: Question) -> bool:
+            home = self._worker_of.get(question.subject, number)
+            return self._serves(number, question) and (home == number or home not in self._idle)
+
+        return None if self._stopping else self._turns.next(fits)
+
+    def _remember(self, subject: str, number: int) -> None:
+        if subject:
+            self._worker_of[subject] = number
+            self._worker_of.move_to_end(subject)
+            while len(self._worker_of) > _SUBJECTS:
+                self._worker_of.popitem(last=False)

@@ -1,0 +1,169 @@
+"""Whose turn it is: questions that wait for an answer, in turn by access key.
+
+A key has its own line, so that whoever floods a service waits behind itself alone. In its line a slider,
+which asks again as it moves, has one place: a newer question takes the place of the one that waits, and stops
+the one that is answered, unless what that computes serves the newer one too.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections import Counter, OrderedDict
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from dataclasses import dataclass, field
+
+from lineofaction.gearbox.problems import QueueFull, Superseded, TooManyHeld
+from service.access.capacity import NOBODY
+from service.live.order import LiveOrder
+
+_AGAIN_S = 1
+
+
+@dataclass(frozen=True)
+class Asker:
+    """Who asks a question."""
+
+    key: str = NOBODY
+    """Name of the access key."""
+    slider: str | None = None
+    """Name that the caller gives to questions of which the newest counts; it is one of the key's alone."""
+    submits: bool = False
+    """Whether a submission waits for the answer: it has a line of its own, before all others."""
+
+
+@dataclass
+class Question:
+    """A question, and the future of its JSON answer or its error."""
+
+    order: LiveOrder
+    asker: Asker = Asker()
+    subject: str = ""
+    """What a worker that has answered a like question has in memory already."""
+    lasting: bool = False
+    """Whether the work on it serves later questions about its subject, so that it is not stopped for them."""
+    answer: Future[bytes] = field(default_factory=Future)
+    obsolete: bool = False
+    """Whether the same slider has asked something newer."""
+
+    def refuse(self, error: Exception) -> None:
+        """End the question with an error, if nobody answers it."""
+        if self.answer.set_running_or_notify_cancel():
+            self.answer.set_exception(error)
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Most questions of one key and in all.
+
+    Without keys all callers are one to the service: for them only the last one holds.
+    """
+
+    answered: int = 1
+    """Of a key, at the same time."""
+    held: int = 2
+    """Of a key, answered and waiting."""
+    submissions: int = 8
+    """Of a key, answered and waiting, for which submissions wait."""
+    in_all: int = 20
+    """Of all keys, answered and waiting."""
+
+
+@dataclass(frozen=True)
+class _Line:
+    """Names a line: those of submissions come first."""
+
+    submits: bool
+    key: str
+
+
+class Turns:
+    """Questions that wait and that are answered. Not for several threads: its user has a lock.
+
+    Parameters
+    ----------
+    limits : Limits
+    what : str
+        What waits, plural, as a refusal names it.
+    """
+
+    def __init__(self, limits: Limits, what: str) -> None:
+        self._limits, self._what = limits, what
+        self._lines: OrderedDict[_Line, OrderedDict[str, Question]] = OrderedDict()
+        self._answered: dict[int, Question] = {}
+        self._number = itertools.count()
+
+    def enter(self, question: Question) -> None:
+        """Let a question wait, in the place of an older one of its slider.
+
+        Raises
+        ------
+        TooManyHeld
+            As many of its key wait as may.
+        QueueFull
+            As many wait as may in all.
+        """
+        line, slider = _line_of(question), question.asker.slider
+        name = f"#{next(self._number)}" if slider is None else f" {slider}"
+        waiting = self._lines.get(line, OrderedDict())
+        if name in waiting:
+            older, waiting[name] = waiting[name], question  # a slider that never rests keeps its turn
+            older.refuse(Superseded("A later request of the same caller replaced it."))
+        else:
+            self._refuse_beyond(line)
+            self._lines.setdefault(line, waiting)[name] = question
+        self._make_obsolete(question)
+
+    def next(self, fits: Callable[[Question], bool] = lambda _: True) -> Question | None:
+        """Return the question whose turn it is, of those that fit; it is answered from now on."""
+        busy = self._busy()
+        for line in sorted(self._lines, key=lambda line: not line.submits):
+            name, question = next(iter(self._lines[line].items()))
+            most = math.inf if line.key == NOBODY else self._limits.answered
+            if busy[line] < most and fits(question):
+                self._take(line, name)
+                self._answered[id(question)] = question
+                return question
+        return None
+
+    def ended(self, question: Question) -> None:
+        """Note that a question has its answer."""
+        del self._answered[id(question)]
+
+    def empty(self) -> Iterator[Question]:
+        """Yield all that wait, and let them wait no longer."""
+        while self._lines:
+            _, waiting = self._lines.popitem()
+            yield from waiting.values()
+
+    def _take(self, line: _Line, name: str) -> None:
+        """Take a question out of its line, which goes behind all others."""
+        del self._lines[line][name]
+        self._lines.move_to_end(line)
+        if not self._lines[line]:
+            del self._lines[line]
+
+    def _busy(self) -> Counter[_Line]:
+        """Return how many of each line are answered."""
+        return Counter(map(_line_of, self._answered.values()))
+
+    def _refuse_beyond(self, line: _Line) -> None:
+        most = self._limits.submissions if line.submits else self._limits.held
+        held = self._busy()[line] + len(self._lines.get(line, ()))
+        if line.key != NOBODY and held >= most:
+            text = f"Key {line.key!r} has {most} {self._what} in work and waiting. Try again soon."
+            raise TooManyHeld.after(_AGAIN_S, text)
+        if sum(map(len, self._lines.values())) + len(self._answered) >= self._limits.in_all:
+            text = f"{self._limits.in_all} {self._what} are in work and waiting. Try again soon."
+            raise QueueFull.after(_AGAIN_S, text)
+
+    def _make_obsolete(self, newer: Question) -> None:
+        for question in self._answered.values():
+            serves = question.lasting and question.subject == newer.subject
+            if newer.asker.slider is not None and question.asker == newer.asker and not serves:
+                question.obsolete = True
+
+
+def _line_of(question: Question) -> _Line:
+    return _Line(question.asker.submits, question.asker.key)
