@@ -66,7 +66,8 @@ def _side(facts: PairFacts, side: int) -> GearTeeth:
     hand = facts.helix_hand if side == 0 or facts.internal else -facts.helix_hand
     diameter = 2.0 * radius / math.cos(facts.working_pressure_angle)
     helix, ring = hand * facts.base_helix_angle, facts.internal and side == 1
-    return GearTeeth(facts.teeth[side], radius, helix, diameter, facts.face_width, ring)
+    thickness = None if facts.base_tooth_thickness is None else facts.base_tooth_thickness[side]
+    return GearTeeth(facts.teeth[side], radius, helix, diameter, facts.face_width, ring, thickness)
 
 
 def _check_center_distances(scene: SceneInput, facts: Mapping[str, PairFacts]) -> None:
