@@ -329,6 +329,7 @@ def documents(
     """
     system = run.system
     steps = int(end.count[Count.ACCEPTED] + end.count[Count.REJECTED])
+    invalid = [check.to_json() for check in run.checks if check.valid is False]
     method = {"method": choice.to_json(end.end / steps, end.taken.cpu_seconds)} if choice and steps else {}
     return {
         "status": end.status,
@@ -342,6 +343,7 @@ def documents(
             "peaks": end.figures.to_json(system),
         }
         | method
+        | ({"invalid": invalid} if invalid else {})
         | before.to_json()
         | system.corrections,
     }
