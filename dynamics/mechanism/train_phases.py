@@ -188,7 +188,7 @@ def _join(groups: dict[str, int], first: str, second: str) -> None:
 
 
 def _wrapped(position: float, period: int) -> float:
-    return max(position - period * math.floor((position + ROUNDING) / period), 0.0)
+    return max(position - period * math.floor((position + ROUNDING) / period), 0.0) + 0.0  # no -0
 
 
 def _assumed(train: _Train, number: int) -> AssumedAngle:
