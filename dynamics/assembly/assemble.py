@@ -40,6 +40,7 @@ from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.phases import phases
 from dynamics.mechanism.sampling import Sampling, choose_sampling
 from dynamics.mechanism.supports import Supports
+from dynamics.mechanism.train_phases import TrainPhases
 from dynamics.scene.scene import LEAST_RATE, Scene
 from dynamics.types import FloatArray, IntArray, Json
 
@@ -279,6 +280,8 @@ class System:
         How the run is sampled.
     corrected : dict
         Base radii of gears as given and as used, m, that were corrected to the base pitch of their train.
+    phases : TrainPhases
+        Positions of the meshes before anything turned.
     """
 
     scene: Scene
@@ -300,6 +303,7 @@ class System:
     sampling: Sampling
     ledger: EffectLedger
     corrected: Corrections
+    phases: TrainPhases
 
     @property
     def corrections(self) -> Json:
@@ -386,6 +390,7 @@ def _assemble(model: Model) -> System:
         sampling=choose_sampling(mechanism.scene, mechanism.kinematics, _top_mode(model, arrays)),
         ledger=model.ledger,
         corrected=mechanism.corrected,
+        phases=mechanism.phases,
     )
 
 

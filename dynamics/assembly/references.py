@@ -46,7 +46,7 @@ def lay_out_reference(mechanism: Mechanism, freedoms: Freedoms) -> KinematicMoti
         ),
         per_radian=np.array([[float(rate) for rate in row] for row in rates]).reshape(shape)
         / (2.0 * math.pi),
-        offset=np.array([*(mesh.position_offset for mesh in scene.meshes), *[0.0] * none], dtype=float),
+        offset=np.concatenate([mechanism.phases.position, np.zeros(none)]),
         period=np.array(
             [*(mesh.table.period for mesh in scene.meshes), *(phase.turns for phase in turns)], dtype=np.int64
         ),

@@ -10,9 +10,11 @@ import numpy as np
 from dynamics.effects.effect import MeshEffect, Verdict
 from dynamics.effects.force_terms import SLIDING, FlankInSpace, FlankTerms
 from dynamics.effects.loaded_parts import LoadedMesh
+from dynamics.errors import InputError
 from dynamics.mechanism.columns import gear_row
 from dynamics.mechanism.freedoms import ROTATION
 from dynamics.mechanism.line_of_action import UNIT_Z, table_sense
+from dynamics.mechanism.mechanism import Mechanism
 from dynamics.types import FloatArray
 
 
@@ -35,6 +37,14 @@ class Friction(MeshEffect):
         share = coefficient * float(np.max(np.asarray(arm))) / radius
         reason = f"a coefficient of {coefficient:g} is given"
         return Verdict(True, True, reason, share * mesh.force / mesh.stiffness)
+
+    def check(self, mechanism: Mechanism) -> None:
+        """Refuse a coefficient on a table that does not say how its flanks slide; raises `InputError`."""
+        for index, mesh in enumerate(mechanism.scene.meshes):
+            if mesh.friction is not None and getattr(mesh.table, "sliding_lever", None) is None:
+                bound = "left out: the table of the mesh has no sliding data"
+                advice = "Compute the table anew, give a closed form its teeth, or switch friction off."
+                raise InputError(f"meshes[{index}].friction", mesh.friction, bound, advice)
 
     def contribute(self, terms: FlankTerms, flank: FlankInSpace) -> FlankTerms:
         """Give the flank its sliding, and the force that resists it."""

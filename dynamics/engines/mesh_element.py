@@ -106,6 +106,6 @@ def mesh_element(scene: Scene, mesh: str) -> MeshElement:
         driver.base_helix_angle,
         float(flanks.law.damping[index]),
         float(flanks.law.reach[index]),
-        scene_mesh.position_offset,
+        float(system.phases.position[index]),
         scene_mesh.coast if index in flanks.coast else None,
     )

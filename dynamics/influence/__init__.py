@@ -1,5 +1,6 @@
 """Influence of dynamic effects by linear theory before integration; the decision of "auto"."""
 
+from dynamics.influence.assumed_phases import with_assumed_phases
 from dynamics.influence.neglected_check import (
     Decided,
     Influence,
@@ -17,4 +18,5 @@ __all__ = [
     "left_out_effects",
     "response_influences",
     "sized_ledger",
+    "with_assumed_phases",
 ]

@@ -26,6 +26,8 @@ ITERATION_LIMIT = 50
 RESIDUAL_LIMIT = 1e-10  # of the largest force
 CLOSE_LIMIT = 1e-12  # of a rest that is compared with one beside it
 LEAST_TOUCH = 1e-3  # of the first level: force of the first guess where there is no load
+ROUNDED = 4.0  # times the rounding of all terms of a balance
+TURNS = 8  # of a first guess, whose meshes turn on as it loads them
 LOST_CONTACT = 1e-6  # of the largest force: below it a search without end has run out of contact
 
 
@@ -64,6 +66,9 @@ def static_equilibrium(system: System, time: float = 0.0) -> StaticSolution:
     solution = _newton(system, time, guess, external, parting=False)
     if solution.status.usable:
         return solution
+    nearer = _newton(system, time, _turned_guess(system, time, external), external, parting=False)
+    if nearer.status.usable:
+        return nearer
     parted = _newton(system, time, guess, external, parting=True)
     return parted if parted.status.usable else solution
 
@@ -145,7 +150,7 @@ def _newton(
     )
     for iteration in range(ITERATION_LIMIT + 1):
         size = _size(arrays, balance)
-        if size <= limit * scale:
+        if size <= limit * scale or size <= ROUNDED * _rounding(arrays, balance, q, external):
             force = balance.local.force[system.driving_rows]
             return StaticSolution(StaticStatus.CONVERGED, q, force, size, iteration)
         update = _solve(arrays, balance.stiffness, balance.force, q)
@@ -188,15 +193,30 @@ def _first_guess(system: System, time: float, external: FloatArray) -> FloatArra
     return q
 
 
+def _turned_guess(system: System, time: float, external: FloatArray) -> FloatArray:
+    """Return the first guess at the positions to which its own rotations turn the meshes on.
+
+    At small loads errors of the teeth turn a gear further than the load deflects them.
+    """
+    carrying = np.arange(system.flanks.nominal_force.size)
+    loads = _accelerating(system.arrays, external + mean_loads(system.arrays, time))
+    q = np.zeros(external.size)
+    for _ in range(TURNS):
+        q, _ = _on_springs(system, time, loads, carrying, q)
+    return q
+
+
 def _on_springs(
-    system: System, time: float, external: FloatArray, carrying: IntArray
+    system: System, time: float, external: FloatArray, carrying: IntArray, turned: FloatArray | None = None
 ) -> tuple[FloatArray, FloatArray]:
     """Displacements (n,) and forces (m,) if the flanks `carrying` (m,) were springs of their nominal force.
 
-    A spring's stiffness is the secant from lift-off to the nominal force.
+    A spring's stiffness is the secant from lift-off to the nominal force. Positions are those of the
+    displacements `turned` (n,); None: of none.
     """
     arrays, n = system.arrays, external.size
-    position = local_state(arrays, time, np.zeros(n), np.zeros(n)).position
+    still = np.zeros(n)
+    position = local_state(arrays, time, still if turned is None else turned, still).position
     first = arrays.elements.first[carrying]
     table, offset = arrays.elements.laws.flank.table, arrays.elements.offset[first]
     # at lift-off a table may have no stiffness to start from, so unloaded flanks start a little pressed
@@ -234,6 +254,19 @@ def _per_mesh(arrays: SystemArrays, values: FloatArray) -> FloatArray:
     total = np.zeros(int(np.max(elements.mesh[flank], initial=-1)) + 1)
     np.add.at(total, elements.mesh[flank], values[elements.first[:-1][flank]])
     return total
+
+
+def _rounding(arrays: SystemArrays, balance: ForceBalance, q: FloatArray, external: FloatArray) -> float:
+    """Return what rounding of displacements, coordinates and forces leaves unbalanced, N.
+
+    Every term of the balance counts by its size: light loads on stiff teeth are their small difference.
+    """
+    local, rows = balance.local, np.abs(arrays.direction)
+    strained = rows @ np.abs(q) + np.abs(local.coordinate)
+    tangent = block_diagonal(arrays.elements, np.abs(local.tangent))
+    terms = np.abs(arrays.stiffness) @ np.abs(q) + (tangent @ strained + np.abs(local.force)) @ rows
+    largest = float(np.max((terms + np.abs(external)) / arrays.scale, initial=0.0))
+    return float(np.finfo(float).eps) * largest
 
 
 def _size(arrays: SystemArrays, balance: ForceBalance) -> float:

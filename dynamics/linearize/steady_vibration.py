@@ -382,7 +382,7 @@ def flank_forces(
 def harmonics_of(at: Excited, index: int, values: FloatArray, harmonics: IntArray) -> ComplexArray:
     """Return amplitudes (H,) in multiples of the common period of values (T,) over the table of a mesh."""
     mesh, pitches = at.system.scene.meshes[index], at.period.pitches[index]
-    period, offset = mesh.table.period, mesh.position_offset
+    period, offset = mesh.table.period, float(at.system.phases.position[index])
     lines = 2.0 * np.fft.rfft(values) / values.size
     amplitudes = np.zeros(harmonics.size, dtype=complex)
     cycles = abs(pitches) // period

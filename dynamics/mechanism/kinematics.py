@@ -12,7 +12,7 @@ from dynamics.errors import InputError
 from dynamics.identity_cache import cached_by
 from dynamics.loads import TimeLaw
 from dynamics.mechanism.base_pitches import with_common_base_pitches
-from dynamics.mechanism.line_of_action import lines_of_action
+from dynamics.mechanism.train_phases import train_phases
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
@@ -294,7 +294,7 @@ def check_motion(scene: Scene) -> Kinematics:
     """
     scene, _ = with_common_base_pitches(scene)
     kinematics = solve_kinematics(scene)
-    lines_of_action(scene, kinematics.mesh_sense)
+    train_phases(scene, kinematics.mesh_sense)
     check_loads(scene, kinematics)
     return kinematics
 

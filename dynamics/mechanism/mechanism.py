@@ -30,6 +30,7 @@ from dynamics.mechanism.freedoms import rotational_inertia
 from dynamics.mechanism.kinematics import Kinematics, mesh_shafts, solve_kinematics
 from dynamics.mechanism.line_of_action import LineOfAction, lines_of_action
 from dynamics.mechanism.supports import gather_supports
+from dynamics.mechanism.train_phases import NO_PHASES, TrainPhases, train_phases
 from dynamics.scene.scene import Scene
 from dynamics.types import BoolArray, FloatArray
 
@@ -233,6 +234,8 @@ class Mechanism:
         What the effects may add.
     passing : frozenset of str
         Rolling bearings whose elements pass one by one.
+    phases : TrainPhases
+        Positions of the meshes, and what they rest on beyond the geometry.
     """
 
     scene: Scene
@@ -245,6 +248,7 @@ class Mechanism:
     corrected: Corrections
     additions: Additions
     passing: frozenset[str] = frozenset()
+    phases: TrainPhases = NO_PHASES
 
     @property
     def rotational_inertia(self) -> FloatArray:
@@ -290,6 +294,7 @@ def gather_mechanism(scene: Scene, additions: Additions) -> Mechanism:
     """
     scene, corrected = with_common_base_pitches(scene)
     kinematics = solve_kinematics(scene)
+    phases = train_phases(scene, kinematics.mesh_sense)
     rotors = Bodies(tuple(build_rotor(scene, shaft) for shaft in scene.shafts))
     lines = lines_of_action(scene, kinematics.mesh_sense)
     coasts = COAST_FLANKS in additions.possible
@@ -305,4 +310,5 @@ def gather_mechanism(scene: Scene, additions: Additions) -> Mechanism:
     for index, rotor in enumerate(rotors):
         if index not in kinematics.imposed and rotor.inertia.polar <= 0.0:
             raise InputError(f"shafts[{index}].inertia.polar", 0.0, above(0.0), GIVE_INERTIA)
-    return Mechanism(scene, kinematics, rotors, lines, forces, duties, bearings, corrected, additions)
+    made = Mechanism(scene, kinematics, rotors, lines, forces, duties, bearings, corrected, additions)
+    return replace(made, phases=phases)

@@ -30,7 +30,7 @@ def with_planets(
     angles: Sequence[float] | None = None,
     pin_errors: Sequence[tuple[float, float]] | None = None,
 ) -> Scene:
-    """Return `scene` with `number` copies of the planet on `shaft`, with exact phases of all meshes.
+    """Return `scene` with `number` copies of the planet on `shaft`; the phases of all meshes follow.
 
     Raises `InputError`: the shaft is no planet, or its teeth do not fit the central gears at an angle.
 
@@ -53,7 +53,7 @@ def with_planets(
     turns = _turns(number, angles)
     if pin_errors is not None and len(pin_errors) != number:
         raise InputError("pin_errors", len(pin_errors), f"one for each of the {number} planets")
-    offsets = _offsets(scene, solve_kinematics(scene), shaft, turns)
+    _check_teeth(scene, solve_kinematics(scene), shaft, turns)
     planet = scene.shaft(shaft)
     bearings = planet_parts(scene, shaft)[1]
     copied = {name: [numbered(name, index) for index in range(1, number)] for name in bearings}
@@ -71,7 +71,7 @@ def with_planets(
             _with_error(bearing, of_pin.get(bearing.shaft))
             for bearing in _with_copies(scene.planet_bearings, shaft, number)
         ),
-        meshes=(*scene.meshes, *_mesh_copies(scene, shaft, number, offsets)),
+        meshes=(*scene.meshes, *_mesh_copies(scene, shaft, number)),
         **laws,
     )
 
@@ -105,17 +105,11 @@ def _with_copies(parts: Sequence[Part], shaft: str, number: int) -> tuple[Part, 
     return tuple(parts) + tuple(copies)
 
 
-def _mesh_copies(
-    scene: Scene, shaft: str, number: int, offsets: Mapping[str, Sequence[Turn]]
-) -> list[GearMesh]:
+def _mesh_copies(scene: Scene, shaft: str, number: int) -> list[GearMesh]:
     of_shaft = {gear.name for gear in scene.gears if gear.shaft == shaft}
     engaged = planet_parts(scene, shaft)[0]
     meshes = [mesh for mesh in scene.meshes if mesh.name in engaged]
-    return [
-        _copied_mesh(mesh, of_shaft, index, offsets[mesh.name][index])
-        for index in range(1, number)
-        for mesh in meshes
-    ]
+    return [_copied_mesh(mesh, of_shaft, index) for index in range(1, number) for mesh in meshes]
 
 
 def _on_copies(laws: Sequence[Any], copied: Mapping[str, Sequence[str]]) -> tuple[Any, ...]:
@@ -134,16 +128,13 @@ def _turns(number: int, angles: Sequence[float] | None) -> list[Turn]:
     return [angle / (2.0 * math.pi) for angle in angles]
 
 
-def _offsets(
-    scene: Scene, kinematics: Kinematics, shaft: str, turns: Sequence[Turn]
-) -> dict[str, list[Turn]]:
-    """Lead of the meshes of each planet over the first one's, base pitches, by name of the mesh.
+def _check_teeth(scene: Scene, kinematics: Kinematics, shaft: str, turns: Sequence[Turn]) -> None:
+    """Refuse planets whose teeth do not fit the central gears, exactly where they are equally spaced.
 
     The teeth of a central gear that turns against the carrier in the sense s come to a planet at the angle
     psi s z psi / (2 pi) pitches later. All central gears of a planet gear must require the same tooth, and
     the gears of a stepped planet, which are fixed on one shaft, the same angle of that shaft.
     """
-    offsets: dict[str, list[Turn]] = {}
     first: dict[str, list[Turn]] = {}
     teeth: dict[str, int] = {}
     for index, mesh in enumerate(scene.meshes):
@@ -154,11 +145,10 @@ def _offsets(
         sense = kinematics.mesh_sense[index]
         if central is gears[1] and not central.internal:
             sense = -sense
-        offsets[mesh.name] = [-sense * central.teeth * turn for turn in turns]
-        _check_fit(offsets[mesh.name], first.setdefault(planet.name, offsets[mesh.name]))
+        ahead: list[Turn] = [-sense * central.teeth * turn for turn in turns]
+        _check_fit(ahead, first.setdefault(planet.name, ahead))
         teeth[planet.name] = planet.teeth
     _check_steps(first, teeth)
-    return offsets
 
 
 def _check_steps(offsets: Mapping[str, Sequence[Turn]], teeth: Mapping[str, int]) -> None:
@@ -201,12 +191,10 @@ def _turned_shaft(shaft: Shaft, axis: tuple[float, float, float], turn: Turn, in
     return replace(shaft, name=numbered(shaft.name, index), origin=origin)
 
 
-def _copied_mesh(mesh: GearMesh, of_shaft: set[str], index: int, ahead: Turn) -> GearMesh:
+def _copied_mesh(mesh: GearMesh, of_shaft: set[str], index: int) -> GearMesh:
+    """Return the mesh of a copy; its position follows from the teeth, as that of the first planet does."""
     driver, driven = (numbered(g, index) if g in of_shaft else g for g in (mesh.driver, mesh.driven))
-    offset = mesh.position_offset + float(ahead)
-    return replace(
-        mesh, name=numbered(mesh.name, index), driver=driver, driven=driven, position_offset=offset
-    )
+    return replace(mesh, name=numbered(mesh.name, index), driver=driver, driven=driven, position_offset=None)
 
 
 def _with_error(bearing: PlanetBearing, error: tuple[float, float] | None) -> PlanetBearing:

@@ -58,7 +58,8 @@ _DAMPING = Declared(
 _DAMPING_RATIO = Declared(Kind.RATIO, "", between(0.0, 10.0), "Damping ratio of the mesh", 0.05)
 _NOMINAL = "Nominal transverse mesh force in {unit}; left out: from the loads"
 _NOMINAL_FORCE = Declared(Kind.LOAD, "N", up_to(1e9), _NOMINAL, 2660.0)
-_OFFSET = Declared(Kind.RATIO, "", between(-1e6, 1e6), "Position in base pitches at the start", 0.0)
+_POSITION = "Position in base pitches at the start; left out: from the geometry of the train"
+_OFFSET = Declared(Kind.RATIO, "", between(-1e6, 1e6), _POSITION, 0.0)
 _MISALIGNMENT = Declared(Kind.LENGTH, "m", between(-0.01, 0.01), "Misalignment in {unit}", 0.0, written="µm")
 _CHANGE = Declared(Kind.LENGTH, "m", between(-0.1, 0.1), "Change of the center distance in {unit}", 0.0)
 _SLIDING = "Coefficient of sliding friction of the teeth; left out: none"
@@ -79,6 +80,7 @@ class GearMesh:
     ``2 damping_ratio sqrt(k m)`` with k the mean tangent stiffness at the nominal force and 1/m the sum of
     base_radius^2 / (polar inertia) over the shafts that are free to turn. The nominal force F_bt is that of
     the secant, the damping and the static reference curve; left out, the one that carries the load at t = 0.
+    `position_offset` left out follows from the geometry of the train, of which the first mesh starts at 0.
     Where the table has axes of misalignment and change of center distance, these are the constant operating
     point at which it is used. Without `coast`, for the effect ``"backlash"``, only the driving flank carries
     force; `friction` is for the effect of that name. With `bent_shafts` the table includes the bending of the
@@ -93,7 +95,7 @@ class GearMesh:
     damping: float | None = declared(None, _DAMPING)
     damping_ratio: float = declared(DEFAULT_DAMPING_RATIO, _DAMPING_RATIO)
     nominal_force: float | None = declared(None, _NOMINAL_FORCE)
-    position_offset: float = declared(0.0, _OFFSET)
+    position_offset: float | None = declared(None, _OFFSET)
     misalignment: float = declared(0.0, _MISALIGNMENT)
     center_distance_change: float = declared(0.0, _CHANGE)
     coast: CoastFlank | None = None
@@ -102,4 +104,4 @@ class GearMesh:
 
     def __post_init__(self) -> None:
         check_table(self.table, "table")
-        declared_fields(self, beyond=("position_offset",))  # copies of a planet add to it
+        declared_fields(self)

@@ -9,6 +9,7 @@ import numpy as np
 
 from dynamics.checks import finite, increasing, positive
 from dynamics.errors import InputError
+from dynamics.meshes.standard_sliding import StandardTeeth, sliding_positions, standard_sliding
 from dynamics.meshes.technique import PlainTable
 from dynamics.types import FloatArray
 
@@ -81,7 +82,9 @@ class PeriodicCurve:
         return value, self.slope[k] + x * (2.0 * start + 3.0 * x * bend)
 
 
-def stiffness_table(stiffness: PeriodicCurve, error: PeriodicCurve | None = None) -> PlainTable:
+def stiffness_table(
+    stiffness: PeriodicCurve, error: PeriodicCurve | None = None, teeth: StandardTeeth | None = None
+) -> PlainTable:
     """Return the table of F = k(x) (d - e(x)), 0 below d = e(x); x in base pitches of the driving gear.
 
     Exact at the knots of both curves; between them F is that of cubic pieces of k, e and 1/k. Raises
@@ -93,9 +96,13 @@ def stiffness_table(stiffness: PeriodicCurve, error: PeriodicCurve | None = None
         k along the transverse line of action, N/m.
     error : PeriodicCurve, optional
         e, transmission error without load, m; left out: none.
+    teeth : StandardTeeth, optional
+        Whose sliding the table has; left out: it has none.
     """
     error = error or PeriodicCurve.constant(0.0)
     position = np.union1d(stiffness.position, error.position)
+    if teeth is not None:
+        position = sliding_positions(position)
     (k, k_slope), (e, e_slope) = stiffness(position), error(position)
     if np.any(k <= 0.0):
         raise InputError("value", float(np.min(k)), "above 0 N/m at all positions, as a stiffness")
@@ -110,12 +117,15 @@ def stiffness_table(stiffness: PeriodicCurve, error: PeriodicCurve | None = None
         deflection_slope=e_slope[:, None] - level * (k_slope / k**2)[:, None] + 0.0 * twice,
         stiffness=k[:, None] * twice,
         stiffness_slope=k_slope[:, None] * twice,
+        sliding_share=None if teeth is None else standard_sliding(teeth, position)[0][:, None] * twice,
+        sliding_lever=None if teeth is None else standard_sliding(teeth, position)[1][:, None] * twice,
     )
 
 
-def straight_table(stiffness: float) -> PlainTable:
+def straight_table(stiffness: float, teeth: StandardTeeth | None = None) -> PlainTable:
     """Return the table of a flank of the same stiffness at all positions: F = stiffness d, in contact only.
 
-    `stiffness`: along the transverse line of action, N/m. Raises `InputError`: it is not above 0.
+    `stiffness`: along the transverse line of action, N/m; `teeth` as of `stiffness_table`. Raises
+    `InputError`: it is not above 0.
     """
-    return stiffness_table(PeriodicCurve.constant(positive("stiffness", stiffness)))
+    return stiffness_table(PeriodicCurve.constant(positive("stiffness", stiffness)), teeth=teeth)

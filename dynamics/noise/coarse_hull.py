@@ -81,9 +81,11 @@ def _settled(hull: Hull, seeds: IntArray, steps: int) -> IntArray:
 def _next_seed(edges: csr_array, seeds: IntArray) -> IntArray:
     """Return the number of the next seed of every node; parts of the surface without a seed are one cell."""
     _, _, source = dijkstra(edges, directed=False, indices=seeds, min_only=True, return_predecessors=True)
-    number = np.full(edges.shape[0] + 1, len(seeds))
+    number = np.full(edges.shape[0], len(seeds))  # that of nodes that no seed reaches
     number[seeds] = np.arange(len(seeds))
-    return np.unique(number[source], return_inverse=True)[1]
+    reached = source >= 0  # a negative number of scipy's says that no seed is connected
+    cell = np.where(reached, number[np.where(reached, source, 0)], len(seeds))
+    return np.unique(cell, return_inverse=True)[1]
 
 
 def _node_areas(hull: Hull) -> FloatArray:

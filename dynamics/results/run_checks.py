@@ -18,6 +18,7 @@ from dynamics.motion.observation import static_deflections
 from dynamics.motion.sampled_states import States
 from dynamics.results.checks import Check, SeriesBlock, ending
 from dynamics.results.histories import FIELDS, axis_rows
+from dynamics.results.small_motion import SmallMotionCheck
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray, Json
 
@@ -373,7 +374,8 @@ class RunChecks:
 
     def __init__(self, system: System, further: Sequence[_RunCheck] = ()) -> None:
         own = (_ContactChecks, _AxisChecks, _ForceChecks, _BearingLoadChecks, _HeldOperatingPointChecks)
-        self._all: tuple[_RunCheck, ...] = (*(kind(system) for kind in own), *further)
+        small = SmallMotionCheck(system)
+        self._all: tuple[_RunCheck, ...] = (*(kind(system) for kind in own), small, *further)
 
     def see(self, series: SeriesBlock, states: States) -> None:
         """Take a block of unfiltered series, and the states they are of."""

@@ -70,10 +70,9 @@ class PlanetarySet:
         Of each pin, m.
     driver : str
         ``"sun"``: the sun drives the planets and these the ring (or react on it); ``"ring"``: the reverse.
-    sun_sense : str
-        ``"+z"`` or ``"-z"``: sense of the sun relative to the carrier; it sets the order of the phases.
-    ring_phase : float
-        Position of a planet's ring mesh less that of its sun mesh, base pitches (see `ring_phase`).
+    ring_phase : float or None
+        Position of a planet's ring mesh less that of its sun mesh, base pitches (see `ring_phase`). None:
+        that of planets whose teeth are as thick as their spaces.
     technique : str
         Of all meshes.
     name : str
@@ -102,8 +101,7 @@ class PlanetarySet:
     damping_ratio: float = 0.05
     pin_errors: tuple[tuple[float, float], ...] | None = None
     driver: str = "sun"
-    sun_sense: str = "+z"
-    ring_phase: float = 0.0
+    ring_phase: float | None = None
     technique: str = "variable_torque"
     name: str = ""
     place: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -114,9 +112,9 @@ class PlanetarySet:
         for label in ("center_distance", "face_width"):
             positive(label, getattr(self, label))
         integer("planets", self.planets, 1, 100)
-        finite("ring_phase", self.ring_phase)
+        if self.ring_phase is not None:
+            finite("ring_phase", self.ring_phase)
         one_of("driver", self.driver, ("sun", "ring"))
-        one_of("sun_sense", self.sun_sense, ("+z", "-z"))
         for label in ("angles", "pin_errors"):
             values = getattr(self, label)
             if values is not None and len(values) != self.planets:
@@ -228,22 +226,15 @@ class PlanetarySet:
         )
 
     def _meshes(self, index: int) -> tuple[GearMesh, GearMesh]:
-        """Return both meshes of a planet; the phases follow from tooth numbers and the pin's angle alone.
-
-        A planet at the angle psi meets the teeth of a central gear where those have turned to psi: sun and
-        ring, which turn against the carrier in opposite senses, are ahead of a planet at angle 0 by minus and
-        plus z psi / (2 pi) pitches.
-        """
-        sense = 1 if self.sun_sense == "+z" else -1
+        """Return both meshes of a planet; those of the first one state how its ring mesh is ahead."""
         planet = self.called(f"planet {index + 1}")
-        sun = -sense * self.teeth[0] * self.turns[index]
-        ring = sense * self.teeth[2] * self.turns[index]
+        stated = index == 0 and self.ring_phase is not None
         flow = (self.called("sun"), planet), (planet, self.called("ring"))
         if self.driver == "ring":
             flow = (planet, self.called("sun")), (self.called("ring"), planet)
         details = (
-            ("sun", self.sun_table, float(sun)),
-            ("ring", self.ring_table, float(ring) + self.ring_phase),
+            ("sun", self.sun_table, 0.0 if stated else None),
+            ("ring", self.ring_table, self.ring_phase if stated else None),
         )
         first, second = (
             GearMesh(

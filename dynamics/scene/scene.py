@@ -209,6 +209,15 @@ def _check_positions(scene: Scene) -> None:
                 raise InputError(f"{kind}[{index}].position", part.position, bound, advice)
 
 
+def _check_tooth_angles(scene: Scene) -> None:
+    """Shafts that state angles of teeth state one for each of their gears."""
+    for index, shaft in enumerate(scene.shafts):
+        gears = [gear.name for gear in scene.gears if gear.shaft == shaft.name]
+        if shaft.tooth_angles is not None and len(shaft.tooth_angles) != len(gears):
+            bound = f"{len(gears)} angles, one for each of its gears in their order: {', '.join(gears)}"
+            raise InputError(f"shafts[{index}].tooth_angles", len(shaft.tooth_angles), bound)
+
+
 def _check_names(scene: Scene) -> None:
     """Parts have names of their own, and name shafts and gears that are there."""
     for kind, parts in scene.parts.items():
@@ -227,6 +236,7 @@ def _check_names(scene: Scene) -> None:
         if not isinstance(force.course, TimeLaw):
             one_of(f"forces[{index}].course.shaft", force.course.shaft, shafts)
     _check_positions(scene)
+    _check_tooth_angles(scene)
     for kind, sides, names in (
         ("meshes", ("driver", "driven"), gears),
         ("couplings", ("first", "second"), shafts),

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 
 from bounds import Declared, Kind, SiNote, below, between, declarations, declared, described
-from dynamics.checks import declared_fields, integer, not_negative, positive, within
+from dynamics.checks import declared_fields, finite, integer, not_negative, positive, within
 from dynamics.errors import InputError
 
 # The steel of shafts whose material is not stated: that of the gears' tables.
@@ -105,7 +105,9 @@ class GearBody:
     Meshing gears have the same transverse base pitch ``2 pi base_radius / teeth``; `base_radius` and
     `face_width` in m. `base_helix_angle` in rad is > 0 for right hand, < 0 for left hand, 0 for spur.
     `inertia` is that of the gear alone, about its own center at mid-face. The teeth of a ring gear
-    (`internal`) point inwards; all numbers stay positive.
+    (`internal`) point inwards; all numbers stay positive. `base_tooth_thickness` is the transverse thickness
+    of a tooth at the base circle, an arc in m, to which the flanks of a ring gear are extended; None: not
+    known, assumed half the pitch on the operating pitch circle where a phase depends on it.
     """
 
     name: str
@@ -117,6 +119,7 @@ class GearBody:
     base_helix_angle: float = 0.0
     inertia: Inertia = field(default_factory=Inertia)
     internal: bool = False
+    base_tooth_thickness: float | None = None
     temperature: float | None = declared(None, TEMPERATURE)
     thermal_expansion: float = declared(STEEL_EXPANSION, EXPANSION)
 
@@ -125,6 +128,8 @@ class GearBody:
         integer("teeth", self.teeth, 1, 100_000)
         positive("base_radius", self.base_radius)
         positive("face_width", self.face_width)
+        if self.base_tooth_thickness is not None:
+            finite("base_tooth_thickness", self.base_tooth_thickness)
         within("base_helix_angle", self.base_helix_angle, -1.2, 1.2, SiNote("Angles are in radians."))
 
     @property

@@ -63,6 +63,9 @@ class Shaft:
     `origin` is then the position at t = 0. None: the fixed frame. `inertia` is that of the bare shaft, its
     center of mass at mid-length; the gears on it are added. It is left out if `sections` are given: from the
     left end, together as long as the shaft, for the effect ``"flexible_shafts"`` and for the inertia.
+    `tooth_angles` are those of the center of a tooth of each of its gears about +z, rad, at mid-face, in the
+    order of the gears; only their differences count. None: tooth centers in line, unless the rest of the
+    train fixes the angle.
     """
 
     name: str
@@ -70,6 +73,7 @@ class Shaft:
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     inertia: Inertia = field(default_factory=Inertia)
     frame: str | None = None
+    tooth_angles: tuple[float, ...] | None = None
     sections: tuple[BeamSection, ...] = ()
     damping_ratio: float = declared(0.005, _DAMPING)
     temperature: float | None = declared(None, TEMPERATURE)
@@ -81,6 +85,8 @@ class Shaft:
             self._check_sections()
         for axis, value in zip("xyz", self.origin, strict=True):
             finite(f"origin.{axis}", value)
+        for index, value in enumerate(self.tooth_angles or ()):
+            finite(f"tooth_angles[{index}]", value)
 
     def _check_sections(self) -> None:
         """Sections make up the shaft, and its inertia."""

@@ -22,6 +22,7 @@ from dynamics.influence import (
     estimate_influences,
     left_out_effects,
     sized_ledger,
+    with_assumed_phases,
 )
 from dynamics.integrators import static_equilibrium
 from dynamics.integrators.march import Ending
@@ -100,7 +101,8 @@ class RunFacts:
 
 def _effect_ledger(run: RunFacts) -> Json:
     """Return the `sized_ledger` with the checks of the run."""
-    whole = sized_ledger(run.system.ledger.to_json(), run.automatic, run.influences)
+    ledger = with_assumed_phases(run.system.ledger.to_json(), run.system)
+    whole = sized_ledger(ledger, run.automatic, run.influences)
     entries = [entry | _checked(entry, run.checks) for entry in whole["entries"]]
     return {**whole, "entries": entries, "checks": [check.to_json() for check in run.checks]}
 
@@ -187,7 +189,7 @@ def _mesh(system: System, index: int) -> Json:
         "mean_stiffness": float(flanks.mean_stiffness[index]),
         "damping": float(flanks.law.damping[index]),
         "damping_ratio": mesh.damping_ratio,
-        "position_offset": mesh.position_offset,
+        "position_offset": float(system.phases.position[index]),
         "misalignment": mesh.misalignment,
         "center_distance_change": mesh.center_distance_change,
         "friction": mesh.friction,
@@ -327,6 +329,7 @@ def documents(
     """
     system = run.system
     steps = int(end.count[Count.ACCEPTED] + end.count[Count.REJECTED])
+    invalid = [check.to_json() for check in run.checks if check.valid is False]
     method = {"method": choice.to_json(end.end / steps, end.taken.cpu_seconds)} if choice and steps else {}
     return {
         "status": end.status,
@@ -340,6 +343,7 @@ def documents(
             "peaks": end.figures.to_json(system),
         }
         | method
+        | ({"invalid": invalid} if invalid else {})
         | before.to_json()
         | system.corrections,
     }

@@ -43,6 +43,7 @@ from dynamics.simulation.documents import (
     squared_difference,
 )
 from dynamics.simulation.error_by_source import error_by_source, window_starts
+from dynamics.simulation.light_loads import with_tolerance_to_scale
 from dynamics.simulation.violations import FIRST, EarlierRun, StatesOf, needed_effects, taken_over
 from dynamics.types import Json, RunStatus
 from model_studies.stage_clock import StageClock, TimeTaken
@@ -234,14 +235,14 @@ class _Start:
         """
         clock = StageClock()
         with clock.stage("assembly_and_equilibrium"):
-            system = assemble(decided.scene)
+            system = with_tolerance_to_scale(assemble(decided.scene))
             rest = static_equilibrium(system)
         if not rest.status.usable:
             message = (
                 f"no static equilibrium at t = 0: {rest.status.name.lower()}, {rest.residual:.3g} N left"
             )
             raise SolveError(message, _result(system, _no_trajectory(system, rest), clock, {}, decided))
-        choice = choose_method(system, rest.displacement, decided.scene.integration)
+        choice = choose_method(system, rest.displacement, system.scene.integration)
         made = choice.of(with_static_reference(system, rest.displacement))
         return cls(made, rest, choice, Trail(system), clock)
 

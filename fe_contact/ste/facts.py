@@ -65,6 +65,8 @@ class PairFacts:
     internal : bool
         Whether gear 2 is a ring gear: a cos(alpha_wt) is then r_b2 - r_b1, else r_b1 + r_b2, and both gears
         turn the same way. STE stays r_b1 theta_1 - r_b2 theta_2, either angle counted as its gear is driven.
+    base_tooth_thickness : tuple of float or None
+        s_bt1, s_bt2 in m, arcs of the base circles; a ring gear's may be < 0. None: not known.
     """
 
     teeth: tuple[int, int]
@@ -76,6 +78,7 @@ class PairFacts:
     face_width: float
     helix_hand: int
     internal: bool = False
+    base_tooth_thickness: tuple[float, float] | None = None
 
     @classmethod
     def of(cls, pair: ParallelAxes) -> PairFacts:
@@ -91,11 +94,16 @@ class PairFacts:
             face_width=pair.face_width,
             helix_hand=hand,
             internal=pair.internal,
+            base_tooth_thickness=(pair.pinion.base_tooth_thickness, pair.wheel.base_tooth_thickness),
         )
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "teeth", (int(self.teeth[0]), int(self.teeth[1])))
         object.__setattr__(self, "base_radius", (float(self.base_radius[0]), float(self.base_radius[1])))
+        if self.base_tooth_thickness is not None:
+            first, second = self.base_tooth_thickness
+            object.__setattr__(self, "base_tooth_thickness", (float(first), float(second)))
+            _require("base_tooth_thickness", first + second, math.isfinite, "finite")
         for name in ("base_pitch", "center_distance", "face_width"):
             _require(name, getattr(self, name), lambda value: value > 0.0, "above 0")
         for radius in self.base_radius:
@@ -114,10 +122,11 @@ class PairFacts:
         return torque / (self.base_radius[0] * math.cos(self.base_helix_angle))
 
     def to_json(self) -> Json:
-        """Plain JSON with the same names; `internal` only if true, as files before it had none."""
+        """Plain JSON with the same names; without `internal` and thicknesses that are not true or known."""
         content = asdict(self)
-        if not self.internal:
-            del content["internal"]
+        for name in ("internal", "base_tooth_thickness"):
+            if not content[name]:
+                del content[name]
         return content
 
     @classmethod

@@ -196,7 +196,6 @@ def _planetary_text(stage: StageSketch, head: str) -> str:
     length = 2.0 * stage.sun.width
     middle = 0.5 * length
     brake = PLANETS * _LOAD_SHARE * stage.sun.torque[-1] * stage.ratio
-    offset = 0.5 if stage.sun.wheel.teeth % 2 == 0 else 0.0
     return f"""{HEAD.format(head=head)}
 [run]
 duration_s = 0.5
@@ -217,7 +216,6 @@ name = "ring mesh"
 driver = "planet gear"
 driven = "ring gear"
 damping_ratio = 0.07
-position_offset = {offset} # planets with an even number of teeth meet sun and ring half a pitch apart
 
 {_case_tables(stage.ring, "meshes.case.")}{ACCURACY}
 [[drives]] # the angle is imposed: a run-up

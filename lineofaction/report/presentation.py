@@ -11,7 +11,7 @@ from pkgutil import iter_modules
 from typing import Any
 
 from fe_contact.ste import SteDatabase
-from lineofaction.gearbox.convert.effects import beyond_lines, run_lines, scene_table
+from lineofaction.gearbox.convert.effects import assumed_lines, beyond_lines, run_lines, scene_table
 from lineofaction.gearbox.loading import LOADING
 from lineofaction.gearbox.studies.bodies import UNIT
 from lineofaction.gearbox.study import Study
@@ -104,6 +104,7 @@ def effect_text(ledger: Mapping[str, Any]) -> Iterator[Table | str]:
     if trifles:
         yield trifles
     yield from beyond_lines(ledger)
+    yield from assumed_lines(ledger)
 
 
 def dynamics_page(

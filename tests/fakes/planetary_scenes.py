@@ -50,6 +50,7 @@ def published_set(planets: int, **changes) -> PlanetarySet:
         "ring_stiffness": BEARING_STIFFNESS,
         "carrier_stiffness": BEARING_STIFFNESS,
         "planet_stiffness": BEARING_STIFFNESS,
+        "ring_phase": 0.0,
     }
     return PlanetarySet(**{**given, **changes})
 

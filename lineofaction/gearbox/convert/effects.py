@@ -169,6 +169,12 @@ def beyond_lines(ledger: Json) -> Iterator[str]:
         yield f"May change by more: {', '.join(names)}; {beyond}"
 
 
+def assumed_lines(ledger: Json) -> Iterator[str]:
+    """Yield what the phases of the meshes assume, part by part."""
+    for row in ledger.get("assumed", ()):
+        yield f"Assumed of {row['part']}: {row['words']}"
+
+
 def _is_trifle(entries: list[Json], size: str, estimate: Json | None) -> bool:
     """Whether an effect is off everywhere and changes next to nothing."""
     if any(entry["on"] for entry in entries):

@@ -106,6 +106,7 @@ _LAST = _fields_of(*_ANYWHERE) | {
     "misalignment": "misalignment_um",
     "center_distance_change": "center_distance_change_mm",
     "angles": "angles_deg",
+    "tooth_angles": "tooth_angles_deg",
     "fade": "speed_rpm",
     "speed": "speed_rpm",
     "torque": "torque_n_m",

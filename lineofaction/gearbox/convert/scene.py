@@ -14,6 +14,7 @@ from dynamics.mechanism import with_planets
 from dynamics.mechanism.base_pitches import PRINTED
 from dynamics.mechanism.kinematics import at_steady_speeds, check_motion
 from dynamics.meshes import GearMesh, MeshTable
+from dynamics.meshes.standard_sliding import StandardTeeth
 from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table, straight_table
 from dynamics.scene import Scene
 from fe_contact.ste import PairFacts, SteDatabase
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
 
 # The gears that the meshes describe, and their axes.
 
+ANY_TEETH = StandardTeeth((20, 20), 0.04, 0.35, 0.0, 0.02)
+"""Teeth of placeholders of tables: these have sliding data."""
 _SAME = 1e-6  # relative; lengths that are typed with a few digits agree to this
 
 
@@ -66,7 +69,8 @@ def _side(facts: PairFacts, side: int) -> GearTeeth:
     hand = facts.helix_hand if side == 0 or facts.internal else -facts.helix_hand
     diameter = 2.0 * radius / math.cos(facts.working_pressure_angle)
     helix, ring = hand * facts.base_helix_angle, facts.internal and side == 1
-    return GearTeeth(facts.teeth[side], radius, helix, diameter, facts.face_width, ring)
+    thickness = None if facts.base_tooth_thickness is None else facts.base_tooth_thickness[side]
+    return GearTeeth(facts.teeth[side], radius, helix, diameter, facts.face_width, ring, thickness)
 
 
 def _check_center_distances(scene: SceneInput, facts: Mapping[str, PairFacts]) -> None:
@@ -101,7 +105,7 @@ def _has_bent_shafts(database: SteDatabase) -> bool:
 def _closed_forms(meshes: tuple[MeshInput, ...]) -> dict[str, tuple[PairFacts, MeshTable]]:
     """Return facts and table of every mesh that states its stiffness, by name."""
     return {
-        mesh.name: (_facts(f"meshes[{index}].stiffness", mesh.stiffness), _table(index, mesh.stiffness))
+        mesh.name: (_facts(f"meshes[{index}].stiffness", mesh.stiffness), _table(index, mesh))
         for index, mesh in enumerate(meshes)
         if mesh.stiffness is not None
     }
@@ -130,15 +134,31 @@ def _facts(field: str, mesh: StiffnessMeshInput) -> PairFacts:
     )
 
 
-def _table(index: int, mesh: StiffnessMeshInput) -> MeshTable:
-    stiffness, error = mesh.stiffness_n_per_m, mesh.transmission_error_um
+def _table(index: int, mesh: MeshInput) -> MeshTable:
+    """Return the table of a closed form; with friction, the sliding of standard teeth is in it."""
+    assert mesh.stiffness is not None  # the caller asks for no other mesh
+    stiffness, error = mesh.stiffness.stiffness_n_per_m, mesh.stiffness.transmission_error_um
     where = f"meshes[{index}].stiffness"
     with named(f"{where}.stiffness_n_per_m"):
         of_stiffness = _curve(stiffness, 1.0)
     with named(f"{where}.transmission_error_um"):
         of_error = None if error is None else _curve(error, UM)
     with named(f"{where}.stiffness_n_per_m"):
-        return stiffness_table(of_stiffness, of_error)
+        return stiffness_table(of_stiffness, of_error, _standard_teeth(mesh))
+
+
+def _standard_teeth(mesh: MeshInput) -> StandardTeeth | None:
+    form = mesh.stiffness
+    if form is None or in_si(GearMesh, mesh)["friction"] is None:
+        return None
+    return StandardTeeth(
+        teeth=(form.teeth[0], form.teeth[1]),
+        base_radius=form.base_radius_mm * MM,
+        working_pressure_angle=form.working_pressure_angle_deg * DEGREE,
+        base_helix_angle=form.base_helix_angle_deg * DEGREE,
+        face_width=form.face_width_mm * MM,
+        internal=form.internal,
+    )
 
 
 def _curve(law: PeriodicInput, unit: float) -> PeriodicCurve:
@@ -222,7 +242,7 @@ def check_scene(
     `facts`, and `tables` that are closer than placeholders: by name of the mesh. Raises `BadInput`: no such
     system exists or moves, or nothing of it passes where it is complained of.
     """
-    tables = tables or dict.fromkeys(facts, straight_table(ANY_STIFFNESS))
+    tables = tables or dict.fromkeys(facts, straight_table(ANY_STIFFNESS, ANY_TEETH))
     housings = [placeholder(i, part) for i, part in enumerate(scene.housings)]
     moving = _moving(scene, facts, tables, housings)
     if scene.complaint is not None:

@@ -48,6 +48,7 @@ class GearTeeth:
     pitch_diameter: float
     face_width: float
     internal: bool = False
+    base_tooth_thickness: float | None = None
 
 
 def _each(kind: str, made: Callable[[Any], T]) -> Callable[[tuple[BaseModel, ...]], tuple[T, ...]]:

@@ -165,12 +165,14 @@ def scene_gears(
 ) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
     """Return the tables of gears and meshes; `cases` are by stage."""
     gears: dict[int, dict[str, Any]] = {}
+    parts: dict[int, Part] = {}
     meshes, names, mesh_names = [], Names(), Names()
     for stage in shafts.stages:
         case = cases[stage.stage.id]
         for gear, shaft in zip(stage.gears, stage.shafts, strict=True):
             if gear.id not in gears:
                 gears[gear.id] = _gear(layout, shafts, gear, shaft, names)
+                parts[gear.id] = gear
         _say_apart(layout, stage, case)
         driver, driven = case.driving(stage)
         mesh: dict[str, Any] = {
@@ -181,7 +183,8 @@ def scene_gears(
         }
         if case.wheel_drives:
             mesh["wheel_drives"] = True
-        meshes.append(mesh | _offset(layout, stage))
+        meshes.append(mesh)
+    _say_angles(gears, parts)
     return list(gears.values()), meshes
 
 
@@ -196,23 +199,16 @@ def _say_apart(layout: Layout, stage: GearStage, case: StageCase) -> None:
         stage.stage.say("center_distance", "refused", words)
 
 
-def _offset(layout: Layout, stage: GearStage) -> dict[str, float]:
-    """Return the position of planet and ring at the start: half a pitch if the planet's teeth are even.
-
-    A planet's flanks at sun and ring are opposite: half a turn apart, and an even number of teeth is then a
-    whole number of pitches, of which tooth meets space. No file says how the gears of a stepped planet stand.
-    """
-    if layout.carrier(stage) is None or not stage.internal:
-        return {}
-    planet = stage.shafts[stage.teeth.index(min(stage.teeth))]
-    if len({gear.teeth for gear in planet.children("cylindrical_gear")}) > 1:
-        words = "0: a stepped planet, and no file says at which angle its gears stand; state it in the scene"
-        stage.stage.say("position_offset", "defaulted", words)
-        return {}
-    if min(stage.teeth) % 2:
-        return {}
-    stage.stage.say("position_offset", "derived", "0.5: the planet's number of teeth is even")
-    return {"position_offset": 0.5}
+def _say_angles(gears: Mapping[int, Mapping[str, Any]], parts: Mapping[int, Part]) -> None:
+    """State which gears share a shaft with another one: no file says at which angle their teeth stand."""
+    first: dict[str, str] = {}
+    for number, part in parts.items():
+        gear = gears[number]
+        if first.setdefault(gear["shaft"], gear["name"]) != gear["name"]:
+            words = (
+                f"0 against gear {first[gear['shaft']]}: no file says it; state tooth_angles_deg of shaft "
+            )
+            part.say("tooth_angle", "defaulted", f"{words}{gear['shaft']} in the scene")
 
 
 def _gear(layout: Layout, shafts: SceneShafts, gear: Part, shaft: Part, names: Names) -> dict[str, Any]:

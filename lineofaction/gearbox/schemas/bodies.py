@@ -145,6 +145,14 @@ class ShaftInput(BoundaryModel):
         description="The carrier of the planetary set it belongs to; a carrier names itself",
         examples=["carrier"],
     )
+    tooth_angles_deg: Listed[Coordinate] | None = Field(
+        default=None,
+        min_length=1,
+        max_length=100,
+        description="Angles about +z of the center of a tooth of each of its gears at mid-face, in their "
+        "order, in degrees; left out: in line",
+        examples=[[0.0, 4.5]],
+    )
 
     @model_validator(mode="after")
     def _one_inertia(self) -> Self:

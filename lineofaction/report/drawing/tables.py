@@ -119,7 +119,10 @@ def ledger_section(ledger: Mapping[str, Any]) -> Section:
     )
     small = effect_table(trifles_title({row[0] for row in trifles}), trifles)
     left_out = facts("Not in the model", ledger.get("left_out", {}))
-    return effects_section("", rows, (*((small,) if trifles else ()), left_out))
+    phases = tuple((row["part"], row["words"]) for row in ledger.get("assumed", ()))
+    assumed = Table("Assumed of phases", ("part", "assumed"), phases)
+    folded = (*((small,) if trifles else ()), *((assumed,) if phases else ()), left_out)
+    return effects_section("", rows, folded)
 
 
 Json = dict[str, Any]

@@ -227,12 +227,12 @@ def test_a_planetary_set_turns_and_carries_by_willis() -> None:
 
 
 def test_no_angle_between_the_gears_of_a_stepped_planet_is_made_up() -> None:
-    """One gear of 22 teeth is half a pitch ahead at the ring; of two gears no file says how they stand."""
-    assert said(OpenedUnit.of(planetary()), 24, "position_offset")[0] == "derived"
-    how, words = said(OpenedUnit.of(planetary(step=18)), 24, "position_offset")
-    assert how == "defaulted" and "stepped planet" in words
+    """The phases of a planet of one gear follow from its teeth; of two gears no file says how they stand."""
+    assert all(line.item != "tooth_angle" for line in OpenedUnit.of(planetary()).lines)
+    how, words = said(OpenedUnit.of(planetary(step=18)), 16, "tooth_angle")
+    assert how == "defaulted" and "tooth_angles_deg" in words
     offset = [mesh.position_offset for mesh in scene_of(planetary(step=18)).meshes]
-    assert offset == [0.0, 0.0]
+    assert offset == [None, None]
 
 
 def test_planets_may_begin_at_any_angle() -> None:

@@ -95,7 +95,7 @@ def two_stages(speed):
     scene = train([17, 23, 41], [(0, 1)], speed)
     second = GearBody("h1", "s1", 0.09, 13, RB * 13, 0.02, 0.0, INERTIA)
     last = replace(scene.gears[2], position=0.09)
-    mesh = GearMesh("m12", "h1", "g2", spring_table(1e8), nominal_force=1.0)
+    mesh = GearMesh("m12", "h1", "g2", spring_table(1e8), nominal_force=1.0, position_offset=0.0)
     return replace(scene, gears=(*scene.gears[:2], last, second), meshes=(*scene.meshes, mesh))
 
 

@@ -10,9 +10,9 @@ from hulls import box
 from reduced_housings import bare_housing
 from sounding_housings import smooth_motion, with_surface
 
-from dynamics.acoustics import Air, ElementalRadiators, OuterHull, outer_hull, resistance
+from dynamics.acoustics import Air, ElementalRadiators, Hull, OuterHull, outer_hull, resistance
 from dynamics.noise import radiating_hull
-from dynamics.noise.coarse_hull import _split_cells, _surface_cells
+from dynamics.noise.coarse_hull import _settled, _split_cells, _surface_cells
 
 AIR, HERTZ = Air(), 3000.0
 BODIES = {
@@ -62,3 +62,16 @@ def test_chosen_cells_alone_are_split() -> None:
     chosen = np.isin(np.arange(cell.max() + 1), [3, 50])
     assert _split_cells(hull, cell, chosen).max() == cell.max() + 2
     assert _split_cells(hull, cell, np.zeros_like(chosen)).max() == cell.max()
+
+
+@pytest.mark.parametrize("divisions", [(12, 8, 6), (60, 60, 60)])
+def test_a_part_of_the_surface_without_a_seed_is_one_cell(divisions: tuple[int, int, int]) -> None:
+    """A closed hull in two parts, below and above the 10 000 nodes from which -9999 is an index."""
+    first, second = box((0.3, 0.2, 0.15), divisions), box((0.1, 0.1, 0.1), (4, 4, 4))
+    count = len(first.nodes)
+    nodes = np.concatenate([first.nodes, second.nodes + np.array([1.0, 0.0, 0.0])])
+    hull = Hull(nodes, np.concatenate([first.triangles, second.triangles + count]))
+    seeds = np.arange(count)  # whatever node an index takes, it has a cell of the first part
+    cell = _settled(hull, seeds, 1)
+    assert len(np.unique(cell[count:])) == 1
+    assert len(np.unique(cell)) == count + 1

@@ -110,10 +110,8 @@ def test_steps_end_on_knots_and_halve():
 def test_steps_end_on_no_knots_but_those_of_each_flanks_own_table():
     sun, ring = square_wave_table(8), spring_table(MESH_STIFFNESS, 1e-6, positions=40)
     uneven = sun.position + 0.03 * np.sin(np.arange(8)) ** 2
-    planets = published_set(3, teeth=(28, 35, 98), sun_table=replace(sun, position=uneven), ring_table=ring)
-    scene = driven_scene(planets)
-    shifted = [replace(mesh, position_offset=0.013 * k) for k, mesh in enumerate(scene.meshes)]
-    system = assemble(replace(scene, meshes=tuple(shifted)))
+    tables = {"sun_table": replace(sun, position=uneven), "ring_table": ring}
+    system = assemble(driven_scene(published_set(3, teeth=(28, 35, 98), ring_phase=0.013, **tables)))
     grid = _PeriodGrid.of(system, common_period(system), 1.0)
     offset, knots = system.arrays.reference.offset, (uneven, ring.position)
     phases = np.concatenate([[0.0], *((knots[k % 2] - offset[k]) % 1.0 for k in range(6))])

@@ -1,0 +1,122 @@
+"""What the effect ledger says of phases that rest on assumptions: angles by what they change, thicknesses."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from bounds import engineering
+from dynamics.assembly.assemble import System
+from dynamics.errors import DynamicsError
+from dynamics.influence.level_change import decibels
+from dynamics.influence.linear_figures import FEWER, POSITIONS, operating_conditions
+from dynamics.linearize.harmonic_response import bearing_forces
+from dynamics.linearize.operating_speeds import leading_law
+from dynamics.linearize.steady_vibration import Excited, excited, flank_forces, swept_vibration
+from dynamics.mechanism.train_phases import AssumedAngle
+from dynamics.types import ComplexArray, FloatArray, IntArray, Json
+
+SPEEDS = 16
+"""Of a run, at which a response is looked at."""
+ANGLES = 239
+"""Angles of a pitch at which a response is looked at: a prime, as orders then meet other phases at each."""
+AUDIBLE = 0.01
+"""Amplitude of an order over the largest one below which its change is nobody's concern."""
+
+
+def with_assumed_phases(ledger: Json, system: System) -> Json:
+    """Return a ledger with what the phases of the meshes assume; as it is where the geometry says all.
+
+    The change by an angle is that of the force on all bearings together, the largest over the speeds of the
+    run, from its least to its largest over all angles, of the order where that is most; by linear response.
+    """
+    rows = _rows(system)
+    return {**ledger, "assumed": rows} if rows else ledger
+
+
+def _rows(system: System) -> list[Json]:
+    phases = system.phases
+    rows: list[Json] = [
+        {"part": gear, "words": "tooth thickness not known: half the pitch"} for gear in phases.thickness
+    ]
+    for angle, change in zip(phases.angles, _changes(system), strict=True):
+        first, second = angle.gears
+        words = f"angle from a tooth of {first} to a tooth of {second} not stated: 0{_words(change)}"
+        rows.append({"part": angle.shaft, "words": words, "angle": 0.0, **change})
+    return rows
+
+
+def _words(change: Json) -> str:
+    if "decibels" not in change:
+        return ""
+    size = engineering(change["decibels"], 2)
+    return f"; {size} dB of bearing forces at order {change['order']:.4g} over all angles"
+
+
+def _changes(system: System) -> list[Json]:
+    """Return the change of level by each angle, and why there is none where linear theory has no answer."""
+    angles = system.phases.angles
+    if not angles:
+        return []
+    try:
+        speed = _speeds(system)
+        at = excited(system, 0.0, FEWER, POSITIONS)
+        harmonics = _lines(at)
+        parts = _forces_by_mesh(at, speed, harmonics)
+    except DynamicsError as error:
+        return [{"reason": str(error)}] * len(angles)
+    return [_change(at, angle, harmonics, parts) for angle in angles]
+
+
+def _speeds(system: System) -> FloatArray:
+    """Return speeds (S,) of the leading law that the run passes, rad/s."""
+    conditions = operating_conditions(system.scene, leading_law(system))
+    speed = np.unique(np.concatenate([np.empty(0), *(condition.speed for condition in conditions)]))
+    return np.asarray(speed[np.unique(np.linspace(0, speed.size - 1, SPEEDS).round().astype(int))])
+
+
+def _lines(at: Excited) -> IntArray:
+    """Return the low mesh orders of all meshes (H,), multiples of the frequency of their common period."""
+    pitches = np.unique(np.abs(at.period.pitches))
+    return np.unique(np.arange(1, FEWER + 1)[:, None] * pitches[pitches > 0])
+
+
+def _forces_by_mesh(at: Excited, speed: FloatArray, harmonics: IntArray) -> ComplexArray:
+    """Return the forces of the bearings that each mesh excites, (m, b, 3, S, H), N."""
+    _, force = flank_forces(at, harmonics)
+    steady = swept_vibration(at, speed, np.zeros(speed.size), harmonics)
+    return np.stack(
+        [
+            bearing_forces(
+                at,
+                steady.omega,
+                np.einsum("shnf,fh->shn", steady.receptance[..., cycle.rows], force[cycle.rows]),
+            )[:, :3]
+            for cycle in at.cycles
+        ]
+    )
+
+
+def _change(at: Excited, angle: AssumedAngle, harmonics: IntArray, parts: ComplexArray) -> Json:
+    """Return the order that an angle changes most, and by how much."""
+    pitches = np.array(at.period.pitches, dtype=float)
+    # a pitch of the second gear moves a mesh by `moves` of its own, of which the common period has `pitches`
+    per_pitch = np.divide(angle.moves, pitches, out=np.zeros_like(pitches), where=pitches != 0.0)
+    turn = np.arange(ANGLES) / ANGLES
+    phase = np.exp(2j * math.pi * turn[:, None, None] * per_pitch[:, None] * harmonics)
+    products = np.einsum("mbdsh,nbdsh->mnsh", parts.conj(), parts)
+    squares = np.einsum("amh,anh,mnsh->ash", phase.conj(), phase, products, optimize=True).real
+    level = np.sqrt(np.maximum(np.max(squares, axis=1), 0.0))  # (angles, H)
+    least, most = level.min(axis=0), level.max(axis=0)
+    heard = most > AUDIBLE * most.max(initial=0.0)
+    if not np.any(heard):
+        return {"decibels": 0.0, "order": 1.0}
+    by_order = np.array([decibels(a, b) for a, b in zip(least, most, strict=True)])
+    index = int(np.argmax(np.where(heard, by_order, -1.0)))
+    above = decibels(float(level[0, index]), float(most[index]))
+    return {
+        "decibels": float(by_order[index]),
+        "above_assumed": above,  # dB from the assumed angle to the loudest one
+        "order": float(harmonics[index] / at.period.counted),
+    }
