@@ -340,7 +340,8 @@ def _result(
     with clock.stage("outputs"):
         parts = _checked_series(system, trajectory.states.rows, trajectory.samples, checks)
         series = _joined(parts, trajectory.samples)
-    facts, error = RunFacts.of(system, trajectory, checks, clock, decided, before), {}
+    facts = RunFacts.of(system, trajectory, checks, clock, decided, before)
+    error: Json = {}
     if errors is not None:
         with clock.stage("error_estimate"):
             error, status = errors.measure(trajectory, facts)
