@@ -45,8 +45,8 @@ class StatedRun:
 
     @property
     def ratio(self) -> float:
-        """True over stated error."""
-        return self.true / self.stated
+        """True over stated error; 0 where both are."""
+        return self.true / self.stated if self.true > 0.0 else 0.0
 
 
 def stated_run(name: str, scene: Scene) -> StatedRun:

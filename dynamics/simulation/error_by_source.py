@@ -10,6 +10,7 @@ import numpy as np
 from dynamics.assembly.assemble import System
 from dynamics.assembly.varied import starting_at, with_decimated_tables
 from dynamics.integrators import StaticSolution, integrate
+from dynamics.integrators.advance import POSITION_LIMIT
 from dynamics.integrators.march import sample_count
 from dynamics.kernels.by_address import by_address
 from dynamics.motion.observation import observe
@@ -27,6 +28,8 @@ LEAST_SAMPLES, MOST_SAMPLES = 24, 512
 """Of a window. An error of the steps is stationary once the vibration it makes has decayed: measured on the
 paper's pair (damping ratio 0.01 and 0.15) and a planetary stage, longer windows state no better errors."""
 ORDERS = 5
+CAP = 0.63
+"""Longest steps of a finer run over those of the run where no tolerance sets them: 0.1^(1/5)."""
 
 StatesOf = Callable[[int, int], States]
 
@@ -84,6 +87,16 @@ class _Window:
         by_force = np.linalg.norm(order_amplitudes(self.position[0], pushed, orders), axis=1)
         rms = float(np.sqrt(np.mean(apart**2)))
         return _Difference(rms, np.max(by_error, axis=0), np.max(by_force, axis=0, initial=0.0))
+
+    def finer(self, integration: Integration) -> Integration:
+        """Return the settings of its run for the error of the steps, shorter too where teeth limit them."""
+        shorter, turned = finer(integration), float(np.max(np.ptp(self.position, axis=1)))
+        if integration.fixed_step is not None or turned == 0.0:
+            return shorter
+        largest = CAP * POSITION_LIMIT * float(self.time[-1]) / turned
+        return replace(
+            shorter, largest_step=max(min(largest, shorter.largest_step), 2.0 * shorter.smallest_step)
+        )
 
     def on_laws_of(self, other: System) -> System:
         """Return its system with the force laws of `other`, the run's system but for these."""
@@ -197,7 +210,7 @@ def error_by_source(
 
 def _step_error(looked: Sequence[_Window], integration: Integration) -> Json:
     """Return the error of the time steps by windows; empty if one of them failed."""
-    steps = [window.repeated(window.system, finer(integration)) for window in looked]
+    steps = [window.repeated(window.system, window.finer(integration)) for window in looked]
     return _estimate(steps, TIME_STEP_REST, "runs of windows at a tenth of the tolerance")
 
 

@@ -134,6 +134,7 @@ def test_a_stated_step_is_measured_at_half_of_it():
     run, truth = simulate(scene), simulate(fine)
     apart = run.dynamic_transmission_error - truth.dynamic_transmission_error
     error = step_error(run)
+    assert error["source"] == "difference from a run at half the step"
     assert "met" not in error
     assert LEAST < float(np.sqrt(np.mean(apart**2))) / error["rms"] < MOST
 
@@ -149,7 +150,7 @@ def test_the_finer_run_that_cannot_end_leaves_the_windows_and_says_so():
 
 
 def test_a_run_cancelled_while_its_error_is_measured_goes_on_from_there(tmp_path):
-    scene, path, stages = SCENES["lift-off, damping 1 %"], tmp_path / "run.nc", []
+    scene, path, stages = SCENES["reversal of a pair on bearings"], tmp_path / "run.nc", []
 
     def cancel():
         return stages.count("error of the steps") == 3
@@ -171,7 +172,7 @@ def test_a_run_cancelled_while_its_error_is_measured_is_cancelled():
     stages = []
     with pytest.raises(SolveError, match="cancelled"):
         simulate(
-            SCENES["lift-off, damping 1 %"],
+            SCENES["reversal of a pair on bearings"],
             lambda _done, stage: stages.append(stage),
             lambda: "error of the steps" in stages,
         )
