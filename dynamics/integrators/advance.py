@@ -39,7 +39,7 @@ class Control(NamedTuple):
     tolerance : float
         Error allowed per step, m.
     force_tolerance : float
-        Last update allowed in Newton's method, N.
+        What Newton's method may leave, N; 0: to rounding.
     """
 
     implicit: bool

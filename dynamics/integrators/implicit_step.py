@@ -185,6 +185,10 @@ WEAK = 0.01
 """Change of a row's law with its own force, below which the row is iterated."""
 SLOW = 0.1
 """Part of the last update that is left, above which the equations are made anew."""
+ROUNDING = 2.0**-52
+"""Update over the largest force that rounding makes where coordinates are as small as deflections."""
+NOISE, STALL = 1e-10, 0.5
+"""Update over the largest force, and part of the last one left, from which on larger coordinates make it."""
 
 
 @inner
@@ -198,7 +202,7 @@ def _solve_local_forces(
     this is the first stage of its step. The change of the positions with the forces is followed but left out
     of the equations: it is of the order of a deflection over a base pitch. Forces of linear elements are
     part of the motion (`_hold_linear`). An update leaves the part of itself that it was of the one before;
-    returns -1 if that did not fall to `tolerance` (N).
+    returns -1 if that fell neither to `tolerance` (N) nor to rounding.
     """
     fresh, last, left = first, math.inf, 1.0
     if first:  # later stages begin with the forces and the answer to them that the one before ended with
@@ -214,12 +218,21 @@ def _solve_local_forces(
         _respond(work, level)
         if iteration > 0:
             left = size / last
-        if min(left, 1.0) * size <= tolerance:
+        if min(left, 1.0) * size <= tolerance or _is_rounding(work, size, left):
             _move(work, span)
             return iteration + 1
         fresh = iteration > 0 and not left <= SLOW
         last = size
     return -1
+
+
+@inner
+def _is_rounding(work: Workspace, size: float, left: float) -> bool:
+    """Whether an update, of which the part `left` remains, is all that rounding lets Newton's method do."""
+    largest = 0.0
+    for r in range(work.force.size):
+        largest = max(largest, abs(work.force[r]))
+    return size <= ROUNDING * largest or (left >= STALL and size <= NOISE * largest)
 
 
 @inner

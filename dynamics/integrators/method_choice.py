@@ -21,6 +21,8 @@ Measured 0.4 to 1.6 on one pair, two stages and a planetary stage, 500 to 5000 r
 tolerance holds within 15 % from 10 to 0.1 nm."""
 SHARE = 0.1
 """Of a natural motion's energy in meshes, from which they excite it."""
+LIGHT = 0.01
+"""Damping ratio below which a natural motion is damped lightly."""
 LONGER = 1.4
 """Implicit over explicit step at one tolerance; measured 1.05 to 1.65 there."""
 EVALUATIONS = {"explicit": 6.0, "implicit": 10.0}
@@ -39,12 +41,16 @@ class MethodChoice:
         Largest magnitude of an eigenvalue of the motion about the equilibrium at t = 0, rad/s.
     step : float
         That accuracy wants, s: the fixed one, or by the fastest natural motion that meshes excite.
+    slowest_decay : float
+        Least rate of decay of natural motions that meshes excite and that are damped lightly, 1/s; infinite:
+        there are none.
     """
 
     method: str
     requested: str
     rate: float
     step: float
+    slowest_decay: float
 
     @property
     def other(self) -> str:
@@ -96,18 +102,25 @@ def choose_method(system: System, displacement: FloatArray, integration: Integra
     moved = np.linalg.solve(arrays.mass, np.hstack([balance.stiffness, balance.damping]))
     first_order = np.vstack([np.eye(n, 2 * n, n), -moved])
     rate = float(np.max(np.abs(np.linalg.eigvals(first_order)), initial=0.0))
-    fastest = _fastest_excited(system, 0.5 * (balance.stiffness + balance.stiffness.T))
+    fastest, decay = _excited_motions(
+        system, 0.5 * (balance.stiffness + balance.stiffness.T), balance.damping
+    )
     wanted = RADIANS * (integration.tolerance / 1e-9) ** 0.2 / fastest if fastest > 0.0 else np.inf
     step = integration.fixed_step or min(float(wanted), integration.largest_step)
     chosen = "explicit" if rate * step <= LIMIT else "implicit"
     requested = integration.method
-    return MethodChoice(chosen if requested == "auto" else requested, requested, rate, step)
+    return MethodChoice(chosen if requested == "auto" else requested, requested, rate, step, decay)
 
 
-def _fastest_excited(system: System, stiffness: FloatArray) -> float:
-    """Return the rate of the fastest natural motion with energy in the meshes, rad/s; 0 without one."""
+def _excited_motions(system: System, stiffness: FloatArray, damping: FloatArray) -> tuple[float, float]:
+    """Return the rate of the fastest natural motion with energy in the meshes, rad/s, and `slowest_decay`.
+
+    0 and infinite without one.
+    """
     square, shape = scipy.linalg.eigh(stiffness, system.arrays.mass)
     stretch = system.arrays.direction[system.driving_rows] @ shape
     energy = system.flanks.mean_stiffness[: len(stretch)] @ stretch**2
-    excited = square[energy > SHARE * np.abs(square)]
-    return float(np.sqrt(np.max(excited, initial=0.0)))
+    excited = energy > SHARE * np.abs(square)
+    rate = np.sqrt(np.maximum(square[excited], 0.0))
+    decay = 0.5 * np.einsum("ia,ij,ja->a", shape[:, excited], damping, shape[:, excited])
+    return float(np.max(rate, initial=0.0)), float(np.min(decay[decay < LIGHT * rate], initial=np.inf))

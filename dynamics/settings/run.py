@@ -34,8 +34,9 @@ class Integration:
     """Method and tolerances of the time integration.
 
     Error control takes no step below `smallest_step`, s. A run of more than `step_limit` steps ends as
-    `RunStatus.STEP_LIMIT`. With `estimate_error` it runs again at a tenth of the tolerance and reports the
-    difference of the transmission errors.
+    `RunStatus.STEP_LIMIT`. With `estimate_error` it runs again at a tenth of the tolerance (half of a
+    `fixed_step`) and states the error from the difference of the transmission errors, as it does unasked
+    where flanks part or damping is light.
     """
 
     method: str = declared("auto", _METHOD)

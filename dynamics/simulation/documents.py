@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds import engineering
 from dynamics.assembly.assemble import System
 from dynamics.bearings import RollingBearing
 from dynamics.bearings.loaded_bearing import LoadedBearing
@@ -98,8 +99,13 @@ class RunFacts:
         automatic = {**decided.automatic, **before.reasons}
         return cls(system, decided.scene, audit, held, automatic, influences)
 
+    def with_errors(self, error: Json) -> RunFacts:
+        """Return them with the check of the errors of the steps, where they are measured."""
+        check = tolerance_check(error, self.system.scene.integration)
+        return self if check is None else replace(self, checks=[*self.checks, check])
 
-def _effect_ledger(run: RunFacts) -> Json:
+
+def effect_ledger(run: RunFacts) -> Json:
     """Return the `sized_ledger` with the checks of the run."""
     ledger = with_assumed_phases(run.system.ledger.to_json(), run.system)
     whole = sized_ledger(ledger, run.automatic, run.influences)
@@ -362,7 +368,7 @@ def described(run: RunFacts, about: dict[str, Any]) -> dict[str, Any]:
     error = receipt["error"] | ({"left_out_effects": left_out} if left_out else {})
     return about | {
         "receipt": receipt | {"error": error} | _bearings_at_rest(run.system),
-        "effect_ledger": _effect_ledger(run),
+        "effect_ledger": effect_ledger(run),
         "case": _resolved_case(run.system),
         "warnings": [finding.to_json() for finding in scene_findings(run.scene)],
         "modes": _modes_of_run(run.system),
@@ -372,7 +378,7 @@ def described(run: RunFacts, about: dict[str, Any]) -> dict[str, Any]:
 def undescribed(run: RunFacts, about: dict[str, Any]) -> dict[str, Any]:
     """Return `documents`, and the ledger where an assumption is violated: a study takes responses alone."""
     held = all(check.holds for check in run.checks)
-    return about if held else about | {"effect_ledger": _effect_ledger(run)}
+    return about if held else about | {"effect_ledger": effect_ledger(run)}
 
 
 def _known_influences(decided: Decided, system: System, end: Ending) -> Mapping[str, Influence]:
@@ -408,20 +414,29 @@ def requested_error(integration: Integration) -> Json:
     return {"time_step": {"rms": integration.tolerance, "unit": "m", "source": "tolerance of step control"}}
 
 
-def measured_error(total: float, samples: int, meshes: int, finer: Ending) -> Json:
-    """Return the step error from the sum of squared differences from a finer run."""
-    rms = float(np.sqrt(total / max(samples * meshes, 1)))
-    source = f"difference from a run at {ERROR_CHECK_FACTOR:g} of the tolerance"
-    return {"time_step": {"rms": rms, "unit": "m", "source": source, "seconds": finer.taken.cpu_seconds}}
+def tolerance_check(error: Json, integration: Integration) -> Check | None:
+    """Return whether the measured error of the steps is within the tolerance; None where neither is known."""
+    steps = error.get("time_step", {})
+    if "met" not in steps:
+        return None
+    stated, tolerance = float(steps["rms"]), integration.tolerance
+    reason = f"{engineering(1e9 * stated, 2)} nm rms stated, {engineering(1e9 * tolerance, 2)} nm requested"
+    if steps.get("chaotic"):
+        reason = (
+            f"chaotic motion: levels are within {engineering(steps['levels']['rms'], 2)} dB, traces are not"
+        )
+    elif not steps["met"]:
+        reason = f"{reason}: lower the tolerance"
+    return Check("", "errors of the steps are within the tolerance", "time steps", steps["met"], reason)
 
 
-def squared_difference(system: System, q: FloatArray, other: FloatArray) -> float:
-    """Return the sum of the squared differences in the transmission errors of the states (T, n).
-
-    Amplitudes of housings, which move no flank, may be missing at their end.
-    """
-    difference = (q - other) @ system.arrays.direction[system.driving_rows, : q.shape[1]].T
-    return float(np.sum(difference**2))
+def with_tolerance(error: Json, integration: Integration) -> Json:
+    """Return errors of a run with the tolerance of its steps, and whether their measured error is within."""
+    steps = error.get("time_step", {})
+    if integration.fixed_step is not None or "transmission_error_orders" not in steps:
+        return error
+    met = float(steps["rms"]) <= integration.tolerance and not steps.get("chaotic", False)
+    return error | {"time_step": {**steps, "tolerance": integration.tolerance, "met": met}}
 
 
 def _statistics(system: System, end: Ending) -> StepStatistics:

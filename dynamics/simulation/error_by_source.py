@@ -10,6 +10,7 @@ import numpy as np
 from dynamics.assembly.assemble import System
 from dynamics.assembly.varied import starting_at, with_decimated_tables
 from dynamics.integrators import StaticSolution, integrate
+from dynamics.integrators.advance import POSITION_LIMIT
 from dynamics.integrators.march import sample_count
 from dynamics.kernels.by_address import by_address
 from dynamics.motion.observation import observe
@@ -27,6 +28,8 @@ LEAST_SAMPLES, MOST_SAMPLES = 24, 512
 """Of a window. An error of the steps is stationary once the vibration it makes has decayed: measured on the
 paper's pair (damping ratio 0.01 and 0.15) and a planetary stage, longer windows state no better errors."""
 ORDERS = 5
+CAP = 0.63
+"""Longest steps of a finer run over those of the run where no tolerance sets them: 0.1^(1/5)."""
 
 StatesOf = Callable[[int, int], States]
 
@@ -72,7 +75,7 @@ class _Window:
         run = integrate(system, start, integration, velocity=v)
         if not run.status.usable or run.samples != self.time.size:
             return None
-        _, error, force = _seen(self.system, self.time, run.states)
+        _, error, force = observed_signals(self.system, self.time, run.states)
         apart, pushed = error - self.error, force - self.force
         orders = min((orders_seen(position, ORDERS) for position in self.position), default=0)
         if np.ptp(self.position[0]) < 1.0:
@@ -84,6 +87,16 @@ class _Window:
         by_force = np.linalg.norm(order_amplitudes(self.position[0], pushed, orders), axis=1)
         rms = float(np.sqrt(np.mean(apart**2)))
         return _Difference(rms, np.max(by_error, axis=0), np.max(by_force, axis=0, initial=0.0))
+
+    def finer(self, integration: Integration) -> Integration:
+        """Return the settings of its run for the error of the steps, shorter too where teeth limit them."""
+        shorter, turned = finer(integration), float(np.max(np.ptp(self.position, axis=1)))
+        if integration.fixed_step is not None or turned == 0.0:
+            return shorter
+        largest = CAP * POSITION_LIMIT * float(self.time[-1]) / turned
+        return replace(
+            shorter, largest_step=max(min(largest, shorter.largest_step), 2.0 * shorter.smallest_step)
+        )
 
     def on_laws_of(self, other: System) -> System:
         """Return its system with the force laws of `other`, the run's system but for these."""
@@ -116,6 +129,12 @@ def window_starts(system: System) -> IntArray:
     return np.array([first for first, _ in _spans(system)] if full else [], dtype=np.int64)
 
 
+def window_seconds(system: System) -> float:
+    """Return how long a window of a run lasts, s; 0 where it is too short for any."""
+    first, stop = next(iter(_spans(system)), (0, 0))
+    return (stop - first) / system.sampling.rate
+
+
 def _spans(system: System) -> list[tuple[int, int]]:
     """Return windows at the ends of equal parts of the run; none where it is too short or has no mesh."""
     samples = sample_count(system)
@@ -143,12 +162,15 @@ def _window(system: System, states_of: StatesOf, first: int, stop: int, amplitud
     scene = replace(system.scene, duration=float(time[-1]), outputs=outputs)
     later = replace(later, scene=scene, sampling=system.sampling.points())
     counted = states._replace(moved=states.moved - states.moved[0])
-    position, error, force = _seen(later, time, counted)
+    position, error, force = observed_signals(later, time, counted)
     start = np.concatenate([[states.q[0, :bodies], states.v[0, :bodies]], amplitudes], axis=1)
     return _Window(first, stop, time, later, counted, start, position, error, force)
 
 
-def _seen(system: System, time: FloatArray, states: States) -> tuple[FloatArray, FloatArray, FloatArray]:
+def observed_signals(
+    system: System, time: FloatArray, states: States
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return positions (m, T), base pitches, transmission errors (m, T), m, bearing forces (b, 3, T), N."""
     seen = observe(system.arrays, time, states.q, states.v, states.moved, states.carried)
     force = system.bearing_force(seen.force, states.q, states.v)
     meshes = len(system.scene.meshes)  # frames that turn have positions too, behind those of the meshes
@@ -161,28 +183,35 @@ TABLE_REST = 1.0 / 3.0
 """Error over the difference to half the positions: second order, as kinks at handovers allow."""
 
 
-def error_by_source(system: System, states_of: StatesOf, whole: FloatArray) -> Json:
+def error_by_source(
+    system: System, states_of: StatesOf, whole: FloatArray, steps: Json | None = None
+) -> Json:
     """Return the estimates of a run, measured in windows of it; the requested error where it is too short.
 
-    Sources: time steps, and table interpolation between positions. `whole` (W, 2, b) are the modal freedoms
-    at the samples `window_starts`.
+    Sources: time steps, unless `steps` states their error from all of the run, and table interpolation
+    between positions. `whole` (W, 2, b) are the modal freedoms at the samples `window_starts`.
     """
-    requested, integration = requested_error(system.scene.integration), system.scene.integration
+    integration = system.scene.integration
     began = cpu_seconds()
     looked = _windows(system, states_of, whole)
     if not looked:
-        return requested
-    steps = [window.repeated(window.system, finer(integration)) for window in looked]
+        return {"time_step": steps} if steps else requested_error(integration)
+    measured = steps or _step_error(looked, integration)
     coarse = with_decimated_tables(system)
     tables = [window.repeated(window.on_laws_of(coarse), integration) for window in looked]
     seconds = cpu_seconds() - began
     return {
-        "time_step": _estimate(steps, TIME_STEP_REST, "runs of windows at a tenth of the tolerance")
-        or requested["time_step"],
+        **({"time_step": measured} if measured else requested_error(integration)),
         "table_interpolation": _estimate(tables, TABLE_REST, "runs of windows on every second position"),
         "windows": [[window.first, window.stop - 1] for window in looked],
         "cpu_seconds": seconds,
     }
+
+
+def _step_error(looked: Sequence[_Window], integration: Integration) -> Json:
+    """Return the error of the time steps by windows; empty if one of them failed."""
+    steps = [window.repeated(window.system, window.finer(integration)) for window in looked]
+    return _estimate(steps, TIME_STEP_REST, "runs of windows at a tenth of the tolerance")
 
 
 def _estimate(differences: Sequence[_Difference | None], rest: float, source: str) -> Json:

@@ -17,6 +17,7 @@ from dynamics.integrators.workspace import Count
 from dynamics.motion.sampled_states import States, Widths
 from dynamics.scene import Scene
 from dynamics.simulation.error_by_source import SHARE
+from dynamics.simulation.whole_run_error import outlives_windows
 from host import cpu_seconds
 
 PARTS = (0.05, 0.5, 0.95)
@@ -25,23 +26,26 @@ ENOUGH = 0.02
 """CPU s of the stretch of a probe that counts; all of them take twice that, and up to twice that again."""
 LEAST_STEPS = 32
 """Of a stretch that counts, however long a step takes."""
-FINER = 1.0 + 10.0**0.2
-"""Steps in the windows of an error estimate over those of the run: by half the positions, and by a tenth
-of the tolerance."""
+FINER = 10.0**0.2
+"""Steps at a tenth of the tolerance over those of the run; those by half the positions are as many."""
 FASTER, MAKING = 2.3, 2.0
 """Ordinary loops over code of a structure's own, measured 2.0 to 2.8; CPU s of making it, 1.1 to 4.6."""
 
 
 class ProbedRun(NamedTuple):
-    """CPU seconds of the start and the steps of a run, and whether code of its own may follow."""
+    """CPU seconds of the start and the steps of a run, and whether code of its own may follow.
+
+    `error_share`: steps of its error estimates over its own. What flanks that part add is not known before.
+    """
 
     start: float
     steps: float
     code_may_follow: bool
+    error_share: float
 
     def seconds(self, runs: int, *, with_errors: bool) -> float:
         """Return the CPU seconds of so many runs, with or without their error estimates."""
-        steps = runs * self.steps * (1.0 + FINER * SHARE if with_errors else 1.0)
+        steps = runs * self.steps * (1.0 + self.error_share if with_errors else 1.0)
         code = MAKING + steps / FASTER if self.code_may_follow else steps
         return runs * self.start + min(steps, code)
 
@@ -58,7 +62,9 @@ def probe_run(scene: Scene) -> ProbedRun:
     assembling = cpu_seconds() - began
     probes = [_probe(system, part * scene.duration) for part in PARTS]
     steps = scene.duration * float(np.mean([probe.seconds for probe in probes]))
-    return ProbedRun(assembling + min(probe.start for probe in probes), steps, probes[0].code_may_follow)
+    share = SHARE + FINER * (1.0 if probes[0].lightly_damped else SHARE)
+    start = assembling + min(probe.start for probe in probes)
+    return ProbedRun(start, steps, probes[0].code_may_follow, share)
 
 
 class _Probe(NamedTuple):
@@ -68,6 +74,7 @@ class _Probe(NamedTuple):
     seconds: float
     steps: float
     code_may_follow: bool
+    lightly_damped: bool
 
 
 class _Discarded:
@@ -115,7 +122,8 @@ def _probe(system: System, time: float) -> _Probe:
             raise SolveError(f"no steps at {time:.6g} s: {status.name.lower()}")
         whole = stretch >= system.scene.duration  # of a short run all its steps are few
         if not first and (whole or (steps >= LEAST_STEPS and seconds > ENOUGH)):
-            return _Probe(start, seconds / passed, steps / passed, code.may_follow)
+            light = outlives_windows(system, choice)
+            return _Probe(start, seconds / passed, steps / passed, code.may_follow, light)
         stretch, first = 2.0 * stretch, False
 
 

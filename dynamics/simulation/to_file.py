@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -36,15 +36,15 @@ from dynamics.simulation.documents import (
     RunFacts,
     described,
     documents,
-    finer,
-    measured_error,
+    effect_ledger,
     requested_error,
     series_of,
-    squared_difference,
+    with_tolerance,
 )
 from dynamics.simulation.error_by_source import error_by_source, window_starts
 from dynamics.simulation.light_loads import with_tolerance_to_scale
 from dynamics.simulation.violations import FIRST, EarlierRun, StatesOf, needed_effects, taken_over
+from dynamics.simulation.whole_run_error import RunPair, blind_windows, finer_run
 from dynamics.types import Json, RunStatus
 from model_studies.stage_clock import StageClock, TimeTaken
 
@@ -241,7 +241,7 @@ class _Start:
             message = (
                 f"no static equilibrium at t = 0: {rest.status.name.lower()}, {rest.residual:.3g} N left"
             )
-            raise SolveError(message, _result(system, _no_trajectory(system, rest), clock, {}, decided))
+            raise SolveError(message, _result(system, _no_trajectory(system, rest), clock, None, decided))
         choice = choose_method(system, rest.displacement, system.scene.integration)
         made = choice.of(with_static_reference(system, rest.displacement))
         return cls(made, rest, choice, Trail(system), clock)
@@ -273,20 +273,65 @@ def _run(
         whole=window_starts(system),
     )
     start.clock.book("integration", trajectory.taken)
-    with start.clock.stage("error_estimate"):
-        error = _error_estimate(system, start.rest, trajectory, progress)
-    result = _result(system, trajectory, start.clock, error, decided, before, start.choice, describe)
-    if not trajectory.status.usable:
+
+    def finer(integration: Integration) -> tuple[Ending, StatesOf]:
+        run = integrate(system, start.rest, integration, _of_errors(progress), cancel=cancel)
+        return run, run.states.rows
+
+    errors = _Errors(start, trajectory.states.rows, finer)
+    result = _result(system, trajectory, start.clock, errors, decided, before, start.choice, describe)
+    if not result.status.usable:
         reached = f"at {trajectory.end:.6g} s of {decided.scene.duration:g} s"
-        raise SolveError(f"run ended early, {trajectory.status.name.lower()} {reached}", result)
+        raise SolveError(f"run ended early, {result.status.name.lower()} {reached}", result)
     return _Run(result, start.trail, trajectory)
+
+
+def _of_errors(progress: Progress | None) -> Progress | None:
+    """Return how a run that measures errors reports: under a stage of its own."""
+    return progress and (lambda done, _stage: progress(done, "error of the steps"))
+
+
+@dataclass(frozen=True)
+class _Errors:
+    """What measures the errors of a run: its samples, and a finer run to its end by settings."""
+
+    start: _Start
+    states_of: StatesOf
+    finer: Callable[[Integration], tuple[Ending, StatesOf]]
+
+    def measure(self, end: Ending, facts: RunFacts) -> tuple[Json, RunStatus]:
+        """Return the errors by source, and how the run ended once they are measured.
+
+        That of the steps is measured over the whole run where windows cannot see it, unless effects are found
+        missing, with which the run is to be repeated anyway. A cancelled measurement cancels the run.
+        """
+        system, integration = self.start.system, self.start.system.scene.integration
+        if not end.status.usable:
+            return requested_error(integration), end.status
+        reason = blind_windows(system, self.start.choice, self.states_of, end)
+        if not reason or _is_repeated(facts):
+            return with_tolerance(error_by_source(system, self.states_of, end.whole), integration), end.status
+        other, finer_states = self.finer(finer_run(integration, end))
+        if other.status.usable and other.samples == end.samples:
+            pair = RunPair(system, self.states_of, finer_states, end.samples)
+            steps = pair.error(reason) | {"seconds": other.taken.cpu_seconds}
+            error = error_by_source(system, self.states_of, end.whole, steps)
+            return with_tolerance(error, integration), end.status
+        error = error_by_source(system, self.states_of, end.whole)
+        steps = error["time_step"] | {"not_covered": reason}
+        ends = integration.estimate_error or other.status is RunStatus.CANCELLED
+        return error | {"time_step": steps}, other.status if ends else end.status
+
+
+def _is_repeated(facts: RunFacts) -> bool:
+    return facts.scene.on_violation == "repeat" and bool(needed_effects(effect_ledger(facts)))
 
 
 def _result(
     system: System,
     trajectory: Trajectory,
     clock: StageClock,
-    error: Json,
+    errors: _Errors | None,
     decided: Decided,
     before: EarlierRun = FIRST,
     choice: MethodChoice | None = None,
@@ -297,6 +342,11 @@ def _result(
         parts = _checked_series(system, trajectory.states.rows, trajectory.samples, checks)
         series = _joined(parts, trajectory.samples)
     facts = RunFacts.of(system, trajectory, checks, clock, decided, before)
+    error: Json = {}
+    if errors is not None:
+        with clock.stage("error_estimate"):
+            error, status = errors.measure(trajectory, facts)
+        facts, trajectory = facts.with_errors(error), replace(trajectory, status=status)
     about = documents(facts, trajectory, clock, error, before, choice)
     return RunResult(**series, **describe(facts, about))
 
@@ -325,21 +375,6 @@ def _joined(parts: Iterator[dict[str, Any]], samples: int) -> dict[str, Any]:
             whole[name][..., first:stop] = part[name]
         part, first = next(parts, {}), stop
     return whole
-
-
-def _error_estimate(
-    system: System, start: StaticSolution, trajectory: Trajectory, progress: Progress | None
-) -> Json:
-    """Errors by source; that of the steps from a finer run where it is requested."""
-    integration = system.scene.integration
-    if not trajectory.status.usable:
-        return requested_error(integration)
-    error = error_by_source(system, trajectory.states.rows, trajectory.whole)
-    if not integration.estimate_error:
-        return error
-    check = integrate(system, start, finer(integration), progress)
-    total = squared_difference(system, trajectory.q, check.q)
-    return error | measured_error(total, trajectory.samples, len(system.scene.meshes), check)
 
 
 def _no_trajectory(system: System, start: StaticSolution) -> Trajectory:
@@ -437,56 +472,41 @@ def _run_to_file(
     """Run once, `going` as `_Leg.go` does; `before` says what of the run `earlier` it repeats."""
     start = _Start.of(decided)
     system, rest, clock = start.system, start.rest, start.clock
-    integration = system.scene.integration
     folder = interrupted_run(path)
     folder.mkdir(exist_ok=True)
     with ExitStack() as stack:
-        leg = _Leg(stack, folder / "run", system, rest, integration, resume, earlier)
+        leg = _Leg(stack, folder / "run", system, rest, system.scene.integration, resume, earlier)
         before = replace(before, since=leg.since)
         end = leg.go(*going, start.trail)
         clock.book("integration", end.taken)
-        error = requested_error(integration)
-        with clock.stage("error_estimate"):
-            if end.status.usable:
-                error = error_by_source(system, leg.spool.states, end.whole)
-            if integration.estimate_error and end.status.usable:
-                check = _Leg(stack, folder / "check", system, rest, finer(integration), resume)
-                other = check.go(*going)
-                end = replace(end, status=other.status)
-                error = error | (_difference(system, leg, check, other) if other.status.usable else {})
-        ledger = _write(path, leg, end, start, error, decided, before)
-    return _MadeRun(end.status, ledger, sum(clock.seconds.values()), start.trail, leg.march.widths)
 
+        def finer(integration: Integration) -> tuple[Ending, StatesOf]:
+            check = _Leg(stack, folder / "check", system, rest, integration, resume)
+            return check.go(_of_errors(going[0]), *going[1:]), check.spool.states
 
-def _difference(system: System, leg: _Leg, check: _Leg, end: Ending) -> Json:
-    total = 0.0
-    for first, stop in blocks(end.samples):
-        total += squared_difference(
-            system, leg.spool.states(first, stop).q, check.spool.states(first, stop).q
-        )
-    return measured_error(total, end.samples, len(system.scene.meshes), end)
+        errors = _Errors(start, leg.spool.states, finer)
+        status, ledger = _write(path, leg, end, errors, decided, before)
+    return _MadeRun(status, ledger, sum(clock.seconds.values()), start.trail, leg.march.widths)
 
 
 def _write(
-    path: Path,
-    leg: _Leg,
-    end: Ending,
-    start: _Start,
-    error: Json,
-    decided: Decided,
-    before: EarlierRun,
-) -> Json:
-    """Make the series from the states, block by block, into the file; return the effect ledger."""
-    system = leg.march.system
+    path: Path, leg: _Leg, end: Ending, errors: _Errors, decided: Decided, before: EarlierRun
+) -> tuple[RunStatus, Json]:
+    """Make the series from the states, block by block, into the file; return status and effect ledger."""
+    system, start = leg.march.system, errors.start
     checks = RunChecks(system, [NeglectedChecks(decided)])
     with RunFile(path) as file:
         with start.clock.stage("outputs"):
             for series in _checked_series(system, leg.spool.states, end.samples, checks):
                 file.append(series)
         facts = RunFacts.of(system, end, checks, start.clock, decided, before)
-        about = described(facts, documents(facts, end, start.clock, error, before, start.choice))
+        with start.clock.stage("error_estimate"):
+            error, status = errors.measure(end, facts)
+        facts = facts.with_errors(error)
+        made = documents(facts, replace(end, status=status), start.clock, error, before, start.choice)
+        about = described(facts, made)
         file.publish(attributes(about))
-    return dict(about["effect_ledger"])
+    return status, dict(about["effect_ledger"])
 
 
 def _remove(folder: Path) -> None:

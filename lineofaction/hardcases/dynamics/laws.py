@@ -166,8 +166,8 @@ METHODS = ("implicit", "explicit")
 LARGEST_GROWTH = 100.0
 """What a motion may make of errors of one tolerance: beyond it, agreement to measured errors says little."""
 LARGEST_RATIO = 1.25
-"""A measured error is the difference to a run at a tenth of the tolerance. It lacks that run's own error: a
-tenth as large, or a fifth where a step level (2^(1/4), 2 in errors of order 4) rounds against it."""
+"""A measured error is 1.2 times the difference to a run at a tenth of the tolerance, for that run's error: a
+sixth as large on average, more where a step level (2^(1/4), 2 in errors of order 4) rounds against it."""
 LARGEST_MISSING = 1e-3
 """Energy that may be missing, over what was turned over: what the documentation promises."""
 

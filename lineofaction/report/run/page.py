@@ -237,6 +237,7 @@ def _accuracy(run: RunResult) -> Table:
     rows = [("status", run.status.name.lower().replace("_", " "))]
     for name, (title, unit) in _ERRORS.items():
         rows += _errors(title, unit, run.receipt.get("error", {}).get(name, {}))
+    rows += _tolerance(run.receipt.get("error", {}).get("time_step", {}))
     left_out = run.receipt.get("error", {}).get("left_out_effects", {})
     if "decibels" in left_out:
         size = number(left_out["decibels"], 2)
@@ -258,6 +259,23 @@ def _errors(title: str, unit: str, error: dict[str, Any]) -> list[tuple[str, str
     if error.get("bearing_force_orders"):
         worst = max(float(value) for value in error["bearing_force_orders"])
         rows.append((f"{title}, N at the worst mesh order of a bearing force", number(worst, 2)))
+    return rows
+
+
+def _tolerance(steps: dict[str, Any]) -> list[tuple[str, str]]:
+    """Say whether the step error meets its tolerance, and how far traces and levels are off in chaos."""
+    rows = []
+    if "met" in steps:
+        met = "met" if steps["met"] else "not met"
+        rows.append(
+            ("tolerance of the steps, nm rms", f"{number(1e9 * float(steps['tolerance']), 3)}, {met}")
+        )
+    if levels := steps.get("levels"):
+        rows.append(
+            ("chaotic motion: traces differ by, nm rms", number(1e9 * float(steps["trace_rms"]), 3)),
+        )
+        rows.append(("chaotic motion: error of the level, dB", number(float(levels["rms"]), 2)))
+        rows.append(("chaotic motion: error of the peak force, dB", number(float(levels["peak_force"]), 2)))
     return rows
 
 

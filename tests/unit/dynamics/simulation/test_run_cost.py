@@ -43,17 +43,26 @@ def test_a_run_of_few_steps_is_probed_as_a_whole(scene, monkeypatch):
 
 
 def test_a_prediction_is_linear_in_the_duration(scene, monkeypatch):
-    monkeypatch.setattr(run_cost, "_probe", lambda *_: run_cost._Probe(0.0, 3.0, 1e5, False))
+    monkeypatch.setattr(run_cost, "_probe", lambda *_: run_cost._Probe(0.0, 3.0, 1e5, False, False))
     monkeypatch.setattr(run_cost, "cpu_seconds", lambda: 0.0)
     probed, longer = probe_run(scene), probe_run(replace(scene, duration=0.4))
     once = probed.seconds(1, with_errors=True)
     assert longer.seconds(1, with_errors=True) == pytest.approx(2.0 * once)
     assert probed.seconds(7, with_errors=True) == pytest.approx(7.0 * once)
-    assert probed.seconds(1, with_errors=False) == pytest.approx(once / (1.0 + FINER * SHARE))
+    assert probed.seconds(1, with_errors=False) == pytest.approx(once / (1.0 + (1.0 + FINER) * SHARE))
+
+
+@pytest.mark.parametrize("light", [False, True])
+def test_light_damping_costs_a_finer_run(scene, monkeypatch, light):
+    monkeypatch.setattr(run_cost, "_probe", lambda *_: run_cost._Probe(0.0, 3.0, 1e5, False, light))
+    monkeypatch.setattr(run_cost, "cpu_seconds", lambda: 0.0)
+    probed = probe_run(scene)
+    ratio = probed.seconds(1, with_errors=True) / probed.seconds(1, with_errors=False)
+    assert (ratio > 2.5) == light
 
 
 def test_code_of_their_own_serves_all_runs(scene, monkeypatch):
-    monkeypatch.setattr(run_cost, "_probe", lambda *_: run_cost._Probe(0.0, 3.0, 1e5, True))
+    monkeypatch.setattr(run_cost, "_probe", lambda *_: run_cost._Probe(0.0, 3.0, 1e5, True, False))
     monkeypatch.setattr(run_cost, "cpu_seconds", lambda: 0.0)
     once, many = (probe_run(scene).seconds(runs, with_errors=True) for runs in (1, 1000))
     assert many == pytest.approx(1000.0 * once / run_cost.FASTER, rel=0.02)
