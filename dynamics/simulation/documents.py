@@ -88,7 +88,7 @@ class RunFacts:
     ) -> RunFacts:
         """Gather them; `before` is the run that this one repeats."""
         with clock.stage("influence_estimates"):
-            influences = _known_influences(decided, system, end)
+            influences = _known_influences(decided, system)
         clock.book("influence_estimates", decided.taken)
         audit = None
         if system.scene.outputs.energy_audit:
@@ -159,6 +159,7 @@ def _resolved_case(system: System) -> Json:
         "gravity": list(scene.gravity),
         "effects": dict(scene.effects),
         "tolerance": scene.tolerance,
+        "level_tolerance": scene.level_tolerance,
         "outputs": replace(scene.outputs, sample_rate=system.sampling.rate),
         "integration": scene.integration,
         "freedoms": list(system.freedoms.name),
@@ -309,8 +310,6 @@ def _carried(
 
 ERROR_CHECK_FACTOR = 0.1
 IMPLICIT_STAGES_PER_STEP = 5
-LEAST_WORK = 500_000
-"""Steps times freedoms of a run whose ledger has estimates that no tolerance requests."""
 
 
 def documents(
@@ -371,11 +370,10 @@ def undescribed(run: RunFacts, about: dict[str, Any]) -> dict[str, Any]:
     return about if held else about | {"effect_ledger": _effect_ledger(run)}
 
 
-def _known_influences(decided: Decided, system: System, end: Ending) -> Mapping[str, Influence]:
-    """Return the influence of effects: as decided by, else estimated where the run is long enough."""
+def _known_influences(decided: Decided, system: System) -> Mapping[str, Influence]:
+    """Return the influence of effects as decided by, else estimated where the receipt is to have it."""
     scene = decided.scene
-    work = int(end.count[Count.ACCEPTED]) * len(system.freedoms.name)
-    if decided.influences or scene.outputs.receipt != "full" or work < LEAST_WORK:
+    if decided.influences or scene.outputs.receipt != "full":
         return decided.influences
     return estimate_influences(scene, system=system)
 
