@@ -51,7 +51,7 @@ def _propagated(scene: Scene) -> float:
         run = simulate(scene)
         integration.append(float(run.receipt["seconds"]["integration"]))
         force, began = run_seat_forces(run, housing), time.process_time()
-        for _moved in motion_pieces(housing, run.time, force, np.eye(3, len(matrices.mass))):
+        for _moved in motion_pieces(housing, run.time, force, np.eye(3, len(matrices.stiffness))):
             pass
         propagation.append(time.process_time() - began)
     return 1.0 + min(propagation) / min(integration)

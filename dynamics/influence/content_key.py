@@ -26,7 +26,7 @@ def content_key(scene: Scene) -> bytes | None:
     """
     digest = sha256()
     read = {name: part for name, part in vars(scene).items() if name not in UNREAD}
-    sampling = (scene.outputs.sample_rate, scene.outputs.mesh_orders)
+    sampling = (scene.outputs.sample_rate, scene.outputs.mesh_orders, scene.outputs.band)
     try:
         _feed(digest, (read, sampling))
     except TypeError:

@@ -321,7 +321,8 @@ class Scene(StatedLaws):
         Change of levels, dB, that neglected automatic effects may cause in a run, where `tolerance` is None:
         of what the scene is computed for, by default of bearing forces and transmission errors.
     highest_frequency : float or None
-        Hz to which flexible shafts are resolved; None: half the output rate.
+        Hz to which flexible shafts are resolved; None: half the rate that all wanted orders need, up to 2.56
+        times the band of the output.
     temperatures : Temperatures or None
         Of the housing; shafts, gears and rings of rolling bearings then have their own. None: as drawn.
     quantity : LevelQuantity or None

@@ -43,6 +43,7 @@ from dynamics.results.histories import checked_series, filtered, histories, unfi
 from dynamics.results.run_checks import RunChecks
 from dynamics.scene import Integration, Scene
 from dynamics.shafts import ElasticShaft
+from dynamics.simulation.linear_orders import linear_orders
 from dynamics.simulation.violations import FIRST, EarlierRun
 from dynamics.types import FloatArray, Json
 from model_studies.stage_clock import StageClock
@@ -356,12 +357,17 @@ def described(run: RunFacts, about: dict[str, Any]) -> dict[str, Any]:
     left_out = left_out_effects(run.system.ledger, run.influences)
     error = receipt["error"] | ({"left_out_effects": left_out} if left_out else {})
     return about | {
-        "receipt": receipt | {"error": error} | _bearings_at_rest(run.system),
+        "receipt": receipt | {"error": error} | _bearings_at_rest(run.system) | _orders_above(run),
         "effect_ledger": _effect_ledger(run),
         "case": _resolved_case(run.system),
         "warnings": [finding.to_json() for finding in scene_findings(run.scene)],
         "modes": _modes_of_run(run.system),
     }
+
+
+def _orders_above(run: RunFacts) -> Json:
+    """Return the orders above the band of the output where the receipt is to have all."""
+    return linear_orders(run.system) if run.scene.outputs.receipt == "full" else {}
 
 
 def undescribed(run: RunFacts, about: dict[str, Any]) -> dict[str, Any]:
