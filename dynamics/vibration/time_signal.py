@@ -225,14 +225,19 @@ def motion_pieces(
     held = natural > LOOSE * natural.max()
     rest = np.divide(push @ forces[0], natural**2, out=np.zeros(natural.size), where=held)
     state = np.concatenate([rest * propagator.scale, np.zeros(natural.size)])
+    of_amplitudes, of_rates = seen / propagator.scale[:, None], seen / step
     for first in range(0, times.size, PIECE):
         states, state = propagator.advance(_derivatives(forces, first), state)
-        amplitude = states[:, : natural.size] / propagator.scale
-        rate = states[:, natural.size :] / step
-        if quantity is MotionQuantity.ACCELERATION:
-            amplitude = forces[first : first + PIECE] @ push.T - rate @ damping.T - amplitude * natural**2
-        chosen = rate if quantity is MotionQuantity.VELOCITY else amplitude
-        yield chosen @ seen
+        amplitudes, rates = states[:, : natural.size], states[:, natural.size :]
+        if quantity is MotionQuantity.DISPLACEMENT:
+            yield amplitudes @ of_amplitudes
+        elif quantity is MotionQuantity.VELOCITY:
+            yield rates @ of_rates
+        else:
+            pushed = forces[first : first + PIECE] @ (push.T @ seen)
+            yield (
+                pushed - rates @ (damping.T @ of_rates) - amplitudes @ (natural[:, None] ** 2 * of_amplitudes)
+            )
 
 
 def _checked_step(time: FloatArray, force: FloatArray, housing: ReducedHousing) -> float:
