@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -138,7 +139,7 @@ class Influence:
 
 
 def estimate_influences(
-    scene: Scene, settled: float = 0.0, system: System | None = None
+    scene: Scene, settled: float = 0.0, system: System | None = None, free: bool = False
 ) -> dict[str, Influence]:
     """Estimate the influence of each effect: toggle it in linear theory, all others as they are.
 
@@ -148,6 +149,8 @@ def estimate_influences(
         Part of the run from which on it is looked at, 0..1.
     system : System, optional
         The scene assembled.
+    free : bool
+        Whether effects that the scene chooses are left out: those left to "auto" are what is decided.
 
     Returns
     -------
@@ -160,15 +163,16 @@ def estimate_influences(
     -----
     The response is that of `parametric_response`: flanks that part, impacts and transients are left out.
     """
-    key = content_key(scene), settled
+    key = content_key(scene), settled, free
     known = None if key[0] is None else _KNOWN.get(key)
     if known is None:
-        known = _estimated(scene, settled, system)
+        known = _estimated(scene, settled, system, free)
         _remember(key, known)
     return dict(known)
 
 
-_KNOWN: dict[tuple[bytes | None, float], dict[str, Influence]] = {}
+_Key = tuple[bytes | None, float, bool]
+_KNOWN: dict[_Key, dict[str, Influence]] = {}
 """Sizes by content of the scene, the last ones: a scene is often run again with other steps or outputs."""
 KNOWN = 64
 
@@ -178,21 +182,21 @@ def forget_sizes() -> None:
     _KNOWN.clear()
 
 
-def _remember(key: tuple[bytes | None, float], sizes: dict[str, Influence]) -> None:
+def _remember(key: _Key, sizes: dict[str, Influence]) -> None:
     if key[0] is not None:
         _KNOWN[key] = sizes
         if len(_KNOWN) > KNOWN:
             _KNOWN.pop(next(iter(_KNOWN)), None)
 
 
-def _estimated(scene: Scene, settled: float, system: System | None) -> dict[str, Influence]:
+def _estimated(scene: Scene, settled: float, system: System | None, free: bool) -> dict[str, Influence]:
     """Return `estimate_influences` of a scene that is not known."""
     system = assemble(scene) if system is None else system
     try:
         conditions = operating_conditions(scene, leading_law(system), settled)
     except (InputError, SolveError):
         return {}
-    return _influences(scene, system, conditions)
+    return _influences(scene, system, conditions, free)
 
 
 def response_influences(scene: Scene, speed: FloatArray, time: float = 0.0) -> dict[str, Influence]:
@@ -239,7 +243,7 @@ UNSEEN = 0.01
 
 
 def _influences(
-    scene: Scene, system: System, conditions: Sequence[OperatingCondition]
+    scene: Scene, system: System, conditions: Sequence[OperatingCondition], free: bool = False
 ) -> dict[str, Influence]:
     screened = len(scene.meshes) >= SCREENED
     try:
@@ -249,6 +253,8 @@ def _influences(
         return {}
     influences = {}
     for name, on in _switchable(system).items():
+        if free and scene.effects.get(name, "auto") != "auto":
+            continue
         try:
             other = assemble(replace(scene, effects={**scene.effects, name: "off" if on else "on"}))
             influence = None
@@ -435,7 +441,7 @@ class Decided:
 
 
 def decide_effects(
-    scene: Scene, estimates: Callable[[Scene], Mapping[str, Influence]] = estimate_influences
+    scene: Scene, estimates: Callable[[Scene], Mapping[str, Influence]] | None = None
 ) -> Decided:
     """Decide the effects that are left to "auto" by the scene's tolerance; without one, as the scene calls.
 
@@ -443,12 +449,16 @@ def decide_effects(
     levels, the smallest first. They are of the amplitudes of the quantity that the scene is computed for;
     where it states none, of mean and peak-to-peak transmission error and of the largest bearing force too. An
     effect that the scene does not call for is on if its influence by itself exceeds that tenth, or the whole
-    tolerance of levels.
+    tolerance of levels. By default `estimate_influences`, for levels and a minimal receipt of what
+    is decided alone.
     """
     allowance = _Allowance.of(scene)
     if allowance is None:
         return Decided(scene)
     began = TimeTaken.now()
+    if estimates is None:
+        lean = scene.tolerance is None and scene.outputs.receipt != "full"
+        estimates = partial(estimate_influences, free=lean)
     influences = estimates(scene)
     free = {
         name: influence for name, influence in influences.items() if scene.effects.get(name, "auto") == "auto"

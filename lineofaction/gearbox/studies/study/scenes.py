@@ -6,7 +6,7 @@ import difflib
 import json
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
@@ -153,18 +153,13 @@ class VariedScene:
     home: str
 
     def scene(self, values: Mapping[str, float]) -> Scene:
-        """Return the scene at values of the factors; raises `LeftOut` where there is none.
-
-        Sizes of effects would take longer than a short run: without a relative tolerance of the scene its
-        effects are as each point calls for them.
-        """
+        """Return the scene at values of the factors; raises `LeftOut` where there is none."""
         try:
             inputs = self.inputs(values)
             solids = inputs.housings, inputs.shafts, inputs.bushings, inputs.rolling_bearings
             databases = self._databases_of(inputs, self.expensive(values))
             housings = self._kept(("reduced housings",), solids, lambda: reduced_in(inputs, Path(self.home)))
-            made = with_quantity(dynamic_scene(inputs, databases, housings), inputs, housings)
-            return replace(made, level_tolerance=None)
+            return with_quantity(dynamic_scene(inputs, databases, housings), inputs, housings)
         except (ServiceError, FeContactError) as error:
             raise LeftOut(str(error)) from error
 

@@ -98,6 +98,15 @@ def test_sizes_are_computed_once_for_one_content(monkeypatch: pytest.MonkeyPatch
     assert count[0] > before
 
 
+def test_a_minimal_receipt_has_sizes_of_what_is_decided_alone() -> None:
+    """And decides alike: effects that the scene chooses take no estimate."""
+    lean = helical(level_tolerance=0.1, effects={"tilt": "off"})
+    full = replace(lean, outputs=Outputs(energy_audit=False))
+    few, all_sizes = (decide_effects(scene) for scene in (lean, full))
+    assert set(all_sizes.influences) - set(few.influences) == {"tilt"}
+    assert few.scene.effects == all_sizes.scene.effects
+
+
 def test_every_field_that_sizes_read_is_part_of_the_key() -> None:
     scene = helical()
     table = scene.meshes[0].table
