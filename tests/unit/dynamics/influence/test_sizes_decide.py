@@ -10,17 +10,19 @@ from flexible_scenes import flexible_pair
 from geared_scenes import RPM, gear_pair_scene, square_wave_table, with_gear
 from planetary_scenes import driven_scene, published_set
 
+from dynamics.ablation import ablate
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.influence import decide_effects, estimate_influences, neglected_check
 from dynamics.influence.content_key import content_key
+from dynamics.influence.neglected_check import Decided
 from dynamics.linearize import partial_fractions
 from dynamics.linearize.harmonic_response import parametric_response
 from dynamics.linearize.steady_vibration import excited
 from dynamics.loads import TimeLaw
 from dynamics.scene import Integration, Outputs, Scene
 from dynamics.shafts import BeamSection
-from dynamics.simulation import simulate
+from dynamics.simulation import simulate, to_file
 
 QUICK = Outputs(energy_audit=False, receipt="minimal")
 
@@ -105,6 +107,20 @@ def test_a_minimal_receipt_has_sizes_of_what_is_decided_alone() -> None:
     few, all_sizes = (decide_effects(scene) for scene in (lean, full))
     assert set(all_sizes.influences) - set(few.influences) == {"tilt"}
     assert few.scene.effects == all_sizes.scene.effects
+
+
+def test_an_ablation_decides_once_for_the_scene_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Toggled scenes decide nothing anew: each differs from the scene by one effect."""
+    decided: list[float | None] = []
+
+    def recorded(scene: Scene) -> Decided:
+        decided.append(scene.level_tolerance)
+        return decide_effects(scene)
+
+    monkeypatch.setattr(to_file, "decide_effects", recorded)
+    found = ablate(helical(level_tolerance=0.1), only=["axial", "lateral"])
+    assert {entry.name: entry.on for entry in found.effects} == {"axial": False, "lateral": True}
+    assert decided and set(decided) == {None}
 
 
 def test_every_field_that_sizes_read_is_part_of_the_key() -> None:
