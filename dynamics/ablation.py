@@ -186,7 +186,7 @@ def ablate(
     scene.require_meshes()
     scene = decide_effects(scene).scene
     scene = assemble(scene).resolved(scene)  # one output grid for all runs
-    scene = replace(scene, on_violation="report", tolerance=None)
+    scene = replace(scene, on_violation="report", tolerance=None, level_tolerance=None)
     result, seconds = _timed(scene)
     quantity = scene.quantity or BearingForces()
     nominal = _run_figures(result, seconds, quantity)

@@ -137,6 +137,41 @@ class _SparseRows(NamedTuple):
     weight: FloatArray
 
 
+class RowRuns(NamedTuple):
+    """Runs of neighboring columns in the entries of a matrix, which products take in vector registers.
+
+    Attributes
+    ----------
+    first : (rows + 1,) int array
+        First run of each row, and the number of runs.
+    entry, column : (runs,) int arrays
+        First entry of each run, and its column.
+    length : (runs,) int array
+    """
+
+    first: IntArray
+    entry: IntArray
+    column: IntArray
+    length: IntArray
+
+
+def _row_runs(rows: _SparseRows) -> RowRuns:
+    """Find the runs of a matrix."""
+    row = np.repeat(np.arange(rows.first.size - 1), np.diff(rows.first))
+    entry = np.arange(rows.column.size)
+    begins = np.ones(rows.column.size, dtype=bool)
+    begins[1:] = (np.diff(rows.column) != 1) | (np.diff(row) != 0)
+    starts = entry[begins]
+    length = np.diff(np.append(starts, entry.size))
+    first = np.searchsorted(row[begins], np.arange(rows.first.size))
+    return RowRuns(
+        first.astype(np.int64),
+        starts.astype(np.int64),
+        rows.column[starts].astype(np.int64),
+        length.astype(np.int64),
+    )
+
+
 class SparseMatrices(NamedTuple):
     """What the compiled loops multiply with.
 
@@ -151,6 +186,8 @@ class SparseMatrices(NamedTuple):
     coupling : SparseRows
         Where the inverse of any sum of mass, damping and stiffness has entries: two freedoms that a chain of
         entries joins. Weights are 1.
+    coupling_runs, resistance_runs : RowRuns
+        Of `coupling`, and of `damping` and `stiffness`.
     modal : ModalFreedoms
         The last freedoms, where each of them is alone in the first two matrices.
     """
@@ -162,6 +199,8 @@ class SparseMatrices(NamedTuple):
     bodies: _SparseRows
     mobility: _SparseRows
     coupling: _SparseRows
+    coupling_runs: RowRuns
+    resistance_runs: RowRuns
     modal: ModalFreedoms
 
 
@@ -188,14 +227,17 @@ def sparse_matrices(
     mobility = np.where(_chained(mass != 0.0), np.linalg.inv(mass), 0.0)
     either = (damping != 0.0) | (stiffness != 0.0)
     modal = _modal_freedoms(mass, damping, stiffness, direction, np.concatenate([turn, *others]))
+    joined, resisting = _sparse_rows(coupling.astype(float)), _sparse_rows(damping, either)
     return SparseMatrices(
-        damping=_sparse_rows(damping, either),
+        damping=resisting,
         stiffness=_sparse_rows(stiffness, either),
         direction=_sparse_rows(direction),
         turn=_sparse_rows(turn),
         bodies=_sparse_rows(direction[:, : modal.first]),
         mobility=_sparse_rows(mobility),
-        coupling=_sparse_rows(coupling.astype(float)),
+        coupling=joined,
+        coupling_runs=_row_runs(joined),
+        resistance_runs=_row_runs(resisting),
         modal=modal,
     )
 
@@ -248,6 +290,28 @@ def subtract_resistance(sparse: SparseMatrices, q: FloatArray, v: FloatArray, fo
     for i in range(sparse.modal.first):
         damped, held = row_products(sparse.damping, i, damping, v, stiffness, q)
         force[i] -= damped + held
+    _subtract_modal_resistance(sparse.modal, q, v, force)
+
+
+@inner_sums
+def run_product(runs: RowRuns, weight: FloatArray, row: int, vector: FloatArray) -> float:
+    """Return `row_product` by runs, its sums in any order."""
+    total = 0.0
+    for run in range(np.uint64(runs.first[row]), np.uint64(runs.first[row + 1])):
+        entry, column = np.uint64(runs.entry[run]), np.uint64(runs.column[run])
+        for k in range(np.uint64(runs.length[run])):
+            total += weight[entry + k] * vector[column + k]
+    return total
+
+
+@inner
+def subtract_resistance_by_runs(
+    sparse: SparseMatrices, q: FloatArray, v: FloatArray, force: FloatArray
+) -> None:
+    """Subtract what `subtract_resistance` does, the sums of a row in any order."""
+    damping, stiffness, runs = sparse.damping.weight, sparse.stiffness.weight, sparse.resistance_runs
+    for i in range(sparse.modal.first):
+        force[i] -= run_product(runs, damping, i, v) + run_product(runs, stiffness, i, q)
     _subtract_modal_resistance(sparse.modal, q, v, force)
 
 

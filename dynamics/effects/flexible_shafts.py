@@ -18,7 +18,7 @@ from dynamics.mechanism.connections import gather_connections, seated
 from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.line_of_action import approach, misalignment_gradient
 from dynamics.mechanism.mechanism import Mechanism
-from dynamics.mechanism.sampling import order_rate
+from dynamics.mechanism.sampling import shaft_resolution
 from dynamics.scene.scene import Scene
 from dynamics.shafts import Disc, ElasticShaft, PointOfApplication, elastic_shaft
 from dynamics.shafts.shaft import OnShaft, on_length
@@ -49,11 +49,10 @@ def _elastic_of(mechanism: Mechanism, index: int) -> ElasticShaft:
     """Return the elastic coordinates of the shaft `index`, reduced to where forces act on it.
 
     It bends where bearings hold it across and in tilt, and neither is switched off; it stretches where it may
-    move along its axis. It is resolved to the scene's highest frequency, else to half the rate of the output.
+    move along its axis. It is resolved to the scene's highest frequency, else to `shaft_resolution`.
     """
     scene, rotor = mechanism.scene, mechanism.rotors[index]
     shaft = rotor.shaft
-    rate = scene.outputs.sample_rate or order_rate(scene, mechanism.kinematics)
     held = rotor.radial_stiffness > 0.0 and rotor.tilt_stiffness > 0.0
     bends = held and {"x", "tilt_x"} <= mechanism.additions.possible
     drive = next((d for d in scene.drives if d.shaft == shaft.name and d.rigid), None)
@@ -62,7 +61,7 @@ def _elastic_of(mechanism: Mechanism, index: int) -> ElasticShaft:
         shaft.sections,
         discs,
         _points_of_application(mechanism, rotor, bends, _stretches(mechanism, rotor)),
-        scene.highest_frequency or 0.5 * rate,
+        scene.highest_frequency or shaft_resolution(scene, mechanism.kinematics),
         shaft.damping_ratio,
         None if drive is None else rotor.on_shaft(drive.position),
     )

@@ -88,3 +88,13 @@ def decibels(size: float, left: float) -> float:
     """Return the level of an amplitude `left` over `size`, dB, at most `MOST` in size; 0 of silence."""
     least = 10.0 ** (-MOST / 20.0) * max(size, left)
     return 20.0 * math.log10(max(left, least) / max(size, least)) if least else 0.0
+
+
+def in_decibels(relative: float) -> float:
+    """Return the level of an amplitude that grows by a `relative` part of itself, dB, at most `MOST`."""
+    return min(20.0 * math.log10(1.0 + relative), MOST)
+
+
+def in_relative(decibels: float) -> float:
+    """Return the relative change of an amplitude whose level rises by so many decibels."""
+    return float(10.0 ** (decibels / 20.0) - 1.0)

@@ -157,8 +157,12 @@ class LinearFigures:
         return np.asarray(np.sqrt(np.sum(self.bearing_orders**2, axis=1) + self.bearing_loads**2))
 
 
-def linear_figures(system: System, conditions: Sequence[OperatingCondition]) -> LinearFigures:
+def linear_figures(
+    system: System, conditions: Sequence[OperatingCondition], varying: bool = True
+) -> LinearFigures:
     """Return the figures of `system` over the operating conditions of its run.
+
+    With stiffness that varies with position, or with its mean.
 
     Raises
     ------
@@ -176,7 +180,8 @@ def linear_figures(system: System, conditions: Sequence[OperatingCondition]) -> 
     for some in conditions:
         at = excited(system, some.time, some.orders, POSITIONS)
         condition = some.passing(_resonances(at)) if np.any(some.rate) else some
-        harmonics, shift = parametric_response(at, condition.speed, condition.rate, some.orders, rotating)
+        motion = condition.speed, condition.rate, some.orders, rotating
+        harmonics, shift = parametric_response(at, *motion, varying=varying)
         static = [float(np.mean(cycle.static_error)) for cycle in at.cycles]
         rest = np.array(static)[:, None] + shift
         least, most = extremes(harmonics.dynamic_transmission_error, harmonics.order)

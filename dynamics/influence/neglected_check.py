@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +13,15 @@ from bounds import engineering
 from dynamics.assembly.assemble import System, assemble
 from dynamics.effects import EFFECTS
 from dynamics.errors import InputError, SolveError
-from dynamics.influence.level_change import ROUNDING, BearingForces, LevelChange, level_change
+from dynamics.influence.content_key import content_key
+from dynamics.influence.level_change import (
+    ROUNDING,
+    BearingForces,
+    LevelChange,
+    in_decibels,
+    in_relative,
+    level_change,
+)
 from dynamics.influence.linear_figures import (
     COMPARED,
     FEWER,
@@ -71,6 +80,8 @@ class Influence:
         Whether the level alone decides on the effect.
     beyond : str
         Why a run may change by more, in words; empty where linear theory holds.
+    parts : bool
+        Whether flanks part, with or without the effect.
     """
 
     mean: FloatArray = field(metadata=in_unit("m", "curve"))
@@ -89,6 +100,7 @@ class Influence:
     level: LevelChange = field(default_factory=LevelChange)
     decides: bool = False
     beyond: str = ""
+    parts: bool = False
 
     @property
     def largest(self) -> float:
@@ -96,6 +108,12 @@ class Influence:
         if self.decides:
             return self.level.relative
         return max(self.relative_mean, self.relative_peak_to_peak, self.relative_bearing_force)
+
+    @property
+    def decibels(self) -> float:
+        """The largest change, dB: of the level and, unless it alone decides, of what `largest` compares."""
+        level = abs(self.level.decibels) if self.level.relative > ROUNDING else 0.0
+        return level if self.decides else max(level, in_decibels(self.largest))
 
     @property
     def words(self) -> str:
@@ -115,13 +133,13 @@ class Influence:
             value, unit = getattr(self, each.name), each.metadata.get("unit")
             if isinstance(value, LevelChange):
                 facts[each.name] = asdict(value)
-            elif each.name != "on" and (not isinstance(value, float) or np.isfinite(value)):
+            elif each.name not in ("on", "parts") and (not isinstance(value, float) or np.isfinite(value)):
                 facts[f"{each.name}_{unit}" if unit else each.name] = np.asarray(value).tolist()
         return facts
 
 
 def estimate_influences(
-    scene: Scene, settled: float = 0.0, system: System | None = None
+    scene: Scene, settled: float = 0.0, system: System | None = None, free: bool = False
 ) -> dict[str, Influence]:
     """Estimate the influence of each effect: toggle it in linear theory, all others as they are.
 
@@ -131,6 +149,8 @@ def estimate_influences(
         Part of the run from which on it is looked at, 0..1.
     system : System, optional
         The scene assembled.
+    free : bool
+        Whether effects that the scene chooses are left out: those left to "auto" are what is decided.
 
     Returns
     -------
@@ -143,12 +163,40 @@ def estimate_influences(
     -----
     The response is that of `parametric_response`: flanks that part, impacts and transients are left out.
     """
+    key = content_key(scene), settled, free
+    known = None if key[0] is None else _KNOWN.get(key)
+    if known is None:
+        known = _estimated(scene, settled, system, free)
+        _remember(key, known)
+    return dict(known)
+
+
+_Key = tuple[bytes | None, float, bool]
+_KNOWN: dict[_Key, dict[str, Influence]] = {}
+"""Sizes by content of the scene, the last ones: a scene is often run again with other steps or outputs."""
+KNOWN = 64
+
+
+def forget_sizes() -> None:
+    """Forget all sizes, such as to measure what they take."""
+    _KNOWN.clear()
+
+
+def _remember(key: _Key, sizes: dict[str, Influence]) -> None:
+    if key[0] is not None:
+        _KNOWN[key] = sizes
+        if len(_KNOWN) > KNOWN:
+            _KNOWN.pop(next(iter(_KNOWN)), None)
+
+
+def _estimated(scene: Scene, settled: float, system: System | None, free: bool) -> dict[str, Influence]:
+    """Return `estimate_influences` of a scene that is not known."""
     system = assemble(scene) if system is None else system
     try:
         conditions = operating_conditions(scene, leading_law(system), settled)
     except (InputError, SolveError):
         return {}
-    return _influences(scene, system, conditions)
+    return _influences(scene, system, conditions, free)
 
 
 def response_influences(scene: Scene, speed: FloatArray, time: float = 0.0) -> dict[str, Influence]:
@@ -187,24 +235,38 @@ def response_cost(system: System, speed: FloatArray, orders: int) -> ResponseCos
     return ResponseCost(each, _BEGUN + fewer * min(speed.size, SPEEDS), 1 + switched)
 
 
+SCREENED = 3
+"""Meshes from which on effects are looked at with the mean stiffness first: one that varies takes ten times
+as long for six meshes."""
+UNSEEN = 0.01
+"""dB; an effect that changes no more with the mean stiffness has that size."""
+
+
 def _influences(
-    scene: Scene, system: System, conditions: Sequence[OperatingCondition]
+    scene: Scene, system: System, conditions: Sequence[OperatingCondition], free: bool = False
 ) -> dict[str, Influence]:
+    screened = len(scene.meshes) >= SCREENED
     try:
         whole = linear_figures(system, conditions)
+        mean = linear_figures(system, conditions, varying=False) if screened else whole
     except (InputError, SolveError):
         return {}
     influences = {}
     for name, on in _switchable(system).items():
+        if free and scene.effects.get(name, "auto") != "auto":
+            continue
         try:
             other = assemble(replace(scene, effects={**scene.effects, name: "off" if on else "on"}))
-            alike = _same((other.arrays, other.bearing_map), (system.arrays, system.bearing_map))
-            figures = whole if alike else linear_figures(other, conditions)
+            influence = None
+            if _same((other.arrays, other.bearing_map), (system.arrays, system.bearing_map)):
+                influence = _influence_of(system, name, on, whole, whole)
+            elif screened:
+                influence = _influence_of(system, name, on, mean, linear_figures(other, conditions, False))
+            if influence is None or influence.decibels > UNSEEN:
+                influence = _influence_of(system, name, on, whole, linear_figures(other, conditions))
         except (InputError, SolveError):
             continue
-        both = (whole, figures) if on else (figures, whole)
-        beyond = _beyond(system, name in LINEAR, *both)
-        influences[name] = replace(_influence_of(system, on, *both), beyond=beyond)
+        influences[name] = influence
     return influences
 
 
@@ -226,12 +288,14 @@ def _switchable(system: System) -> dict[str, bool]:
     return states
 
 
-def _influence_of(system: System, on: bool, whole: LinearFigures, without: LinearFigures) -> Influence:
-    """Return what a system loses without an effect: `whole` are the figures with it.
+def _influence_of(system: System, name: str, on: bool, own: LinearFigures, other: LinearFigures) -> Influence:
+    """Return what a system loses without an effect: `own` are its figures, `other` those with it toggled.
 
     Flanks that linear theory pulls apart by more than the backlash would go on that far without a coast
     flank.
     """
+    whole, without = (own, other) if on else (other, own)
+    parts = any(np.any(figures.parted > 0.0) for figures in (own, other))
     mean, ripple = without.mean - whole.mean, without.peak_to_peak - whole.peak_to_peak
     force = without.bearing_force - whole.bearing_force
     orders = without.orders - whole.orders
@@ -256,6 +320,8 @@ def _influence_of(system: System, on: bool, whole: LinearFigures, without: Linea
         relative_bearing_orders=_by_order(bearing_orders, whole.bearing_orders),
         level=level_change(whole.lines, without.lines, quantity.name, quantity.unit),
         decides=system.scene.quantity is not None,
+        beyond=_beyond(system, name in LINEAR, parts),
+        parts=parts,
     )
 
 
@@ -263,9 +329,12 @@ LINEAR = frozenset(effect.name for effect in EFFECTS if effect.linear)
 """Effects whose size linear theory estimates."""
 
 
-def _beyond(system: System, linear: bool, whole: LinearFigures, without: LinearFigures) -> str:
-    """Return what linear theory leaves out of a change, in words: of an effect that is `linear` or not."""
-    if max(np.max(whole.parted, initial=0.0), np.max(without.parted, initial=0.0)) > 0.0:
+def _beyond(system: System, linear: bool, parts: bool) -> str:
+    """Return what linear theory leaves out of a change, in words: of an effect that is `linear` or not.
+
+    `parts`: whether flanks part.
+    """
+    if parts:
         return "flanks part, which linear theory leaves out"
     if system.bearings and not linear:
         return "its size is by the tangents of bearings at the load"
@@ -293,8 +362,47 @@ def _largest(change: FloatArray, value: FloatArray | float) -> float:
 
 
 SHARE = 0.1
-"""Of the tolerance, for all neglected effects together: estimates may be wrong by a factor of two and
+"""Of a relative tolerance, for all neglected effects together: estimates may be wrong by a factor of two and
 more, and neglected effects must stay invisible."""
+LEVEL_SHARE = 0.5
+"""Of a tolerance of levels likewise: 97 of 100 changes of a level are estimated within a factor of two."""
+
+
+@dataclass(frozen=True)
+class _Allowance:
+    """What a tolerance allows effects to change, in the unit of `size`.
+
+    Attributes
+    ----------
+    words : str
+        The tolerance.
+    alone : float
+        Change from which on an effect is on that the scene does not call for.
+    together : float
+        What all neglected effects may change in sum.
+    size : callable
+        Change by an effect.
+    parted : bool
+        Whether effects are neglected too where flanks part, of which linear theory knows nothing.
+    """
+
+    words: str
+    alone: float
+    together: float
+    size: Callable[[Influence], float]
+    parted: bool
+
+    @classmethod
+    def of(cls, scene: Scene) -> _Allowance | None:
+        """Return that of the tolerance of a scene, a relative one first; None: it has none."""
+        if scene.tolerance is not None:
+            allowed = SHARE * scene.tolerance
+            return cls(f"{scene.tolerance:g}", allowed, allowed, lambda influence: influence.largest, True)
+        if scene.level_tolerance is None:
+            return None
+        most = scene.level_tolerance
+        words = f"{most:g} dB"
+        return cls(words, most, LEVEL_SHARE * most, lambda influence: influence.decibels, False)
 
 
 @dataclass(frozen=True)
@@ -319,6 +427,13 @@ class Decided:
     taken: TimeTaken = field(default_factory=TimeTaken)
 
     @property
+    def allowed(self) -> float:
+        """Relative change that the tolerance of the scene allows."""
+        if self.scene.tolerance is not None:
+            return self.scene.tolerance
+        return in_relative(self.scene.level_tolerance or 0.0)
+
+    @property
     def neglected(self) -> dict[str, Influence]:
         """Effects that the scene calls for and are off, with their influence."""
         off = [name for name in self.automatic if self.scene.effects[name] == "off"]
@@ -326,39 +441,51 @@ class Decided:
 
 
 def decide_effects(
-    scene: Scene, estimates: Callable[[Scene], Mapping[str, Influence]] = estimate_influences
+    scene: Scene, estimates: Callable[[Scene], Mapping[str, Influence]] | None = None
 ) -> Decided:
     """Decide the effects that are left to "auto" by the scene's tolerance; without one, as the scene calls.
 
-    Influences may sum up to a tenth of the tolerance in neglected effects, the smallest first. They are
-    relative: of the amplitudes of the quantity that the scene is computed for; where it states none, of mean
-    and peak-to-peak transmission error and of the largest bearing force. An effect that the scene does not
-    call for is on if its influence exceeds that by itself.
+    Influences may sum up to a tenth of a relative tolerance in neglected effects, to half of a tolerance of
+    levels, the smallest first. They are of the amplitudes of the quantity that the scene is computed for;
+    where it states none, of mean and peak-to-peak transmission error and of the largest bearing force too. An
+    effect that the scene does not call for is on if its influence by itself exceeds that tenth, or the whole
+    tolerance of levels. By default `estimate_influences`, for levels and a minimal receipt of what
+    is decided alone.
     """
-    if scene.tolerance is None:
+    allowance = _Allowance.of(scene)
+    if allowance is None:
         return Decided(scene)
     began = TimeTaken.now()
+    if estimates is None:
+        lean = scene.tolerance is None and scene.outputs.receipt != "full"
+        estimates = partial(estimate_influences, free=lean)
     influences = estimates(scene)
-    allowed = SHARE * scene.tolerance
     free = {
         name: influence for name, influence in influences.items() if scene.effects.get(name, "auto") == "auto"
     }
     automatic = {
-        name: f"on for the tolerance of {scene.tolerance:g}: influence {influence.words}"
+        name: f"on for the tolerance of {allowance.words}: influence {influence.words}"
         for name, influence in free.items()
-        if not influence.on and influence.largest > allowed
+        if not influence.on and allowance.size(influence) > allowance.alone
     }
-    choices, total = dict.fromkeys(automatic, "on"), 0.0
-    candidates = {name: influence for name, influence in free.items() if influence.on and name in LINEAR}
-    for name, influence in sorted(candidates.items(), key=lambda item: item[1].largest):
-        total += influence.largest
-        if total <= allowed:
-            choices[name] = "off"
-            automatic[name] = (
-                f"neglected for the tolerance of {scene.tolerance:g}: influence {influence.words}"
-            )
+    choices = dict.fromkeys(automatic, "on")
+    for name in _neglected(free, allowance):
+        choices[name] = "off"
+        automatic[name] = f"neglected for the tolerance of {allowance.words}: influence {free[name].words}"
     chosen = replace(scene, effects={**scene.effects, **choices})
     return Decided(chosen, automatic, influences, TimeTaken.now().since(began))
+
+
+def _neglected(free: Mapping[str, Influence], allowance: _Allowance) -> list[str]:
+    """Return the effects on that a tolerance allows to neglect together, the smallest first."""
+    able = {
+        name: allowance.size(influence)
+        for name, influence in free.items()
+        if influence.on and name in LINEAR and (allowance.parted or not influence.parts)
+    }
+    order = sorted(able, key=lambda name: able[name])
+    total = np.cumsum([able[name] for name in order])
+    return [name for name, changed in zip(order, total, strict=True) if changed <= allowance.together]
 
 
 ANY_PART = ""
@@ -405,6 +532,6 @@ class NeglectedChecks:
         reason = f"estimated at {engineering(100.0 * change, 2)} % of {size}"
         if self._parted:
             reason = "flanks lifted off: the linear theory that neglected it is invalid"
-        holds = not self._parted and change <= (self._decided.scene.tolerance or 0.0)
+        holds = not self._parted and change <= self._decided.allowed
         assumption = "neglected effects are negligible"
         return Check(name, assumption, ANY_PART, holds, reason, {"change": change})

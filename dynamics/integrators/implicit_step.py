@@ -9,9 +9,10 @@ import numpy as np
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.arrays.sparse_rows import (
     row_product,
+    run_product,
     subtract_columns,
     subtract_modal_forces,
-    subtract_resistance,
+    subtract_resistance_by_runs,
 )
 from dynamics.forces.elements import evaluate, evaluate_linear, has_unbalance, is_linear
 from dynamics.integrators.explicit_step import add_stages, finish_step, set_motion, write_powers
@@ -434,7 +435,7 @@ def solve_stage(system: SystemArrays, work: Workspace, level: int, stage: int, t
     for i in range(size):
         q[i] += span * v[i]
     sparse, linear = system.sparse, work.unloaded
-    subtract_resistance(sparse, q, v, work.external)
+    subtract_resistance_by_runs(sparse, q, v, work.external)
     _accelerate(system, work, level, linear)
     for i in range(size):
         v[i] += span * linear[i]
@@ -462,7 +463,7 @@ def _accelerate(system: SystemArrays, work: Workspace, level: int, acceleration:
     """Write the accelerations by the forces in ``work.external``: modal freedoms answer for themselves."""
     coupling, inverse = system.sparse.coupling, work.inverse[level]
     for i in range(system.sparse.modal.first):
-        acceleration[i] = row_product(coupling, inverse, i, work.external)
+        acceleration[i] = run_product(system.sparse.coupling_runs, inverse, i, work.external)
     first = np.uint64(system.sparse.modal.first)
     entry = np.uint64(coupling.first[first])
     for i in range(np.uint64(system.sparse.modal.damping.size)):

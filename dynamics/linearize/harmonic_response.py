@@ -343,7 +343,12 @@ MOST_SAMPLES, MOST_PER_LINE, MOST_PARTED = 16_384, 1_000, 300
 
 
 def parametric_response(
-    at: Excited, speed: FloatArray, rate: FloatArray, orders: int = 10, gyroscopic: bool = False
+    at: Excited,
+    speed: FloatArray,
+    rate: FloatArray,
+    orders: int = 10,
+    gyroscopic: bool = False,
+    varying: bool = True,
 ) -> tuple[HarmonicResponse, FloatArray]:
     """Return the response of a system to its errors and loads, the stiffness varying with position: `varied`.
 
@@ -357,9 +362,14 @@ def parametric_response(
         Harmonics of each mesh.
     gyroscopic : bool
         With gyroscopic and frame terms.
+    varying : bool
+        False: with mean tangents, whose errors have the static means.
     """
     harmonics = _all_harmonics(at, orders, speed)
-    steady, shift = varied(at, swept_vibration(at, speed, rate, harmonics, gyroscopic))
+    steady = swept_vibration(at, speed, rate, harmonics, gyroscopic)
+    if not varying:
+        return response_of(at, speed, steady), np.zeros((len(at.cycles), speed.size))
+    steady, shift = varied(at, steady)
     return response_of(at, speed, steady), shift
 
 

@@ -18,6 +18,7 @@ from dynamics.linearize.flank_cycles import SAMPLES, FlankCycle, averaged, flank
 from dynamics.linearize.linear_system import LinearSystem, about_running, linearize, unbounded
 from dynamics.linearize.load_harmonics import load_harmonics
 from dynamics.linearize.operating_speeds import CommonPeriod, common_period, law_speeds
+from dynamics.linearize.partial_fractions import PRECISE, PartialFractions
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 
 # Forced vibration with the modal freedoms eliminated: exact, and as small as the system without them.
@@ -295,7 +296,7 @@ def swept_vibration(
     decay = SWEPT * np.sqrt(omega * (np.abs(rate) / np.abs(speed))[:, None])
     rows = at.system.arrays.direction[: len(force)]
     terms = gyroscopic_terms(at.system, speed) if gyroscopic else []
-    u, residual, _ = _solve(at, pushed, omega - 1j * decay, terms, rows)
+    u, residual, _ = _solve(at, pushed, omega - 1j * decay, terms, rows, fractions=True)
     return Steady(harmonics, omega, static, force[None], u[..., 0], residual, u[..., 1:])
 
 
@@ -403,6 +404,7 @@ def _solve(
     rows: FloatArray | None = None,
     beside: ComplexArray | None = None,
     progress: Callable[[float], None] | None = None,
+    fractions: bool = False,
 ) -> tuple[ComplexArray, float, FloatArray]:
     """Displacements (S, H, n, 1 + f), and the relative residual; a block of speeds at a time.
 
@@ -424,7 +426,11 @@ def _solve(
     if any(np.any(part[first:]) or np.any(part[:, first:]) for term in terms for part in term):
         first = 0  # gyroscopic and frame terms are of the bodies alone, or nothing is eliminated
     small = _modal_elimination(modal, per_meter, total, damping, mass) if first else None
+    by_modes = (
+        PartialFractions.of(total, mass, damping) if fractions and small is None and not terms else None
+    )
     parts = np.stack([total, mass, damping]).astype(complex)
+    most = max(float(np.max(np.abs(pushed[..., 0]), initial=0.0)), 1e-300)
     left, farthest = np.float64(0.0), np.zeros(per_meter.size)
     for part in speed_blocks(omega.shape, per_meter.size**2):
         exciting = pushed if pushed.shape[0] == 1 else pushed[part]
@@ -435,9 +441,13 @@ def _solve(
             if terms
         ]
         with np.errstate(divide="ignore", invalid="ignore"):  # of an undamped mode at its very frequency
-            if small is None:
+            if by_modes is not None:
+                moved, miss = by_modes.solve(omega[part], exciting)
+                if not np.max(miss, initial=0.0) <= PRECISE * most:
+                    by_modes = None
+            if by_modes is None and small is None:
                 moved, miss = _dense(parts, omega[part], swept, right)
-            else:
+            elif small is not None:
                 turning = [matrix[:, :first, :first] for matrix in swept]
                 moved = small.solve(omega[part], right, turning)
                 miss = np.abs(small.product(omega[part], moved[..., :1], turning) - right[..., :1])
@@ -449,7 +459,6 @@ def _solve(
             largest = np.maximum(largest, along.T)
         if progress is not None:
             progress(min(part.stop, omega.shape[0]) / omega.shape[0])
-    most = max(float(np.max(np.abs(pushed[..., 0]), initial=0.0)), 1e-300)
     elastic = np.max(np.abs(total) @ farthest, initial=0.0)
     if not np.maximum(left, np.finfo(float).eps * elastic) <= ROUNDED * most:
         raise unbounded(linear, omega)

@@ -239,11 +239,12 @@ class FlankTransfer(ArrayFile):
         made = np.einsum("rshc,shc->shr", self.motion[:count], inputs)
         made[..., self.first[: len(flanks.static)]] -= flanks.static.T
         rows = self.gradient[:count]
-        varying, residual = VaryingStiffness.of(at, self.harmonics, rows @ still_motion(at, rows)), 0.0
-        for s in range(self.speed.size if varying.parts else 0):
-            push, left = varying.push(moved[s], made[s])
-            inputs[s, :, 1:] -= np.einsum("hrf,hf->hr", reach[s], push[1:])
-            residual = max(residual, left)
+        varying = VaryingStiffness.of(at, self.harmonics, rows @ still_motion(at, rows))
+        if not varying.parts:
+            return inputs, 0.0
+        push, left = varying.push(moved, made)
+        inputs[..., 1:] -= np.matmul(reach, push[:, 1:, :, None])[..., 0]
+        residual = float(np.max(left, initial=0.0))
         if not residual <= ROUNDED:
             raise SolveError("the vibration is unbounded with these flanks at one of the speeds")
         return inputs, residual

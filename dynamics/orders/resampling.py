@@ -57,8 +57,13 @@ def checked_order(result: RunResult, field: str, value: int | None, mesh: int = 
         rate = value * top * sampling["rate"] / sampling["pass_frequency"]
         passed = f"the output passes {sampling['pass_frequency']:.4g} Hz"
         bound = at_most(valid, note=f": {passed}, and the mesh frequency reaches {top:.4g} Hz")
+        wider = (
+            f" and outputs.band of {value * top:.4g} Hz"
+            if value * top > sampling.get("band", math.inf)
+            else ""
+        )
         suggestion = (
-            f"Run with outputs.mesh_orders = {value}, or outputs.sample_rate of {rate:.4g} Hz or more."
+            f"Run with outputs.mesh_orders = {value}{wider}, or outputs.sample_rate of {rate:.4g} Hz or more."
         )
         raise InputError(field, value, bound, suggestion)
     return value

@@ -294,6 +294,7 @@ def _check_parts(scene: Scene) -> None:
 
 ON_VIOLATION = ("repeat", "fail", "report")
 TOLERANCES = (1e-6, 0.5)
+LEVEL_TOLERANCES = (1e-9, 3.0)  # dB
 SAMPLE_LIMIT = 2e7  # a run's states are held in memory
 LEAST_RATE = 1000.0  # Hz, of an output whose rate is chosen
 
@@ -326,8 +327,12 @@ class Scene(StatedLaws):
     tolerance : float or None
         Relative change of mean and peak-to-peak transmission error and of bearing forces that neglected
         automatic effects may cause in a run; None: effects are as the scene calls for them.
+    level_tolerance : float or None
+        Change of levels, dB, that neglected automatic effects may cause in a run, where `tolerance` is None:
+        of what the scene is computed for, by default of bearing forces and transmission errors.
     highest_frequency : float or None
-        Hz to which flexible shafts are resolved; None: half the output rate.
+        Hz to which flexible shafts are resolved; None: half the rate that all wanted orders need, up to 2.56
+        times the band of the output.
     temperatures : Temperatures or None
         Of the housing; shafts, gears and rings of rolling bearings then have their own. None: as drawn.
     quantity : LevelQuantity or None
@@ -360,12 +365,15 @@ class Scene(StatedLaws):
     highest_frequency: float | None = None
     temperatures: Temperatures | None = None
     quantity: LevelQuantity | None = None
+    level_tolerance: float | None = None
 
     def __post_init__(self) -> None:
         not_negative("duration", self.duration)
         one_of("on_violation", self.on_violation, ON_VIOLATION)
         if self.tolerance is not None:
             within("tolerance", self.tolerance, *TOLERANCES)
+        if self.level_tolerance is not None:
+            within("level_tolerance", self.level_tolerance, *LEVEL_TOLERANCES)
         if self.highest_frequency is not None:
             positive("highest_frequency", self.highest_frequency)
         check_samples(self.duration, self.outputs.sample_rate or LEAST_RATE)

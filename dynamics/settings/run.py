@@ -94,6 +94,14 @@ _ORDERS = Declared(
     "Multiples of the mesh frequency that the output contains at the highest speed of the run",
     10,
 )
+_BAND = Declared(
+    Kind.FREQUENCY,
+    "Hz",
+    Interval(ge=1e3, le=1e6),
+    "Highest frequency that the output is made for where its rate is left out: the audio band; orders above "
+    "it are those of the linear response",
+    20000.0,
+)
 _FILTER = Declared(
     Kind.SWITCH,
     "",
@@ -119,6 +127,7 @@ class Outputs:
     accelerations: bool = declared(False, _ACCELERATIONS)
     receipt: str = declared("full", _RECEIPT)
     mesh_orders: int = declared(10, _ORDERS)
+    band: float = declared(20000.0, _BAND)
     anti_alias: bool = declared(True, _FILTER)
 
     def __post_init__(self) -> None:

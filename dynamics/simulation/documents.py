@@ -45,6 +45,7 @@ from dynamics.results.histories import checked_series, filtered, histories, unfi
 from dynamics.results.run_checks import RunChecks
 from dynamics.scene import Integration, Scene
 from dynamics.shafts import ElasticShaft
+from dynamics.simulation.linear_orders import linear_orders
 from dynamics.simulation.violations import FIRST, EarlierRun
 from dynamics.types import FloatArray, Json
 from model_studies.stage_clock import StageClock
@@ -90,7 +91,7 @@ class RunFacts:
     ) -> RunFacts:
         """Gather them; `before` is the run that this one repeats."""
         with clock.stage("influence_estimates"):
-            influences = _known_influences(decided, system, end)
+            influences = _known_influences(decided, system)
         clock.book("influence_estimates", decided.taken)
         audit = None
         if system.scene.outputs.energy_audit:
@@ -167,6 +168,7 @@ def _resolved_case(system: System) -> Json:
         "gravity": list(scene.gravity),
         "effects": dict(scene.effects),
         "tolerance": scene.tolerance,
+        "level_tolerance": scene.level_tolerance,
         "outputs": replace(scene.outputs, sample_rate=system.sampling.rate),
         "integration": scene.integration,
         "freedoms": list(system.freedoms.name),
@@ -317,8 +319,6 @@ def _carried(
 
 ERROR_CHECK_FACTOR = 0.1
 IMPLICIT_STAGES_PER_STEP = 5
-LEAST_WORK = 500_000
-"""Steps times freedoms of a run whose ledger has estimates that no tolerance requests."""
 
 
 def documents(
@@ -367,12 +367,17 @@ def described(run: RunFacts, about: dict[str, Any]) -> dict[str, Any]:
     left_out = left_out_effects(run.system.ledger, run.influences)
     error = receipt["error"] | ({"left_out_effects": left_out} if left_out else {})
     return about | {
-        "receipt": receipt | {"error": error} | _bearings_at_rest(run.system),
+        "receipt": receipt | {"error": error} | _bearings_at_rest(run.system) | _orders_above(run),
         "effect_ledger": effect_ledger(run),
         "case": _resolved_case(run.system),
         "warnings": [finding.to_json() for finding in scene_findings(run.scene)],
         "modes": _modes_of_run(run.system),
     }
+
+
+def _orders_above(run: RunFacts) -> Json:
+    """Return the orders above the band of the output where the receipt is to have all."""
+    return linear_orders(run.system) if run.scene.outputs.receipt == "full" else {}
 
 
 def undescribed(run: RunFacts, about: dict[str, Any]) -> dict[str, Any]:
@@ -381,11 +386,10 @@ def undescribed(run: RunFacts, about: dict[str, Any]) -> dict[str, Any]:
     return about if held else about | {"effect_ledger": effect_ledger(run)}
 
 
-def _known_influences(decided: Decided, system: System, end: Ending) -> Mapping[str, Influence]:
-    """Return the influence of effects: as decided by, else estimated where the run is long enough."""
+def _known_influences(decided: Decided, system: System) -> Mapping[str, Influence]:
+    """Return the influence of effects as decided by, else estimated where the receipt is to have it."""
     scene = decided.scene
-    work = int(end.count[Count.ACCEPTED]) * len(system.freedoms.name)
-    if decided.influences or scene.outputs.receipt != "full" or work < LEAST_WORK:
+    if decided.influences or scene.outputs.receipt != "full":
         return decided.influences
     return estimate_influences(scene, system=system)
 

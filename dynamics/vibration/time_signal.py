@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import factorial
+from typing import Protocol
 
 import numpy as np
 
 from bounds import Quantity, Text
 from dynamics.errors import InputError
 from dynamics.housings.reduced_housing import ReducedHousing
+from dynamics.kernels.compiled import compiled
 from dynamics.types import FloatArray
+from dynamics.vibration.housing_motion import ROUNDING
 from dynamics.vibration.housing_vibration import MotionQuantity, named_points
 
 UNIFORM = 1e-6
@@ -26,9 +29,24 @@ CUBIC = 4
 """Coefficients of a piece of a cubic spline."""
 
 
+class _Propagator(Protocol):
+    """Advances the m modes of a housing by one sample, exactly under forces that are cubic in time."""
+
+    @property
+    def scale(self) -> FloatArray:
+        """Keeps stiff modes and rigid motions of like size in the state, (m,)."""
+
+    def advance(self, derivatives: FloatArray, state: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the states of at most `PIECE` samples, the first one `state` (2 m,), and the last of all.
+
+        Modal amplitudes times `scale`, then their rates times the step. `derivatives` (4, P, s) are those of
+        the forces between P + 1 samples, in steps.
+        """
+
+
 @dataclass(frozen=True)
-class _Propagator:
-    """Advances the modes of a housing by one sample, exactly under forces that are cubic in time.
+class _CoupledModes:
+    """Modes that damping couples.
 
     Attributes
     ----------
@@ -37,12 +55,99 @@ class _Propagator:
     gain : (4, 2 m, s) array
         State per derivative of the force at the sample, in steps.
     scale : (m,) array
-        Keeps stiff modes and rigid motions of like size in the state.
     """
 
     transition: FloatArray
     gain: FloatArray
     scale: FloatArray
+
+    @classmethod
+    def of(cls, natural: FloatArray, damping: FloatArray, push: FloatArray, step: float) -> _CoupledModes:
+        """Integrate p'' + damping p' + natural^2 p = push f over a step, for forces 1, t, t^2/2, t^3/6.
+
+        By the exponential of the system that the derivatives of the force extend (C. F. van Loan, IEEE
+        Transactions on Automatic Control 23 (1978) 395-404).
+        """
+        from scipy.linalg import expm  # noqa: PLC0415 (start-up time)
+
+        modes, forces = push.shape
+        angle = natural * step
+        scale = np.maximum(angle, 1.0)
+        whole = np.zeros((2 * modes + CUBIC * forces,) * 2)
+        whole[:modes, modes : 2 * modes] = np.diag(scale)
+        whole[modes : 2 * modes, :modes] = -np.diag(angle**2 / scale)
+        whole[modes : 2 * modes, modes : 2 * modes] = -step * damping
+        whole[modes : 2 * modes, 2 * modes : 2 * modes + forces] = step**2 * push
+        whole[2 * modes : -forces, 2 * modes + forces :] = np.eye((CUBIC - 1) * forces)
+        exponential = expm(whole)[: 2 * modes]
+        gain = exponential[:, 2 * modes :].reshape(2 * modes, CUBIC, forces)
+        return cls(exponential[:, : 2 * modes], np.ascontiguousarray(np.moveaxis(gain, 1, 0)), scale)
+
+    def advance(self, derivatives: FloatArray, state: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Advance all modes together."""
+        increments = sum(part @ gain.T for part, gain in zip(derivatives, self.gain, strict=True))
+        states = [state]
+        for increment in increments:
+            states.append(self.transition @ states[-1] + increment)
+        return np.array(states[:PIECE]), states[-1]
+
+
+@dataclass(frozen=True)
+class _SeparateModes:
+    """Modes each by itself: damping couples none.
+
+    Attributes
+    ----------
+    transition : (2, 2, m) array
+        Of the state of a mode: amplitude times `scale`, rate times the step.
+    gain : (2, 4, m) array
+        State of a mode per derivative of its modal force, in steps.
+    push : (m, s) array
+        Modal forces per force.
+    scale : (m,) array
+    """
+
+    transition: FloatArray
+    gain: FloatArray
+    push: FloatArray
+    scale: FloatArray
+
+    @classmethod
+    def of(cls, natural: FloatArray, damping: FloatArray, push: FloatArray, step: float) -> _SeparateModes:
+        """Integrate as `_CoupledModes` does, with the `damping` (m,) of each mode."""
+        from scipy.linalg import expm  # noqa: PLC0415 (start-up time)
+
+        angle = natural * step
+        scale = np.maximum(angle, 1.0)
+        whole = np.zeros((natural.size, 2 + CUBIC, 2 + CUBIC))
+        whole[:, 0, 1], whole[:, 1, 0], whole[:, 1, 1] = scale, -(angle**2) / scale, -step * damping
+        whole[:, 1, 2] = step**2
+        whole[:, 2:-1, 3:] = np.eye(CUBIC - 1)
+        exponential = np.ascontiguousarray(np.moveaxis(expm(whole)[:, :2], 0, 2))
+        return cls(exponential[:, :2].copy(), exponential[:, 2:].copy(), push, scale)
+
+    def advance(self, derivatives: FloatArray, state: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Advance every mode by itself, all modes of a sample in lanes."""
+        modal = np.ascontiguousarray(derivatives @ self.push.T)
+        states = np.empty((modal.shape[1] + 1, 2, self.scale.size))
+        states[0] = state.reshape(2, -1)
+        _advance_modes(self.transition, self.gain, modal, states)
+        rows = states.reshape(len(states), -1)
+        return rows[:PIECE], rows[-1].copy()
+
+
+@compiled
+def _advance_modes(transition: FloatArray, gain: FloatArray, force: FloatArray, states: FloatArray) -> None:
+    """Write the states (P + 1, 2, m) after the first one under modal forces (4, P, m), modes in lanes."""
+    for sample in range(states.shape[0] - 1):
+        for mode in range(states.shape[2]):
+            amplitude, rate = states[sample, 0, mode], states[sample, 1, mode]
+            moved = transition[0, 0, mode] * amplitude + transition[0, 1, mode] * rate
+            paced = transition[1, 0, mode] * amplitude + transition[1, 1, mode] * rate
+            for order in range(CUBIC):
+                moved += gain[0, order, mode] * force[order, sample, mode]
+                paced += gain[1, order, mode] * force[order, sample, mode]
+            states[sample + 1, 0, mode], states[sample + 1, 1, mode] = moved, paced
 
 
 def point_signal(
@@ -120,14 +225,19 @@ def motion_pieces(
     held = natural > LOOSE * natural.max()
     rest = np.divide(push @ forces[0], natural**2, out=np.zeros(natural.size), where=held)
     state = np.concatenate([rest * propagator.scale, np.zeros(natural.size)])
+    of_amplitudes, of_rates = seen / propagator.scale[:, None], seen / step
     for first in range(0, times.size, PIECE):
-        states, state = _advance(propagator, _derivatives(forces, first), state)
-        amplitude = states[:, : natural.size] / propagator.scale
-        rate = states[:, natural.size :] / step
-        if quantity is MotionQuantity.ACCELERATION:
-            amplitude = forces[first : first + PIECE] @ push.T - rate @ damping.T - amplitude * natural**2
-        chosen = rate if quantity is MotionQuantity.VELOCITY else amplitude
-        yield chosen @ seen
+        states, state = propagator.advance(_derivatives(forces, first), state)
+        amplitudes, rates = states[:, : natural.size], states[:, natural.size :]
+        if quantity is MotionQuantity.DISPLACEMENT:
+            yield amplitudes @ of_amplitudes
+        elif quantity is MotionQuantity.VELOCITY:
+            yield rates @ of_rates
+        else:
+            pushed = forces[first : first + PIECE] @ (push.T @ seen)
+            yield (
+                pushed - rates @ (damping.T @ of_rates) - amplitudes @ (natural[:, None] ** 2 * of_amplitudes)
+            )
 
 
 def _checked_step(time: FloatArray, force: FloatArray, housing: ReducedHousing) -> float:
@@ -148,25 +258,11 @@ def _checked_step(time: FloatArray, force: FloatArray, housing: ReducedHousing) 
 
 
 def _propagator(natural: FloatArray, damping: FloatArray, push: FloatArray, step: float) -> _Propagator:
-    """Integrate p'' + damping p' + natural^2 p = push f over a step, for forces 1, t, t^2/2, t^3/6.
-
-    By the exponential of the system that the derivatives of the force extend (C. F. van Loan, IEEE
-    Transactions on Automatic Control 23 (1978) 395-404).
-    """
-    from scipy.linalg import expm  # noqa: PLC0415 (start-up time)
-
-    modes, forces = push.shape
-    angle = natural * step
-    scale = np.maximum(angle, 1.0)
-    whole = np.zeros((2 * modes + CUBIC * forces,) * 2)
-    whole[:modes, modes : 2 * modes] = np.diag(scale)
-    whole[modes : 2 * modes, :modes] = -np.diag(angle**2 / scale)
-    whole[modes : 2 * modes, modes : 2 * modes] = -step * damping
-    whole[modes : 2 * modes, 2 * modes : 2 * modes + forces] = step**2 * push
-    whole[2 * modes : -forces, 2 * modes + forces :] = np.eye((CUBIC - 1) * forces)
-    exponential = expm(whole)[: 2 * modes]
-    gain = exponential[:, 2 * modes :].reshape(2 * modes, CUBIC, forces)
-    return _Propagator(exponential[:, : 2 * modes], np.ascontiguousarray(np.moveaxis(gain, 1, 0)), scale)
+    """Return what advances the modes by a step: each by itself unless damping couples them."""
+    own = np.diag(damping)
+    if np.all(np.abs(damping - np.diag(own)) <= ROUNDING * np.sqrt(np.outer(own, own).clip(0.0))):
+        return _SeparateModes.of(natural, own, push, step)
+    return _CoupledModes.of(natural, damping, push, step)
 
 
 def _derivatives(force: FloatArray, first: int) -> FloatArray:
@@ -177,14 +273,3 @@ def _derivatives(force: FloatArray, first: int) -> FloatArray:
     near = force[start : first + PIECE + REACH]
     power = CubicSpline(np.arange(len(near), dtype=float), near).c[::-1, first - start :][:, :PIECE]
     return np.stack([factorial(order) * part for order, part in enumerate(power)])
-
-
-def _advance(
-    propagator: _Propagator, derivatives: FloatArray, state: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return the states of samples, the first one `state`, and that of the sample after them."""
-    increments = sum(part @ gain.T for part, gain in zip(derivatives, propagator.gain, strict=True))
-    states = [state]
-    for increment in increments:
-        states.append(propagator.transition @ states[-1] + increment)
-    return np.array(states[:PIECE]), states[-1]

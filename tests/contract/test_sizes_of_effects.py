@@ -20,7 +20,7 @@ from dynamics.acoustics import a_weighting
 from dynamics.influence.level_change import LevelChange
 from dynamics.loads import TimeLaw
 from dynamics.scene import Outputs, Scene
-from dynamics.simulation import documents, simulate
+from dynamics.simulation import simulate
 from fe_contact.analysis.studies import ablation
 from fe_contact.analysis.studies.ablation import Figures
 from fe_contact.ste import SteDatabase
@@ -201,8 +201,7 @@ OFF = {"tilt": "off"}
 
 @pytest.mark.law
 @pytest.mark.parametrize("sound", [False, True], ids=["bearing forces", "sound"])
-def test_outputs_of_a_run_tell_one_number(sound: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(documents, "LEAST_WORK", 0)
+def test_outputs_of_a_run_tell_one_number(sound: bool) -> None:
     scene = tilting_pair(effects=OFF, outputs=Outputs(energy_audit=False))
     scene = replace(scene, quantity=FirstBearing() if sound else None)
     run = simulate(scene)
@@ -228,8 +227,7 @@ def test_outputs_of_a_run_tell_one_number(sound: bool, monkeypatch: pytest.Monke
 
 
 @pytest.mark.law
-def test_a_response_tells_the_number_of_a_run_at_its_speed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(documents, "LEAST_WORK", 0)
+def test_a_response_tells_the_number_of_a_run_at_its_speed() -> None:
     scene = tilting_pair(outputs=Outputs(energy_audit=False))
     run = simulate(scene).effect_ledger["influences"]
     speed = scene.drives[0].speed.extreme / RPM

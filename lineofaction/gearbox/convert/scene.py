@@ -290,6 +290,7 @@ def _assembled(
     with named(""):
         return Scene(
             **in_si(Scene, scene, scene.run, scene.accuracy),
+            level_tolerance=scene.accuracy.level_tolerance_db or None,
             **parts_of(scene, tuple(teeth[gear.name] for gear in scene.gears)),
             meshes=meshes,
             housings=tuple(housings),

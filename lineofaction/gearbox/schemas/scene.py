@@ -70,9 +70,16 @@ class SceneInput(BoundaryModel):
             le=0.5,
             description="Relative tolerance of the sound where a housing has a surface, of the force on the "
             "bearing of a complaint, else of mean and peak-to-peak transmission error and of bearing forces: "
-            "effects of less influence are neglected, others are on; left out: as the scene calls for "
-            "them",
+            "effects of less influence are neglected, others are on; left out: level_tolerance_db",
             examples=[0.01],
+        )
+        level_tolerance_db: float = Field(
+            default=0.1,
+            ge=0.0,
+            le=3.0,
+            description="Change of these levels in dB that automatic effects may make by being neglected, "
+            "where no relative tolerance is given; 0: effects are as the scene calls for them",
+            examples=[0.1],
         )
 
     run: RunInput = Field(description="The run", examples=[{"duration_s": 5.0}])

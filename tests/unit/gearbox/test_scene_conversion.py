@@ -43,6 +43,15 @@ def test_the_papers_scene_is_in_si() -> None:
     assert found.integration.tolerance == pytest.approx(1e-9)
 
 
+def test_effects_follow_a_tenth_of_a_decibel_and_runs_the_audio_band_unless_stated() -> None:
+    assert (scene().level_tolerance, scene().tolerance, scene().outputs.band) == (0.1, None, 20e3)
+    stated = scene({"accuracy.level_tolerance_db": 0.25, "outputs.band_hz": 5e4})
+    assert (stated.level_tolerance, stated.outputs.band) == (0.25, 5e4)
+    assert scene({"accuracy.level_tolerance_db": 0.0}).level_tolerance is None
+    check_refused(EXAMPLE, "accuracy.level_tolerance_db", 3.5)
+    check_refused(EXAMPLE, "outputs.band_hz", 500.0)
+
+
 def test_gears_take_their_teeth_from_the_table() -> None:
     pinion, wheel = scene().gears
     assert (pinion.teeth, wheel.teeth) == (20, 20)

@@ -11,7 +11,7 @@ from geared_scenes import gear_pair_scene
 
 from dynamics.results import RunResult
 from dynamics.scene import Outputs
-from dynamics.simulation import documents, simulate
+from dynamics.simulation import simulate
 from dynamics.types import RunStatus
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.report.drawing.placing import envelope
@@ -225,8 +225,7 @@ def test_speeds_are_round() -> None:
     assert window_speeds(np.array([-167.0, 0.0])) == (20.0, 70.0, 150.0)
 
 
-def test_every_source_has_its_row_and_unknown_ones_have_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(documents, "LEAST_WORK", 0)
+def test_every_source_has_its_row_and_unknown_ones_have_none() -> None:
     scene = gear_pair_scene(duration=0.2, effects={"lateral": "off"})
     full = dict(_accuracy(simulate(scene)).rows)
     lean = dict(_accuracy(simulate(replace(scene, outputs=Outputs(receipt="minimal")))).rows)

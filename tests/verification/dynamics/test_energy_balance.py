@@ -24,7 +24,7 @@ from dynamics.integrators.workspace import Count, Power
 from dynamics.loads import TimeLaw
 from dynamics.results.order_fit import order_amplitudes, unwrapped
 from dynamics.scene import Integration, Outputs
-from dynamics.simulation import documents, simulate
+from dynamics.simulation import simulate
 from dynamics.simulation.error_by_source import _windows, window_starts
 
 # Energy: conserved without damping and drive, and the audit closes with everything on.
@@ -261,8 +261,7 @@ def test_a_minimal_receipt_states_the_tolerance_and_changes_no_series():
     assert "table_interpolation" not in lean.receipt["error"]
 
 
-def test_effects_that_are_off_are_named_with_what_they_change(monkeypatch):
-    monkeypatch.setattr(documents, "LEAST_WORK", 0)
+def test_effects_that_are_off_are_named_with_what_they_change():
     off = simulate(run_up(64, effects={"tilt": "off"}))
     left_out, sizes = off.receipt["error"]["left_out_effects"], off.effect_ledger["influences"]
     assert left_out["unit"] == "dB"

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from flexible_scenes import flexible_pair
 from geared_scenes import (
     BASE_RADIUS,
     RPM,
@@ -21,6 +22,7 @@ from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.joints import FreeRotation
+from dynamics.linearize import harmonic_response
 from dynamics.loads import LoadTorque, TimeLaw
 from dynamics.meshes import CoastFlank
 from dynamics.orders import (
@@ -238,9 +240,13 @@ def rattling(speed):
 SCENES = (spur, helical, rattling)
 
 
+WIDE = 1e6
+"""Hz; a band that cuts no order."""
+
+
 def of_length(scene, rpm):
     frequency = 20.0 * rpm / 60.0
-    outputs = Outputs(energy_audit=False, receipt="minimal")
+    outputs = Outputs(energy_audit=False, receipt="minimal", band=WIDE)
     return replace(scene(TimeLaw.constant(rpm * RPM)), duration=PITCHES / frequency, outputs=outputs)
 
 
@@ -329,10 +335,42 @@ def test_the_rate_follows_orders_and_modes_and_says_so():
     assert "mode" in slow.chosen
     assert fast.rate >= 25.6 * 8000.0
     assert "10 orders" in fast.chosen
-    more = replace(of_length(spur, 24000.0), outputs=Outputs(mesh_orders=20))
+    more = replace(of_length(spur, 24000.0), outputs=Outputs(mesh_orders=20, band=WIDE))
     assert assemble(more).sampling.rate >= 51.2 * 8000.0
     fixed = assemble(replace(more, outputs=Outputs(30e3))).sampling
     assert (fixed.rate, fixed.chosen) == (30e3, "sample_rate of the scene")
+
+
+def test_a_run_is_made_for_the_audio_band_unless_it_is_wider():
+    """24 000 rpm of 20 teeth: orders 1 and 2 are in the band, the others in the receipt by linear theory."""
+    wide = of_length(spur, 24000.0)
+    heard = replace(wide, outputs=Outputs(energy_audit=False))
+    sampling = assemble(heard).sampling
+    assert (sampling.rate, sampling.pass_frequency) == (51.2e3, 20e3)
+    assert sampling.chosen == "band of the output, 2e+04 Hz; orders and modes reach 8e+04 Hz"
+    slow, slower = (replace(part, outputs=Outputs()) for part in (of_length(spur, 500.0), heard))
+    assert "mode" in assemble(slow).sampling.chosen and "band" in assemble(slower).sampling.chosen
+    run = simulate(heard)
+    assert highest_valid_order(run) == 2
+    with pytest.raises(InputError, match=r"mesh_orders = 4 and outputs.band of 3.2e\+04 Hz"):
+        order_track(run, "mesh_force", 16, 4)
+    above = run.receipt["linear_orders"]
+    assert above["order"] == [float(order) for order in range(3, 11)]
+    whole = harmonic_response(assemble(wide), np.array([24000.0 * RPM]), 10)
+    expected = np.abs(whole.dynamic_transmission_error[0, 0, 2:])
+    np.testing.assert_allclose(above["dynamic_transmission_error"]["mesh"], expected, rtol=1e-9)
+    assert "linear_orders" not in simulate(slow).receipt
+
+
+def test_orders_of_the_audio_band_do_not_need_a_wider_one():
+    """Elastic shafts resolved for the band: bearing forces of orders 1 and 2 within 0.1 dB of ten orders."""
+    levels = []
+    for band in (20e3, WIDE):
+        scene = flexible_pair(gear=0.1, speed=TimeLaw.constant(24000.0 * RPM), table=square_wave_table())
+        system = assemble(replace(scene, outputs=Outputs(band=band)))
+        force = harmonic_response(system, np.array([24000.0 * RPM]), 2).bearing_force[:, :3, 0]
+        levels.append(20.0 * np.log10(np.sqrt(np.sum(np.abs(force) ** 2, axis=(0, 1)))))
+    assert np.max(np.abs(levels[0] - levels[1])) < 0.1
 
 
 def test_orders_above_the_valid_one_are_refused_with_the_rate_to_ask_for():

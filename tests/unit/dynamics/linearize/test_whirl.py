@@ -18,11 +18,19 @@ from geared_scenes import (
 )
 from housed_pair import ON, housed_pair
 from planetary_scenes import driven_scene, planetary_scene, published_set
+from two_stage_scenes import two_stages
 
 from dynamics.assembly.assemble import assemble
 from dynamics.bearings import Bushing
 from dynamics.joints import Coupling
-from dynamics.linearize import harmonic_response, linearize, natural_modes, steady_vibration, whirl_modes
+from dynamics.linearize import (
+    harmonic_response,
+    linearize,
+    natural_modes,
+    steady_vibration,
+    varying_stiffness,
+    whirl_modes,
+)
 from dynamics.linearize.campbell import terms_at
 from dynamics.linearize.harmonic_response import extremes, parametric_response
 from dynamics.linearize.operating_speeds import law_speeds
@@ -207,6 +215,25 @@ def test_a_table_that_repeats_a_pitch_vibrates_as_the_pitch():
     )
     assert np.abs(twice.displacement[..., ~of_mesh]).max() < 1e-8 * size
     np.testing.assert_allclose(shifted, shift, rtol=1e-6)
+
+
+@pytest.mark.parametrize("scene", ["pair", "two stages"])
+def test_factorized_and_iterated_balances_agree(scene, monkeypatch):
+    """Of one flank and of two whose lines meet, at speeds through resonances."""
+    made = gear_pair_scene(square_wave_table()) if scene == "pair" else two_stages(square_wave_table())
+    at, found = excited(assemble(made), 0.0, 6), []
+    speed = np.linspace(20.0, 600.0, 7)
+    for limit in (10_000, 0):
+        monkeypatch.setattr(varying_stiffness, "DIRECT", limit)
+        found.append(parametric_response(at, speed, np.zeros(7), 6))
+    (direct, shift), (iterated, shifted) = found
+    size = np.max(np.abs(iterated.dynamic_transmission_error))
+    np.testing.assert_allclose(
+        direct.dynamic_transmission_error, iterated.dynamic_transmission_error, rtol=0.0, atol=1e-8 * size
+    )
+    np.testing.assert_allclose(shift, shifted, rtol=0.0, atol=1e-8 * size)
+    assert np.max(np.abs(shift)) > 1e-3 * size
+    assert direct.residual < 1e-12
 
 
 @pytest.mark.parametrize("rpm", [700.0, 2300.0, 6000.0])

@@ -1,0 +1,67 @@
+"""Receptances by partial fractions: one eigenvalue problem in place of a factorization a frequency."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.types import ComplexArray, FloatArray
+
+LEAST = 20
+"""Freedoms from which on it is faster: 39 at 576 frequencies take 7 in place of 45 ms."""
+PRECISE = 1e-10
+"""Largest force left, of the largest exciting force: modes that almost depend on each other leave more."""
+
+
+@dataclass(frozen=True)
+class PartialFractions:
+    """The inverse of K + i w C - w^2 M as X diag(1/(i w - r)) Y, for n freedoms.
+
+    Attributes
+    ----------
+    stiffness, mass, damping : (n, n) arrays
+    root : (2 n,) complex array
+        Eigenvalues r of the motion of first order, rad/s.
+    shape : (n, 2 n) complex array
+        X: displacements of its modes.
+    share : (2 n, n) complex array
+        Y: what forces excite of each mode.
+    """
+
+    stiffness: FloatArray
+    mass: FloatArray
+    damping: FloatArray
+    root: ComplexArray
+    shape: ComplexArray
+    share: ComplexArray
+
+    @classmethod
+    def of(cls, stiffness: FloatArray, mass: FloatArray, damping: FloatArray) -> PartialFractions | None:
+        """Solve the eigenvalue problem; None where modes depend on each other, or nothing is held."""
+        count, scale = len(mass), float(np.sqrt(np.max(np.abs(np.diag(stiffness) / np.diag(mass)))))
+        if count < LEAST or not scale > 0.0:
+            return None
+        mobility = np.linalg.inv(mass)
+        motion = np.zeros((2 * count, 2 * count))  # of displacements times the scale, and rates
+        motion[:count, count:] = scale * np.eye(count)
+        motion[count:, :count] = -mobility @ stiffness / scale
+        motion[count:, count:] = -mobility @ damping
+        root, shape = np.linalg.eig(motion)
+        pushed = np.vstack([np.zeros((count, count)), mobility / scale]).astype(complex)
+        try:
+            share = np.linalg.solve(shape, pushed)
+        except np.linalg.LinAlgError:
+            return None
+        return cls(stiffness, mass, damping, root.astype(complex), shape[:count].astype(complex), share)
+
+    def solve(self, omega: FloatArray | ComplexArray, right: ComplexArray) -> tuple[ComplexArray, FloatArray]:
+        """Return the displacements (S, H, n, f) under `right`, and how far the first ones miss it.
+
+        `omega` (S, H), rad/s, `right` (S or 1, H, n, f).
+        """
+        excited = (self.share @ right) / (1j * omega[..., None, None] - self.root[:, None])
+        moved = np.asarray(self.shape @ excited)
+        first, w = moved[..., 0], omega[..., None]
+        force = first @ self.stiffness.T + 1j * w * (first @ self.damping.T) - w * w * (first @ self.mass.T)
+        return moved, np.abs(force - right[..., 0])
