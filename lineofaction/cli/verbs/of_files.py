@@ -236,7 +236,8 @@ class _HeardOptions:
     quantity: Annotated[
         str,
         typer.Option(
-            help="Quantity to hear: force, moment, acceleration, mesh_force, transmission_error.",
+            help="Quantity to hear: force, moment, acceleration, mesh_force, elastic_force, "
+            "transmission_error.",
             show_default="force",
         ),
     ] = ""
@@ -360,7 +361,8 @@ class _ViewOptions:
     quantity: Annotated[
         str,
         typer.Option(
-            help="Quantity of a run to show: force, moment, acceleration, mesh_force, transmission_error.",
+            help="Quantity of a run to show: force, moment, acceleration, mesh_force, elastic_force, "
+            "transmission_error.",
             show_default="force",
         ),
     ] = ""
