@@ -103,7 +103,7 @@ def _sizes(file: Any) -> Iterator[int]:
         if not isinstance(variable, h5d.DatasetID):
             raise UnreadableFile("holds groups or types, and only variables are read")
         kind = variable.get_type()
-        yield _value_size(variable, kind)
+        yield value_size(variable, kind)
         if _is_text(kind):
             texts = file[name]
             yield from (len(texts[entry]) for entry in np.ndindex(texts.shape))
@@ -123,7 +123,7 @@ def _names(root: Any) -> list[bytes]:
     return list(kinds)
 
 
-def _value_size(variable: Any, kind: Any) -> int:
+def value_size(variable: Any, kind: Any) -> int:
     """Return the unpacked size of a variable's values; what is not in the file itself is refused."""
     from h5py import h5d, h5z  # noqa: PLC0415 - needed for files only
 

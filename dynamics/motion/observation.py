@@ -34,13 +34,14 @@ class Observed(NamedTuple):
     ----------
     position : (m + f, T) array
         Base pitches in [0, period); then turns of frames against each other, revolutions in [0, 1).
-    coordinate, force : (R, T) arrays
-        Local coordinates, m, and local forces, N.
+    coordinate, force, elastic : (R, T) arrays
+        Local coordinates, m, local forces, N, and what tables give of those of flanks, N, without damping.
     """
 
     position: FloatArray
     coordinate: FloatArray
     force: FloatArray
+    elastic: FloatArray
 
 
 def observe(
@@ -81,7 +82,7 @@ def _look(
 ) -> Observed:
     """Observe T states, and leave the last one in `local`."""
     rows, meshes, laws = system.direction.shape[0], system.turn.shape[0], system.inertial.shape[0]
-    seen = Observed(*(np.empty((size, time.size)) for size in (meshes, rows, rows)))
+    seen = Observed(*(np.empty((size, time.size)) for size in (meshes, rows, rows, rows)))
     counted = np.zeros((time.size, laws), dtype=np.int64) if moved is None else moved
     seats = np.empty((time.size, 0)) if carried is None else carried
     motion = np.empty((laws, MOTION_COLUMNS))
@@ -120,6 +121,7 @@ def _observe(
             seen.position[m, k] = wrapped(local.position[m], float(system.reference.period[m]))
         for r in range(local.force.size):
             seen.coordinate[r, k], seen.force[r, k] = local.coordinate[r], local.force[r]
+            seen.elastic[r, k] = local.elastic[r]
 
 
 @inner

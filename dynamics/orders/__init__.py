@@ -1,6 +1,8 @@
 """Spectra of run results: over frequency, over mesh orders, and their peaks."""
 
 from dynamics.orders.bearing_orders import BearingOrders, bearing_orders, bearing_signals
+from dynamics.orders.noise_floor import OrderPower, order_power, shared_frequencies
+from dynamics.orders.recorded_orders import PositionedSignal, recorded_waterfall
 from dynamics.orders.resampling import (
     highest_valid_order,
     leading_shaft,
@@ -28,6 +30,8 @@ from dynamics.orders.third_octaves import (
 
 __all__ = [
     "BearingOrders",
+    "OrderPower",
+    "PositionedSignal",
     "Spectrum",
     "ThirdOctaves",
     "Waterfall",
@@ -41,9 +45,12 @@ __all__ = [
     "mesh_orders",
     "nominal_center",
     "order_frequency",
+    "order_power",
     "order_track",
     "order_waterfall",
+    "recorded_waterfall",
     "resample_to_position",
+    "shared_frequencies",
     "sidebands",
     "spectrum",
     "third_octaves",

@@ -157,11 +157,11 @@ def _at(values: FloatArray, index: IntArray, part: FloatArray) -> FloatArray:
     rows = values.reshape(-1, values.shape[-1])  # one at a time: the finer grid is four times as long
     place = FINER * (index + part)
     fine = np.minimum(place.astype(int), FINER * (rows.shape[1] - 1) - 1)
-    made = [_cubic(interpolated(row, FINER, HALF_LENGTH), fine, place - fine) for row in rows]
+    made = [cubic_between(interpolated(row, FINER, HALF_LENGTH), fine, place - fine) for row in rows]
     return np.reshape(made, (*values.shape[:-1], index.size))
 
 
-def _cubic(values: FloatArray, index: IntArray, part: FloatArray) -> FloatArray:
+def cubic_between(values: FloatArray, index: IntArray, part: FloatArray) -> FloatArray:
     """Interpolate by Lagrange between four samples of a uniform grid, `part` of the way after `index`."""
     most = values.shape[-1] - 4
     if most < 0:

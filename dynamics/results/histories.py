@@ -136,6 +136,7 @@ def histories(
         "coast_force": _coast_force(system, signals.force),
         "least_mesh_force": np.ascontiguousarray(states.least[:, driving].T),
         "largest_mesh_force": np.ascontiguousarray(states.largest[:, driving].T),
+        "elastic_force": seen.elastic[driving] if outputs.elastic_forces else np.empty((0, time.size)),
         "contact": _contact(system, seen.force),
         **_axis_series(system, signals.coordinate, signals.force),
         "speed": _speed(system, laws[SPEED], v),

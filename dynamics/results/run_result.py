@@ -121,6 +121,9 @@ class RunResult:
         the last.
     warnings : list of dict
         Implausible values of the scene; empty if there are none.
+    elastic_force : (m, T) array
+        Of the driving flank: what its table gives at the position and deflection of each sample, the static
+        part of the mesh force. m = 0 if not requested.
     bearing_acceleration : (b, 3, T) array
         Of a planet against its pin, in the frame of `bearing_force`; the rotation of a carrier's frame adds
         no terms. b = 0 if not requested.
@@ -184,6 +187,10 @@ class RunResult:
     bearing_acceleration: FloatArray = field(
         default_factory=lambda: np.empty((0, 3, 0)),
         metadata=stored("m s-2", "acceleration of the shaft there", *BEARING),
+    )
+    elastic_force: FloatArray = field(
+        default_factory=lambda: np.empty((0, 0)),
+        metadata=stored("N", "elastic part of the mesh force, unfiltered", *MESH),
     )
 
     @property

@@ -79,6 +79,14 @@ _ACCELERATIONS = Declared(
     "Store the acceleration of the shaft at every bearing, and of every freedom if displacements are",
     False,
 )
+_ELASTIC = Declared(
+    Kind.SWITCH,
+    "",
+    None,
+    "Store the elastic part of every mesh force, what its table gives at the position and deflection of each "
+    "sample: without damping and not filtered, so that impulses at the handover of teeth stay",
+    False,
+)
 _RECEIPT = Declared(
     Kind.CHOICE,
     "",
@@ -125,6 +133,7 @@ class Outputs:
     displacements: bool = declared(False, _DISPLACEMENTS)
     energy_audit: bool = True
     accelerations: bool = declared(False, _ACCELERATIONS)
+    elastic_forces: bool = declared(False, _ELASTIC)
     receipt: str = declared("full", _RECEIPT)
     mesh_orders: int = declared(10, _ORDERS)
     band: float = declared(20000.0, _BAND)

@@ -30,6 +30,7 @@ from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.units import UM
 from lineofaction.report.binding import bound
 from lineofaction.report.comparison.compare import compare
+from lineofaction.report.comparison.recorded import Measurement
 from lineofaction.report.document import (
     Inputs,
     nominal_force,
@@ -254,11 +255,16 @@ def run_compare_flanks(
 
 
 def run_compare(
-    files: Sequence[Path], output: Path, view: RunView, torque: float | None, *, as_json: bool
+    files: Sequence[Path],
+    output: Path,
+    view: RunView,
+    of: tuple[float | None, Measurement],
+    *,
+    as_json: bool,
 ) -> None:
-    """Write the page; print what differs and what is not shown to."""
+    """Write the page; print what differs and what is not shown to; `of` are the torque and the recording."""
     check_writable(output)
-    page = compare(files, view, torque)
+    page = compare(files, view, *of)
     write_whole(page, output)
     if as_json:
         found = {line.name: {"difference": line.value, "finding": line.remark} for line in page.headlines}

@@ -325,7 +325,9 @@ async def result_sound(
     key: Key,
     request: Request,
     context: Ctx,
-    quantity: Annotated[str, _named("force, moment, acceleration, mesh_force, transmission_error")] = "",
+    quantity: Annotated[
+        str, _named("force, moment, acceleration, mesh_force, elastic_force, transmission_error")
+    ] = "",
     bearing: Annotated[str, _named("Bearing; left out: where the quantity varies most")] = "",
     mesh: Annotated[str, _named("Mesh; left out: the first")] = "",
     direction: Annotated[str, _named("x, y, z; left out: in which it varies most")] = "",

@@ -27,6 +27,7 @@ from lineofaction.gearbox.input_file import InputFile, number_list
 
 if TYPE_CHECKING:
     from lineofaction.cli import analyze, export, hardcases, listen, new, pages, simulate, status, ste
+    from lineofaction.report.comparison import recorded as recordings
     from lineofaction.report.run import view as views
 else:
     analyze, export, hardcases, listen = map(
@@ -36,6 +37,7 @@ else:
         Later, ("cli.new", "cli.pages", "cli.simulate", "cli.status", "cli.ste")
     )
     views = Later("report.run.view")
+    recordings = Later("report.comparison.recorded")
 
 verbs = typer.Typer()
 
@@ -234,7 +236,8 @@ class _HeardOptions:
     quantity: Annotated[
         str,
         typer.Option(
-            help="Quantity to hear: force, moment, acceleration, mesh_force, transmission_error.",
+            help="Quantity to hear: force, moment, acceleration, mesh_force, elastic_force, "
+            "transmission_error.",
             show_default="force",
         ),
     ] = ""
@@ -358,7 +361,8 @@ class _ViewOptions:
     quantity: Annotated[
         str,
         typer.Option(
-            help="Quantity of a run to show: force, moment, acceleration, mesh_force, transmission_error.",
+            help="Quantity of a run to show: force, moment, acceleration, mesh_force, elastic_force, "
+            "transmission_error.",
             show_default="force",
         ),
     ] = ""
@@ -428,6 +432,37 @@ def _report(
     pages.run_report(files, output, options, view.view, flank=flank, as_json=json)
 
 
+@dataclass(frozen=True)
+class _RecordingOptions:
+    """What the file of a recording does not say."""
+
+    channel: Annotated[
+        str, typer.Option(help="Of a recording: the channel that is compared.", show_default="the only one")
+    ] = ""
+    unit: Annotated[
+        str,
+        typer.Option(help="Of a recording: unit of that channel, as m/s² or g.", show_default="the file's"),
+    ] = ""
+    full_scale: Annotated[
+        float, typer.Option(help="Of a recording: what 1 in the file is in the unit; of WAV: the full scale.")
+    ] = 1.0
+    tacho: Annotated[
+        str, typer.Option(help="Of a recording: channel of the speed or tacho.", show_default="the only one")
+    ] = ""
+    tacho_unit: Annotated[
+        str, typer.Option(help="Of a recording: unit of the speed, as rpm.", show_default="the file's")
+    ] = ""
+    pulses_per_turn: Annotated[
+        float, typer.Option(help="Of a recording: the tacho is so many pulses a turn; 0: a speed.")
+    ] = 0.0
+    rpm: Annotated[
+        float, typer.Option(help="Of a recording without a tacho: its one speed, rpm; 0: there is a tacho.")
+    ] = 0.0
+    ratio: Annotated[
+        float, typer.Option(help="Of a recording: speed of the driving gear over that of the recorded shaft.")
+    ] = 1.0
+
+
 @verbs.command(
     "compare",
     rich_help_panel="design",
@@ -440,7 +475,8 @@ def _compare(
     files: Annotated[
         list[Path],
         typer.Argument(
-            help="Two STE databases, two runs, or one of them and a measurement (CSV, UFF); two folders: the "
+            help="Two STE databases, two runs, or one of them and a measurement (CSV, UFF; beside a run "
+            "also WAV, MAT, HDF5, MDF4); two folders: the "
             "databases and runs that both have by name; with --scene the case files of the flanks before and "
             "after, or after alone: before are the scene's."
         ),
@@ -466,6 +502,7 @@ def _compare(
         float | None, typer.Option(help="Highest level of all orders that 95 % of the pairs may have.")
     ] = None,
     view: _ViewOptions,
+    recorded: _RecordingOptions,
     json: AsJson = False,
 ) -> None:
     """Compare two tables, two runs, two flanks in a scene, or one with a measurement: differences."""
@@ -475,4 +512,5 @@ def _compare(
         )
         pages.run_compare_flanks(files, question, output, as_json=json)
         return
-    pages.run_compare(files, output, view.view, torque, as_json=json)
+    measurement = recordings.Measurement(**asdict(recorded))
+    pages.run_compare(files, output, view.view, (torque, measurement), as_json=json)

@@ -17,6 +17,7 @@ from dynamics.solid_housing import MESH_SUFFIXES, STEP_SUFFIXES
 from host import MissingExtra
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.csv_rows import Nodes, csv_rows, number_in, whole_grid
+from lineofaction.gearbox.schemas.load_signals import with_load_signals
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.units import MM, as_typed
 
@@ -328,13 +329,15 @@ def read_text(path: Path, name: str) -> str:
 
 
 def written_out(table: dict[str, Any], find: Find, housings: Collection[str]) -> dict[str, Any]:
-    """Return a table with the content of the flank grids and housings that it names as files.
+    """Return a table with the content of the flank grids, housings and recordings that it names as files.
 
     Raises `BadInput`: a file is missing, or holds something else.
 
     Parameters
     ----------
     housings : collection of str
-        The fields of housings whose files are read, see `_with_housing_files`.
+        The fields of housings whose files are read, see `_with_housing_files`. Recordings are read where
+        netCDF files are: not by a service, whose callers send numbers.
     """
-    return _with_housing_files(_with_flank_grids(table, find, read_text), find, housings)
+    signals = with_load_signals(table, find, read=MODES_FILE in housings)
+    return _with_housing_files(_with_flank_grids(signals, find, read_text), find, housings)

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import math
-import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -19,6 +17,8 @@ from fe_contact.types import Estimate
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import results_in
 from lineofaction.gearbox.result_files import stamped
+from lineofaction.gearbox.signals import ENDINGS, Channel, Recording, begins_with_time, read_recording
+from lineofaction.gearbox.signals.units import ACCELERATION, FORCE, LENGTH, measured_unit, required_unit
 from lineofaction.report.binding import bound
 from lineofaction.report.comparison.measured import (
     COLORS,
@@ -31,6 +31,7 @@ from lineofaction.report.comparison.measured import (
     read_measured,
 )
 from lineofaction.report.comparison.of_tables import compare_tables
+from lineofaction.report.comparison.recorded import Measurement, compare_recording
 from lineofaction.report.document import (
     file_attributes,
     of_the_store,
@@ -43,7 +44,6 @@ from lineofaction.report.drawing.figure import (
     Axis,
     Dash,
     Figure,
-    FloatArray,
     Line,
     Panel,
     category_lines,
@@ -172,85 +172,61 @@ def _spectra(sides: tuple[_Side, ...], measured: MeasuredOrders | None) -> Figur
     )
 
 
-# Measured transmission errors and order spectra, read from universal files (dataset 58, by pyuff).
+# Measured transmission errors and order spectra, read from universal files.
 
 
-ENDINGS = (".unv", ".uff", ".uf")
-ORDER = 20
-"""Specific data type of an abscissa of orders; positions and angles have none, their label tells them."""
-_OF_TYPE = {8: ("µm", 1e6, (1, 0)), 9: ("N", 1.0, (0, 1)), 13: ("N", 1.0, (0, 1)), 12: ("m/s²", 1.0, (1, 0))}
-"""Unit, what one SI unit is in it, and exponents of length and force, by the type of the ordinate."""
+_SCALES = {"µm": (LENGTH, 1e6), "N": (FORCE, 1.0), "m/s²": (ACCELERATION, 1.0)}
+"""Quantity of a unit of the page, and what one SI unit is in it."""
 _FORM = "one function (dataset 58) in {unit} over orders, position (base pitches) or angle (degrees)"
 _AXIS_ADVICE = "Say which by the label of the abscissa: Order, Mesh order, Position or Angle."
 
-Dataset = Mapping[str, Any]
-
 
 def _read_universal(path: Path, teeth: int, unit: str) -> MeasuredCurve | MeasuredOrders:
-    """Read the one function of a file that can be compared; `teeth` are those of the driving gear.
+    return _of_universal(read_recording(path, "measured"), teeth, unit)
 
-    `unit` is "µm", "N" or "m/s²": of what it is compared with. Values are converted by the file's units
-    (dataset 164); complex ones count by their amplitude.
+
+def _of_universal(recording: Recording, teeth: int, unit: str) -> MeasuredCurve | MeasuredOrders:
+    """Return the one function of a file that can be compared; `teeth` are those of the driving gear.
+
+    `unit` is "µm", "N" or "m/s²": of what it is compared with. Complex values count by their amplitude.
     """
-    datasets = _datasets(path)
-    scale = next((each for each in datasets if each["type"] == 164), {})
-    fitting = [each for each in datasets if each["type"] == 58 and _fits(each, unit)]
+    quantity, per_si = _SCALES[unit]
+    fitting = [channel for channel in recording.channels if _fits(channel, quantity)]
     if len(fitting) != 1:
-        names = ", ".join(str(each["id1"]).strip() for each in fitting[:8])
-        present = f"{len(fitting)} in {path.name}" + (f": {names}" if names else "")
+        names = ", ".join(channel.name for channel in fitting[:8])
+        present = f"{len(fitting)} in {recording.name}" + (f": {names}" if names else "")
         raise BadInput.of("measured", present, _FORM.format(unit=unit), _AXIS_ADVICE)
-    (function,) = fitting
-    over, label = np.asarray(function["x"], dtype=np.float64), _label(function)
-    values = _values(function, scale)
-    if function["abscissa_spec_data_type"] == ORDER:
+    (channel,) = fitting
+    over, label = channel.abscissa, channel.label.lower()
+    values = per_si * required_unit("measured", channel.unit, quantity).factor * channel.values
+    if not (np.all(np.isfinite(over)) and np.all(np.isfinite(values))):
+        raise BadInput.of("measured", channel.name, "a function of finite numbers", "Export it again.")
+    if channel.over == "order":
         return MeasuredOrders(over if label.startswith("mesh") else over / teeth, np.abs(values), unit)
-    return averaged(path, over if label.startswith("position") else over * teeth / 360.0, np.real(values))
+    position = over if label.startswith("position") else over * teeth / 360.0
+    return averaged(Path(recording.name), position, np.real(values))
 
 
-def _datasets(path: Path) -> list[Dataset]:
-    if not path.is_file():
-        raise BadInput.of("measured", str(path), "a universal file", "Check the path.")
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            import pyuff  # noqa: PLC0415 (an extra)
-
-            read = pyuff.UFF(str(path)).read_sets()
-    except ImportError:
-        advice = "pip install 'lineofaction[uff]'"
-        raise BadInput.of("measured", str(path), "a CSV file without the extra uff", advice) from None
-    except Exception:  # noqa: BLE001 (of a damaged file: whatever the reader meets)
-        advice = "Export it again, as text (UFF58)."
-        raise BadInput.of("measured", str(path), "a readable universal file", advice) from None
-    sets = read if isinstance(read, list) else [read]
-    return [each for each in sets if isinstance(each, Mapping) and "type" in each]
+def _fits(channel: Channel, quantity: str) -> bool:
+    unit = measured_unit(channel.unit)
+    over = channel.over == "order" or channel.label.lower().startswith(("position", "angle"))
+    return over and unit is not None and unit.quantity == quantity
 
 
-def _fits(function: Dataset, unit: str) -> bool:
-    known = _OF_TYPE.get(int(function["ordinate_spec_data_type"]), ("",))
-    over = function["abscissa_spec_data_type"] == ORDER or _label(function).startswith(("position", "angle"))
-    return known[0] == unit and over
-
-
-def _label(function: Dataset) -> str:
-    return str(function["abscissa_axis_lab"]).strip().lower()
-
-
-def _values(function: Dataset, scale: Dataset) -> FloatArray:
-    """Return the ordinate in its unit: a file's value over the factors of its units is SI."""
-    _, per_si, (length, force) = _OF_TYPE[int(function["ordinate_spec_data_type"])]
-    own = float(scale.get("length", 1.0)) ** length * float(scale.get("force", 1.0)) ** force
-    return np.asarray(function["data"]) * (per_si / own)
-
-
-_BOUND = "two results of one kind, two folders, or one result and a measurement (CSV, universal file)"
+_BOUND = "two results of one kind, two folders, or one result and a measurement"
 _ADVICE = "For example: loa compare before.nc after.nc, or loa compare ste.nc measured.csv"
 
 
-def compare(files: Sequence[Path], view: RunView, torque: float | None = None) -> Page:
+def compare(
+    files: Sequence[Path],
+    view: RunView,
+    torque: float | None = None,
+    measurement: Measurement = Measurement(),  # noqa: B008 (frozen)
+) -> Page:
     """Compare one or two tables or runs, and what was measured where one of them is a measurement.
 
-    Of two folders the tables and runs that both have by name. Raises `BadInput`: the files are not one or two
+    Of two folders the tables and runs that both have by name; `measurement` says of a recording what its file
+    does not. Raises `BadInput`: the files are not one or two
     of a kind with at most one measurement, are damaged, or do not hold what is to be compared.
     """
     folders = [file for file in files if file.is_dir()]
@@ -259,11 +235,38 @@ def compare(files: Sequence[Path], view: RunView, torque: float | None = None) -
     if folders:
         advice = f"Of a folder name the file: {', '.join(map(str, results_in(folders[0]))) or _ADVICE}."
         raise BadInput.of("files", ", ".join(map(str, files)), _BOUND, advice)
-    measured = [file for file in files if file.suffix.lower() in (".csv", *ENDINGS)]
+    measured = [file for file in files if file.suffix.lower() in ENDINGS]
     results = dict(named_files([file for file in files if file not in measured]))
     if len(measured) > 1 or not results or not len(results) + len(measured) >= 2 or len(results) > 2:
         raise BadInput.of("files", ", ".join(map(str, files)) or None, _BOUND, _ADVICE)
+    if measured and (recording := _recording(measured[0])) is not None:
+        return _beside_recording(results, recording, view, measurement)
     return _compare_results(results, view, measured, torque)
+
+
+def _recording(file: Path) -> Recording | None:
+    """Return the series over time in a file; None of an order spectrum or a curve over a position."""
+    if file.suffix.lower() == ".csv" and not begins_with_time(file):
+        return None
+    recording = read_recording(file, "measured")
+    over_time = [channel for channel in recording.channels if channel.over == "time"]
+    return recording if len(over_time) == len(recording.channels) else None
+
+
+def _beside_recording(
+    results: dict[str, Path], recording: Recording, view: RunView, measurement: Measurement
+) -> Page:
+    """Compare the one run of some result files with a recording."""
+    read = {name: read_result(file) for name, file in results.items()}
+    runs = [(name, run) for name, run in read.items() if isinstance(run, RunResult) and run.mesh]
+    if len(read) != 1 or not runs:
+        bound = "one run with a mesh beside a recording over time"
+        raise BadInput.of(
+            "files", ", ".join(results), bound, "For example: loa compare run.nc test.uff --rpm 3000"
+        )
+    warnings = dict.fromkeys(one["message"] for file in results.values() for one in stamped(file))
+    page = compare_recording(runs[0], recording, view, measurement)
+    return replace(page, alarms=(*(f"Warning: {text}" for text in warnings), *page.alarms))
 
 
 def _compare_folders(folders: Sequence[Path], view: RunView, torque: float | None) -> Page:
@@ -327,9 +330,9 @@ def _measured(files: Sequence[Path], teeth: int, unit: str) -> MeasuredCurve | M
     """Read what was measured, None if nothing was; of a universal file what is in the unit."""
     if not files:
         return None
-    if files[0].suffix.lower() in ENDINGS:
-        return _read_universal(files[0], teeth, unit)
-    return read_measured(files[0], teeth)
+    if files[0].suffix.lower() == ".csv":
+        return read_measured(files[0], teeth)
+    return _read_universal(files[0], teeth, unit)
 
 
 def named_files(files: Sequence[Path]) -> list[tuple[str, Path]]:

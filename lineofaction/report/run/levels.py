@@ -39,7 +39,7 @@ from lineofaction.report.run.view import SCALES, Signal, along_direction, decibe
 LINES, MAP_DEPTH = 220, 60.0
 
 
-def _level_map(along: FloatArray, line: FloatArray, amplitude: FloatArray, top: float) -> HeatMap:
+def level_map(along: FloatArray, line: FloatArray, amplitude: FloatArray, top: float) -> HeatMap:
     """Return levels below the largest on an even grid of the axis; the loudest of the lines in each cell.
 
     `along` (B,) is speed or time of the blocks, rising or falling; `line` (K,) are frequencies or orders,
@@ -159,7 +159,7 @@ def order_map(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
     last = max(min(MAPPED, valid), 1)
     amplitude = signal.amplitude(made.amplitude)[:, made.line <= last]
     axis, along = run_axis(run, made.time, signal.mesh)
-    shade = _level_map(along, made.line[made.line <= last], amplitude, float(last))
+    shade = level_map(along, made.line[made.line <= last], amplitude, float(last))
     names = tuple((float(order), f"{order}×") for order in range(1, last + 1))
     orders = Axis("mesh order", limits=(0.0, float(made.line[-1])), names=names)
     block, line = np.unravel_index(int(np.argmax(amplitude[:, 1:])), amplitude[:, 1:].shape)
@@ -215,7 +215,7 @@ def _top_frequency(run: RunResult, signal: Signal, made: Waterfall) -> float:
 def _panel(
     made: Waterfall, amplitude: FloatArray, axis: Axis, along: FloatArray, top: float, modes: list[ModeLine]
 ) -> Panel:
-    shade = _level_map(along, made.line, amplitude, top)
+    shade = level_map(along, made.line, amplitude, top)
     heights = (order * made.mesh_frequency for order in range(1, ORDERS + 1))
     shown = (np.where(height <= top, height, np.nan) for height in heights)
     lines = [Line("mesh orders", along, height, ORDER_COLOUR, "dot", 1.0) for height in shown]

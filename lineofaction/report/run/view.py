@@ -45,6 +45,9 @@ QUANTITIES = {
         "bearing_acceleration", "bearing", "acceleration at", "m/s²", 1.0, "outputs.accelerations = true"
     ),
     "mesh_force": Quantity("mesh_force", "mesh", "mesh force of"),
+    "elastic_force": Quantity(
+        "elastic_force", "mesh", "elastic force of", setting="outputs.elastic_forces = true"
+    ),
     "transmission_error": Quantity("dynamic_transmission_error", "mesh", "transmission error of", "µm", 1e6),
 }
 

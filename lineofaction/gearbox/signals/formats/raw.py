@@ -1,0 +1,58 @@
+"""What a reader hands on: channels as they stand in a file, and the fault of a file that holds none."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+MOST_CHANNELS = 1024
+MOST_SAMPLES = 20_000_000
+"""Of all channels that are read together: half a GB with their times."""
+
+
+class UnusableFile(Exception):
+    """A file holds no channels that can be read: what it must be, what to try, and the field at fault."""
+
+    def __init__(self, bound: str, advice: str = "Export it again.", value: str = "") -> None:
+        self.bound, self.advice, self.value = bound, advice, value
+        super().__init__(bound)
+
+
+@dataclass(frozen=True)
+class RawChannel:
+    """A channel before it is checked; `values` and `abscissa` are arrays of numbers (n,).
+
+    `abscissa` is an array, or the first value and the step of an even one.
+    """
+
+    name: str
+    values: Any
+    abscissa: Any
+    unit: str = ""
+    over: str = "time"
+    label: str = ""
+    direction: str = ""
+
+
+class SampleBudget:
+    """Counts the samples that a reader is about to take."""
+
+    def __init__(self) -> None:
+        self.channels = self.samples = 0
+
+    def take(self, samples: int) -> None:
+        """Count one more channel of so many samples.
+
+        Raises `UnusableFile`: there are too many of either.
+        """
+        self.channels += 1
+        self.samples += samples
+        if self.channels > MOST_CHANNELS or self.samples > MOST_SAMPLES:
+            bound = f"a file of at most {MOST_CHANNELS} channels and {MOST_SAMPLES} samples"
+            raise UnusableFile(bound, "Export a shorter stretch, or name the channels that are needed.")
+
+
+def wanted(name: str, names: Sequence[str]) -> bool:
+    """Whether a channel is to be read: all are if none is named."""
+    return not names or name in names

@@ -1,0 +1,143 @@
+"""Recordings: files of channels, read by a confined process and checked."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+from host import ChildFailed, ask_child
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.signals.channel import Channel
+from lineofaction.gearbox.signals.limits import LARGEST_FILE, READING, SECONDS
+from lineofaction.gearbox.signals.units import measured_unit
+
+FORMATS = {
+    ".csv": ("csv_table", "a CSV file"),
+    ".unv": ("universal", "a universal file"),
+    ".uff": ("universal", "a universal file"),
+    ".uf": ("universal", "a universal file"),
+    ".wav": ("wav", "a WAV file"),
+    ".mat": ("matlab", "a MATLAB file"),
+    ".h5": ("hdf5", "an HDF5 file"),
+    ".hdf5": ("hdf5", "an HDF5 file"),
+    ".mf4": ("mdf", "an MDF4 file"),
+}
+"""Reader and noun of a format, by the ending of the file."""
+ENDINGS = tuple(FORMATS)
+_EXTRAS = {"universal": ("pyuff", "uff"), "mdf": ("asammdf", "mdf")}
+"""Module and extra of the readers that a base install lacks."""
+_WORKER = Path(__file__).with_name("worker.py")
+_LONGEST = 80  # characters of a name that is shown
+_LISTED = 12  # names in a message
+_OVER, _DIRECTIONS = ("time", "order", ""), ("x", "y", "z", "")
+
+
+@dataclass(frozen=True)
+class Recording:
+    """The channels of a file; `name` is the file's."""
+
+    name: str
+    channels: tuple[Channel, ...]
+
+    def channel(self, field: str, name: str = "", quantities: Sequence[str] = ()) -> Channel:
+        """Return the channel of a name, or without one the only channel over time of some quantities.
+
+        A channel whose file states no unit counts as of all. Raises `BadInput`: there is none, or several.
+        """
+        if name:
+            chosen = [channel for channel in self.channels if channel.name == name]
+            bound = "one channel of that name"
+        else:
+            chosen = [one for one in self.channels if one.over == "time" and _may_be(one, quantities)]
+            bound = f"the name of a channel: {len(chosen)} could be it"
+        if len(chosen) != 1:
+            names = [channel.name for channel in self.channels]
+            more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
+            present = f"{self.name} has {', '.join(names[:_LISTED]) or 'no channels'}{more}."
+            raise BadInput.of(field, name or None, bound, present)
+        return chosen[0]
+
+
+def _may_be(channel: Channel, quantities: Sequence[str]) -> bool:
+    unit = measured_unit(channel.unit)
+    return unit is None if channel.unit == "" else unit is not None and unit.quantity in quantities
+
+
+def read_recording(path: Path, field: str, names: Sequence[str] = ()) -> Recording:
+    """Return the channels of a file; of those named alone if some are.
+
+    Raises `BadInput`: the ending is not known, an extra or the file is missing, the file is too large, cannot
+    be read within the limits, or holds something else.
+    """
+    if path.suffix.lower() not in FORMATS:
+        raise BadInput.of(field, path.name, f"a file that ends in {', '.join(ENDINGS)}")
+    reader, noun = FORMATS[path.suffix.lower()]
+    module, extra = _EXTRAS.get(reader, ("numpy", ""))
+    if find_spec(module) is None:
+        advice = f"pip install 'lineofaction[{extra}]'"
+        raise BadInput.of(field, path.name, f"read where the extra {extra} is installed", advice)
+    try:
+        size = path.stat().st_size
+    except OSError:
+        raise BadInput.of(field, str(path), noun, "Check the path.") from None
+    if not path.is_file() or size > LARGEST_FILE:
+        raise BadInput.of(field, str(path), f"{noun} of at most {LARGEST_FILE} bytes", "Export less of it.")
+    return Recording(path.name, _channels(path, (reader, noun), field, names))
+
+
+def _channels(path: Path, form: tuple[str, str], field: str, names: Sequence[str]) -> tuple[Channel, ...]:
+    reader, noun = form
+    with TemporaryDirectory() as folder:
+        copy = Path(folder) / f"recording{path.suffix.lower()}"
+        shutil.copyfile(path, copy)
+        request = {"file": copy.name, "format": reader, "channels": list(names)}
+        try:
+            answer = ask_child(request, SECONDS, (sys.executable, "-P", str(_WORKER)), copy.parent)
+        except ChildFailed as error:
+            limits = f"{READING.memory_mb} MB of memory and {READING.cpu_seconds} s of CPU time"
+            bound = f"{noun} that is read within {limits} (the reader: {error.cause})"
+            raise BadInput.of(field, path.name, bound, "Export less of it, or as HDF5.") from None
+        if (fault := answer.get("fault")) is not None:
+            value, bound, advice = (_printable(str(part), 300) for part in fault)
+            raise BadInput.of(field, f"{path.name}: {value}" if value else path.name, bound, advice)
+        if "channels" not in answer:
+            raise BadInput.of(field, path.name, f"{noun} that can be read", "Export it again.")
+        with np.load(copy.with_name("channels.npz"), allow_pickle=False) as arrays:
+            return tuple(_channel(facts, arrays, i) for i, facts in enumerate(answer["channels"]))
+
+
+def _channel(facts: dict[str, Any], arrays: Any, index: int) -> Channel:
+    """Return a channel of what the child wrote, which foreign bytes may have misled."""
+    values = arrays[f"values_{index}"]
+    if (even := facts["even"]) is None:
+        abscissa = np.asarray(arrays[f"abscissa_{index}"], dtype=np.float64)
+    else:
+        abscissa = even[0] + even[1] * np.arange(values.size)
+    name, unit, label = (_printable(str(facts[key])) for key in ("name", "unit", "label"))
+    if values.ndim != 1 or values.shape != abscissa.shape or values.dtype.kind not in "iufc":
+        raise BadInput.of("measured", name, "a channel with a number for each time", "Export it again.")
+    over = facts["over"] if facts["over"] in _OVER else ""
+    direction = facts["direction"] if facts["direction"] in _DIRECTIONS else ""
+    return Channel(name, unit, abscissa, values, over, label, direction)
+
+
+def _printable(text: str, longest: int = _LONGEST) -> str:
+    """Return a text of a file without what moves a cursor or breaks a line."""
+    return "".join(sign if sign.isprintable() else " " for sign in text[:longest]).strip()
+
+
+def begins_with_time(file: Path) -> bool:
+    """Whether the first column of a CSV file is a time: then it is a recording."""
+    try:
+        with file.open("rb") as stream:
+            return stream.read(_LONGEST).removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"time_")
+    except OSError:
+        return False
