@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import scipy
 
+from fe_contact.contact.edge_strip import EDGE_REACH, SIDE, EdgeStrips, edge_motions, edge_table, no_edges
 from fe_contact.contact.free_end import ENDLESS, SMOOTH, FreeEnds, end_excess
 from fe_contact.contact.patch import Patches
 from fe_contact.contact.plain_touch import Touch
@@ -123,6 +124,8 @@ class LoadedSlices:
         beta_b of gear 1 in rad, > 0 right hand.
     corner_1, corner_2 : float
         What the tip corner of either gear yields over a half plane; see `fe_contact.hertz.wedge_softness`.
+    tip_inclinations : (float, float)
+        Tangent of the pressure angle at the tip of either gear.
     law_length : float
         Reference length in m that parts the contact from the bodies: what is nearer to the strip is in the
         local law, what is further in the finite elements.
@@ -146,12 +149,18 @@ class LoadedSlices:
     base_helix_angle: float
     corner_1: float
     corner_2: float
+    tip_inclinations: tuple[float, float]
     law_length: float
     edge_load: float
     lateral_shares: tuple[float, float]
     turned_normals: FloatArray
     end_1: FreeEnds = ENDLESS
     end_2: FreeEnds = ENDLESS
+
+    @property
+    def edge_side(self) -> FloatArray:
+        """Direction (P, m) away from the edge where patches begin: 1 is towards tip 1, 0 without edge."""
+        return np.where(self.patch_1.at_tip, -1.0, np.where(self.patch_2.at_tip, 1.0, 0.0))
 
     @property
     def width(self) -> float:
@@ -455,6 +464,38 @@ class ContactProblem:
             return np.zeros(self.candidates.slices.present.shape)
         return self.candidates.on_mean(self.candidates.rolling_radius)
 
+    @property
+    def edges(self) -> FloatArray:
+        """Table (P, n, 8) of `EdgeStrips`; (1, n, 8) without any where no flank rolls."""
+        slices, touch = self.candidates.slices, self.candidates.touch
+        if not self.rolling.size:
+            return no_edges(slices.pair.size)
+        times = len(touch.gap) // len(self.compliance)
+        first = slices.touch.offset_1 < slices.touch.offset_2
+        patches, planes = (slices.patch_1, slices.patch_2), (self.half_plane_1, self.half_plane_2)
+        corners = planes[0] * (slices.corner_1 - 1.0), planes[1] * (slices.corner_2 - 1.0)
+
+        def of_edge(one: FloatArray | float, other: FloatArray | float) -> FloatArray:
+            return np.concatenate([np.where(first, one, other)] * times)
+
+        side, away = of_edge(-1.0, 1.0), of_edge(slices.touch.offset_1, slices.touch.offset_2)
+        at_tip, half = (
+            of_edge(*(np.asarray(p.at_tip, dtype=float) for p in patches)),
+            of_edge(*(p.half_width for p in patches)),
+        )
+        moved = np.clip(touch.moved, -slices.law_length, slices.law_length)
+        strips = EdgeStrips(
+            side=np.where(away < EDGE_REACH * half, side, 0.0),
+            offset=np.where(side < 0.0, touch.offset_1, touch.offset_2),
+            radius=self.candidates.radius,
+            softness=of_edge(*[2.0 * sum(self.half_planes) / slices.width] * 2),
+            patch=np.where(at_tip > 0.0, of_edge(*(p.edge_distance for p in patches)), away) + side * moved,
+            missing=of_edge(*(1.0 - p.at_edge for p in patches)),
+            corner=of_edge(*(corner / slices.width for corner in corners)),
+            length=np.where(at_tip > 0.0, of_edge(*(p.law_width for p in patches)), away),
+        )
+        return edge_table(strips, np.isfinite(touch.gap))
+
     def moved(self, force: FloatArray) -> FloatArray:
         """Return how far forces (P, L, m) in N move the flanks apart at every candidate (P, L, m), m.
 
@@ -462,6 +503,8 @@ class ContactProblem:
         """
         held = self.candidates.on_slices(force)
         radius, longest = self.radius, self.candidates.slices.law_length
+        edges = self.edges
+        radius = np.where(edges[..., SIDE] == 0.0, radius, 0.0)
         radius = radius.reshape(-1, len(self.compliance), 1, radius.shape[1])
         by_pitch = held.reshape(-1, len(self.compliance), *held.shape[1:])
 
@@ -474,7 +517,9 @@ class ContactProblem:
         way = np.clip(-radius * tilt, -longest, longest)
         rolled = way * (tilt + np.divide(0.5 * way, radius, out=np.zeros(way.shape), where=radius > 0.0))
         moved = times(self.bodies, by_pitch) + rolled + times(np.swapaxes(self.tilt, 1, 2), way * by_pitch)
-        return self.candidates.at_points(moved.reshape(held.shape))
+        moved = np.ascontiguousarray(moved.reshape(held.shape))
+        edge_motions(edges, self.tilt, np.ascontiguousarray(held), moved)
+        return self.candidates.at_points(moved)
 
     def rows(self, keep: IntArray) -> ContactProblem:
         """Return the problem of some positions, one row of compliance each."""
