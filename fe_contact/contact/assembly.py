@@ -446,14 +446,27 @@ def _add_gear(
                     value += load[0, i, a] * moved
                     change += (load[2, i, a] - load[1, i, a]) * plain
                 arms = lever[p, i] * lever[p, j]
+                value, change = arms * value, arms * change
                 if i == j and lever[p, i] != 1.0:
-                    slid = _work(along, load[0, i], first[i], last[i]) / value
-                    arms = (1.0 + slid * (lever[p, i] - 1.0)) ** 2
-                tilt[p, i, j] += arms * change / (2.0 * way[p, i])
+                    ends = first[i], last[i], lever[p, i]
+                    value = _turned(blocks[i, i], along, load[0, i], *ends)
+                    change = _turned(blocks[i, i], along, load[2, i], *ends)
+                    change -= _turned(blocks[i, i], along, load[1, i], *ends)
+                tilt[p, i, j] += change / (2.0 * way[p, i])
                 if j <= i:
-                    out[p, i, j] += arms * value
+                    out[p, i, j] += value
                 if j < i:
-                    out[p, j, i] += arms * value
+                    out[p, j, i] += value
+
+
+@njit(cache=True)
+def _turned(
+    block: FloatArray, along: FloatArray, load: FloatArray, first: int, last: int, lever: float
+) -> float:
+    """Return what an edge yields to the load on it, nodes first to last - 1, along the normal of its mate."""
+    across = _work(block, load, first, last)
+    turn = _work(along, load, first, last) / across
+    return across * (1.0 + turn * (lever - 1.0)) ** 2
 
 
 @njit(cache=True)

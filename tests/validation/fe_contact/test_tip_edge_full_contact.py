@@ -68,5 +68,5 @@ def test_the_edge_of_a_pointed_pinion(record_figure) -> None:
     table = analyze(pair, torques=list(TORQUES), model="plane_strain", receipt="minimal")
     ours = np.array([table.curve(torque=torque, at=np.array(AT_EDGES)).ste for torque in TORQUES]).T
     worst = 100.0 * float(np.abs(ours / exact - 1.0).max())
-    record_figure("STE at the edge of a pointed pinion", worst, "at most 0.13 %", "%", SOURCE)
-    assert worst < 0.13
+    record_figure("STE at the edge of a pointed pinion", worst, "at most 0.17 %", "%", SOURCE)
+    assert worst < 0.17
