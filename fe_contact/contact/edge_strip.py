@@ -73,7 +73,7 @@ class EdgeStrips(NamedTuple):
 
 
 def edge_table(strips: EdgeStrips, there: BoolArray) -> FloatArray:
-    """Return strips (P, n) as a table (P, n, 8), without those of slices that are not there (P, n)."""
+    """Return strips (Q, n) as a table (Q, n, 8), without those of slices that are not there (Q, n)."""
     table = np.stack(np.broadcast_arrays(*strips), axis=-1)
     return np.where(there[..., None] & (table[..., :1] != 0.0), table, 0.0)
 
@@ -175,17 +175,17 @@ def _corner(edge: FloatArray, i: int, force: float) -> tuple[float, float]:
 def edge_motions(edge: FloatArray, tilt: FloatArray, held: FloatArray, moved: FloatArray) -> None:
     """Add to motions (P, L, n) in m what strips at edges move under forces (P, L, n) in N.
 
-    `edge` (P, n, 8) is a table, `tilt` (Q, n, n) that of the contact problem, P a multiple of Q.
+    `edge` (Q, n, 8) is a table, `tilt` (Q, n, n) that of the contact problem, P a multiple of Q.
     """
     for p in range(held.shape[0]):
-        row = tilt[p % tilt.shape[0]]
+        row, here = tilt[p % tilt.shape[0]], edge[p % edge.shape[0]]
         for k in range(held.shape[1]):
             for j in range(held.shape[2]):
-                if edge[p, j, SIDE] != 0.0 and held[p, k, j] > 0.0:
+                if here[j, SIDE] != 0.0 and held[p, k, j] > 0.0:
                     slope = 0.0
                     for i in range(held.shape[2]):
                         slope += row[j, i] * held[p, k, i]
-                    motion = edge_motion(edge[p], j, held[p, k, j], slope)
+                    motion = edge_motion(here, j, held[p, k, j], slope)
                     moved[p, k, j] += motion.by_force + motion.corner
                     for i in range(held.shape[2]):
                         moved[p, k, i] += motion.by_tilt * row[j, i]

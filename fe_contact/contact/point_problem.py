@@ -247,7 +247,7 @@ class PointProblems(NamedTuple):
     bodies, tilt : ndarray, shape (Q, n, n)
         The tilt is empty where flanks do not roll.
     radius : ndarray, shape (P, n) where flanks roll, else (Q, n)
-    edge : ndarray, shape (P, n, 8) where flanks roll, else (1, n, 8)
+    edge : ndarray, shape (Q, n, 8) where flanks roll, else (1, n, 8)
         Of `EdgeStrips`.
     present : ndarray of bool, shape (Q, n)
     curves, heights : ndarray, shapes (points of a pair, K), (K, K)

@@ -466,35 +466,33 @@ class ContactProblem:
 
     @property
     def edges(self) -> FloatArray:
-        """Table (P, n, 8) of `EdgeStrips`; (1, n, 8) without any where no flank rolls."""
-        slices, touch = self.candidates.slices, self.candidates.touch
+        """Table (Q, n, 8) of `EdgeStrips`; (1, n, 8) without any where no flank rolls.
+
+        Of plain flanks: what modifications displace, they displace with its patch.
+        """
+        slices, touch = self.candidates.slices, self.candidates.slices.touch
         if not self.rolling.size:
             return no_edges(slices.pair.size)
-        times = len(touch.gap) // len(self.compliance)
-        first = slices.touch.offset_1 < slices.touch.offset_2
+        first = touch.offset_1 < touch.offset_2
         patches, planes = (slices.patch_1, slices.patch_2), (self.half_plane_1, self.half_plane_2)
         corners = planes[0] * (slices.corner_1 - 1.0), planes[1] * (slices.corner_2 - 1.0)
-
-        def of_edge(one: FloatArray | float, other: FloatArray | float) -> FloatArray:
-            return np.concatenate([np.where(first, one, other)] * times)
-
-        side, away = of_edge(-1.0, 1.0), of_edge(slices.touch.offset_1, slices.touch.offset_2)
-        at_tip, half = (
-            of_edge(*(np.asarray(p.at_tip, dtype=float) for p in patches)),
-            of_edge(*(p.half_width for p in patches)),
+        near_1, near_2 = self.half_planes
+        at_tip, half, distance, in_law, length = (
+            np.where(first, *(getattr(patch, name) for patch in patches))
+            for name in ("at_tip", "half_width", "edge_distance", "at_edge", "law_width")
         )
-        moved = np.clip(touch.moved, -slices.law_length, slices.law_length)
+        away = np.minimum(touch.offset_1, touch.offset_2)
         strips = EdgeStrips(
-            side=np.where(away < EDGE_REACH * half, side, 0.0),
-            offset=np.where(side < 0.0, touch.offset_1, touch.offset_2),
-            radius=self.candidates.radius,
-            softness=of_edge(*[2.0 * sum(self.half_planes) / slices.width] * 2),
-            patch=np.where(at_tip > 0.0, of_edge(*(p.edge_distance for p in patches)), away) + side * moved,
-            missing=of_edge(*(1.0 - p.at_edge for p in patches)),
-            corner=of_edge(*(corner / slices.width for corner in corners)),
-            length=np.where(at_tip > 0.0, of_edge(*(p.law_width for p in patches)), away),
+            side=np.where(away < EDGE_REACH * half, np.where(first, -1.0, 1.0), 0.0),
+            offset=away,
+            radius=touch.radius,
+            softness=2.0 * (near_1 + near_2) / slices.width,
+            patch=np.where(at_tip, distance, away),
+            missing=1.0 - in_law,
+            corner=np.where(first, *corners) / slices.width,
+            length=np.where(at_tip, length, away),
         )
-        return edge_table(strips, np.isfinite(touch.gap))
+        return edge_table(strips, slices.present)
 
     def moved(self, force: FloatArray) -> FloatArray:
         """Return how far forces (P, L, m) in N move the flanks apart at every candidate (P, L, m), m.
@@ -504,8 +502,8 @@ class ContactProblem:
         held = self.candidates.on_slices(force)
         radius, longest = self.radius, self.candidates.slices.law_length
         edges = self.edges
-        radius = np.where(edges[..., SIDE] == 0.0, radius, 0.0)
         radius = radius.reshape(-1, len(self.compliance), 1, radius.shape[1])
+        radius = np.where(edges[None, :, None, :, SIDE] == 0.0, radius, 0.0)
         by_pitch = held.reshape(-1, len(self.compliance), *held.shape[1:])
 
         def times(matrices: FloatArray, forces: FloatArray) -> FloatArray:
