@@ -133,6 +133,8 @@ class FlankCompliance:
         Inward displacement along the flank normal at node a per inward consistent nodal force along the
         flank normal at node b and per unit face width, m / (N/m). Row n k + a is node a of tooth
         ``teeth[n]``. Symmetric positive definite.
+    along : (k, k) array
+        Displacement along the flank towards its tip at node a per such force at node b of the same flank.
     s_form, s_tip : float
         Flank coordinate of form point and tip edge, m; ``s[-1] == s_tip``.
     contact_modulus : float
@@ -152,6 +154,7 @@ class FlankCompliance:
     s: FloatArray
     teeth: IntArray
     matrix: FloatArray
+    along: FloatArray
     s_form: float
     s_tip: float
     contact_modulus: float

@@ -30,7 +30,7 @@ from fe_contact.compliance.ring_2d import (
     Ring,
     assemble_ring,
     condense_sector,
-    flank_matrix,
+    flank_matrices,
     rotation,
 )
 from fe_contact.errors import InputError, integer
@@ -175,7 +175,7 @@ def _ring_checks(ring: Ring, tooth_index: int, load: _FlankLoad, matrix: FloatAr
     )
 
 
-MODEL_VERSION = 4  # raise it whenever the same input gives another result: old cache files are then not found
+MODEL_VERSION = 5  # raise it whenever the same input gives another result: old cache files are then not found
 USUAL_TEETH = 5
 
 
@@ -294,7 +294,7 @@ def compute_flank_compliance(
     ring = condensed_ring(gear, mesh, hypothesis)
     clock.finish("factorisation")
     index = tooth_indices(mesh, teeth)
-    matrix = flank_matrix(ring, index)
+    matrix, along = flank_matrices(ring, index)
     clock.finish("condensation")
     profile = tooth_profile(gear)
     load = uniform_pressure(mesh.sector.s, profile.s_form, gear.base_radius)
@@ -304,6 +304,7 @@ def compute_flank_compliance(
         s=mesh.sector.s,
         teeth=mesh.teeth[index],
         matrix=0.5 * (matrix + matrix.T),
+        along=along,
         s_form=profile.s_form,
         s_tip=profile.s_tip,
         contact_modulus=hypothesis.contact_modulus(gear.material),

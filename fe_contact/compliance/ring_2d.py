@@ -70,6 +70,9 @@ class _CondensedSector:
         Boundary force per unit flank force when the boundary is free to move.
     flank : (k, k) array
         Inward flank displacement per unit flank force with the boundary held, 1/Pa.
+    along, along_boundary : (k, k) and (k, 2 nb) arrays
+        Displacement of the flank's nodes along the flank towards the tip: per unit flank force with the
+        boundary held, 1/Pa, and per displacement of the boundary.
     matrix : (2n, 2n) sparse array
         Uncondensed stiffness of the sector.
     loads : (2n, k) sparse array
@@ -84,6 +87,8 @@ class _CondensedSector:
     stiffness: FloatArray
     transmitted: FloatArray
     flank: FloatArray
+    along: FloatArray
+    along_boundary: FloatArray
     matrix: sp.csc_array
     loads: sp.csc_array
     interior: IntArray
@@ -100,6 +105,12 @@ def _inward_loads(size: int, nodes: IntArray, normals: FloatArray) -> sp.csc_arr
     rows = freedoms(nodes)
     columns = np.repeat(np.arange(len(nodes)), 2)
     return sp.csc_array((-normals.ravel(), (rows, columns)), shape=(2 * size, len(nodes)))
+
+
+def _along_flank(points: FloatArray, normals: FloatArray) -> FloatArray:
+    """Return the unit vectors (k, 2) along a flank towards its tip, which its last node is."""
+    across = np.stack([-normals[:, 1], normals[:, 0]], axis=1)
+    return np.asarray(across * np.sign(across.sum(axis=0) @ (points[-1] - points[0])))
 
 
 def condense_sector(mesh: GearMesh, matrix: sp.csc_array, normals: FloatArray) -> _CondensedSector:
@@ -121,6 +132,8 @@ def condense_sector(mesh: GearMesh, matrix: sp.csc_array, normals: FloatArray) -
     loads = _inward_loads(size, sector.flank, normals)
     k_ib = matrix[i][:, b].toarray()
     n_i = loads[i].toarray()
+    along = _along_flank(sector.points[sector.flank], normals)
+    t_i = _inward_loads(size, sector.flank, -along)[i]
     solve = factorise(sp.csc_array(matrix[i][:, i]), block=2)
     solved = solve(np.concatenate([n_i, k_ib], axis=1))
     by_load, by_boundary = solved[:, : n_i.shape[1]], solved[:, n_i.shape[1] :]
@@ -129,6 +142,8 @@ def condense_sector(mesh: GearMesh, matrix: sp.csc_array, normals: FloatArray) -
         stiffness=matrix[b][:, b].toarray() - k_ib.T @ by_boundary,
         transmitted=-k_ib.T @ by_load,
         flank=n_i.T @ by_load,
+        along=t_i.T @ by_load,
+        along_boundary=-(t_i.T @ by_boundary),
         matrix=matrix,
         loads=loads,
         interior=i,
@@ -214,20 +229,35 @@ def _turned_matrix(matrix: FloatArray, angle: float) -> FloatArray:
     )
 
 
-def flank_matrix(ring: Ring, teeth: IntArray) -> FloatArray:
-    """Return the flank compliance of the teeth with indices `teeth`, (t k, t k) in 1/Pa.
+def flank_matrices(ring: Ring, teeth: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return what loads on flanks move across and along them.
 
-    It is symmetric up to rounding. Only rows that the loaded sectors touch are solved for.
+    Only rows that the loaded sectors touch are solved for.
+
+    Parameters
+    ----------
+    teeth : (t,) int array
+        Indices of the teeth; that in the middle is tooth 0.
+
+    Returns
+    -------
+    matrix : (t k, t k) array
+        The flank compliance of the teeth, 1/Pa; symmetric up to rounding.
+    along : (k, k) array
+        Displacement towards the tip at the nodes of a flank per inward force at its nodes, 1/Pa.
     """
     sector, k, count = ring.sector, ring.sector.flank.shape[0], len(teeth)
     blocks = [(ring.rows(i), ring.turned(i, sector.transmitted)) for i in teeth]
     used, inverse = np.unique(np.concatenate([rows for rows, _ in blocks]), return_inverse=True)
-    transmitted = np.zeros((len(used), count * k))
-    for n, ((_, block), at) in enumerate(zip(blocks, np.split(inverse, count), strict=True)):
-        transmitted[at, n * k : (n + 1) * k] = block
+    transmitted, at = np.zeros((len(used), count * k)), np.split(inverse, count)
+    for n, (_, block) in enumerate(blocks):
+        transmitted[at[n], n * k : (n + 1) * k] = block
     unit = np.zeros((ring.matrix.shape[0], len(used)))
     unit[used, np.arange(len(used))] = 1.0
-    matrix = transmitted.T @ (ring.solve(unit)[used] @ transmitted)
+    moved = ring.solve(unit)[used] @ transmitted
+    matrix = transmitted.T @ moved
     for n in range(count):
         matrix[n * k : (n + 1) * k, n * k : (n + 1) * k] += sector.flank
-    return np.asarray(matrix)
+    middle = (count - 1) // 2
+    boundary = moved[at[middle], middle * k : (middle + 1) * k]
+    return np.asarray(matrix), sector.along + sector.along_boundary @ boundary

@@ -300,6 +300,12 @@ def contact_problem(
     lever arm of the line, as for a rotation. Without this the corner stiffness reads up to 4 % too low, and
     the error of STE grows with load.
 
+    A gear that turns about its axis moves so. Under the load on its edge a tooth also bends about its root,
+    and the wedge at the tip yields across: the way along the flank is kappa times that of a turn, by the
+    finite elements, and 1 + kappa (lever - 1) takes the place of the lever.
+
+    At edges the tilt is that of patches that grow from the edge, less the logarithm that the local law has.
+
     Pair +1 is ahead in the sense of rotation. The load turns a gear counter-clockwise in its tooth frame; the
     driving gear turns against its load and the driven one with it, so pair j lies on tooth -j of gear 1 and
     on tooth +j of gear 2.
@@ -307,15 +313,20 @@ def contact_problem(
     slices = candidates.slices
     compliance, tilt = np.zeros((2, *slices.present.shape, slices.pair.size))
     touch = slices.touch
-    sides = ((slices.patch_1, touch.lever_1, 1.0), (slices.patch_2, touch.lever_2, -1.0))
+    patches = slices.patch_1, slices.patch_2
+    sides = ((touch.lever_1, 1.0), (touch.lever_2, -1.0))
     diagonals = []
-    for flank, (patch, lever, tip), direction in zip(compliances, sides, (-1, 1), strict=True):
+    for g, (flank, (lever, tip), direction) in enumerate(zip(compliances, sides, (-1, 1), strict=True)):
         blocks = _tooth_blocks(flank, direction * slices.pair)
         rows = np.ascontiguousarray  # one order in memory: compiled once
-        laid = np.array([patch.center, patch.half_width, patch.edge_share])
-        _add_gear(flank.s, blocks, laid, rows(lever), tip, slices.present, couple_teeth, compliance, tilt)
+        laid, way = _laid(patches[g], patches[1 - g], slices.edge_side, tip, flank.s[-1])
+        along = rows(flank.along) / slices.tip_inclinations[g]
+        levers = rows(lever)
+        _add_gear(flank.s, blocks, along, laid, way, levers, slices.present, couple_teeth, compliance, tilt)
         diagonals.append(np.einsum("pii->pi", compliance).copy())
     planes, modulus = _half_planes(compliances)
+    diagonal = np.arange(slices.pair.size)
+    tilt[:, diagonal, diagonal] += _logarithm_at_edges(slices, planes)
     return ContactProblem(
         candidates,
         compliance / slices.width,
@@ -344,13 +355,61 @@ def _tooth_blocks(flank: FlankCompliance, teeth: IntArray) -> FloatArray:
     return np.ascontiguousarray(blocks[rows][:, :, rows].transpose(0, 2, 1, 3))
 
 
+_STRETCH = 0.25
+"""Part of its length by which a patch at an edge is longer or shorter to see how its forces change."""
+
+
+def _laid(
+    patch: Patches, mate: Patches, side: FloatArray, tip: float, end: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return patches of one gear as they are and on either side of that, and how far apart those lie.
+
+    Centers, half-widths and edge shares (3, 3, P, n); ways (P, n) in m, positive towards tip 1. Patches at an
+    edge grow from it, the others are displaced as if they were plain ones.
+
+    Parameters
+    ----------
+    patch, mate : Patches
+        Of this gear and of the other one.
+    side : ndarray, shape (P, n)
+        See `LoadedSlices.edge_side`.
+    tip : float
+        +1 on gear 1 and -1 on gear 2.
+    end : float
+        Flank coordinate of the tip edge, m.
+    """
+    short, long = patch.stretched(-_STRETCH, mate), patch.stretched(_STRETCH, mate)
+    widest = patch.half_width.max()
+    near, most = _NEAR * widest, end - widest
+    above = np.minimum(patch.center + near, most)
+    plain = np.full(above.shape, widest), np.zeros(above.shape)
+    at_edge = side != 0.0
+    low, high = (
+        np.where(at_edge, (each.center, each.half_width, each.edge_share), (center, *plain))
+        for each, center in ((short, above - 2.0 * near), (long, above))
+    )
+    apart = 2.0 * _STRETCH * np.where(patch.at_tip, patch.edge_distance, mate.edge_distance)
+    way = np.where(at_edge, side * apart, tip * 2.0 * near)
+    return np.stack([(patch.center, patch.half_width, patch.edge_share), low, high]), way
+
+
+def _logarithm_at_edges(slices: LoadedSlices, planes: tuple[float, float]) -> FloatArray:
+    """Return half of how the logarithm in the local law falls as strips at edges grow (P, n), 1/N."""
+    first, second = slices.half_planes(*planes)
+    near, far = slices.patch_1.edge_distance, slices.patch_2.edge_distance
+    by_distance = np.where(slices.edge_side < 0.0, first / near, second / far)
+    growth = math.log((1.0 + _STRETCH) / (1.0 - _STRETCH)) / (2.0 * _STRETCH)
+    return np.asarray(0.5 * slices.edge_side * by_distance * growth)
+
+
 @njit(cache=True)
 def _add_gear(
     nodes: FloatArray,
     blocks: FloatArray,
+    along: FloatArray,
     laid: FloatArray,
+    way: FloatArray,
     lever: FloatArray,
-    tip: float,
     present: BoolArray,
     couple_teeth: bool,
     out: FloatArray,
@@ -358,26 +417,22 @@ def _add_gear(
 ) -> None:
     """Add b_i' S b_j of one gear for all positions, and to `tilt` how it changes as patch i moves to tip 1.
 
-    `laid` (3, P, n) has centers, half-widths and edge shares; `tip` is +1 on gear 1 and -1 on gear 2. Beside
-    an edge patches give way more than a strip there does: to `tilt` they count as if they were plain ones.
+    `laid` and `way` are those of `_laid`, `along` (k, k) the motions along the flank over those of a rotation
+    that moves it across by 1.
     """
-    widest = laid[1].max()
     positions, n = present.shape
     load = np.zeros((3, n, nodes.size))
-    first, last, way = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64), np.zeros(n)
+    first, last = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
     for p in range(positions):
         for i in range(n):
             last[i] = first[i] = 0
             if present[p, i]:
-                center, half, share = laid[0, p, i], laid[1, p, i], laid[2, p, i]
-                above = min(center + _NEAR * widest, nodes[-1] - widest)
-                below = above - 2.0 * _NEAR * widest
                 load[:, i] = 0.0
-                first[i], last[i] = load_vector(nodes, center, half, share, load[0, i])
-                low, _ = load_vector(nodes, below, widest, 0.0, load[1, i])
-                _, high = load_vector(nodes, above, widest, 0.0, load[2, i])
-                first[i], last[i] = min(first[i], low), max(last[i], high)
-                way[i] = 2.0 * tip * (above - below)
+                first[i], last[i] = nodes.size, 0
+                for k in range(3):
+                    center, half, share = laid[k, 0, p, i], laid[k, 1, p, i], laid[k, 2, p, i]
+                    low, high = load_vector(nodes, center, half, share, load[k, i])
+                    first[i], last[i] = min(first[i], low), max(last[i], high)
         for i in range(n):
             for j in range(n):
                 if (i != j and not couple_teeth) or last[i] == 0 or last[j] == 0:
@@ -391,8 +446,34 @@ def _add_gear(
                     value += load[0, i, a] * moved
                     change += (load[2, i, a] - load[1, i, a]) * plain
                 arms = lever[p, i] * lever[p, j]
-                tilt[p, i, j] += arms * change / way[i]
+                value, change = arms * value, arms * change
+                if i == j and lever[p, i] != 1.0:
+                    ends = first[i], last[i], lever[p, i]
+                    value = _turned(blocks[i, i], along, load[0, i], *ends)
+                    change = _turned(blocks[i, i], along, load[2, i], *ends)
+                    change -= _turned(blocks[i, i], along, load[1, i], *ends)
+                tilt[p, i, j] += change / (2.0 * way[p, i])
                 if j <= i:
-                    out[p, i, j] += arms * value
+                    out[p, i, j] += value
                 if j < i:
-                    out[p, j, i] += arms * value
+                    out[p, j, i] += value
+
+
+@njit(cache=True)
+def _turned(
+    block: FloatArray, along: FloatArray, load: FloatArray, first: int, last: int, lever: float
+) -> float:
+    """Return what an edge yields to the load on it, nodes first to last - 1, along the normal of its mate."""
+    across = _work(block, load, first, last)
+    turn = _work(along, load, first, last) / across
+    return across * (1.0 + turn * (lever - 1.0)) ** 2
+
+
+@njit(cache=True)
+def _work(matrix: FloatArray, load: FloatArray, first: int, last: int) -> float:
+    """Return b' M b of a load that acts on nodes first to last - 1."""
+    value = 0.0
+    for a in range(first, last):
+        for b in range(first, last):
+            value += load[a] * matrix[a, b] * load[b]
+    return value

@@ -200,6 +200,7 @@ def _loaded_slices(
         base_helix_angle=pair.base_helix_angle,
         corner_1=_corner_softness(pair.pinion),
         corner_2=_corner_softness(pair.wheel),
+        tip_inclinations=(_tip_inclination(pair.pinion), _tip_inclination(pair.wheel)),
         law_length=max(rule.half_width, rule.law_length, min(LAW_LENGTH * width, LONGEST_LAW * module)),
         edge_load=rule.edge_load,
         end_1=_free_ends(pair, pair.pinion, 0.0, slices),
@@ -271,6 +272,11 @@ def _turned_normals(
     strip = np.sqrt(squared / np.maximum(relative, flattest))
     curvature = (second * curvatures[0] - first * curvatures[1]) / (first + second)
     return np.asarray(STRIP_DISTANCE * np.minimum(strip, rule.half_width) * curvature)
+
+
+def _tip_inclination(gear: Toothing) -> float:
+    """Return the tangent of the transverse pressure angle at a gear's tip."""
+    return abs(gear.tip_roll_length) / gear.base_radius
 
 
 def _corner_softness(gear: Toothing) -> float:

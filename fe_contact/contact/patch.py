@@ -15,12 +15,12 @@ built at the exact position: an interpolated self compliance would ripple with t
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from fe_contact.types import FloatArray, IntArray
+from fe_contact.types import BoolArray, FloatArray, IntArray
 from host.loops import inner
 
 
@@ -39,6 +39,8 @@ class Patches:
     bulge : ndarray or float
         `fe_contact.hertz.lateral_share` of the material times the curvature of the flank, 1/m; 0 of a half
         plane.
+    at_tip : ndarray of bool or bool
+        Whether a patch ends at the tip edge.
     """
 
     center: FloatArray
@@ -46,13 +48,16 @@ class Patches:
     edge_share: FloatArray
     count: int = 1
     bulge: FloatArray | float = 0.0
+    at_tip: BoolArray | bool = False
 
     def rows(self, keep: IntArray) -> Patches:
         """Keep some positions."""
-        bulge = np.broadcast_to(self.bulge, self.center.shape)[keep]
-        return Patches(
-            self.center[keep], self.half_width[keep], self.edge_share[keep], self.count, np.asarray(bulge)
+        bulge, at_tip = (
+            np.asarray(np.broadcast_to(values, self.center.shape)[keep])
+            for values in (self.bulge, self.at_tip)
         )
+        laid = self.center[keep], self.half_width[keep], self.edge_share[keep]
+        return Patches(*laid, self.count, bulge, at_tip)
 
     def by_slice(
         self, position: int | IntArray, slices: IntArray
@@ -68,9 +73,24 @@ class Patches:
         return self.center + 0.5 * self.edge_share * self.half_width
 
     @property
+    def edge_distance(self) -> FloatArray:
+        """Distance of the load's centroid from the upper end of the patch, where an edge may be, m."""
+        return self.half_width * (1.0 - 0.5 * self.edge_share)
+
+    @property
     def at_edge(self) -> FloatArray:
         """Share of the strip on the edge: 0 before it reaches it, 1 where rigid flanks touch there."""
         return np.minimum(1.5 * self.edge_share, 1.0)
+
+    def stretched(self, part: float, mate: Patches) -> Patches:
+        """Return patches whose length at an edge grows by a part of it, their form kept.
+
+        Where a patch of the mate is at its edge, the patch on this gear follows the load towards the tip.
+        """
+        half = np.where(self.at_tip, (1.0 + part) * self.half_width, self.half_width)
+        follows = np.logical_and(mate.at_tip, np.logical_not(self.at_tip))
+        center = self.center + np.where(follows, part * mate.edge_distance, self.half_width - half)
+        return replace(self, center=center, half_width=half)
 
     @cached_property
     def law_width(self) -> FloatArray:
@@ -119,7 +139,7 @@ def tip_patches(
     missing = np.maximum(0.5 * edge_length - offset, 0.0)
     share = missing / (missing + 0.25 * edge_length)
     center = np.where(offset < half, tip - half, s)
-    return Patches(center, half, share)
+    return Patches(center, half, share, at_tip=offset < half_width)
 
 
 @inner()

@@ -247,6 +247,8 @@ class PointProblems(NamedTuple):
     bodies, tilt : ndarray, shape (Q, n, n)
         The tilt is empty where flanks do not roll.
     radius : ndarray, shape (P, n) where flanks roll, else (Q, n)
+    edge : ndarray, shape (Q, n, 8) where flanks roll, else (1, n, 8)
+        Of `EdgeStrips`.
     present : ndarray of bool, shape (Q, n)
     curves, heights : ndarray, shapes (points of a pair, K), (K, K)
     gap, motion_arm, torque_arm, width : ndarray, shape (P, m)
@@ -260,6 +262,7 @@ class PointProblems(NamedTuple):
     bodies: FloatArray
     tilt: FloatArray
     radius: FloatArray
+    edge: FloatArray
     present: BoolArray
     curves: FloatArray
     heights: FloatArray
@@ -285,6 +288,7 @@ def point_problems(problem: ContactProblem) -> PointProblems:
         rows(problem.bodies),
         rows(problem.rolling),
         rows(problem.radius),
+        rows(problem.edges),
         rows(c.slices.present),
         rows(c.curves),
         rows(c.heights),
@@ -310,6 +314,8 @@ class PointProblem(NamedTuple):
         Tilt of the flanks at curve i per unit force on j, 1/N; see `ContactProblem`.
     radius : ndarray, shape (n,)
         How far tilted flanks move their strip, m.
+    edge : ndarray, shape (n, 8)
+        Of `EdgeStrips`.
     curve : ndarray, shape (m, w)
         Parts of the force of each contact on w curves beside each other, and of their heights there.
     first : ndarray of int, shape (m,)
@@ -324,6 +330,7 @@ class PointProblem(NamedTuple):
     bodies: FloatArray
     tilt: FloatArray
     radius: FloatArray
+    edge: FloatArray
     curve: FloatArray
     first: IntArray
     gap: FloatArray
@@ -383,7 +390,8 @@ def problem_on(every: PointProblems, bodies: RowBodies, p: int) -> tuple[PointPr
     point = here % points
     first = pairs[here // points] * count + bodies.first[point]
     arms = every.motion_arm[p][here], every.torque_arm[p][here]
-    held = bodies.moved, bodies.tilt, radius
+    edge = every.edge[p % every.edge.shape[0]][bodies.there]
+    held = bodies.moved, bodies.tilt, radius, edge
     return PointProblem(*held, bodies.curve[point], first, every.gap[p][here], *arms, law), here
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import scipy
 
+from fe_contact.contact.edge_strip import EDGE_REACH, SIDE, EdgeStrips, edge_motions, edge_table, no_edges
 from fe_contact.contact.free_end import ENDLESS, SMOOTH, FreeEnds, end_excess
 from fe_contact.contact.patch import Patches
 from fe_contact.contact.plain_touch import Touch
@@ -123,6 +124,8 @@ class LoadedSlices:
         beta_b of gear 1 in rad, > 0 right hand.
     corner_1, corner_2 : float
         What the tip corner of either gear yields over a half plane; see `fe_contact.hertz.wedge_softness`.
+    tip_inclinations : (float, float)
+        Tangent of the pressure angle at the tip of either gear.
     law_length : float
         Reference length in m that parts the contact from the bodies: what is nearer to the strip is in the
         local law, what is further in the finite elements.
@@ -146,12 +149,18 @@ class LoadedSlices:
     base_helix_angle: float
     corner_1: float
     corner_2: float
+    tip_inclinations: tuple[float, float]
     law_length: float
     edge_load: float
     lateral_shares: tuple[float, float]
     turned_normals: FloatArray
     end_1: FreeEnds = ENDLESS
     end_2: FreeEnds = ENDLESS
+
+    @property
+    def edge_side(self) -> FloatArray:
+        """Direction (P, m) away from the edge where patches begin: 1 is towards tip 1, 0 without edge."""
+        return np.where(self.patch_1.at_tip, -1.0, np.where(self.patch_2.at_tip, 1.0, 0.0))
 
     @property
     def width(self) -> float:
@@ -455,6 +464,36 @@ class ContactProblem:
             return np.zeros(self.candidates.slices.present.shape)
         return self.candidates.on_mean(self.candidates.rolling_radius)
 
+    @property
+    def edges(self) -> FloatArray:
+        """Table (Q, n, 8) of `EdgeStrips`; (1, n, 8) without any where no flank rolls.
+
+        Of plain flanks: what modifications displace, they displace with its patch.
+        """
+        slices, touch = self.candidates.slices, self.candidates.slices.touch
+        if not self.rolling.size:
+            return no_edges(slices.pair.size)
+        first = touch.offset_1 < touch.offset_2
+        patches, planes = (slices.patch_1, slices.patch_2), (self.half_plane_1, self.half_plane_2)
+        corners = planes[0] * (slices.corner_1 - 1.0), planes[1] * (slices.corner_2 - 1.0)
+        near_1, near_2 = self.half_planes
+        at_tip, half, distance, in_law, length = (
+            np.where(first, *(getattr(patch, name) for patch in patches))
+            for name in ("at_tip", "half_width", "edge_distance", "at_edge", "law_width")
+        )
+        away = np.minimum(touch.offset_1, touch.offset_2)
+        strips = EdgeStrips(
+            side=np.where(away < EDGE_REACH * half, np.where(first, -1.0, 1.0), 0.0),
+            offset=away,
+            radius=touch.radius,
+            softness=2.0 * (near_1 + near_2) / slices.width,
+            patch=np.where(at_tip, distance, away),
+            missing=1.0 - in_law,
+            corner=np.where(first, *corners) / slices.width,
+            length=np.where(at_tip, length, away),
+        )
+        return edge_table(strips, slices.present)
+
     def moved(self, force: FloatArray) -> FloatArray:
         """Return how far forces (P, L, m) in N move the flanks apart at every candidate (P, L, m), m.
 
@@ -462,7 +501,9 @@ class ContactProblem:
         """
         held = self.candidates.on_slices(force)
         radius, longest = self.radius, self.candidates.slices.law_length
+        edges = self.edges
         radius = radius.reshape(-1, len(self.compliance), 1, radius.shape[1])
+        radius = np.where(edges[None, :, None, :, SIDE] == 0.0, radius, 0.0)
         by_pitch = held.reshape(-1, len(self.compliance), *held.shape[1:])
 
         def times(matrices: FloatArray, forces: FloatArray) -> FloatArray:
@@ -474,7 +515,9 @@ class ContactProblem:
         way = np.clip(-radius * tilt, -longest, longest)
         rolled = way * (tilt + np.divide(0.5 * way, radius, out=np.zeros(way.shape), where=radius > 0.0))
         moved = times(self.bodies, by_pitch) + rolled + times(np.swapaxes(self.tilt, 1, 2), way * by_pitch)
-        return self.candidates.at_points(moved.reshape(held.shape))
+        moved = np.ascontiguousarray(moved.reshape(held.shape))
+        edge_motions(edges, self.tilt, np.ascontiguousarray(held), moved)
+        return self.candidates.at_points(moved)
 
     def rows(self, keep: IntArray) -> ContactProblem:
         """Return the problem of some positions, one row of compliance each."""

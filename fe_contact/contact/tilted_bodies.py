@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fe_contact.contact.edge_strip import SIDE, edge_motion
 from fe_contact.contact.elimination import dot, subtract
 from fe_contact.contact.point_problem import PointProblem, State
 from fe_contact.types import FloatArray
@@ -13,13 +14,20 @@ def move(problem: PointProblem, state: State) -> None:
     """Fill in the heights of the curves under the forces on them, u(h).
 
     It is the gradient of the energy h'K h/2 + sum_j h_j min_y (y t_j + y^2/(2 R_j)) with the tilts t = D h:
-    flanks that tilt press in another place y, no further away than the reference length.
+    flanks that tilt press in another place y, no further away than the reference length. Near an edge the
+    place is that of the strip, and what the corner yields comes to it (`fe_contact.contact.edge_strip`).
     """
     n = state.held.size
     for j in range(n):
         state.moved[j] = dot(problem.bodies[j], state.held, n)
     for j in range(n):
-        if problem.radius[j] > 0.0:
+        if problem.edge[j, SIDE] != 0.0:
+            if state.held[j] > 0.0:
+                motion = edge_motion(problem.edge, j, state.held[j], dot(problem.tilt[j], state.held, n))
+                state.moved[j] += motion.by_force + motion.corner
+                for k in range(n):
+                    state.moved[k] += problem.tilt[j, k] * motion.by_tilt
+        elif problem.radius[j] > 0.0:
             tilt, way, _ = rolled(problem, j, state.held)
             state.moved[j] += way * (tilt + 0.5 * way / problem.radius[j])
             for k in range(n):
@@ -42,15 +50,22 @@ def fill_yielding(problem: PointProblem, state: State) -> None:
     n, out = state.held.size, state.yielding
     out[:] = problem.bodies
     for j in range(n):
-        if problem.radius[j] > 0.0:
-            _, way, rate = rolled(problem, j, state.held)
-            row = problem.tilt[j]
+        row, mixed, square = problem.tilt[j], 0.0, 0.0
+        if problem.edge[j, SIDE] != 0.0:
+            if state.held[j] > 0.0:
+                motion = edge_motion(problem.edge, j, state.held[j], dot(row, state.held, n))
+                out[j, j] += motion.force_force + motion.softness
+                mixed, square = motion.force_tilt, motion.tilt_tilt
+        elif problem.radius[j] > 0.0:
+            _, mixed, rate = rolled(problem, j, state.held)
+            square = rate * state.held[j]
+        if mixed != 0.0:
             for k in range(n):
-                out[j, k] += way * row[k]
-                out[k, j] += way * row[k]
-            if rate != 0.0 and state.held[j] != 0.0:
-                for k in range(n):
-                    subtract(out[k], row, -rate * state.held[j] * row[k])
+                out[j, k] += mixed * row[k]
+                out[k, j] += mixed * row[k]
+        if square != 0.0:
+            for k in range(n):
+                subtract(out[k], row, -square * row[k])
 
 
 @inner(error_model="numpy")

@@ -15,7 +15,7 @@ NODES = 81
 
 
 def flank_of_springs(gear: Gear, teeth: int) -> FlankCompliance:
-    """Return a compliance of about that of finite elements for `teeth` teeth."""
+    """Return a compliance of about that of finite elements for `teeth` teeth, which turn about the axis."""
     profile = tooth_profile(gear)
     s = np.linspace(profile.s_root, profile.s_tip, NODES)
     height = np.linspace(0.0, 1.0, NODES)
@@ -32,6 +32,7 @@ def flank_of_springs(gear: Gear, teeth: int) -> FlankCompliance:
         s=s,
         teeth=np.arange(teeth) - teeth // 2,
         matrix=matrix,
+        along=(own + 0.8 * np.outer(body, body) / soft) * gear.tip_roll_length / gear.base_radius,
         s_form=profile.s_form,
         s_tip=profile.s_tip,
         contact_modulus=gear.material.plane_strain_modulus,

@@ -14,6 +14,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from fe_contact.contact.edge_strip import no_edges
 from fe_contact.contact.newton import CONVERGED, solve_point
 from fe_contact.contact.point_problem import PointProblem, local_law
 from fe_contact.contact.strip import Gap, gap_table
@@ -84,8 +85,8 @@ def picked(problem: Problem, index: np.ndarray) -> Problem:
     return replace(problem, compliance=problem.compliance[np.ix_(index, index)], **arrays)
 
 
-def untilted(n: int) -> tuple[np.ndarray, np.ndarray]:
-    return np.zeros((0, 0)), np.zeros(n)
+def untilted(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    return np.zeros((0, 0)), np.zeros(n), no_edges(n)[0]
 
 
 class Solved:

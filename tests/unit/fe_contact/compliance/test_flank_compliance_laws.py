@@ -49,6 +49,14 @@ def of_ring(gear: Toothing, recipe: MeshRecipe) -> FlankCompliance:
     return flank_compliance(gear, recipe, teeth=5)
 
 
+def along_flank(mesh: fe_contact.mesh.gear_mesh.GearMesh, middle: int, found: FlankCompliance) -> np.ndarray:
+    """Unit vectors (k, 2) across the normals of a flank that point towards its tip."""
+    flank = [flank for flank in mesh.flanks if flank.tooth in found.teeth][middle]
+    turned = flank.normals @ np.array([[0.0, 1.0], [-1.0, 0.0]])
+    towards_tip = np.gradient(mesh.points[flank.nodes], axis=0)
+    return turned * np.sign((turned * towards_tip).sum(axis=1))[:, None]
+
+
 @pytest.mark.drawn
 @pytest.mark.law
 @ALL_RINGS
@@ -62,8 +70,13 @@ def test_equals_the_solution_of_the_whole_uncondensed_mesh(gear: Toothing, real:
     loads = sp.hstack([_inward_loads(len(mesh.points), f.nodes, f.normals) for f in flanks], format="csc")[
         free
     ]
-    direct = loads.T @ splu(sp.csc_array(matrix[free][:, free])).solve(loads.toarray())
+    moved = splu(sp.csc_array(matrix[free][:, free])).solve(loads.toarray())
+    direct = loads.T @ moved
     assert relative(found.matrix, direct) < 1e-10
+    middle = len(flanks) // 2
+    own = slice(middle * len(found.s), (middle + 1) * len(found.s))
+    towards_tip = _inward_loads(len(mesh.points), flanks[middle].nodes, -along_flank(mesh, middle, found))
+    assert relative(found.along, towards_tip[free].T @ moved[:, own]) < 1e-10
     assert found.unknowns == len(free)
 
 

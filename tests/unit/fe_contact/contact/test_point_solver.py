@@ -22,6 +22,7 @@ from fe_contact.contact import (
     contact_candidates,
     solve_contact,
 )
+from fe_contact.contact.edge_strip import no_edges
 from fe_contact.contact.elimination import eliminate
 from fe_contact.contact.newton import _residuals, solve_point
 from fe_contact.contact.patch import Patches
@@ -57,6 +58,7 @@ def point(compliance, gap, motion_arm=None, torque_arm=None, edge_slope=math.nan
         bodies,
         np.zeros((0, 0)),
         np.zeros(n),
+        no_edges(n)[0],
         np.ones((there.size, 1)),
         there,
         gaps,
@@ -204,6 +206,7 @@ def two_position_problem() -> ContactProblem:
         base_helix_angle=0.0,
         corner_1=1.0,
         corner_2=1.0,
+        tip_inclinations=(0.5, 0.5),
         law_length=LENGTH,
         edge_load=0.0,
         lateral_shares=(0.0, 0.0),

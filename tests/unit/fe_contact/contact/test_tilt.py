@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -19,6 +20,7 @@ from fe_contact.contact import (
     contact_problem,
     solve_contact,
 )
+from fe_contact.contact.edge_strip import SIDE, edge_motion, edge_place
 from fe_contact.contact.newton import solve_point
 from fe_contact.contact.point_problem import PointProblem, State, point_problems, problem_at
 from fe_contact.contact.tilted_bodies import fill_yielding, move
@@ -80,6 +82,39 @@ def test_compliance_changes_along_the_flank_as_its_tilt_says_to_second_order(pro
     assert left[1] < 0.4 * left[0]  # a quarter is that of the square
 
 
+@pytest.mark.law
+def test_compliance_changes_at_edges_as_patches_grow_from_them_less_the_logarithm_of_the_law(problem, bodies):
+    """To third order, as other patches grow too."""
+    slices = problem.candidates.slices
+    first, second, side = slices.patch_1, slices.patch_2, slices.edge_side
+    planes = np.where(side < 0.0, *problem.half_planes)
+    distance = np.where(side < 0.0, first.edge_distance, second.edge_distance)
+    for p, i in zip(*np.nonzero(side), strict=True):
+        only = np.zeros(side.shape)
+        only[p, i] = 1.0
+        ends = []
+        for part in (0.25, -0.25):
+            one, other = (
+                replace(
+                    patch,
+                    center=np.where(only, longer.center, patch.center),
+                    half_width=np.where(only, longer.half_width, patch.half_width),
+                )
+                for patch, longer in (
+                    (first, first.stretched(part, second)),
+                    (second, second.stretched(part, first)),
+                )
+            )
+            moved = replace(problem.candidates, slices=replace(slices, patch_1=one, patch_2=other))
+            ends.append(contact_problem(moved, bodies).compliance[p, i])
+        change = side[p, i] * (ends[0] - ends[1]) / (0.5 * distance[p, i])
+        logarithm = math.log(1.25 / 0.75) / (0.5 * distance[p, i])
+        change[i] += side[p, i] * planes[p, i] * logarithm / slices.width
+        change[i] *= 0.5
+        assert problem.tilt[p, i] == pytest.approx(change, rel=1e-3, abs=0.02 * np.abs(change).max())
+    assert (side > 0.0).any() or (side < 0.0).any()
+
+
 def test_the_compliance_of_modified_flanks_is_that_of_patches_displaced_to_them(problem, bodies):
     slices = problem.candidates.slices
     ways = np.where((slices.patch_1.edge_share + slices.patch_2.edge_share) == 0.0, 3e-5, 0.0)
@@ -100,11 +135,19 @@ def tilted(problem: ContactProblem) -> PointProblem:
 
 
 def energy(problem: PointProblem, held: np.ndarray) -> float:
-    """h'K h/2 and what is least of the tilted gaps, from samples of the place."""
+    """h'K h/2, what is least of the tilted gaps, from samples of the place, and that of strips at edges."""
     tilt = problem.tilt @ held
     y = np.linspace(-problem.law.length, problem.law.length, 1_000_001)[:, None]
     least = (y * tilt + 0.5 * y**2 / problem.radius).min(axis=0)
-    return float(0.5 * held @ problem.bodies @ held + held @ least)
+    at_edges = 0.0
+    for j in np.flatnonzero(problem.edge[:, SIDE]):
+        side, offset, radius, softness, patch, *_ = problem.edge[j]
+        place = edge_place(offset - 0.5 * radius * side * tilt[j], radius, softness, held[j])[0]
+        forces = held[j] * (np.arange(2000) + 0.5) / 2000.0
+        corner = np.mean([edge_motion(problem.edge, j, force, 0.0).corner for force in forces])
+        at_edges += held[j] * (side * tilt[j] * (place - patch) + corner)
+        least[j] = 0.0
+    return float(0.5 * held @ problem.bodies @ held + held @ least + at_edges)
 
 
 def state_of(problem: PointProblem, held: np.ndarray) -> State:
@@ -120,6 +163,7 @@ def test_motions_are_the_gradient_of_one_energy_and_yield_as_its_second_derivati
     n = len(point.bodies)
     forces = np.linspace(2000.0, 800.0, n)
     here = state_of(point, forces)
+    assert point.edge[:, SIDE].any()
     far = np.abs(point.tilt @ forces * point.radius) > point.law.length
     assert far.tolist() == [k == 2 for k in range(n)]
     for j, one in enumerate(np.eye(n)):

@@ -1,0 +1,191 @@
+r"""Strips near a tip edge: where their load presses, and what the corner under them yields.
+
+The load patch of finite elements at an edge has one length. The strip is shorter under less load, so that its
+middle is nearer to the edge, where the bodies yield more; and it moves as flanks tilt, less if the edge holds
+it. With tau the tilt of the flanks by the bodies, positive towards tip 1, phi the angle by which rigid flanks
+open from the edge, s the direction away from it and h the force, the energy has the further part
+
+    E = h s tau X(h, phi + s tau/2),    d(h X)/dh = M,
+
+X the way of the strip's centroid from that of the patch, M that of the middle of the strip: what a further
+load adds presses as a punch does. Half of the tilt counts in X, as E is its integral over the tilt. Free
+strips have X = -phi R, which leaves -h R tau^2/2, as anywhere on a flank.
+
+A strip beside the edge that does not reach it yields as on a half plane, however long it is; the part of the
+corner's softness that the local law has is put right by
+
+    Y = k_c [(1 - w) F ln(a) - int ln(h_G) dF + w int ln(h) dF],
+
+k_c what the corner yields over a half plane, w the part of it in the law, a the half-width of the patch, h
+half the strip and h_G the same, or the distance of the strip's middle from the edge while it does not reach
+it (docs/theory/contact.md).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from fe_contact.types import BoolArray, FloatArray
+from host.loops import inner, njit
+
+SIDE, OFFSET, RADIUS, SOFTNESS, PATCH, MISSING, CORNER, LENGTH = range(8)
+"""Columns of a table (..., n, 8), those of `EdgeStrips`."""
+EDGE_REACH = 2.0
+"""Distance from an edge over half a patch within which strips may reach it, of twice the largest load too."""
+_SHORTEST = 1e-12
+"""Least c^2 of a strip's length at an edge, over that of the radius."""
+
+
+class EdgeStrips(NamedTuple):
+    """Strips at tip edges, arrays (..., n) over slices.
+
+    Attributes
+    ----------
+    side : ndarray
+        Direction away from the edge: 1 is towards tip 1, -1 towards tip 2, 0 where no patch is at an edge.
+    offset : ndarray
+        Distance of the touching point from the edge, m; negative = -phi R off the line of action.
+    radius : ndarray
+        Relative radius in the normal section, m.
+    softness : ndarray
+        4/(pi E*) over the width, 1/N m.
+    patch : ndarray
+        Distance of the patch's centroid from the edge, m.
+    missing : ndarray
+        Part of the corner that the local law has not, 0 to 1.
+    corner : ndarray
+        What the corner yields over a half plane, over the width, m/N.
+    length : ndarray
+        Half-width of the patch on a half plane, m.
+    """
+
+    side: FloatArray
+    offset: FloatArray
+    radius: FloatArray
+    softness: FloatArray
+    patch: FloatArray
+    missing: FloatArray
+    corner: FloatArray
+    length: FloatArray
+
+
+def edge_table(strips: EdgeStrips, there: BoolArray) -> FloatArray:
+    """Return strips (Q, n) as a table (Q, n, 8), without those of slices that are not there (Q, n)."""
+    table = np.stack(np.broadcast_arrays(*strips), axis=-1)
+    return np.where(there[..., None] & (table[..., :1] != 0.0), table, 0.0)
+
+
+def no_edges(slices: int) -> FloatArray:
+    """Return a table of slices none of which is at an edge."""
+    return np.zeros((1, slices, len(EdgeStrips._fields)))
+
+
+class EdgeMotion(NamedTuple):
+    """Derivatives of the energy E by force and tilt, and what the local law lacks of the corner.
+
+    Attributes
+    ----------
+    by_force, by_tilt : float
+        First derivatives, m and N m.
+    force_force, force_tilt, tilt_tilt : float
+        Second derivatives, m/N, m and N m.
+    corner, softness : float
+        Approach that the local law lacks, m, and its derivative by the force, m/N.
+    """
+
+    by_force: float
+    by_tilt: float
+    force_force: float
+    force_tilt: float
+    tilt_tilt: float
+    corner: float
+    softness: float
+
+
+@inner(error_model="numpy")
+def edge_place(
+    offset: float, radius: float, softness: float, force: float
+) -> tuple[float, float, float, float, float]:
+    """Return where a strip at an edge presses.
+
+    Returns
+    -------
+    centroid, middle : float
+        Distances from the edge, m.
+    turned, twice : float
+        First and second derivative of the centroid by the angle between the flanks, m.
+    growth : float
+        Length of the strip by 4 p/(pi E*); 0 if it is free.
+    """
+    scaled = max(softness * force, _SHORTEST * radius)  # 4 p/(pi E*)
+    if scaled * radius <= offset * max(offset, 0.0):
+        return offset, offset, -radius, 0.0, 0.0
+    length = (2.0 / 3.0) * (offset + math.sqrt(offset * offset + 3.0 * scaled * radius))
+    growth, square = radius / (1.5 * length - offset), length * length / scaled
+    centroid = 0.25 * square * (length - offset) / radius
+    return centroid, 0.5 * length, -0.25 * square, 0.5 * square * growth, growth
+
+
+@inner(error_model="numpy")
+def edge_motion(edge: FloatArray, i: int, force: float, tilt: float) -> EdgeMotion:
+    """Return what a force in N on slice i and a tilt of its flanks do; `edge` (n, 8) is a table."""
+    side, radius, softness, patch = edge[i, SIDE], edge[i, RADIUS], edge[i, SOFTNESS], edge[i, PATCH]
+    place = edge_place(edge[i, OFFSET] - 0.5 * radius * side * tilt, radius, softness, force)
+    centroid, middle, turned, twice, growth = place
+    # the length by the angle is -growth times the length, of which the middle is half
+    slid = -growth * middle if growth > 0.0 else -radius
+    corner, slope = _corner(edge, i, force)
+    return EdgeMotion(
+        side * tilt * (middle - patch),
+        force * (side * (centroid - patch) + 0.5 * tilt * turned),
+        0.5 * side * tilt * growth * softness,
+        side * (middle - patch) + 0.5 * tilt * slid,
+        force * (turned + 0.25 * side * tilt * twice),
+        corner,
+        slope,
+    )
+
+
+@inner(error_model="numpy")
+def _corner(edge: FloatArray, i: int, force: float) -> tuple[float, float]:
+    """Return Y in m, and its derivative by the force in m/N."""
+    offset, radius, softness, part = edge[i, OFFSET], edge[i, RADIUS], edge[i, SOFTNESS], edge[i, MISSING]
+    if part == 0.0 and offset <= 0.0:
+        return 0.0, 0.0  # all of it is in the law
+    scaled = max(softness * force, _SHORTEST * radius)
+    half, rigid, reached, far = math.sqrt(scaled * radius), 0.25 * scaled, 0.0, offset
+    if half > offset:
+        half = far = edge_place(offset, radius, softness, force)[1]
+        rigid = (0.75 * half * half - offset * half) / radius
+        if offset > 0.0:
+            rigid += 0.5 * offset * offset / radius
+            reached = offset * offset / (radius * softness)
+    law = force * math.log(half) - 2.0 * rigid / softness  # the integral of ln h over the force
+    beside = law + 0.5 * reached if half == far else force * math.log(far)
+    length = math.log(edge[i, LENGTH])
+    missing = part * force * length - beside + (1.0 - part) * law
+    steep = part * length - math.log(far) + (1.0 - part) * math.log(half)
+    return edge[i, CORNER] * missing, edge[i, CORNER] * steep
+
+
+@njit(cache=True, error_model="numpy")
+def edge_motions(edge: FloatArray, tilt: FloatArray, held: FloatArray, moved: FloatArray) -> None:
+    """Add to motions (P, L, n) in m what strips at edges move under forces (P, L, n) in N.
+
+    `edge` (Q, n, 8) is a table, `tilt` (Q, n, n) that of the contact problem, P a multiple of Q.
+    """
+    for p in range(held.shape[0]):
+        row, here = tilt[p % tilt.shape[0]], edge[p % edge.shape[0]]
+        for k in range(held.shape[1]):
+            for j in range(held.shape[2]):
+                if here[j, SIDE] != 0.0 and held[p, k, j] > 0.0:
+                    slope = 0.0
+                    for i in range(held.shape[2]):
+                        slope += row[j, i] * held[p, k, i]
+                    motion = edge_motion(here, j, held[p, k, j], slope)
+                    moved[p, k, j] += motion.by_force + motion.corner
+                    for i in range(held.shape[2]):
+                        moved[p, k, i] += motion.by_tilt * row[j, i]
