@@ -129,14 +129,13 @@ def _by_pairs(before: float, after: float, change: float) -> str:
         return f"though the contact ratio under load stays at {before:.2f}: the shape of the curve changes"
     moves = "rises" if after > before else "falls"
     way = f"the contact ratio under load {moves} from {before:.2f} to {after:.2f}"
-    fewer = math.floor(before)
-    if math.floor(after) != fewer:
-        return f"while {way}, beyond a whole number of pairs"
     if (after > before) != (change < 0.0):
         return f"though {way}"
-    name = "one pair alone carries" if fewer == 1 else f"{fewer} pairs alone carry"
-    old, new = (100.0 * (fewer + 1 - value) for value in (before, after))
-    return f"since {way}: {name} over {new:.0f} % of a base pitch in place of {old:.0f} %"
+    least = min(math.floor(before), math.floor(after))
+    alone = "one pair alone carries" if least == 1 else f"{least} pairs alone carry"
+    old, new = (100.0 * max(least + 1 - value, 0.0) for value in (before, after))
+    where = f"over {new:.0f} % of a base pitch" if new else "nowhere on a base pitch"
+    return f"since {way}: {alone} {where} in place of {old:.0f} %"
 
 
 def _page(studies: Sequence[PairStudy]) -> Page:

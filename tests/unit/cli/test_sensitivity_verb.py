@@ -146,7 +146,8 @@ def test_a_sentence_says_why_the_center_distance_changes_the_ripple() -> None:
     for pairs, said in (
         (np.array([1.77, 1.77]), "though the contact ratio under load stays at 1.77: the shape of the curve"),
         (np.array([1.60, 1.77]), "though the contact ratio under load falls from 1.77 to 1.60"),
-        (np.array([2.10, 1.90]), "while the contact ratio under load rises from 1.90 to 2.10"),
+        (np.array([2.10, 1.90]), "one pair alone carries nowhere on a base pitch in place of 10 %"),
+        (np.array([2.75, 2.50]), "2 pairs alone carry over 25 % of a base pitch in place of 50 %"),
     ):
         curves = replace(known.curves[1], center_distance_change=replace(
             known.curves[1].center_distance_change, carrying=pairs
