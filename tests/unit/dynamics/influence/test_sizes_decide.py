@@ -172,6 +172,9 @@ def test_screened_sizes_are_those_of_stiffness_that_varies(monkeypatch: pytest.M
     assert small
     for name, size in whole.items():
         assert screened[name].level.decibels == pytest.approx(size.level.decibels, abs=0.01)
+        if name not in small:
+            np.testing.assert_array_equal(screened[name].peak_to_peak, size.peak_to_peak)
+    assert len(small) < len(whole)
 
 
 def test_partial_fractions_are_the_factorized_response(monkeypatch: pytest.MonkeyPatch) -> None:
