@@ -527,8 +527,8 @@ class NeglectedChecks:
     def _check(self, name: str, influence: Influence) -> Check:
         mean, ripple = np.abs(self._sum) / self._samples, self._high - self._low
         parts = [
-            np.max(np.abs(influence.mean) / np.maximum(mean, 1e-300)),
-            np.max(np.abs(influence.peak_to_peak) / np.maximum(ripple, 1e-300)),
+            np.max(np.abs(influence.mean) / np.maximum(mean, 1e-300), initial=0.0),
+            np.max(np.abs(influence.peak_to_peak) / np.maximum(ripple, 1e-300), initial=0.0),
         ]
         change = max(*(float(part) for part in parts), influence.relative_bearing_force)
         size = "the computed mean, peak-to-peak or bearing force"

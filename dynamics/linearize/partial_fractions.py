@@ -39,7 +39,8 @@ class PartialFractions:
     @classmethod
     def of(cls, stiffness: FloatArray, mass: FloatArray, damping: FloatArray) -> PartialFractions | None:
         """Solve the eigenvalue problem; None where modes depend on each other, or nothing is held."""
-        count, scale = len(mass), float(np.sqrt(np.max(np.abs(np.diag(stiffness) / np.diag(mass)))))
+        count, square = len(mass), np.abs(np.diag(stiffness) / np.diag(mass))
+        scale = float(np.sqrt(np.max(square, initial=0.0)))
         if count < LEAST or not scale > 0.0:
             return None
         mobility = np.linalg.inv(mass)

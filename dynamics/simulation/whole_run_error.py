@@ -14,6 +14,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from bounds import engineering
 from dynamics.assembly.assemble import System
 from dynamics.integrators.march import Ending
 from dynamics.integrators.method_choice import MethodChoice
@@ -57,7 +58,8 @@ def blind_windows(system: System, choice: MethodChoice, states_of: StatesOf, end
     if any(np.any(_parted(system, states_of(*block))) for block in blocks(end.samples)):
         return "flanks part"
     if outlives_windows(system, choice):
-        return f"vibration decays at {choice.slowest_decay:.2g} 1/s, slower than windows can see"
+        decay = engineering(choice.slowest_decay, 2)
+        return f"vibration decays at {decay} 1/s, slower than windows can see"
     return ""
 
 

@@ -181,7 +181,7 @@ def edge_motions(edge: FloatArray, tilt: FloatArray, held: FloatArray, moved: Fl
         row, here = tilt[p % tilt.shape[0]], edge[p % edge.shape[0]]
         for k in range(held.shape[1]):
             for j in range(held.shape[2]):
-                if here[j, SIDE] != 0.0 and held[p, k, j] > 0.0:
+                if here[j, SIDE] != 0.0:
                     slope = 0.0
                     for i in range(held.shape[2]):
                         slope += row[j, i] * held[p, k, i]

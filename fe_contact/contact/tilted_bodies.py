@@ -22,11 +22,10 @@ def move(problem: PointProblem, state: State) -> None:
         state.moved[j] = dot(problem.bodies[j], state.held, n)
     for j in range(n):
         if problem.edge[j, SIDE] != 0.0:
-            if state.held[j] > 0.0:
-                motion = edge_motion(problem.edge, j, state.held[j], dot(problem.tilt[j], state.held, n))
-                state.moved[j] += motion.by_force + motion.corner
-                for k in range(n):
-                    state.moved[k] += problem.tilt[j, k] * motion.by_tilt
+            motion = edge_motion(problem.edge, j, state.held[j], dot(problem.tilt[j], state.held, n))
+            state.moved[j] += motion.by_force + motion.corner
+            for k in range(n):
+                state.moved[k] += problem.tilt[j, k] * motion.by_tilt
         elif problem.radius[j] > 0.0:
             tilt, way, _ = rolled(problem, j, state.held)
             state.moved[j] += way * (tilt + 0.5 * way / problem.radius[j])
@@ -52,10 +51,9 @@ def fill_yielding(problem: PointProblem, state: State) -> None:
     for j in range(n):
         row, mixed, square = problem.tilt[j], 0.0, 0.0
         if problem.edge[j, SIDE] != 0.0:
-            if state.held[j] > 0.0:
-                motion = edge_motion(problem.edge, j, state.held[j], dot(row, state.held, n))
-                out[j, j] += motion.force_force + motion.softness
-                mixed, square = motion.force_tilt, motion.tilt_tilt
+            motion = edge_motion(problem.edge, j, state.held[j], dot(row, state.held, n))
+            out[j, j] += motion.force_force + motion.softness
+            mixed, square = motion.force_tilt, motion.tilt_tilt
         elif problem.radius[j] > 0.0:
             _, mixed, rate = rolled(problem, j, state.held)
             square = rate * state.held[j]

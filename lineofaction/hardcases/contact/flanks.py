@@ -162,7 +162,11 @@ def _reach(case: Posed, relief: float) -> float:
 
 
 def _off_the_ramp(case: Posed, relief: float) -> float:
-    """Return how far the entering pair's gap is off c - R m^2/2: a ramp of height c and slope m there."""
+    """Return how far the entering pair's gap is off that of a ramp of height c and slope m along the flank.
+
+    It is c - R m^2/2 along the normal, which gear 2 closes by a lag of 1/(1 - s) times that, s the slope over
+    its roll length.
+    """
     problem, _ = _solve(case, relief)
     pair, gear = case.pair, case.pair.wheel
     start, tip = gear.roll_length(gear.tip_radius - _LENGTH), gear.tip_roll_length
@@ -170,9 +174,11 @@ def _off_the_ramp(case: Posed, relief: float) -> float:
     entering = int(np.flatnonzero((roll_2[0] > start) & (roll_2[0] < tip))[0])
     first, second = float(roll_1[0, entering]), float(roll_2[0, entering])
     height = relief * (second - start) / (tip - start)
-    slope = relief / (tip - start) * gear.base_radius / second
+    by_roll = relief / (tip - start)
+    slope = by_roll * gear.base_radius / second
     radius = 1.0 / (1.0 / first + 1.0 / second)
-    return abs(float(problem.candidates.gap[0, entering]) / (height - 0.5 * radius * slope**2) - 1.0)
+    lag = (height - 0.5 * radius * slope**2) / (1.0 - by_roll)
+    return abs(float(problem.candidates.gap[0, entering]) / lag - 1.0)
 
 
 def _share(problem: ContactProblem, solution: ContactSolution) -> float:

@@ -12,6 +12,7 @@ from benchmarks.dynamic_influence_estimates import STUDY, AssessedLevel, assess,
 from dynamics.ablation import ablate
 from dynamics.assembly.assemble import assemble
 from dynamics.effects import EFFECTS
+from dynamics.meshes.standard_sliding import StandardTeeth
 from dynamics.meshes.stiffness_table import straight_table
 
 
@@ -54,7 +55,8 @@ def test_every_effect_can_be_on_in_some_scene(monkeypatch: pytest.MonkeyPatch) -
     The study has no planetary set, its bearings have no elements that pass, and temperatures are sized on
     scenes of their own, `warm_scenes`.
     """
-    monkeypatch.setattr(dynamic_influence_cases, "table", lambda *_: straight_table(3e8))
+    teeth = StandardTeeth((20, 20), 0.0188, 0.35, 0.0, 0.04)
+    monkeypatch.setattr(dynamic_influence_cases, "table", lambda *_: straight_table(3e8, teeth))
     on = {
         entry.effect
         for scene in dynamic_influence_cases.influence_scenes(Path()).values()
