@@ -16,6 +16,12 @@ from dynamics.vibration.housing_vibration import (
     surface_weight,
     vibration_level,
 )
+from dynamics.vibration.measured_mobility import (
+    Direction,
+    MeasuredMobility,
+    MeasuredVibration,
+    measured_vibration,
+)
 from dynamics.vibration.time_signal import motion_pieces, point_signal
 from dynamics.vibration.vibration_analysis import (
     Parts,
@@ -30,6 +36,9 @@ from dynamics.vibration.vibration_analysis import (
 
 __all__ = [
     "BearingHarmonics",
+    "Direction",
+    "MeasuredMobility",
+    "MeasuredVibration",
     "MotionQuantity",
     "Parts",
     "ReportedHarmonics",
@@ -41,6 +50,7 @@ __all__ = [
     "housing_vibration",
     "mean_square",
     "mean_square_mobility",
+    "measured_vibration",
     "mode_shape",
     "motion_pieces",
     "operating_deflection",

@@ -23,7 +23,8 @@ class UnusableFile(Exception):
 class RawChannel:
     """A channel before it is checked; `values` and `abscissa` are arrays of numbers (n,).
 
-    `abscissa` is an array, or the first value and the step of an even one.
+    `abscissa` is an array, or the first value and the step of an even one; `nodes` has response node and
+    direction, reference node and direction of a frequency response.
     """
 
     name: str
@@ -33,6 +34,7 @@ class RawChannel:
     over: str = "time"
     label: str = ""
     direction: str = ""
+    nodes: tuple[int, ...] = ()
 
 
 class SampleBudget:
