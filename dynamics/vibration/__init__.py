@@ -20,6 +20,7 @@ from dynamics.vibration.measured_mobility import (
     Direction,
     MeasuredMobility,
     MeasuredVibration,
+    bearing_shares,
     measured_vibration,
 )
 from dynamics.vibration.time_signal import motion_pieces, point_signal
@@ -45,6 +46,7 @@ __all__ = [
     "SurfaceShape",
     "VibrationAnalysis",
     "analyze_vibration",
+    "bearing_shares",
     "finer_seat_forces",
     "housing_motion",
     "housing_vibration",

@@ -11,7 +11,7 @@ References
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -94,6 +94,17 @@ class MeasuredMobility:
     def points(self) -> tuple[str, ...]:
         """Return the names of the points, once each."""
         return tuple(dict.fromkeys(part.name for part in self.response))
+
+    @property
+    def bearings(self) -> tuple[str, ...]:
+        """Return the names of the bearings, once each."""
+        return tuple(dict.fromkeys(part.name for part in self.excitation))
+
+    def through(self, bearing: str) -> MeasuredMobility:
+        """Return the mobilities from the seat of one bearing alone."""
+        columns = [e for e, part in enumerate(self.excitation) if part.name == bearing]
+        pushed = tuple(self.excitation[e] for e in columns)
+        return replace(self, excitation=pushed, mobility=self.mobility[:, :, columns])
 
     def covers(self, frequency: FloatArray) -> BoolArray:
         """Whether frequencies in Hz lie between the first and the last line; shape as they have it."""
@@ -258,3 +269,20 @@ def _velocity(housing: MeasuredMobility, response: BearingHarmonics, force: Comp
     for row, (name, axis) in zip(moved, housing.response, strict=True):
         velocity[housing.points.index(name), axis] = row.reshape(shape)
     return velocity
+
+
+def bearing_shares(response: BearingHarmonics, housing: MeasuredMobility) -> FloatArray:
+    """Return what each measured bearing contributes to the mean square velocity of points, (e, k, S, H).
+
+    In the order of `MeasuredMobility.bearings`. They add up to 1, as in `Parts.shares`; a negative one acts
+    against the sum. NaN outside the measured band and where nothing moves. Raises `InputError` as
+    `measured_vibration`.
+    """
+    whole = measured_vibration(response, housing).velocity
+    square = np.nansum(np.abs(whole) ** 2, axis=1)
+    shares = []
+    for bearing in housing.bearings:
+        part = measured_vibration(response, housing.through(bearing)).velocity
+        felt = np.nansum((whole.conj() * part).real, axis=1)
+        shares.append(np.divide(felt, square, out=np.full(square.shape, np.nan), where=square > 0.0))
+    return np.array(shares)

@@ -22,11 +22,11 @@ _LISTED = 12  # nodes in a message
 
 
 def measured_mobility(
-    file: Path,
-    field: str,
+    file: Path | str,
     seats: Mapping[int, str],
     points: Mapping[int, str],
     axes: FloatArray | None = None,
+    field: str = "file",
 ) -> MeasuredMobility:
     """Return the mobilities from bearing seats to points that a universal file holds (dataset 58).
 
@@ -36,13 +36,14 @@ def measured_mobility(
 
     Parameters
     ----------
-    field : str
-        What names the file, for errors.
     seats, points : mapping of int to str
         Bearings by reference node, points by response node.
     axes : (3, 3) array, optional
         Columns: the axes of the file in the scene; by default the same.
+    field : str
+        What names the file, for errors.
     """
+    file = Path(file)
     functions = _chosen(read_frequency_responses(file, field), (field, file.name), seats, points)
     response = tuple(dict.fromkeys(ends[0] for ends in functions))
     excitation = tuple(dict.fromkeys(ends[1] for ends in functions))

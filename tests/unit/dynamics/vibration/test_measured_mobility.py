@@ -7,9 +7,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from geared_scenes import gear_pair_scene, square_wave_table
 
+from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
-from dynamics.vibration import Direction, MeasuredMobility, measured_vibration
+from dynamics.linearize import forced_response
+from dynamics.vibration import Direction, MeasuredMobility, bearing_shares, measured_vibration
 
 LINES = np.arange(20.0, 2001.0, 2.0)
 
@@ -96,6 +99,36 @@ def test_the_result_says_what_is_left_out():
     expected = 3.0 * abs(oscillator(np.array([100.0]))[0]) / np.sqrt(2.0)
     assert found.overall[0, 0] == pytest.approx(expected)
     assert found.rms[0, 0, 1] == pytest.approx(expected)
+
+
+def test_shares_of_bearings_add_up_and_one_against_the_sum_is_negative():
+    """At a line: 5 of the left and -2 of the right make 3; shares 5/3 and -2/3."""
+    both = measured(
+        excitation=(Direction("left", 0), Direction("right", 0)),
+        mobility=np.stack([oscillator(LINES), -2.0 * oscillator(LINES)], axis=1)[:, None],
+    )
+    force = np.zeros((2, 3, 1, 2))
+    force[0, 0], force[1, 0] = 5.0, 1.0
+    shares = bearing_shares(forces(np.array([[100.0, 5000.0]]), force, ("left", "right")), both)
+    np.testing.assert_allclose(shares[:, 0, 0, 0], [5.0 / 3.0, -2.0 / 3.0])
+    assert np.all(np.isnan(shares[..., 1]))
+
+
+def test_the_forces_of_a_response_move_the_points():
+    """Of a scene on springs to the ground; by hand on a line between two lines of equal mobility."""
+    response = forced_response(
+        assemble(gear_pair_scene(square_wave_table())), np.array([60.0, 150.0]), orders=3
+    )
+    names = tuple(Direction(name, axis) for name in response.bearing for axis in range(3))
+    gains = np.arange(1.0, len(names) + 1.0) * (1e-3 + 1e-4j)
+    flat = MeasuredMobility(
+        np.array([0.1, 1e5]), (Direction("lid", 2),), names, np.tile(gains, (2, 1))[:, None, :]
+    )
+    found = measured_vibration(response, flat)
+    expected = np.einsum("e,esh->sh", gains, response.bearing_force[:, :3].reshape(len(names), 2, 3))
+    np.testing.assert_allclose(found.velocity[0, 2], expected, rtol=1e-9)
+    assert np.abs(expected).max() > 0.0
+    assert found.omitted == ()
 
 
 def test_what_cannot_be_used_is_refused():
