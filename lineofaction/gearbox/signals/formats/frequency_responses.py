@@ -23,6 +23,7 @@ _FREQUENCY = 18  # type of the abscissa, record 8
 _MOTIONS = {8: "displacement", 11: "velocity", 12: "acceleration"}  # types of the numerator, record 9
 _FORCES = (9, 13)  # types of the denominator, record 10: excitation, reaction
 _PER_FORCE = {"displacement": "m/N", "velocity": "m/(N s)", "acceleration": "m/(N s²)"}
+_MOST_FUNCTIONS = 8192  # 200 points in three directions per four bearings in three
 _TWICE = 1e-6
 """Relative difference of two statements of one unit that is no contradiction."""
 _ADVICE = "Export type and unit of numerator and denominator, or the units of the file (dataset 164)."
@@ -37,7 +38,7 @@ def channels(file: Path, _names: Sequence[str]) -> Iterator[RawChannel]:
     """
     sets = datasets(file)
     scale = next((part for part in sets if part.get("type") == UNITS), None)
-    budget = SampleBudget()
+    budget = SampleBudget(_MOST_FUNCTIONS)
     for part in sets:
         if part.get("type") == FUNCTION and int(part["func_type"]) == _FREQUENCY_RESPONSE:
             budget.take(len(part["data"]))
