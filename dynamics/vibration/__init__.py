@@ -16,6 +16,13 @@ from dynamics.vibration.housing_vibration import (
     surface_weight,
     vibration_level,
 )
+from dynamics.vibration.measured_mobility import (
+    Direction,
+    MeasuredMobility,
+    MeasuredVibration,
+    bearing_shares,
+    measured_vibration,
+)
 from dynamics.vibration.time_signal import motion_pieces, point_signal
 from dynamics.vibration.vibration_analysis import (
     Parts,
@@ -30,17 +37,22 @@ from dynamics.vibration.vibration_analysis import (
 
 __all__ = [
     "BearingHarmonics",
+    "Direction",
+    "MeasuredMobility",
+    "MeasuredVibration",
     "MotionQuantity",
     "Parts",
     "ReportedHarmonics",
     "SurfaceShape",
     "VibrationAnalysis",
     "analyze_vibration",
+    "bearing_shares",
     "finer_seat_forces",
     "housing_motion",
     "housing_vibration",
     "mean_square",
     "mean_square_mobility",
+    "measured_vibration",
     "mode_shape",
     "motion_pieces",
     "operating_deflection",

@@ -1,6 +1,19 @@
 """Recordings from outside: channels of measured series, read by a confined process, with their units."""
 
 from lineofaction.gearbox.signals.channel import Channel
-from lineofaction.gearbox.signals.recording import ENDINGS, Recording, begins_with_time, read_recording
+from lineofaction.gearbox.signals.recording import (
+    ENDINGS,
+    Recording,
+    begins_with_time,
+    read_frequency_responses,
+    read_recording,
+)
 
-__all__ = ["ENDINGS", "Channel", "Recording", "begins_with_time", "read_recording"]
+__all__ = [
+    "ENDINGS",
+    "Channel",
+    "Recording",
+    "begins_with_time",
+    "read_frequency_responses",
+    "read_recording",
+]

@@ -27,11 +27,15 @@ class Channel:
     abscissa, values : (n,) arrays
         Values may be complex.
     over : str
-        What the abscissa is: ``"time"`` (s), ``"order"``, or empty for anything else.
+        What the abscissa is: ``"time"`` (s), ``"order"``, ``"frequency"`` (Hz) of a frequency response, or
+        empty for anything else.
     label : str
         Name of the abscissa in the file.
     direction : str
         ``"x"``, ``"y"``, ``"z"`` where the file says along which the sensor measures; else empty.
+    nodes : tuple of int
+        Of a frequency response: response node and direction, reference node and direction, 1 to 3 for x, y,
+        z and below 0 against them; else empty.
     """
 
     name: str
@@ -41,6 +45,7 @@ class Channel:
     over: str = "time"
     label: str = ""
     direction: str = ""
+    nodes: tuple[int, ...] = ()
 
     def series(self, field: str) -> tuple[FloatArray, FloatArray]:
         """Return times (n,) and values (n,) as the file has them.

@@ -32,12 +32,12 @@ FORMATS = {
 }
 """Reader and noun of a format, by the ending of the file."""
 ENDINGS = tuple(FORMATS)
-_EXTRAS = {"universal": ("pyuff", "uff"), "mdf": ("asammdf", "mdf")}
+_EXTRAS = {"universal": ("pyuff", "uff"), "frequency_responses": ("pyuff", "uff"), "mdf": ("asammdf", "mdf")}
 """Module and extra of the readers that a base install lacks."""
 _WORKER = Path(__file__).with_name("worker.py")
 _LONGEST = 80  # characters of a name that is shown
 _LISTED = 12  # names in a message
-_OVER, _DIRECTIONS = ("time", "order", ""), ("x", "y", "z", "")
+_OVER, _DIRECTIONS = ("time", "order", "frequency", ""), ("x", "y", "z", "")
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,23 @@ def read_recording(path: Path, field: str, names: Sequence[str] = ()) -> Recordi
     """
     if path.suffix.lower() not in FORMATS:
         raise BadInput.of(field, path.name, f"a file that ends in {', '.join(ENDINGS)}")
-    reader, noun = FORMATS[path.suffix.lower()]
+    return Recording(path.name, _channels(path, FORMATS[path.suffix.lower()], field, names))
+
+
+def read_frequency_responses(path: Path, field: str) -> tuple[Channel, ...]:
+    """Return the frequency responses of a universal file, in SI units, with their nodes.
+
+    Raises `BadInput` as `read_recording`, and where one does not state its unit.
+    """
+    endings = tuple(ending for ending, (reader, _) in FORMATS.items() if reader == "universal")
+    if path.suffix.lower() not in endings:
+        raise BadInput.of(field, path.name, f"a file that ends in {', '.join(endings)}")
+    return _channels(path, ("frequency_responses", "a universal file"), field, ())
+
+
+def _check_file(path: Path, form: tuple[str, str], field: str) -> None:
+    """Refuse a file that is missing or too large, or whose reader is not installed."""
+    reader, noun = form
     module, extra = _EXTRAS.get(reader, ("numpy", ""))
     if find_spec(module) is None:
         advice = f"pip install 'lineofaction[{extra}]'"
@@ -90,10 +106,10 @@ def read_recording(path: Path, field: str, names: Sequence[str] = ()) -> Recordi
         raise BadInput.of(field, str(path), noun, "Check the path.") from None
     if not path.is_file() or size > LARGEST_FILE:
         raise BadInput.of(field, str(path), f"{noun} of at most {LARGEST_FILE} bytes", "Export less of it.")
-    return Recording(path.name, _channels(path, (reader, noun), field, names))
 
 
 def _channels(path: Path, form: tuple[str, str], field: str, names: Sequence[str]) -> tuple[Channel, ...]:
+    _check_file(path, form, field)
     reader, noun = form
     with TemporaryDirectory() as folder:
         copy = Path(folder) / f"recording{path.suffix.lower()}"
@@ -126,7 +142,8 @@ def _channel(facts: dict[str, Any], arrays: Any, index: int) -> Channel:
         raise BadInput.of("measured", name, "a channel with a number for each time", "Export it again.")
     over = facts["over"] if facts["over"] in _OVER else ""
     direction = facts["direction"] if facts["direction"] in _DIRECTIONS else ""
-    return Channel(name, unit, abscissa, values, over, label, direction)
+    nodes = tuple(map(int, facts["nodes"]))
+    return Channel(name, unit, abscissa, values, over, label, direction, nodes)
 
 
 def _printable(text: str, longest: int = _LONGEST) -> str:

@@ -20,8 +20,9 @@ class MeasuredUnit:
     factor: float
 
 
-ACCELERATION, FORCE, LENGTH, SPEED, TORQUE, TIME, ANGLE = (
+ACCELERATION, VELOCITY, FORCE, LENGTH, SPEED, TORQUE, TIME, ANGLE = (
     "acceleration",
+    "velocity",
     "force",
     "displacement",
     "speed",
@@ -31,6 +32,7 @@ ACCELERATION, FORCE, LENGTH, SPEED, TORQUE, TIME, ANGLE = (
 )
 SI_UNITS = {
     ACCELERATION: "m/s²",
+    VELOCITY: "m/s",
     FORCE: "N",
     LENGTH: "m",
     SPEED: "rad/s",
@@ -42,6 +44,8 @@ _SPELLINGS: dict[tuple[str, float], tuple[str, ...]] = {
     (ACCELERATION, 1.0): ("m/s²", "m/s2", "m/s^2", "m/s**2", "m s-2", "ms-2", "m s^-2"),
     (ACCELERATION, 1e-3): ("mm/s²", "mm/s2", "mm/s^2"),
     (ACCELERATION, STANDARD_GRAVITY): ("g", "gn", "g_n"),
+    (VELOCITY, 1.0): ("m/s", "m s-1"),
+    (VELOCITY, 1e-3): ("mm/s",),
     (FORCE, 1.0): ("n", "newton"),
     (FORCE, 1e3): ("kn",),
     (LENGTH, 1.0): ("m",),

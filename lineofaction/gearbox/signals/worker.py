@@ -6,7 +6,7 @@ as ``channels.npz``::
 
     {"file": "recording.mf4", "format": "mdf", "channels": ["speed"], "seconds": 60}
     {"channels": [{"name": "speed", "unit": "rpm", "over": "time", "label": "", "direction": "",
-                   "even": null}]}
+                   "nodes": [], "even": null}]}
     {"fault": ["value", "bound", "advice"]}   or   {"unreadable": true}   or   {"missing": true}
 
 Arrays: ``values_0``, ``abscissa_0`` ...; of an even abscissa ``even`` has the first value and the step.
@@ -57,7 +57,7 @@ def _written(index: int, channel: RawChannel) -> tuple[dict[str, Any], dict[str,
     arrays = {f"values_{index}": channel.values}
     if even is None:
         arrays[f"abscissa_{index}"] = channel.abscissa
-    facts = {name: getattr(channel, name) for name in ("name", "unit", "over", "label", "direction")}
+    facts = {name: getattr(channel, name) for name in ("name", "unit", "over", "label", "direction", "nodes")}
     return facts | {"even": even}, arrays
 
 

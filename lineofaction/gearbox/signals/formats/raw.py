@@ -23,7 +23,8 @@ class UnusableFile(Exception):
 class RawChannel:
     """A channel before it is checked; `values` and `abscissa` are arrays of numbers (n,).
 
-    `abscissa` is an array, or the first value and the step of an even one.
+    `abscissa` is an array, or the first value and the step of an even one; `nodes` has response node and
+    direction, reference node and direction of a frequency response.
     """
 
     name: str
@@ -33,12 +34,14 @@ class RawChannel:
     over: str = "time"
     label: str = ""
     direction: str = ""
+    nodes: tuple[int, ...] = ()
 
 
 class SampleBudget:
-    """Counts the samples that a reader is about to take."""
+    """Counts the samples that a reader is about to take, of at most so many channels."""
 
-    def __init__(self) -> None:
+    def __init__(self, most_channels: int = MOST_CHANNELS) -> None:
+        self.most_channels = most_channels
         self.channels = self.samples = 0
 
     def take(self, samples: int) -> None:
@@ -48,8 +51,8 @@ class SampleBudget:
         """
         self.channels += 1
         self.samples += samples
-        if self.channels > MOST_CHANNELS or self.samples > MOST_SAMPLES:
-            bound = f"a file of at most {MOST_CHANNELS} channels and {MOST_SAMPLES} samples"
+        if self.channels > self.most_channels or self.samples > MOST_SAMPLES:
+            bound = f"a file of at most {self.most_channels} channels and {MOST_SAMPLES} samples"
             raise UnusableFile(bound, "Export a shorter stretch, or name the channels that are needed.")
 
 

@@ -11,7 +11,7 @@ from lineofaction.gearbox.signals.formats.raw import RawChannel, SampleBudget, U
 from lineofaction.gearbox.signals.units import measured_unit
 
 EXTRA = "uff"
-_UNITS, _FUNCTION = 164, 58
+UNITS, FUNCTION = 164, 58
 _TIME, _ORDER = 17, 20
 _OF_TYPE = {8: ("m", (1, 0)), 9: ("N", (0, 1)), 12: ("m/s²", (1, 0)), 13: ("N", (0, 1)), 19: ("rpm", (0, 0))}
 """SI unit and exponents of length and force, by the type of the ordinate; speeds are in rpm by the format."""
@@ -25,16 +25,11 @@ Dataset = Mapping[str, Any]
 
 def channels(file: Path, names: Sequence[str]) -> Iterator[RawChannel]:
     """Yield the functions of a file; raises `UnusableFile`: one is cut off, or states two units."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        import pyuff  # noqa: PLC0415 (an extra)
-
-        read = pyuff.UFF(str(file)).read_sets()
-    sets = [part for part in (read if isinstance(read, list) else [read]) if isinstance(part, Mapping)]
-    scale = next((part for part in sets if part.get("type") == _UNITS), None)
+    sets = datasets(file)
+    scale = next((part for part in sets if part.get("type") == UNITS), None)
     budget = SampleBudget()
     for part in sets:
-        if part.get("type") != _FUNCTION:
+        if part.get("type") != FUNCTION:
             continue
         name = str(part.get("id1", "")).strip()
         if wanted(name, names):
@@ -42,10 +37,20 @@ def channels(file: Path, names: Sequence[str]) -> Iterator[RawChannel]:
             yield _channel(name, part, scale)
 
 
+def datasets(file: Path) -> list[Dataset]:
+    """Return the datasets of a file that pyuff knows."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        import pyuff  # noqa: PLC0415 (an extra)
+
+        read = pyuff.UFF(str(file)).read_sets()
+    return [part for part in (read if isinstance(read, list) else [read]) if isinstance(part, Mapping)]
+
+
 def _channel(name: str, part: Dataset, scale: Dataset | None) -> RawChannel:
     if len(part["data"]) != int(part["num_pts"]) or len(part["x"]) != len(part["data"]):
         raise UnusableFile("a universal file whose functions have as many values as they say", value=name)
-    label = _text(part, "abscissa_axis_lab")
+    label = text_of(part, "abscissa_axis_lab")
     kind = int(part["abscissa_spec_data_type"])
     over = {_TIME: "time", _ORDER: "order"}.get(kind, "time" if label.lower().startswith("time") else "")
     unit, factor = _unit(name, part, scale)
@@ -58,7 +63,7 @@ def _unit(name: str, part: Dataset, scale: Dataset | None) -> tuple[str, float]:
 
     A file states it by the units of the file (dataset 164), by the label of the axis, or by both.
     """
-    labeled = _text(part, "ordinate_axis_units_lab")
+    labeled = text_of(part, "ordinate_axis_units_lab")
     by_label = measured_unit(labeled)
     unit, exponents = _OF_TYPE.get(int(part["ordinate_spec_data_type"]), ("", (0, 0)))
     if not unit or (scale is None and exponents != (0, 0)):
@@ -75,6 +80,7 @@ def _unit(name: str, part: Dataset, scale: Dataset | None) -> tuple[str, float]:
     return unit, factor
 
 
-def _text(part: Dataset, key: str) -> str:
+def text_of(part: Dataset, key: str) -> str:
+    """Return a text of a dataset; empty where it says that there is none."""
     text = str(part.get(key) or "").strip()
     return "" if text.lower() in _NONE else text
