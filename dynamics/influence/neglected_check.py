@@ -163,12 +163,19 @@ def estimate_influences(
     -----
     The response is that of `parametric_response`: flanks that part, impacts and transients are left out.
     """
-    key = content_key(scene), settled, free
-    known = None if key[0] is None else _KNOWN.get(key)
-    if known is None:
-        known = _estimated(scene, settled, system, free)
-        _remember(key, known)
-    return dict(known)
+    content = content_key(scene)
+    for whole in (False, free):  # sizes of all effects hold those of the free ones
+        known = _KNOWN.get((content, settled, whole))
+        if content is not None and known is not None:
+            return {name: size for name, size in known.items() if not (free and _chosen(scene, name))}
+    sizes = _estimated(scene, settled, system, free)
+    _remember((content, settled, free), sizes)
+    return dict(sizes)
+
+
+def _chosen(scene: Scene, effect: str) -> bool:
+    """Return whether a scene chooses an effect, which then is not decided."""
+    return scene.effects.get(effect, "auto") != "auto"
 
 
 _Key = tuple[bytes | None, float, bool]
@@ -253,7 +260,7 @@ def _influences(
         return {}
     influences = {}
     for name, on in _switchable(system).items():
-        if free and scene.effects.get(name, "auto") != "auto":
+        if free and _chosen(scene, name):
             continue
         try:
             other = assemble(replace(scene, effects={**scene.effects, name: "off" if on else "on"}))
@@ -460,9 +467,7 @@ def decide_effects(
         lean = scene.tolerance is None and scene.outputs.receipt != "full"
         estimates = partial(estimate_influences, free=lean)
     influences = estimates(scene)
-    free = {
-        name: influence for name, influence in influences.items() if scene.effects.get(name, "auto") == "auto"
-    }
+    free = {name: influence for name, influence in influences.items() if not _chosen(scene, name)}
     automatic = {
         name: f"on for the tolerance of {allowance.words}: influence {influence.words}"
         for name, influence in free.items()

@@ -413,6 +413,19 @@ def finer(integration: Integration) -> Integration:
     )
 
 
+def with_longest_step(integration: Integration, longest: float) -> Integration:
+    """Return `integration` with adaptive steps of at most `longest`, s.
+
+    The smallest step shrinks alike: as many levels are between both, so the run shares its compiled code.
+    """
+    factor = min(longest / integration.largest_step, 1.0)
+    return replace(
+        integration,
+        largest_step=factor * integration.largest_step,
+        smallest_step=factor * integration.smallest_step,
+    )
+
+
 def requested_error(integration: Integration) -> Json:
     """Return the step error of the transmission error, m rms, that the step control must keep."""
     return {"time_step": {"rms": integration.tolerance, "unit": "m", "source": "tolerance of step control"}}

@@ -17,7 +17,12 @@ from dynamics.motion.observation import observe
 from dynamics.motion.sampled_states import States
 from dynamics.results.order_fit import order_amplitudes, orders_seen, unwrapped
 from dynamics.scene import Integration
-from dynamics.simulation.documents import ERROR_CHECK_FACTOR, finer, requested_error
+from dynamics.simulation.documents import (
+    ERROR_CHECK_FACTOR,
+    finer,
+    requested_error,
+    with_longest_step,
+)
 from dynamics.types import FloatArray, IntArray, Json, StaticStatus
 from host import cpu_seconds
 
@@ -93,10 +98,7 @@ class _Window:
         shorter, turned = finer(integration), float(np.max(np.ptp(self.position, axis=1)))
         if integration.fixed_step is not None or turned == 0.0:
             return shorter
-        largest = CAP * POSITION_LIMIT * float(self.time[-1]) / turned
-        return replace(
-            shorter, largest_step=max(min(largest, shorter.largest_step), 2.0 * shorter.smallest_step)
-        )
+        return with_longest_step(shorter, CAP * POSITION_LIMIT * float(self.time[-1]) / turned)
 
     def on_laws_of(self, other: System) -> System:
         """Return its system with the force laws of `other`, the run's system but for these."""

@@ -154,7 +154,7 @@ class Studies:
         group="design",
         kind="sensitivity",
         stages=(("tables", 1.0),),
-        version="3",
+        version="4",
         folder="sensitivity",
         further=(".csv",),
         several=True,

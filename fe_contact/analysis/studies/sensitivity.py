@@ -27,11 +27,15 @@ class RippleCurve:
         Misalignment or change of the center distance in m, increasing; 0 is among them.
     peak_to_peak, error : ndarray, shape (N,)
         Peak-to-peak STE and the half-width of its error band, m.
+    carrying : ndarray, shape (N,)
+        Mean number of pairs that carry over the positions: the contact ratio under load. It is known to one
+        position in all.
     """
 
     deviation: FloatArray = field(metadata=in_unit("m", "deviation"))
     peak_to_peak: FloatArray = field(metadata=in_unit("m", "deviation"))
     error: FloatArray = field(metadata=in_unit("m", "deviation"))
+    carrying: FloatArray = field(metadata=in_unit("1", "deviation"))
 
     @property
     def relative_change(self) -> FloatArray:
@@ -105,4 +109,14 @@ def _curves(checked: Checked, corner_contact: str, run: Run) -> tuple[RippleCurv
 def _ripple(table: SteDatabase, axis: str) -> RippleCurve:
     deviation: FloatArray = getattr(table, axis)
     ripples = [table.peak_to_peak(force=float(table.force[0]), **{axis: float(x)}) for x in deviation]
-    return RippleCurve(deviation, np.array([e.value for e in ripples]), np.array([e.error for e in ripples]))
+    values, errors = (np.array([getattr(ripple, name) for ripple in ripples]) for name in ("value", "error"))
+    return RippleCurve(deviation, values, errors, _carrying(table))
+
+
+def _carrying(table: SteDatabase) -> FloatArray:
+    """Return the mean number of pairs that carry at each deviation of a table over one of them, (N,)."""
+    share = table.load_share[:, 0]  # (P, M, D, pairs) at the one load
+    pairs = np.sum(share > 0.0, axis=-1).reshape(share.shape[0], -1)
+    ahead = np.append(table.position[1:], table.position[0] + table.period) - table.position
+    reach = 0.5 * (ahead + np.roll(ahead, 1))  # of the position, half of the way to either side
+    return np.asarray(reach @ pairs / table.period)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from itertools import chain
 
@@ -96,8 +97,50 @@ def _words(studies: Sequence[PairStudy]) -> str:
     return f"Largest change with misalignment and with center distance: {'; '.join(parts)}."
 
 
+SAME = 0.02
+"""Change of the contact ratio that 64 positions do not tell from none."""
+
+
+def _reasons(studies: Sequence[PairStudy]) -> list[str]:
+    """Say of each curve why the center distance changes the ripple where it changes most."""
+    return [_reason(study, curves) for study in studies for curves in study.curves]
+
+
+def _reason(study: PairStudy, curves: Sensitivity) -> str:
+    at, curve = _over_distance(study, curves)
+    most = int(abs(curve.relative_change).argmax())
+    change = float(curve.relative_change[most])
+    before, after = float(curve.carrying[curve.deviation == 0.0][0]), float(curve.carrying[most])
+    how = "with" if curves.corner_contact else "without"
+    moved = f"{round(float(at[most]), 9):+g} % of center distance"
+    verb = "lowers" if change < 0.0 else "raises"
+    return (
+        f"{study.name} {how} corner contact: {moved} {verb} the ripple by {100.0 * abs(change):.0f} %, "
+        f"{_by_pairs(before, after, change)}."
+    )
+
+
+def _by_pairs(before: float, after: float, change: float) -> str:
+    """Say what the number of pairs that carry has to do with a relative change of the ripple.
+
+    The ripple is the step between n and n + 1 pairs. It falls as the part that n pairs carry alone shrinks.
+    """
+    if abs(after - before) < SAME:
+        return f"though the contact ratio under load stays at {before:.2f}: the shape of the curve changes"
+    moves = "rises" if after > before else "falls"
+    way = f"the contact ratio under load {moves} from {before:.2f} to {after:.2f}"
+    if (after > before) != (change < 0.0):
+        return f"though {way}"
+    least = min(math.floor(before), math.floor(after))
+    alone = "one pair alone carries" if least == 1 else f"{least} pairs alone carry"
+    old, new = (100.0 * max(least + 1 - value, 0.0) for value in (before, after))
+    where = f"over {new:.0f} % of a base pitch" if new else "nowhere on a base pitch"
+    return f"since {way}: {alone} {where} in place of {old:.0f} %"
+
+
 def _page(studies: Sequence[PairStudy]) -> Page:
-    section = Section("Sensitivity", figures=(_sensitivity_figure(studies),))
+    text = " ".join(_reasons(studies))
+    section = Section("Sensitivity", text=text, figures=(_sensitivity_figure(studies),))
     headlines = (
         _largest("misalignment", "µm", studies, _over_misalignment),
         _largest("center distance", "%", studies, _over_distance),
@@ -118,5 +161,8 @@ def _largest(
 
 
 PAGE = Presentation(
-    _sensitivity_figure, _page, lambda studies: (_sensitivity_table(studies),), series=_sensitivity_table
+    _sensitivity_figure,
+    _page,
+    lambda studies: (_sensitivity_table(studies), *_reasons(studies)),
+    series=_sensitivity_table,
 )

@@ -44,7 +44,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, 
 def _recorder(run: RunResult) -> dict[str, Any]:
     """White noise of 1 % of the signal, and a tone of 20 % at 17 kHz, beyond all orders.
 
-    Order 1 lies 35 dB below the loudest, 11 dB above the noise of one block.
+    Order 1 lies 35 dB below the loudest.
     """
     acceleration = run.bearing_acceleration[run.bearing.index("input.left"), 1]
     size = float(acceleration.std())

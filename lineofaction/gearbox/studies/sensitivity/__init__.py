@@ -51,6 +51,7 @@ class PairFigures(Part):
 
             peak_to_peak_um: list[float]
             peak_to_peak_error_um: Annotated[list[float], Source("error")]
+            contact_ratio_under_load: Annotated[list[float], Source("carrying")]
             change_percent: Annotated[list[float], Source(lambda curve: 100.0 * curve.relative_change)]
 
         class MisalignmentRipple(Ripple):

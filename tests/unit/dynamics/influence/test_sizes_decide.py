@@ -104,7 +104,8 @@ def test_a_minimal_receipt_has_sizes_of_what_is_decided_alone() -> None:
     """And decides alike: effects that the scene chooses take no estimate."""
     lean = helical(level_tolerance=0.1, effects={"tilt": "off"})
     full = replace(lean, outputs=Outputs(energy_audit=False))
-    few, all_sizes = (decide_effects(scene) for scene in (lean, full))
+    few, all_sizes, again = (decide_effects(scene) for scene in (lean, full, lean))
+    assert set(again.influences) == set(few.influences)
     assert set(all_sizes.influences) - set(few.influences) == {"tilt"}
     assert few.scene.effects == all_sizes.scene.effects
 
@@ -171,6 +172,9 @@ def test_screened_sizes_are_those_of_stiffness_that_varies(monkeypatch: pytest.M
     assert small
     for name, size in whole.items():
         assert screened[name].level.decibels == pytest.approx(size.level.decibels, abs=0.01)
+        if name not in small:
+            np.testing.assert_array_equal(screened[name].peak_to_peak, size.peak_to_peak)
+    assert len(small) < len(whole)
 
 
 def test_partial_fractions_are_the_factorized_response(monkeypatch: pytest.MonkeyPatch) -> None:

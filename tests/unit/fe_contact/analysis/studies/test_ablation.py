@@ -196,7 +196,7 @@ def test_both_curves_pass_through_the_nominal_pair(plain):
         assert distance.peak_to_peak[1] == pytest.approx(skew.peak_to_peak[0], rel=1e-9, abs=0.0)
         assert skew.relative_change[0] == 0.0
         assert distance.relative_change[1] == 0.0
-    curve = RippleCurve(np.array([-1e-5, 0.0, 2e-5]), np.array([3e-6, 2e-6, 8e-6]), np.zeros(3))
+    curve = RippleCurve(np.array([-1e-5, 0.0, 2e-5]), np.array([3e-6, 2e-6, 8e-6]), np.zeros(3), np.ones(3))
     assert curve.relative_change == pytest.approx([0.5, 0.0, 3.0])
 
 
