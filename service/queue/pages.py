@@ -31,7 +31,7 @@ from service.store.database import instant
 from service.store.listing import NEWEST
 from service.store.results import Mark, behind
 
-FEW = 1000
+FEW = 300
 """So many lines with a duration within bounds are sorted by time; of more, a page is found in that order."""
 
 
@@ -47,6 +47,8 @@ class PageQuery:
     def rows(self, connection: Connection) -> Sequence[Any]:
         """Return the rows of the page, the newest first."""
         branches = [branch.subquery() for branch in self._branches(connection)]
+        if not branches:
+            return []
         chosen = union_all(*(select(branch.c.job, branch.c.created) for branch in branches)).subquery()
         newest = (chosen.c.created.desc(), chosen.c.job.desc())
         page = select(chosen.c.job).order_by(*newest).limit(self.limit).subquery()
@@ -117,9 +119,10 @@ class PageQuery:
         for column, low, high in self._bounds():
             within = select(listings).where(*self._in_list(listings), *_between(column, low, high))
             counted = select(func.count()).select_from(within.limit(FEW + 1).subquery())
-            if connection.execute(counted).scalar_one() <= FEW:
+            number = connection.execute(counted).scalar_one()
+            if 0 < number <= FEW:
                 yield within.limit(FEW).subquery()  # a limit lets no planner take it apart
-            else:
+            elif number:
                 unindexed = func.coalesce(column, null())
                 yield select(listings).where(*_between(unindexed, low, high)).subquery()
 
