@@ -122,7 +122,7 @@ def _context(settings: Settings, registry: Registry, works: bool) -> Context:
     parts = job_machinery(settings, registry, works=works)
     pools, engine = (live_pool(settings), reading_pool(settings.data_directory)), parts.engine
     kept = KeptAnswers(settings.data_directory / CACHE_DIRECTORY / "figures")
-    writes = WriteCheck(Deployment(engine, parts.store))
+    writes = WriteCheck(Deployment(engine, parts.store), parts.integrity)
     watcher = Watcher(engine, partial(events.event_of, registry=registry))
     queue = (parts.submissions, parts.scheduler, parts.store)
     return Context(settings, registry, *queue, *pools, kept, engine, writes, watcher)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import datetime
 from functools import lru_cache
 from typing import Any
 
-from sqlalchemy import ColumnElement, Select, case, func, select
+from sqlalchemy import ColumnElement, case, select
 
 from bounds import engineering
 from service.project import at_address
@@ -172,44 +172,10 @@ class JobFilter:
     parent: str | None = None
     once: bool = False
 
-    def conditions(self) -> list[ColumnElement[bool]]:
-        """Return what the database decides: all but the time run."""
-        conditions = [jobs.c.parent.is_(None) if self.parent is None else jobs.c.parent == self.parent]
-        conditions += [jobs.c.tags.contains(f"\n{tag.lower()}\n", autoescape=True) for tag in self.tags]
-        conditions += [jobs.c.title_folded.contains(w.casefold(), autoescape=True) for w in self.words]
-        if self.processes:
-            conditions.append(computations.c.process.in_(self.processes))
-        if self.statuses:
-            conditions.append(job_state().in_(self.statuses))
-        if self.earliest is not None:
-            conditions.append(jobs.c.created >= self.earliest)
-        if self.latest is not None:
-            conditions.append(jobs.c.created <= self.latest)
-        return conditions
-
-    def once_of(self, *conditions: ColumnElement[bool]) -> Select[tuple[str]]:
-        """Select of the jobs that are wanted, and meet further conditions, the newest of each result."""
-        in_vain = case((job_state().in_(("failed", "dismissed")), 1), else_=0)
-        order = (in_vain, jobs.c.created.desc(), jobs.c.id.desc())
-        turn = func.row_number().over(partition_by=computations.c.key, order_by=order).label("turn")
-        wanted = select(jobs.c.id, turn).join(computations).where(*self.conditions(), *conditions).subquery()
-        return select(wanted.c.id).where(wanted.c.turn == 1)
-
     @property
     def asks_duration(self) -> bool:
-        """Whether jobs have to be looked at one by one."""
+        """Whether the time run is bounded."""
         return self.shortest_s is not None or self.longest_s is not None
-
-    def lasted(self, job: Job) -> bool:
-        """Whether the time a job has run is within bounds."""
-        if not self.asks_duration:
-            return True
-        if job.started is None:
-            return False
-        end = datetime.now(UTC) if job.finished is None else datetime.fromisoformat(job.finished)
-        seconds = (end - datetime.fromisoformat(job.started)).total_seconds()
-        low = 0.0 if self.shortest_s is None else self.shortest_s
-        return low <= seconds and (self.longest_s is None or seconds <= self.longest_s)
 
 
 EVERY_JOB = JobFilter()

@@ -25,8 +25,9 @@ from service.queue.cluster import Cluster
 from service.queue.retention import Housekeeper, Retention
 from service.queue.submissions import Submissions
 from service.settings import Settings
-from service.store.database import Ownership, Schema, open_database
+from service.store.database import Ownership, open_database
 from service.store.deployment import Deployment
+from service.store.integrity import IntegrityCheck
 from service.store.places import DATABASE_FILE, result_store
 from service.store.results import ResultStore
 from service.worker.order import Outcome
@@ -339,6 +340,7 @@ class Machinery:
     store: ResultStore
     submissions: Submissions
     scheduler: Scheduler | None
+    integrity: IntegrityCheck
 
     def close(self) -> None:
         """Close what is open; it opens again when it is needed."""
@@ -358,14 +360,15 @@ def job_machinery(settings: Settings, registry: Registry, *, works: bool = True)
         require_sessions()
     engine = open_database(settings.database_address or settings.data_directory / DATABASE_FILE)
     try:
-        Schema(engine).check()
+        integrity = IntegrityCheck(engine)
+        integrity.start()
         target = (settings.results_url, settings.results_cache_mb, settings.results_keys)
         store = result_store(engine, settings.data_directory, *target)
         scheduler = _scheduler(settings, registry, engine, store) if works else None
     except BaseException:
         engine.dispose()
         raise
-    return Machinery(engine, store, Submissions(engine, settings.queue_limit), scheduler)
+    return Machinery(engine, store, Submissions(engine, settings.queue_limit), scheduler, integrity)
 
 
 def _scheduler(settings: Settings, registry: Registry, engine: Engine, store: ResultStore) -> Scheduler:

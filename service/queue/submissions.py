@@ -15,12 +15,13 @@ from service.access.keyring import Holder
 from service.project import COMMON
 from service.queue.entry import LIVE, BatchCase, Entry
 from service.queue.job import ENDED, EVERY_JOB, Job, JobFilter, job_of, jobs_of_all_projects
+from service.queue.pages import PageQuery
 from service.queue.tables import computations, jobs, of_batch
 from service.queue.terms import ANYBODY, USUAL, Label, Terms
 from service.queue.workload import end_computations, states_of
 from service.store.database import BRIEF_MS, instant, now, reading, writing
 from service.store.dialects import optional, retried
-from service.store.results import USE_NOTED_EVERY_S, Mark, behind
+from service.store.results import USE_NOTED_EVERY_S, Mark
 
 _FORMER = 200
 """Jobs of a caller, the newest first, among which one of the process is sought."""
@@ -42,7 +43,6 @@ _NEWEST = (
     .order_by(_RECENT.c.created.desc(), _RECENT.c.id.desc())
     .limit(1)
 )
-_LOOKED_AT = 500  # at a time, where durations are requested
 
 
 class Submissions:
@@ -113,29 +113,12 @@ class Submissions:
                 used = jobs.c.id.in_([row.job_id, row.parent])
                 connection.execute(update(jobs).where(used).values(asked=now()))
 
+    @retried
     def page(self, limit: int, job_filter: JobFilter = EVERY_JOB, after: Mark | None = None) -> list[Job]:
         """Return up to `limit` jobs that are wanted, the newest first, those behind the mark `after`."""
-        matching: list[Job] = []
-        size = _LOOKED_AT if job_filter.asks_duration else limit
-        while True:
-            looked_at = self._newest(size, job_filter, after)
-            matching += [job for job in looked_at if job_filter.lasted(job)]
-            if len(looked_at) < size or len(matching) >= limit:
-                return matching[:limit]
-            after = Mark(looked_at[-1].created, looked_at[-1].id)
-
-    @retried
-    def _newest(self, limit: int, job_filter: JobFilter, after: Mark | None) -> list[Job]:
-        statement = self._jobs().where(*job_filter.conditions())
-        if job_filter.once:
-            statement = statement.where(jobs.c.id.in_(job_filter.once_of(jobs.c.project == self._project)))
-        if after is not None:
-            statement = statement.where(behind(after, jobs.c.created, jobs.c.id))
+        query = PageQuery(self._project, job_filter, limit, after)
         with reading(self._engine) as connection:
-            rows = connection.execute(
-                statement.order_by(jobs.c.created.desc(), jobs.c.id.desc()).limit(limit)
-            )
-            return [job_of(row) for row in rows]
+            return [job_of(row) for row in query.rows(connection)]
 
     def relabel(self, identifier: str, title: str | None, tags: Sequence[str] | None) -> Job:
         """Change title and tags of a job, ended or not; None: they stay. Raises `NoSuchJob`."""

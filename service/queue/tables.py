@@ -7,6 +7,7 @@ from typing import Any
 
 from sqlalchemy import BigInteger, Column, Float, ForeignKey, Index, Integer, String, Table, Text, text
 
+from service.store import listing
 from service.store.database import metadata
 from service.version import solver_version
 
@@ -40,11 +41,13 @@ computations = Table(
 Index("computation_in_flight", computations.c.key, unique=True, sqlite_where=_LIVE, postgresql_where=_LIVE)
 Index("computation_by_state", computations.c.state, computations.c.created)
 
+Index("computation_by_key", computations.c.key, computations.c.state, computations.c.created)
 Index("computation_by_turn", computations.c.state, computations.c.priority, computations.c.created)
 
 BATCH = "batch "
 """How the key of what stands for the computation of a batch begins; the hash of a result has no space."""
-of_batch = computations.c.key.startswith(BATCH)
+# an index finds the range, up to behind all hexadecimal digits; by its collation it may have others too
+of_batch = computations.c.key.between(BATCH, f"{BATCH}g") & computations.c.key.startswith(BATCH)
 
 # Counts of ended computations: they outlive the computations, see `service.queue.workload`.
 durations = Table(
@@ -92,3 +95,8 @@ Index("job_by_computation", jobs.c.computation_id)
 Index("job_by_use", jobs.c.asked)
 Index("job_by_time", jobs.c.created)
 Index("job_by_project", jobs.c.project, jobs.c.created)
+
+# What lists are chosen and ordered by; the database's triggers keep it, see `service.store.listing`.
+listings = Table("listing", metadata, *listing.columns())
+for _name, _columns_of in listing.INDEXES.items():
+    Index(_name, *(listings.c[column] for column in _columns_of))

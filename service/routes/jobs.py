@@ -29,6 +29,7 @@ from service.queue.terms import Delivery, Transmission, delivery
 from service.queue.terms import Response as Form
 from service.routes.context import Context, Ctx, caller_of
 from service.routes.headlines import with_headlines
+from service.routes.lists import LISTED, list_answer
 from service.routes.media_types import (
     JSON,
     OF_VERSIONS,
@@ -155,16 +156,21 @@ router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=ScopedRoute)
 input_warnings = on_demand("service.worker.preparations:input_warnings")
 
 
-@router.get("", summary="Jobs")
+@router.get("", summary="Jobs", response_model=JobList, responses=LISTED)
 @needs(Scope.READ)
-def list_jobs(
+async def list_jobs(
     request: Request, context: Ctx, job_filter: JobQuery, limit: Limit = 100, cursor: Cursor = None
-) -> JobList:
+) -> Response:
     """Jobs, the newest first; filters add up."""
-    page = context.submissions.page(limit + 1, job_filter, mark_of(cursor))
-    shown = [status_info(job, context.registry) for job in with_headlines(page[:limit], context)]
-    last = Mark(page[limit - 1].created, page[limit - 1].id) if len(page) > limit else None
-    return JobList(jobs=shown, links=page_links(request, "/v1/jobs", last))
+    after = mark_of(cursor)
+
+    def page() -> JobList:
+        found = context.submissions.page(limit + 1, job_filter, after)
+        shown = [status_info(job, context.registry) for job in with_headlines(found[:limit], context)]
+        last = Mark(found[limit - 1].created, found[limit - 1].id) if len(found) > limit else None
+        return JobList(jobs=shown, links=page_links(request, "/v1/jobs", last))
+
+    return await list_answer(request, page)
 
 
 @router.get("/{job_id}", summary="Status of a job", responses=documented(NoSuchJob))

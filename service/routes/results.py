@@ -27,6 +27,7 @@ from lineofaction.gearbox.schemas.model import HASH
 from service.access.keyring import Scope
 from service.live.order import LiveOrder
 from service.routes.context import Context, Ctx, asker_of
+from service.routes.lists import LISTED, list_answer
 from service.routes.media_types import (
     HTML,
     JSON,
@@ -98,15 +99,22 @@ router = APIRouter(tags=["results"], route_class=ScopedRoute)
 _PATH = "/v1/databases"
 
 
-@router.get("/databases", summary="STE databases")
+@router.get("/databases", summary="STE databases", response_model=DatabaseList, responses=LISTED)
 @needs(Scope.READ)
-def list_databases(request: Request, context: Ctx, limit: Limit = 20, cursor: Cursor = None) -> DatabaseList:
+async def list_databases(
+    request: Request, context: Ctx, limit: Limit = 20, cursor: Cursor = None
+) -> Response:
     """List stored databases with their cases, the newest first."""
-    page = context.store.page("database", limit + 1, mark_of(cursor))
-    shown = page[:limit]
-    last = shown[-1][0] if len(page) > limit else None
-    entries = [_entry(context.store, mark, line) for mark, line in shown]
-    return DatabaseList(databases=entries, links=page_links(request, _PATH, last))
+    after = mark_of(cursor)
+
+    def page() -> DatabaseList:
+        found = context.store.page("database", limit + 1, after)
+        shown = found[:limit]
+        last = shown[-1][0] if len(found) > limit else None
+        entries = [_entry(context.store, mark, line) for mark, line in shown]
+        return DatabaseList(databases=entries, links=page_links(request, _PATH, last))
+
+    return await list_answer(request, page)
 
 
 def _entry(store: ResultStore, mark: Mark, line: IndexLine) -> DatabaseEntry:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
@@ -102,7 +103,7 @@ class Schema:
         Raises `DatabaseDamaged`: something in it is damaged; the notes of the error say where it is and what
         to do.
         """
-        with self._engine.begin() as connection:
+        with self._engine.execution_options(deadline_s=math.inf).begin() as connection:
             fault = dialect_of(connection).check(connection)
         if fault is not None:
             raise unusable(self._engine, fault, RESTORE)
@@ -115,7 +116,7 @@ class Schema:
 
         Raises `BadInput`: the schema is newer, and this program cannot use it.
         """
-        with self._engine.execution_options(immediate=True).begin() as connection:
+        with self._engine.execution_options(immediate=True, deadline_s=math.inf).begin() as connection:
             dialect_of(connection).take_turn(connection)
             numbers = _schema_numbers(connection)
             _refuse_newer(numbers, self._engine)

@@ -25,6 +25,7 @@ from lineofaction.gearbox.problems import BadInput, DatabaseUnavailable, NoSpace
 from service.store.database import metadata, now, reading, shown, writing
 from service.store.dialects import dialect_of, outage_of, retried, shortage
 from service.store.files import ResultName
+from service.store.integrity import IntegrityCheck
 from service.store.results import ResultStore
 
 NOTE = "deployment.json"
@@ -260,10 +261,13 @@ class _Writable:
 
 
 class WriteCheck:
-    """Writes to database and place of results, at most once in `KEPT_S`, whoever asks."""
+    """Writes to database and place of results, at most once in `KEPT_S`, whoever asks.
 
-    def __init__(self, deployment: Deployment) -> None:
-        self._deployment = deployment
+    What a look through the database finds damaged counts as not written.
+    """
+
+    def __init__(self, deployment: Deployment, integrity: IntegrityCheck | None = None) -> None:
+        self._deployment, self._integrity = deployment, integrity
         self._lock = threading.Lock()
         self._outcome: Future[_Writable] | None = None
         self._begun = 0.0
@@ -288,11 +292,16 @@ class WriteCheck:
     def _try(self, outcome: Future[_Writable]) -> None:
         begun = time.monotonic()
         results, _ = self._fault("results", self._deployment.write_place)
-        database, late = self._fault("database", self._deployment.write_database)
+        database, late = self._fault("database", self._write_database)
         written = _Writable(database, results, late=late and not results)
         if not written.fault:
             self._succeeded = begun
         outcome.set_result(written)
+
+    def _write_database(self) -> None:
+        if self._integrity is not None:
+            self._integrity.confirm()
+        self._deployment.write_database()
 
     @staticmethod
     def _fault(part: str, step: Callable[[], None]) -> tuple[str, bool]:

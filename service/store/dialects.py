@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import errno
 import functools
+import math
 import os
 import shutil
 import sqlite3
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar, cast
 
@@ -119,10 +121,15 @@ _PRAGMAS = (
     "PRAGMA synchronous=FULL",
     "PRAGMA foreign_keys=ON",
 )
+DEADLINE_S = 15.0
+"""A statement that works for longer is ended: longer than the patience of those who wait for a lock. By the
+option `deadline_s` of an engine another one, of an upgrade for example none."""
+_LOOK_EVERY = 20_000
+"""Instructions of SQLite's machine between two looks at the clock: some milliseconds."""
 _TURN = 0x6C6F61  # "loa": any number that all our processes know
 _CONNECT_TIMEOUT_S = 5
 _STALLED = (
-    "-c idle_in_transaction_session_timeout=30s -c lock_timeout=10s "
+    f"-c idle_in_transaction_session_timeout=30s -c lock_timeout=10s -c statement_timeout={DEADLINE_S:g}s "
     "-c tcp_keepalives_idle=10 -c tcp_keepalives_interval=5 -c tcp_keepalives_count=3"
 )
 """A stalled process must not hold rows for ever, nor let its callers wait for longer than a client does; the
@@ -160,6 +167,9 @@ class _Dialect(Protocol):
     def lost(self, error: DBAPIError) -> bool:
         """Whether the database, not the statement, is why it failed: another attempt may succeed."""
 
+    def late(self, error: DBAPIError) -> bool:
+        """Whether the statement was ended by its deadline."""
+
     def remedy(self, error: DBAPIError, url: URL) -> str | None:
         """Return what a person has to do before any attempt can succeed; None if it is not that."""
 
@@ -185,6 +195,7 @@ class _SQLite:
         engine = create_engine(url, poolclass=NullPool)
         event.listen(engine, "connect", _prepare)
         event.listen(engine, "begin", _begin)
+        event.listen(engine, "before_cursor_execute", _set_deadline)
         return engine
 
     def insert(self, table: Table) -> sqlite.Insert:
@@ -203,6 +214,9 @@ class _SQLite:
     def lost(self, error: DBAPIError) -> bool:
         """Whether others held the file for too long."""
         return any(word in str(error.orig) for word in ("locked", "busy"))
+
+    def late(self, error: DBAPIError) -> bool:
+        return getattr(error.orig, "sqlite_errorcode", 0) == sqlite3.SQLITE_INTERRUPT
 
     def remedy(self, error: DBAPIError, url: URL) -> str | None:
         """Tell by the primary result code; a file that was replaced by an empty one has no tables."""
@@ -252,10 +266,30 @@ _POSTGRESQL_REMEDIES: Mapping[str, str] = {
     "53100": ROOM,  # disk full
     "58030": _DISK,  # I/O error
 }
+_CANCELED = "57014"  # by the deadline of the statement: nobody else cancels ours
 
 
-def _prepare(connection: Any, _record: object) -> None:
+@dataclass
+class _Deadline:
+    """When the statement of a connection has to have ended, on the monotonic clock."""
+
+    at: float = math.inf
+
+    def passed(self) -> bool:
+        """Whether it is too late; SQLite then ends the statement."""
+        return time.monotonic() > self.at
+
+
+def _set_deadline(connection: Connection, *_statement: object) -> None:
+    """Let a statement that begins have ended in time."""
+    deadline_s = connection.get_execution_options().get("deadline_s", DEADLINE_S)
+    connection.info["deadline"].at = time.monotonic() + deadline_s
+
+
+def _prepare(connection: Any, record: Any) -> None:
     """Set a new connection up: we begin transactions ourselves (see `_begin`)."""
+    deadline = record.info["deadline"] = _Deadline()
+    connection.set_progress_handler(deadline.passed, _LOOK_EVERY)
     connection.isolation_level = None
     for pragma in _PRAGMAS:
         connection.execute(pragma)
@@ -319,6 +353,9 @@ class _PostgreSQL:
             return type(error.orig).__name__ in ("OperationalError", "InterfaceError", "ConnectionTimeout")
         return error.connection_invalidated or state.startswith(("08", "40", "53", "57P", "55P03"))
 
+    def late(self, error: DBAPIError) -> bool:
+        return getattr(error.orig, "sqlstate", None) == _CANCELED
+
     def remedy(self, error: DBAPIError, url: URL) -> str | None:
         return _POSTGRESQL_REMEDIES.get(getattr(error.orig, "sqlstate", None) or "")
 
@@ -332,9 +369,13 @@ class _PostgreSQL:
 
 
 def _begin_on_server(connection: Connection) -> None:
-    """Wait for locks but briefly, if that is requested; the transaction's end undoes it."""
-    if (patience_ms := connection.get_execution_options().get("patience_ms")) is not None:
+    """Wait for locks but briefly, or work for longer, if requested; the transaction's end undoes it."""
+    options = connection.get_execution_options()
+    if (patience_ms := options.get("patience_ms")) is not None:
         connection.exec_driver_sql(f"SET LOCAL lock_timeout = {patience_ms:d}")
+    if (deadline_s := options.get("deadline_s")) is not None:
+        timeout_ms = 0 if math.isinf(deadline_s) else round(1e3 * deadline_s)  # 0: none
+        connection.exec_driver_sql(f"SET LOCAL statement_timeout = {timeout_ms:d}")
 
 
 _DIALECTS: Mapping[str, _Dialect] = {"sqlite": _SQLite(), "postgresql": _PostgreSQL()}
@@ -428,6 +469,9 @@ def outage_of(error: SQLAlchemyError, engine: Engine) -> DatabaseUnavailable | N
     """Return the message about an error of the database itself; None: it is the statement's."""
     if _is_lost(error, engine):
         return DatabaseUnavailable("The database cannot be reached. Try again later.")
+    if isinstance(error, DBAPIError) and dialect_of(engine).late(error):
+        text = "The database has not answered in time. Ask for less of a list, or try again later."
+        return DatabaseUnavailable(text)
     remedy = _remedy_of(error, engine)
     return None if remedy is None else unusable(engine, str(getattr(error, "orig", error)), remedy)
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import sqlalchemy as sa
 
+from service.store.listing import add_listing
+
 if TYPE_CHECKING:
     from alembic.operations import Operations
 
@@ -203,6 +205,12 @@ def _one_owner(op: Operations) -> None:
         op.drop_column("computation", name)
 
 
+def _lists_of_jobs(op: Operations) -> None:
+    """Add what lists are chosen and ordered by, and find the computations of a result by an index."""
+    add_listing(op)
+    op.create_index("computation_by_key", "computation", ["key", "state", "created"])
+
+
 STEPS: Mapping[str, Callable[[Operations], None]] = {
     "0001": _jobs_and_results,
     # what runs now is nobody's, and its lease has ended
@@ -228,6 +236,7 @@ STEPS: Mapping[str, Callable[[Operations], None]] = {
     "0015": _one_owner,
     # what a list of jobs shows of a result; those of before get it when they are listed
     "0016": _added("result", ("headline", "", sa.Text)),
+    "0017": _lists_of_jobs,
 }
 REVISIONS = tuple(STEPS)
 """All schemas there have been, the newest last."""

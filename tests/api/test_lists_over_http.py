@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import hashlib
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -172,3 +174,40 @@ def test_ended_jobs_are_found_by_their_status(client: TestClient) -> None:
     with client:
         until(lambda: len(client.get("/v1/jobs", params={"status": "successful"}).json()["jobs"]) == 1)
         assert client.get("/v1/jobs", params={"status": ["accepted", "running"]}).json()["jobs"] == []
+
+
+@pytest.mark.parametrize("path", ["/v1/jobs", "/v1/jobs?once=true&limit=1", "/v1/databases"])
+def test_a_list_that_a_caller_has_is_not_sent_again(client: TestClient, tmp_path: Path, path: str) -> None:
+    submit(client, 2)
+    first = client.get(path)
+    tag = {"If-None-Match": first.headers["etag"]}
+    again = client.get(path, headers=tag)
+    assert (again.status_code, again.content, again.headers["etag"]) == (304, b"", first.headers["etag"])
+    submit(client, 3)
+    store = client.app.state.context.store  # type: ignore[attr-defined]
+    small_table().to_netcdf(tmp_path / "table.nc")
+    store.put("ab" * 32, "database", tmp_path / "table.nc")
+    changed = client.get(path, headers=tag)
+    assert changed.status_code == 200 and changed.json() != first.json()
+
+
+def test_lists_take_no_thread_from_other_requests(
+    client: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Lists that wait for the database, more than there are threads for requests, hold up nobody else."""
+    (job,) = submit(client, 1)
+    submissions, go_on = client.app.state.context.submissions, threading.Event()  # type: ignore[attr-defined]
+
+    def late(*_: object) -> list[Any]:
+        go_on.wait(60.0)
+        return []
+
+    monkeypatch.setattr(type(submissions), "page", late)
+    with client, ThreadPoolExecutor(50) as callers:
+        lists = [callers.submit(client.get, "/v1/jobs") for _ in range(50)]
+        try:
+            assert client.get(f"/v1/jobs/{job}").status_code == 200
+            assert not any(one.done() for one in lists)
+        finally:
+            go_on.set()
+        assert {one.result().status_code for one in lists} == {200}

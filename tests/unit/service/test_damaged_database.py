@@ -5,6 +5,7 @@ from __future__ import annotations
 import resource
 import shutil
 import sqlite3
+import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -29,7 +30,7 @@ from lineofaction.gearbox.problems import (
 from service.app import create_app
 from service.settings import Settings
 from service.store import deployment
-from service.store.database import database_engine
+from service.store.database import Schema, database_engine
 from service.store.deployment import NOTE, WriteCheck
 from service.store.dialects import out_of_files, outage_of
 
@@ -99,6 +100,27 @@ def test_the_start_names_the_damage_and_the_way_to_restore(directory: Path, kind
     (note,) = caught.value.__notes__
     assert str(file) in note and "backup" in note and "loa store reindex" in note
     assert create_app(Settings(data_directory=directory / "other"), REGISTRY)
+
+
+def test_a_start_does_not_wait_for_a_long_look_and_what_it_finds_makes_unready(
+    directory: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    damage(directory / "service.sqlite3", "one bad page")
+    found, look = threading.Event(), Schema.check
+
+    def late(schema: Schema) -> None:
+        found.wait(60.0)
+        look(schema)
+
+    monkeypatch.setattr(Schema, "check", late)
+    monkeypatch.setattr("service.store.integrity.PATIENCE_S", 0.01)
+    monkeypatch.setattr("service.store.deployment.KEPT_S", 0.0)
+    with TestClient(create_app(Settings(data_directory=directory), REGISTRY, works=False)) as client:
+        assert client.get("/ready").status_code == 200
+        found.set()
+        until(lambda: client.get("/ready").status_code == 503)
+        assert "cannot be used" in client.get("/ready").json()["detail"]
+        assert client.get("/health").status_code == 200
 
 
 def test_the_verb_says_so_and_fails(directory: Path) -> None:

@@ -1,0 +1,162 @@
+"""Pages of lists of jobs, whose work does not grow with the number of jobs.
+
+A page is chosen by narrow lines (`service.store.listing`), each branch of it in the order of time by an
+index: one branch for each state that is wanted, as no index has the order of several. The rows of jobs are
+read for the page alone. Titles and tags have no index: lines are looked at one by one until the page is full.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+from sqlalchemy import (
+    ColumnElement,
+    Connection,
+    FromClause,
+    Select,
+    and_,
+    func,
+    null,
+    select,
+    tuple_,
+    union_all,
+)
+
+from service.queue.job import JobFilter, jobs_of_all_projects
+from service.queue.tables import jobs, listings
+from service.store.database import instant
+from service.store.listing import NEWEST
+from service.store.results import Mark, behind
+
+FEW = 300
+"""So many lines with a duration within bounds are sorted by time; of more, a page is found in that order."""
+
+
+@dataclass(frozen=True)
+class PageQuery:
+    """What a page of a list asks for: jobs of a project, up to `limit`, those behind the mark `after`."""
+
+    project: str
+    job_filter: JobFilter
+    limit: int
+    after: Mark | None = None
+
+    def rows(self, connection: Connection) -> Sequence[Any]:
+        """Return the rows of the page, the newest first."""
+        branches = [branch.subquery() for branch in self._branches(connection)]
+        if not branches:
+            return []
+        chosen = union_all(*(select(branch.c.job, branch.c.created) for branch in branches)).subquery()
+        newest = (chosen.c.created.desc(), chosen.c.job.desc())
+        page = select(chosen.c.job).order_by(*newest).limit(self.limit).subquery()
+        statement = jobs_of_all_projects().join(page, page.c.job == jobs.c.id)
+        return connection.execute(statement.order_by(jobs.c.created.desc(), jobs.c.id.desc())).all()
+
+    def _branches(self, connection: Connection) -> Iterator[Select[Any]]:
+        """Yield the newest lines of each state, or of all, by what bounds the time that jobs run."""
+        for lines in self._lines(connection):
+            for state in self.job_filter.statuses or (None,):
+                newest = (lines.c.created.desc(), lines.c.job.desc())
+                branch = select(lines.c.job, lines.c.created).where(*self._conditions(lines, state))
+                yield branch.order_by(*newest).limit(self.limit)
+
+    def _conditions(self, lines: FromClause, state: str | None) -> list[ColumnElement[bool]]:
+        conditions = [*self._in_list(lines), *self._wanted(lines)]
+        if state is not None:
+            conditions.append(lines.c.state == state)
+        if self.job_filter.once:
+            conditions.append(self._once(lines))
+        if self.after is not None:
+            conditions.append(behind(self.after, lines.c.created, lines.c.job))
+        return conditions
+
+    def _in_list(self, lines: FromClause) -> tuple[ColumnElement[bool], ...]:
+        return lines.c.project == self.project, lines.c.parent == (self.job_filter.parent or "")
+
+    def _wanted(self, lines: FromClause) -> Iterator[ColumnElement[bool]]:
+        """Yield the conditions of lines but for state and time run."""
+        wanted = self.job_filter
+        for tag in wanted.tags:
+            yield lines.c.tags.contains(f"\n{tag.lower()}\n", autoescape=True)
+        for word in wanted.words:
+            yield lines.c.title_folded.contains(word.casefold(), autoescape=True)
+        if len(wanted.processes) == 1:  # an index has the order of one process
+            yield lines.c.process == wanted.processes[0]
+        elif wanted.processes:
+            yield lines.c.process.in_(wanted.processes)
+        if wanted.earliest is not None:
+            yield lines.c.created >= wanted.earliest
+        if wanted.latest is not None:
+            yield lines.c.created <= wanted.latest
+
+    def _once(self, lines: FromClause) -> ColumnElement[bool]:
+        """Condition of lines with no better one of their result among those that are wanted."""
+        if self._wants_all:
+            return lines.c.rank == NEWEST
+        others = listings.alias()
+        wanted = [*self._wanted(others), *self._ran(others), _is_better(others, lines)]
+        if self.job_filter.statuses:
+            wanted.append(others.c.state.in_(self.job_filter.statuses))
+        same = select(others.c.job).where(others.c.key == lines.c.key, others.c.parent == lines.c.parent)
+        return ~same.where(*wanted).exists()
+
+    @property
+    def _wants_all(self) -> bool:
+        """Whether nothing but the batch, or none, is asked for."""
+        return self.job_filter == JobFilter(parent=self.job_filter.parent, once=True)
+
+    def _lines(self, connection: Connection) -> Iterator[FromClause]:
+        """Yield the lines to choose from: all, or those that ended and that run for a time within bounds.
+
+        Where these are few an index of durations gives them all; else they are met in the order of time.
+        """
+        if not self.job_filter.asks_duration:
+            yield listings
+            return
+        for column, low, high in self._bounds():
+            within = select(listings).where(*self._in_list(listings), *_between(column, low, high))
+            counted = select(func.count()).select_from(within.limit(FEW + 1).subquery())
+            number = connection.execute(counted).scalar_one()
+            if 0 < number <= FEW:
+                yield within.limit(FEW).subquery()  # a limit lets no planner take it apart
+            elif number:
+                unindexed = func.coalesce(column, null())
+                yield select(listings).where(*_between(unindexed, low, high)).subquery()
+
+    def _bounds(self) -> Iterator[tuple[ColumnElement[Any], Any, Any]]:
+        """Yield the bounds of the time run: of what ended, and of the start of what goes on."""
+        shortest, longest = self.job_filter.shortest_s or 0.0, self.job_filter.longest_s
+        yield listings.c.seconds, shortest, longest
+        latest = _ago(shortest)
+        yield listings.c.running_since, None if longest is None else _ago(longest), latest
+
+    def _ran(self, lines: FromClause) -> Iterator[ColumnElement[bool]]:
+        """Yield the condition of the time run, if it is bounded."""
+        if self.job_filter.asks_duration:
+            ended, goes_on = (
+                _between(lines.c[column.name], low, high) for column, low, high in self._bounds()
+            )
+            yield and_(*ended) | and_(*goes_on)
+
+
+def _is_better(other: FromClause, line: FromClause) -> ColumnElement[bool]:
+    """Condition of lines that come before one of the same result, in the order of `listing_by_result`.
+
+    In the middle of an index SQLite begins at a text only if that is computed, not if it is a column.
+    """
+    last = tuple_(line.c.rank, line.c.created + "", line.c.job + "")
+    return tuple_(other.c.rank, other.c.created, other.c.job) > last
+
+
+def _between(column: ColumnElement[Any], low: Any, high: Any) -> list[ColumnElement[bool]]:
+    """Return the conditions of a column with a value within bounds, None: there is no bound."""
+    lowest = column.is_not(None) if low is None else column >= low
+    return [lowest] if high is None else [lowest, column <= high]
+
+
+def _ago(seconds: float) -> str:
+    """Return the instant so many seconds ago."""
+    return instant(datetime.now(UTC) - timedelta(seconds=seconds))

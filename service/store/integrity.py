@@ -1,0 +1,45 @@
+"""The look through a whole database at the start: a service waits for it but briefly."""
+
+from __future__ import annotations
+
+import threading
+
+from sqlalchemy import Engine
+
+from lineofaction.gearbox.problems import ServiceError
+from service.store.database import Schema
+
+PATIENCE_S = 2.0
+"""So long a start waits for the look, which takes 0.1 to 1 s for 100 MB, many times that from a cold disk."""
+
+
+class IntegrityCheck:
+    """One look through a database, in a thread that ends with it.
+
+    Attributes
+    ----------
+    fault : ServiceError or None
+        What is damaged, or why it could not be looked at; None: nothing so far.
+    """
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+        self.fault: ServiceError | None = None
+        self._thread = threading.Thread(target=self._look, name="integrity", daemon=True)
+
+    def start(self) -> None:
+        """Begin; raises the fault that is found within `PATIENCE_S`, as `Schema.check`."""
+        self._thread.start()
+        self._thread.join(PATIENCE_S)
+        self.confirm()
+
+    def confirm(self) -> None:
+        """Raise the fault that was found, if any."""
+        if self.fault is not None:
+            raise self.fault
+
+    def _look(self) -> None:
+        try:
+            Schema(self._engine).check()
+        except ServiceError as error:
+            self.fault = error
