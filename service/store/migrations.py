@@ -228,6 +228,8 @@ STEPS: Mapping[str, Callable[[Operations], None]] = {
     "0015": _one_owner,
     # what a list of jobs shows of a result; those of before get it when they are listed
     "0016": _added("result", ("headline", "", sa.Text)),
+    # runs in a row whose end nobody saw; of jobs of before none is known
+    "0017": _added("computation", ("lost_runs", "0", sa.Integer)),
 }
 REVISIONS = tuple(STEPS)
 """All schemas there have been, the newest last."""
