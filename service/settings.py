@@ -88,6 +88,7 @@ LEAST_MEMORY_MB = 256
 """What a worker needs to load the program."""
 _SIGNING = "whsec_"
 _SCHEDULER = re.compile(r"(?:tcp|tls|ws|wss|ucx)://[^\s/]+:[0-9]{1,5}")
+_ENCRYPTED = ("tls", "wss")
 
 
 class Settings(BaseSettings):
@@ -127,6 +128,8 @@ class Settings(BaseSettings):
         Memory that one computation may have, MB; None: the machine's over the number of workers.
     attempts : int
         How often a computation whose worker died is started.
+    scheduler_unencrypted : bool
+        Whether the network between this machine and the scheduler is trusted with jobs in plain text.
     scheduler : str or None
         Address of a Dask scheduler whose workers do the jobs; None: children of this machine do.
     keys_file : Path or None
@@ -158,10 +161,17 @@ class Settings(BaseSettings):
     deadline_s: float = Field(3600.0, gt=0.0, le=1e6)
     memory_limit_mb: int | None = Field(None, ge=LEAST_MEMORY_MB, le=1_000_000_000)
     attempts: int = Field(2, ge=1, le=10)
+    scheduler_unencrypted: bool = False
     scheduler: str | None = None
     keys_file: Annotated[Path, AfterValidator(absolute)] | None = None
     webhook_origins: str = ""
     webhook_secret: SecretStr | None = Field(None, validate_default=True)
+
+    @field_validator("keys_file", mode="before")
+    @classmethod
+    def _named_file(cls, name: object) -> object:
+        """Take an empty variable for none: as a name it would be that of the current folder."""
+        return name or None
 
     @field_validator("results_secret_access_key")
     @classmethod
@@ -208,12 +218,18 @@ class Settings(BaseSettings):
 
     @field_validator("scheduler")
     @classmethod
-    def _reachable_scheduler(cls, address: str | None) -> str | None:
-        """Refuse what cannot be an address; an empty variable is none."""
+    def _reachable_scheduler(cls, address: str | None, info: ValidationInfo) -> str | None:
+        """Refuse what cannot be an address, and plain text to another machine; an empty variable is none."""
         if not address:
             return None
         if not _SCHEDULER.fullmatch(address):
             raise ValueError("protocol, host and port of a Dask scheduler, such as tcp://host:8786")
+        plain = address.partition("://")[0] not in _ENCRYPTED
+        if plain and not is_loopback(_host_of(address)) and not info.data.get("scheduler_unencrypted"):
+            raise ValueError(
+                "tls:// beyond this machine: who reaches the port runs code here. In a network that nobody "
+                "else enters set LOA_SCHEDULER_UNENCRYPTED=true"
+            )
         if find_spec("distributed") is None:
             raise ValueError("left out without the extra dask: pip install 'lineofaction[dask]'")
         return address
@@ -253,6 +269,11 @@ class Settings(BaseSettings):
     def key_file(self) -> Path:
         """File of the access keys."""
         return self.keys_file or self.data_directory / "keys.json"
+
+
+def _host_of(address: str) -> str:
+    """Return the host of an address, that of version 6 without brackets."""
+    return address.partition("://")[2].rpartition(":")[0].strip("[]")
 
 
 def _entries(text: str) -> list[str]:

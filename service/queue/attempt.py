@@ -19,7 +19,7 @@ from bounds import engineering
 from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.stages import PacedFraction
 from model_studies.progress import stage_name
-from service.queue.claims import Claim, Claims
+from service.queue.claims import MOST_LOST_RUNS, SUSPECT_FROM, Claim, Claims
 from service.queue.cluster import Cluster, Task
 from service.queue.terms import LOWER_COST
 from service.settings import LEAST_MEMORY_MB, Settings
@@ -236,7 +236,7 @@ def begun(
         memory_limit_mb=settings.memory_limit_mb,
         stored=stored,
     )
-    worker = crew.begin(order, f"{claim.id}-{claim.attempts}", log)
+    worker = crew.begin(order, f"{claim.id}-{claim.attempts}-{claim.lost_runs}", log)
     figures.started(claim.process)
     facts = {"computation": claim.id, "process": claim.process, "key": claim.key}
     facts |= trace_facts(claim.traceparent)
@@ -258,32 +258,40 @@ class Ended:
 
 @dataclass(frozen=True)
 class Settlement:
-    """Settles attempts; each step may be repeated until the database and the store take it."""
+    """Settles attempts; each step may be repeated until the database and the store take it.
+
+    Suspects run `alone`, unless a cluster places them.
+    """
 
     claims: Claims
     store: ResultStore
     most_attempts: int
+    alone: bool = True
 
     def settle(self, ended: Ended) -> None:
         """Store what was made, or note why nothing is; remove the workspace unless an attempt follows."""
         claim = ended.attempt.claim
         span = tracer().begin("settle", claim.traceparent, time.time(), {})
         try:
-            self._note(claim, ended.outcome, ended.attempt)
+            waits = self._note(claim, ended.outcome, ended.attempt)
         finally:
             span.end(time.time(), {"loa.computation": claim.id})
-        if not ended.outcome.died or claim.attempts >= self.most_attempts:
+        if not waits:
             shutil.rmtree(ended.attempt.workspace, ignore_errors=True)
 
-    def _note(self, claim: Claim, outcome: Outcome, attempt: Attempt) -> None:
+    def _note(self, claim: Claim, outcome: Outcome, attempt: Attempt) -> bool:
+        """Note how an attempt ended; return whether another follows."""
+        if outcome.lost:
+            return self.free_or_fail(claim, outcome.failure, claim.lost_runs + 1)
         if outcome.died:
-            self.again_or_fail(claim, outcome.failure)
-        elif outcome.unexpected:
+            return self.again_or_fail(claim, outcome.failure)
+        if outcome.unexpected:
             self.fail_by_log(claim, "An unexpected failure occurred.", log=str(attempt.log))
         elif outcome.failure:
             self.claims.fail(claim, outcome.failure, outcome.faults)
         else:
             self._keep(claim, outcome, attempt.worker.usage)
+        return False
 
     def _keep(self, claim: Claim, outcome: Outcome, usage: Usage | None) -> None:
         """Store what was made; a file system that does not take it will not do so at a repetition either."""
@@ -305,11 +313,27 @@ class Settlement:
         told = f"{text} The log has the details under {reference}."
         self.claims.fail(claim, told, reference=reference)
 
-    def again_or_fail(self, claim: Claim, reason: str) -> None:
-        """Give work that died another attempt, as long as there are any."""
+    def again_or_fail(self, claim: Claim, reason: str) -> bool:
+        """Give work that died another attempt, as long as there are any; return whether there is one."""
         most = self.most_attempts
         if claim.attempts < most:
             text = f"{reason} Waits for attempt {claim.attempts + 1} of {most}."
             self.claims.put_back(claim, text, counted=True)
-        else:
-            self.claims.fail(claim, f"{reason} That was attempt {claim.attempts} of {most}.")
+            return True
+        self.claims.fail(claim, f"{reason} That was attempt {claim.attempts} of {most}.")
+        return False
+
+    def free_or_fail(self, claim: Claim, reason: str, lost_runs: int) -> bool:
+        """Let work be begun again whose server or Dask worker ended, unless it is what ends them.
+
+        The evidence is who ran: this work so many times in a row, in the end without others.
+        """
+        if lost_runs < MOST_LOST_RUNS:
+            text = f"{reason} Waits to be begun again, which is no attempt."
+            self.claims.put_back(claim, text, counted=False, lost_runs=lost_runs)
+            return True
+        alone = f", the last {lost_runs - SUSPECT_FROM} with no other job beside it" if self.alone else ""
+        text = f"{reason} So ended {lost_runs} of its runs in a row{alone}: it may need too much memory. "
+        text += "Select a coarser level or fewer positions, or start the service with LOA_MEMORY_LIMIT_MB."
+        self.claims.fail(claim, text)
+        return False

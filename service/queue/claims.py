@@ -9,16 +9,28 @@ from __future__ import annotations
 import json
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
-from sqlalchemy import ColumnElement, Engine, Row, select, update
+from sqlalchemy import ColumnElement, Engine, Row, or_, select, update
 
 from service.project import COMMON, at_address
 from service.queue.tables import computations, of_batch
 from service.queue.workload import batch_steps, end_computations
-from service.store.database import now, reading, writing
+from service.store.database import instant, now, reading, writing
 from service.store.dialects import retried
 from service.version import solver_version
+
+MOST_LOST_RUNS = 10
+"""So many runs in a row may be lost; then the work is what ends its server."""
+SUSPECT_FROM = 3
+"""After so many lost runs in a row a computation runs without others: what ends the server is found so."""
+_LONGEST_WAIT_S = 60.0
+
+
+def wait_s(lost_runs: int) -> float:
+    """Return how long a computation waits after so many lost runs in a row: 1 s, twice as long each time."""
+    return float(min(2.0 ** (lost_runs - 1), _LONGEST_WAIT_S)) if lost_runs else 0.0
 
 
 @dataclass(frozen=True)
@@ -27,7 +39,7 @@ class Claim:
 
     `max_cost_s` (CPU s; None: no limit) is what was known when it was claimed, `waited_from` when it was
     entered or put back (RFC 3339), `program` the version that entered it. An empty `traceparent` belongs to
-    no trace.
+    no trace. `lost_runs` are those in a row that began and whose end nobody saw, as the server ended.
     """
 
     id: str
@@ -40,6 +52,12 @@ class Claim:
     waited_from: str = field(default="", compare=False)
     project: str = COMMON
     program: str = field(default="", compare=False)
+    lost_runs: int = field(default=0, compare=False)
+
+    @property
+    def suspect(self) -> bool:
+        """Whether it is to run without others."""
+        return self.lost_runs >= SUSPECT_FROM
 
 
 @dataclass(frozen=True)
@@ -61,20 +79,28 @@ class Claims:
     """Computations as the scheduler of a version of this program sees them."""
 
     def __init__(self, engine: Engine, program: str = solver_version()) -> None:
-        self._engine, self.program = engine, program
+        self.engine = self._engine = engine
+        self.program = program
 
-    def claim(self) -> Claim | None:
-        """Take the oldest waiting computation of the highest priority; None: none waits."""
+    def claim(self, *, beside: bool = False) -> Claim | None:
+        """Take the oldest waiting computation of the highest priority; None: none is to run now.
+
+        What another version entered is returned as it waits, for `service.queue.renewal`. A suspect is not
+        taken `beside` others, and nothing is taken before it.
+        """
         while (row := self._first()) is not None:
+            claim = _claimed(row)
             if row.program != self.program:
-                self.end_former(row)
-            elif self._begin(row):
-                return replace(_claimed(row), attempts=row.attempts + 1, waited_from=row.updated)
+                return claim
+            if beside and claim.suspect:
+                return None
+            if self._begin(row):
+                return replace(claim, attempts=row.attempts + 1, waited_from=row.updated)
         return None
 
     @retried
     def _first(self) -> Row[Any] | None:
-        waiting = select(computations).where(computations.c.state == "accepted")
+        waiting = select(computations).where(computations.c.state == "accepted", _waited_long_enough())
         turn = (computations.c.priority.desc(), computations.c.created)
         with reading(self._engine) as connection:
             return connection.execute(waiting.order_by(*turn).limit(1)).one_or_none()
@@ -90,13 +116,9 @@ class Claims:
             begun = update(computations).where(table.id == row.id, waits).values(**values)
             return connection.execute(begun).rowcount > 0
 
-    @retried
-    def end_former(self, work: Row[Any] | Claim) -> None:
-        """End what another version entered: the name of a result holds the version that makes it."""
-        text = f"The job was entered by version {work.program or '0.2.0 or older'}; submit it again."
-        goes_on = (computations.c.id == work.id) & computations.c.state.in_(("accepted", "running"))
-        with writing(self._engine) as connection:
-            end_computations(connection, goes_on, {"state": "failed", "message": text})
+    def note_runs(self, claims: Collection[Claim]) -> None:
+        """Count runs that have begun as lost: they are, unless their end is noted."""
+        self._change([(claim, {"lost_runs": claim.lost_runs + 1}) for claim in claims])
 
     @retried
     def held(self, claims: Collection[Claim]) -> set[str]:
@@ -131,11 +153,18 @@ class Claims:
         facts = {"faults": json.dumps(list(faults)), "reference": reference}
         self._end_with(claim, {"state": "failed", "message": message.replace("\0", "")} | facts)
 
-    def put_back(self, claim: Claim, message: str, *, counted: bool) -> None:
-        """Let it wait again; an attempt that ended through no fault of its own is not counted."""
+    def put_back(self, claim: Claim, message: str, *, counted: bool, lost_runs: int | None = None) -> None:
+        """Let it wait again; an attempt that ended through no fault of its own is not counted.
+
+        It has then so many `lost_runs` in a row, None: those that it had, and none after one that counts.
+        """
         attempts = claim.attempts if counted else claim.attempts - 1
+        lost_runs = claim.lost_runs if lost_runs is None else lost_runs
         values = {"state": "accepted", "message": message, "stage": "", "stage_fraction": 0.0}
-        self._change([(claim, values | {"fraction": 0.0, "attempts": attempts})])
+        values |= {"fraction": 0.0, "attempts": attempts, "lost_runs": 0 if counted else lost_runs}
+        if attempts == 0:
+            values["started"] = None
+        self._change([(claim, values)])
 
     @retried
     def _end_with(self, claim: Claim, values: dict[str, Any]) -> None:
@@ -180,7 +209,17 @@ def _running(claims: Collection[Claim]) -> ColumnElement[bool]:
     return computations.c.id.in_([claim.id for claim in claims]) & (computations.c.state == "running")
 
 
+def _waited_long_enough() -> ColumnElement[bool]:
+    """Condition of what has waited since its lost runs."""
+    table, time = computations.c, datetime.now(UTC)
+    due = [
+        (table.lost_runs == lost) & (table.updated <= instant(time - timedelta(seconds=wait_s(lost))))
+        for lost in range(1, MOST_LOST_RUNS)
+    ]
+    return or_(table.lost_runs == 0, *due, table.lost_runs >= MOST_LOST_RUNS)
+
+
 def _claimed(row: Row[Any]) -> Claim:
     inputs, (project, key) = json.loads(row.inputs), at_address(row.key)
     facts = (row.id, row.process, key, inputs, row.attempts, row.max_cost_s, row.traceparent)
-    return Claim(*facts, project=project, program=row.program)
+    return Claim(*facts, project=project, program=row.program, lost_runs=row.lost_runs)

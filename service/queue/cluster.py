@@ -61,6 +61,11 @@ class Task:
         return {"task": self.name}
 
     @property
+    def begun(self) -> bool:
+        """Whether a worker has said that it began it."""
+        return self._begin != ""
+
+    @property
     def age(self) -> float:
         """Seconds since a worker began it; 0 before."""
         return 0.0 if self._started is None else time.monotonic() - self._started
@@ -72,7 +77,7 @@ class Task:
     def hear(self, event: Mapping[str, Any]) -> None:
         """Take the report of a worker; a second beginning ends this run: who began it first was lost."""
         if self._begin not in ("", event["begin"]):
-            self.end(Outcome(failure="The Dask worker that ran it was lost.", died=True))
+            self.end(Outcome(failure="The Dask worker that ran it was lost.", lost=True))
         self._begin = event["begin"]
         self._started, self._spent = time.monotonic() - event["age"], event["spent"]
         self._steps.extend(Step(*step) for step in event["steps"])
@@ -271,14 +276,14 @@ class Cluster:
             done = await self._done(client, task, await asyncio.to_thread(task.contents))
             if isinstance(done, Done):
                 await asyncio.to_thread(task.take, done)
-            elif done:
-                task.end(Outcome(failure=done, died=True))
+            elif done is not None:
+                task.end(done)
         except OSError as error:
             logger.exception("files of a task", task=task.name)
             task.end(Outcome(failure=no_space(error) or "unexpected", unexpected=not no_space(error)))
         self._heard()
 
-    async def _done(self, client: Client, task: Task, files: Mapping[str, bytes]) -> Done | str | None:
+    async def _done(self, client: Client, task: Task, files: Mapping[str, bytes]) -> Done | Outcome | None:
         """Submit a task, or join the one there is; return what was done, why nothing was, None: try anew."""
         from distributed import KilledWorker  # noqa: PLC0415 (an extra)
 
@@ -293,13 +298,15 @@ class Cluster:
         except CancelledError:
             return None
         except KilledWorker:
-            return "It ended every Dask worker that tried it; they may have run out of memory."
+            text = "Every Dask worker that tried it ended; they may have run out of memory."
+            return Outcome(failure=text, lost=True)
         except Exception as error:
             if isinstance(error, OSError) and future.status != "error":
                 return None  # in a transfer
             logger.exception("task failed", task=task.name)
             full = isinstance(error, OSError) and no_space(error, "the folder of the Dask worker")
-            return full or "The Dask worker could not do it; the log of the service has the reason."
+            text = full or "The Dask worker could not do it; the log of the service has the reason."
+            return Outcome(failure=text, died=True)
 
     def _hear(self, event: tuple[float, Mapping[str, Any]]) -> None:
         report = event[1]

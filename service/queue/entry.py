@@ -121,11 +121,7 @@ class Entry:
             state |= {"priority": terms.priority, "max_cost_s": terms.max_cost_s}
             given = {"traceparent": TRACEPARENT.get(), **state}
             return _entered(connection, process, work.key, work.inputs, **given)
-        lower = mine & (table.state == "accepted") & (table.priority < terms.priority)
-        connection.execute(update(computations).where(lower).values(priority=terms.priority))
-        limit = terms.max_cost_s
-        tighter = table.max_cost_s.is_not(None) if limit is None else table.max_cost_s < limit
-        connection.execute(update(computations).where(mine, tighter).values(max_cost_s=limit))
+        widen_terms(connection, shared, terms.priority, terms.max_cost_s)
         live = mine & table.state.in_(LIVE)
         connection.execute(update(computations).where(live).values(program=solver_version()))
         return shared
@@ -184,6 +180,15 @@ class Entry:
             row |= {"weight": weight, "differences": differences_column(apart)}
             rows.append(common | row)
         connection.execute(insert(jobs), rows)
+
+
+def widen_terms(connection: Connection, shared: str, priority: int, limit: float | None) -> None:
+    """Give a computation the higher priority, while it waits, and the higher limit (CPU s; None: none)."""
+    mine, table = computations.c.id == shared, computations.c
+    lower = mine & (table.state == "accepted") & (table.priority < priority)
+    connection.execute(update(computations).where(lower).values(priority=priority))
+    tighter = table.max_cost_s.is_not(None) if limit is None else table.max_cost_s < limit
+    connection.execute(update(computations).where(mine, tighter).values(max_cost_s=limit))
 
 
 def _is_entered(connection: Connection, which: ColumnElement[bool], works: Sequence[BatchCase]) -> bool:

@@ -22,6 +22,7 @@ from lineofaction.gearbox.problems import BadInput, DatabaseUnavailable, Service
 from service.queue.attempt import Attempt, Children, Crew, Ended, Run, Settlement, WorkerFigures, begun
 from service.queue.claims import Claim, Claims, Reached
 from service.queue.cluster import Cluster
+from service.queue.renewal import Renewal
 from service.queue.retention import Housekeeper, Retention
 from service.queue.submissions import Submissions
 from service.settings import Settings
@@ -59,10 +60,13 @@ class Scheduler:
     ) -> None:
         self._settings, self._registry, self._claims = settings, registry, claims
         self._owner, self._housekeeper = owner, housekeeper
-        self._store, self._settlement = store, Settlement(claims, store, settings.attempts)
         self._crew: Crew = crew or Children(settings, registry.modules)
+        self._store = store
+        self._settlement = Settlement(claims, store, settings.attempts, alone=not self._crew.keeps)
         self._running: dict[str, Attempt] = {}
         self._reached: dict[str, tuple[Claim, Reached]] = {}
+        self._begun: set[str] = set()
+        self._renewal = Renewal(claims, registry, store, settings.data_directory / "work")
         self._unsettled: list[Ended] = []
         self._stopping = threading.Event()
         self._thread: threading.Thread | None = None
@@ -176,13 +180,35 @@ class Scheduler:
         self._own_table()
         self._put_back_strays()
         self._settle_all()
+        self._note_runs()
         self._enforce_dismissals()
         self._enforce_costs()
         self._note_progress()
         self._clear()
         self._claims.advance_batches()
-        while len(self._running) < self._crew.most and (claim := self._claims.claim()) is not None:
+        while len(self._running) < self._crew.most and (claim := self._next()) is not None:
             self._begin(claim)
+
+    def _next(self) -> Claim | None:
+        """Claim whose turn it is; what another version entered is renewed before, or ends."""
+        beside = bool(self._running) and not self._crew.keeps
+        if beside and any(running.claim.suspect for running in self._running.values()):
+            return None
+        while (claim := self._claims.claim(beside=beside)) is not None:
+            if claim.program == self._claims.program:
+                return claim
+            self._renewal.renew(claim)
+        return None
+
+    def _note_runs(self) -> None:
+        """Note which children have begun, for the case that this server ends with them."""
+        if self._crew.keeps:
+            return
+        running = self._running.values()
+        fresh = [run.claim for run in running if run.worker.begun and run.claim.id not in self._begun]
+        if fresh:
+            self._claims.note_runs(fresh)
+            self._begun.update(claim.id for claim in fresh)
 
     def _listen_to_all(self) -> None:
         """Hear workers and wake-ups; wait for one if there is none."""
@@ -227,6 +253,7 @@ class Scheduler:
             self._selector.unregister(running.worker.channel)
         del self._running[running.claim.id]
         self._reached.pop(running.claim.id, None)
+        self._begun.discard(running.claim.id)
         return running.worker
 
     def _kill(self, running: Attempt, why: str, failure: str = "", patience_s: float | None = None) -> None:
@@ -288,14 +315,15 @@ class Scheduler:
         self._doubtful = False
 
     def _take_up(self) -> None:
-        """Find again what a dead service left running, or let it wait for its next attempt."""
+        """Find again what a dead service left running, or let it wait: only what had begun has lost a run."""
         for claim in self._claims.running():
             if claim.program != self._claims.program:
-                self._claims.end_former(claim)
+                self._claims.put_back(claim, "Waits: the service was upgraded.", counted=False)
             elif self._crew.keeps:
                 self._begin(claim)
             else:
-                self._settlement.again_or_fail(claim, "The service ended while it ran.")
+                how = "while it ran" if claim.lost_runs else "before it had begun"
+                self._settlement.free_or_fail(claim, f"The service ended {how}.", claim.lost_runs)
 
     def _note_progress(self) -> None:
         """Write down how far works are, at most every `_NOTED_EVERY_S`."""

@@ -35,6 +35,7 @@ computations = Table(
     *_columns(Integer, "priority", default=0, server_default="0"),
     *_columns(String, "traceparent", default="", server_default=""),
     *_columns(String, "program", default=solver_version),
+    *_columns(Integer, "lost_runs", default=0, server_default="0"),
 )
 
 # Single flight: at most one computation of a key waits or runs. A key is an address: see `service.project`.

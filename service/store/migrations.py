@@ -237,6 +237,8 @@ STEPS: Mapping[str, Callable[[Operations], None]] = {
     # what a list of jobs shows of a result; those of before get it when they are listed
     "0016": _added("result", ("headline", "", sa.Text)),
     "0017": _lists_of_jobs,
+    # runs in a row whose end nobody saw; of jobs of before none is known
+    "0018": _added("computation", ("lost_runs", "0", sa.Integer)),
 }
 REVISIONS = tuple(STEPS)
 """All schemas there have been, the newest last."""

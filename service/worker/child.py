@@ -54,6 +54,7 @@ def work(descriptor: int) -> None:
         hold_to(order.memory_limit_mb)
     with os.fdopen(descriptor, "w", buffering=1) as channel:
         logging.getLogger("service").addHandler(_Telling(channel))
+        _send(channel, {"begun": True})  # from now on its end is that of the work
         begun = replace(COMPLIANCE_READS)  # a forked child has those of its parent
         outcome = _outcome(order, _Reporter(channel))
         reads = {"hits": COMPLIANCE_READS.hits - begun.hits, "misses": COMPLIANCE_READS.misses - begun.misses}

@@ -69,7 +69,8 @@ class Product:
 class Outcome:
     """The end of a worker: what it made, or the failure in words for the user and the faults of the input.
 
-    `unexpected`: a defect, the text of the exception is in the log only. `died`: worth another attempt.
+    `unexpected`: a defect, the text of the exception is in the log only. `died`: the child ended after it had
+    begun, which is worth another attempt. `lost`: what ran it ended, or it never began: no fault of the work.
     """
 
     products: tuple[Product, ...] = ()
@@ -77,10 +78,13 @@ class Outcome:
     faults: tuple[dict[str, Any], ...] = ()
     unexpected: bool = False
     died: bool = False
+    lost: bool = False
 
     @property
     def name(self) -> str:
         """One word for the log."""
+        if self.lost:
+            return "lost"
         if self.died:
             return "died"
         if self.unexpected:

@@ -61,7 +61,7 @@ def do_job(line: bytes, files: Mapping[str, bytes], topic: str, wanted: str) -> 
     """
     if program() != wanted:
         text = f"The Dask worker has {program()}, the service {wanted}: start workers of that version."
-        return Done(Outcome(failure=text, died=True), None, CacheReads(), (), (), b"")
+        return Done(Outcome(failure=text, lost=True), None, CacheReads(), (), (), b"")
     from distributed import get_worker  # noqa: PLC0415 (an extra)
 
     worker = get_worker()

@@ -33,13 +33,14 @@ class Step(NamedTuple):
 
 
 class Worker:
-    """One child process for one order, leader of a session of its own."""
+    """One child process for one order, leader of a session of its own; it has `begun` once it says so."""
 
     def __init__(self, order: WorkOrder, log: Path, launch: Launch = start_child) -> None:
         self.started = time.monotonic()
         self.usage: Usage | None = None
         self.compliance_reads = CacheReads()
         self.warnings: list[str] = []
+        self.begun = False
         self._outcome: Outcome | None = None
         self._ended: Ended | None = None
         self._peak_mb: float | None = None
@@ -99,6 +100,9 @@ class Worker:
         """Return a message as progress, or keep it as the outcome."""
         if "stage" in message:
             return Step(**message)
+        if "begun" in message:
+            self.begun = True
+            return None
         if "warning" in message:
             self.warnings.append(message["warning"])
             return None
@@ -120,7 +124,7 @@ class Worker:
         if name := ending_signal(self._ended.code):
             hint = " (it may have run out of memory)" if name in _OF_LITTLE_MEMORY else ""
             text = f"The worker was ended by {name}{hint}."
-        return Outcome(failure=text, died=True)
+        return Outcome(failure=text, died=self.begun, lost=not self.begun)
 
     def _has_exited(self, patience_s: float) -> bool:
         """Whether the child leaves within a moment; unreaped, its id is given to no other group."""

@@ -125,6 +125,26 @@ def test_the_witness_knows_a_partial_file_and_a_second_result() -> None:
     assert not is_slow_content(one[: len(one) // 2] + other[len(one) // 2 :], "case 0")
 
 
+def starts(folder: Path) -> int:
+    """Return how many children have begun jobs of the service in a folder."""
+    return sum(len(file.read_text().splitlines()) for file in (folder / "server").glob("started_*"))
+
+
+@pytest.mark.law
+def test_kills_of_the_server_cost_a_job_no_attempt(tmp_path: Path) -> None:
+    """Under default settings, which give a job two attempts."""
+    service, kills = KilledService(tmp_path, {}), 2
+    with service:
+        service.measure("undisturbed")
+        service.submit("struck")
+        for number in range(kills):
+            until(lambda number=number: service.revive() or starts(tmp_path) > 1 + number)  # type: ignore[misc]
+            service.kill()
+        ends = service.settled().values()
+    assert starts(tmp_path) == 1 + kills + 1
+    assert {(end["status"], end["attempts"]) for end in ends} == {("successful", 1)}, ends
+
+
 # Batches: entered once and whole, they end and have the results of their jobs in order.
 
 

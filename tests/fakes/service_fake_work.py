@@ -40,6 +40,14 @@ def work(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     return (Product(order.key, "database", file),)
 
 
+def named(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
+    """Make a file with the name of the result, whatever the inputs are."""
+    progress("named", 1.0)
+    file = order.workspace / "result.nc"
+    file.write_text(order.key)
+    return (Product(order.key, "database", file),)
+
+
 def slow_content(text: str) -> bytes:
     """Return a result of slow work, 200 kB: another for each attempt, so that a second one shows."""
     return _repeated(text, os.urandom(_NONCE // 2).hex().encode())

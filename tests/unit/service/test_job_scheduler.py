@@ -6,6 +6,7 @@ import errno
 import os
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -14,9 +15,12 @@ from service_fake_work import SECRET
 from service_fakes import REGISTRY
 
 from host.directories import cache_home, data_home
+from service.queue import claims
+from service.queue.claims import MOST_LOST_RUNS, Claim
+from service.queue.scheduler import Scheduler
 from service.settings import LEAST_MEMORY_MB, Settings
 from service.store.results import ResultStore, StoredResult
-from service.worker.forks import Forks, start_child
+from service.worker.forks import ChildProcess, Ends, Forks, start_child
 from service.worker.usage import machine_memory_mb
 
 
@@ -248,21 +252,131 @@ def test_what_a_dead_service_left_running_is_taken_up_again(tmp_path: Path) -> N
     alive.scheduler.start()
     ended = alive.ended(job)
     alive.scheduler.stop()
-    assert (ended.status, ended.attempts) == ("successful", 2)
+    assert (ended.status, ended.attempts) == ("successful", 1)
     assert alive.store.verified(job.key, "database").path.read_text() == "found again"
 
 
-def test_a_service_that_dies_with_its_job_again_and_again_gives_it_up(tmp_path: Path) -> None:
-    dead = bench(tmp_path, REGISTRY)
-    job = dead.submit()
-    claim = dead.claimed()
-    dead.claims.put_back(claim, "died", counted=True)
-    dead.claims.claim()
-    alive = dead.again()
-    alive.scheduler.start()
-    ended = alive.ended(job)
-    alive.scheduler.stop()
-    assert (ended.status, ended.message) == (
-        "failed",
-        "The service ended while it ran. That was attempt 2 of 2.",
-    )
+# Ends of the server: they are no attempts; what ends it again and again is known by who ran.
+
+
+@pytest.fixture
+def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let nothing wait after a run that was lost."""
+    monkeypatch.setattr(claims, "wait_s", lambda _lost_runs: 0.0)
+
+
+def fall(server: Bench, *, begun: bool = True) -> list[str]:
+    """Let a server do a turn and end without notice while children run; return whose they are.
+
+    `begun`: they had said so before.
+    """
+    scheduler = server.scheduler
+    scheduler._take_up()
+    runs: list[Claim] = []
+    while len(runs) < scheduler.most and (claim := _next_beside(scheduler, runs)) is not None:
+        runs.append(claim)
+    if begun:
+        server.claims.note_runs(runs)
+    return [claim.id for claim in runs]
+
+
+def _next_beside(scheduler: Scheduler, runs: list[Claim]) -> Claim | None:
+    """Return what a scheduler begins beside runs."""
+    scheduler._running = {claim.id: SimpleNamespace(claim=claim) for claim in runs}  # type: ignore[misc]
+    try:
+        return scheduler._next()
+    finally:
+        scheduler._running = {}
+
+
+@pytest.mark.usefixtures("at_once")
+def test_ends_of_the_server_are_no_attempts(tmp_path: Path) -> None:
+    machine = bench(tmp_path, REGISTRY)
+    job = machine.submit(text="done")
+    for _ in range(MOST_LOST_RUNS - 1):
+        assert fall(machine) == [job.computation]
+        assert machine.submissions.find(job.id).attempts == 1
+    machine.scheduler.start()
+    ended = machine.ended(job)
+    machine.close()
+    assert (ended.status, ended.attempts) == ("successful", 1)
+
+
+@pytest.mark.usefixtures("at_once")
+def test_work_that_had_not_begun_has_no_part_in_the_end_of_a_server(tmp_path: Path) -> None:
+    machine = bench(tmp_path, REGISTRY)
+    job = machine.submit(text="done")
+    for _ in range(3 * MOST_LOST_RUNS):
+        assert fall(machine, begun=False) == [job.computation]
+    machine.scheduler._take_up()
+    assert "before it had begun" in machine.submissions.find(job.id).message
+    assert machine.claimed().lost_runs == 0
+    machine.close()
+
+
+@pytest.mark.usefixtures("at_once")
+def test_what_ends_its_server_again_and_again_is_known_by_who_ran(tmp_path: Path) -> None:
+    """Others that ran beside it are done, as soon as suspects run without others."""
+    machine = bench(tmp_path, REGISTRY, workers=4)
+    jobs = [machine.submit(text=text) for text in ("a", "b", "fatal", "c", "waits")]
+    fatal = jobs.pop(2)
+    falls = 0
+    while not machine.submissions.find(fatal.id).ended:
+        if fatal.computation in fall(machine):
+            falls += 1
+        else:  # the server does not end: what runs is done
+            for claim in machine.claims.running():
+                machine.claims.succeed(claim)
+    assert falls == MOST_LOST_RUNS
+    message = machine.submissions.find(fatal.id).message
+    assert message.startswith("The service ended while it ran. So ended 10 of its runs in a row, the last 7 ")
+    assert "with no other job beside it" in message
+    machine.scheduler.start()
+    assert [machine.ended(job).status for job in jobs] == ["successful"] * 4
+    machine.close()
+
+
+def test_what_was_lost_waits_longer_each_time_and_others_go_on(tmp_path: Path) -> None:
+    machine = bench(tmp_path, REGISTRY)
+    lost, other = machine.submit(text="lost"), machine.submit(text="other")
+    assert fall(machine) == [lost.computation]
+    machine.scheduler._take_up()
+    assert machine.claimed().id == other.computation
+    assert machine.claims.claim() is None
+    until(lambda: machine.claims.claim() is not None)
+    waits = [claims.wait_s(number) for number in range(MOST_LOST_RUNS)]
+    assert waits == [0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 60.0, 60.0, 60.0]
+    machine.close()
+
+
+def test_the_end_of_a_child_by_itself_breaks_the_row(tmp_path: Path) -> None:
+    machine = bench(tmp_path, REGISTRY)
+    machine.submit(text="a")
+    claim = machine.claimed()
+    machine.claims.note_runs([claim])
+    assert [claim.lost_runs for claim in machine.claims.running()] == [1]
+    machine.claims.put_back(claim, "died", counted=True)
+    again = machine.claimed()
+    assert (again.lost_runs, again.attempts) == (0, 2)
+    machine.claims.note_runs([again])
+    machine.claims.put_back(again, "Waits: the service was stopped.", counted=False)
+    assert machine.claimed().lost_runs == 0
+    machine.close()
+
+
+def test_a_child_that_ends_before_it_begins_costs_no_attempt(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Here the first one finds no program."""
+    launched: list[int] = []
+
+    def launch(_forks: Forks, ends: Ends) -> ChildProcess:
+        launched.append(1)
+        return start_child(ends, "no.such.module" if len(launched) == 1 else "service.worker.child")
+
+    monkeypatch.setattr(Forks, "launch", launch)
+    machine = bench(tmp_path, REGISTRY, attempts=1)
+    machine.scheduler.start()
+    job = machine.ended(machine.submit(text="late"))
+    machine.close()
+    assert (job.status, job.attempts, len(launched)) == ("successful", 1, 2)

@@ -24,7 +24,7 @@ from service_fakes import REGISTRY
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.problems import BadInput
 from model_studies.workers import dask_cluster
-from service.queue import cluster
+from service.queue import attempt, cluster
 from service.queue.claims import Claims
 from service.queue.job import Job
 from service.queue.scheduler import crew_of
@@ -198,14 +198,28 @@ def test_work_whose_worker_is_killed_is_begun_again_by_another(
     first = child(dask, hangs)
     os.kill(worker_of(dask, first), signal.SIGKILL)
     began = time.monotonic()
-    until(lambda: machine.submissions.find(hangs.id).attempts == 2)
+    text = "The Dask worker that ran it was lost. Waits to be begun again, which is no attempt."
+    until(lambda: machine.submissions.find(hangs.id).message == text)
     assert time.monotonic() - began < 5.0 * BUSY
     until(lambda: not lives(first))
     until(lambda: machine.submissions.find(hangs.id).stage == "first")
+    assert machine.submissions.find(hangs.id).attempts == 1
     assert [machine.ended(job).status for job in others] == ["successful"] * 3
+
+
+def test_work_that_ends_its_dask_workers_again_and_again_is_given_up(
+    dask: DaskProcesses, server: MakeServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(attempt, "MOST_LOST_RUNS", 2)
+    machine = server()
+    hangs = machine.submit(mode="hang")
+    os.kill(worker_of(dask, child(dask, hangs)), signal.SIGKILL)
+    until(lambda: machine.submissions.find(hangs.id).status == "accepted")
+    until(lambda: machine.submissions.find(hangs.id).stage == "first")
     os.kill(worker_of(dask, child(dask, hangs)), signal.SIGKILL)
     ended = machine.ended(hangs)
-    assert ended.message == "The Dask worker that ran it was lost. That was attempt 2 of 2."
+    assert ended.message.startswith("The Dask worker that ran it was lost. So ended 2 of its runs in a row")
+    assert ended.attempts == 1
 
 
 def test_a_server_that_is_started_again_finds_its_tasks(
@@ -333,7 +347,7 @@ def test_a_second_beginning_ends_the_run_but_not_after_a_lost_scheduler(task: cl
     task.hear(report("two"))
     assert not task.ended
     task.hear(report("three"))
-    assert task.finish() == Outcome(failure="The Dask worker that ran it was lost.", died=True)
+    assert task.finish() == Outcome(failure="The Dask worker that ran it was lost.", lost=True)
 
 
 def test_what_breaks_in_a_transfer_is_followed_anew(task: cluster.Task, dropped: list[str]) -> None:
@@ -372,7 +386,7 @@ def test_a_full_disk_of_the_server_ends_the_job_with_that_reason(
 
 def test_a_worker_of_another_version_does_nothing() -> None:
     done = do_job(b"", {}, "", "lineofaction 0.0.9")
-    assert done is not None and done.outcome.died
+    assert done is not None and done.outcome.lost
     text = f"The Dask worker has lineofaction {solver_version()}"
     assert done.outcome.failure.startswith(text) and "the service lineofaction 0.0.9" in done.outcome.failure
 

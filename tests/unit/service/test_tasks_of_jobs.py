@@ -186,8 +186,8 @@ def test_what_a_worker_warns_of_is_in_the_log_of_the_service(tmp_path: Path) -> 
 
 def test_the_address_comes_from_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("service.settings.find_spec", lambda _: object())
-    monkeypatch.setenv("LOA_SCHEDULER", "tcp://gears.example:8786")
-    assert load_settings().scheduler == "tcp://gears.example:8786"
+    monkeypatch.setenv("LOA_SCHEDULER", "tls://gears.example:8786")
+    assert load_settings().scheduler == "tls://gears.example:8786"
     monkeypatch.setenv("LOA_SCHEDULER", "")
     assert load_settings().scheduler is None
 
@@ -206,5 +206,5 @@ def test_what_is_no_address_is_refused_at_the_start(address: str) -> None:
 def test_an_address_without_the_extra_is_refused_at_the_start(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("service.settings.find_spec", lambda _: None)
     with pytest.raises(BadInput, match="extra dask"):
-        load_settings(scheduler="tcp://gears.example:8786")
+        load_settings(scheduler="tls://gears.example:8786")
     assert Settings().scheduler is None

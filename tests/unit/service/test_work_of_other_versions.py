@@ -1,103 +1,133 @@
-"""What another version left in the job table: no result gets its name, and no job waits in vain."""
+"""What another version left in the job table: it runs under the name of this one, or says why not."""
 
 from __future__ import annotations
 
+import json
+from typing import Any
+
 import pytest
 from named_run import put_named_run
-from running_service import Bench, until
+from running_service import Bench
 from sqlalchemy import update
 
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.reading import validated
-from service.queue.claims import Claims
 from service.queue.entry import BatchCase
 from service.queue.job import Job
 from service.queue.tables import computations
+from service.queue.terms import Terms
 from service.schemas.examples import INPUTS, SCENE
 from service.store.database import now, writing
 from service.version import solver_version
 from service.webhooks.calls import Calls
 from service.worker.process import default_registry
 
-NEWER, OLDER = "9.0.0", "0.0.9"
+OLDER = "0.0.9"
 
 
-def claims_of(machine: Bench, version: str) -> Claims:
-    return Claims(machine.engine, version)
-
-
-def test_work_of_an_older_version_ends_with_the_reason(machine: Bench) -> None:
-    jobs = [machine.submit(text=text) for text in "ab"]
-    assert claims_of(machine, NEWER).claim() is None
-    for job in jobs:
-        found = machine.submissions.find(job.id)
-        text = f"The job was entered by version {solver_version()}; submit it again."
-        assert (found.status, found.message, found.attempts) == ("failed", text, 0)
-        assert found.finished is not None
-    assert machine.submissions.counts() == {"failed": 2}
-
-
-def test_a_scheduler_ends_what_an_older_version_left_and_goes_on(machine: Bench) -> None:
-    old, new = machine.submit(text="old"), machine.submit(text="new")
-    entered_by(machine, old, "")
-    left = machine.settings.data_directory / "work" / old.computation
-    left.mkdir(parents=True)
-    machine.scheduler.start()
-    assert machine.ended(old).message == "The job was entered by version 0.2.0 or older; submit it again."
-    assert machine.ended(new).status == "successful" and machine.starts(old) == []
-    until(lambda: not left.exists())
-
-
-def entered_by(machine: Bench, job: Job, version: str) -> Job:
-    """Let a job be one that a version entered."""
+def entered_by(machine: Bench, job: Job, version: str, **columns: Any) -> Job:
+    """Let a job be one that a version entered, which names its result otherwise."""
+    values = {"program": version, "key": job.key[::-1], **columns}
     with writing(machine.engine) as connection:
         mine = computations.c.id == job.computation
-        connection.execute(update(computations).where(mine).values(program=version))
+        connection.execute(update(computations).where(mine).values(**values))
     return job
 
 
-def test_what_an_older_version_ran_ends_with_the_reason(machine: Bench) -> None:
+@pytest.mark.parametrize("version", ["", OLDER])
+def test_waiting_work_of_an_older_version_keeps_its_identifier_and_runs(machine: Bench, version: str) -> None:
+    jobs = [entered_by(machine, machine.submit(text=text), version) for text in "ab"]
+    left = machine.settings.data_directory / "work" / jobs[0].computation
+    left.mkdir(parents=True)
+    (left / "result.nc").write_text("a block of another solver")
+    machine.scheduler.start()
+    ended = [machine.ended(job) for job in jobs]
+    assert [(job.status, job.attempts, job.key) for job in ended] == [
+        ("successful", 1, job.key) for job in jobs
+    ]
+    assert [machine.store.verified(job.key, "database").path.read_text() for job in jobs] == ["a", "b"]
+
+
+def test_what_an_older_version_ran_runs_again(machine: Bench) -> None:
     job = machine.submit(text="a")
-    machine.claims.put_back(machine.claimed(), "The service ended while it ran.", counted=True)
+    machine.claims.put_back(machine.claimed(), "The worker was ended by SIGKILL.", counted=True)
     machine.claimed()  # for its last attempt
     entered_by(machine, job, OLDER)
     machine.scheduler.start()
-    found = machine.ended(job)
-    text = f"The job was entered by version {OLDER}; submit it again."
-    assert (found.status, found.message, found.attempts) == ("failed", text, 2)
+    assert (machine.ended(job).status, machine.ended(job).attempts) == ("successful", 2)
 
 
-def test_a_batch_of_an_older_version_ends_with_its_jobs_and_who_subscribed_is_told(machine: Bench) -> None:
-    cases = [BatchCase(key * 64, {}) for key in "ab"]
+def test_work_that_this_version_refuses_ends_with_field_and_reason(machine: Bench) -> None:
+    refused = {"wish": {"mode": "write", "text": "a", "number": 11.0}}
+    one, gone, good = (machine.submit(text=text) for text in ("one", "gone", "good"))
+    entered_by(machine, one, OLDER, inputs=json.dumps(refused))
+    entered_by(machine, gone, OLDER, process="forgotten")
+    machine.scheduler.start()
+    found = machine.ended(one)
+    assert (found.status, found.attempts, found.started) == ("failed", 0, None)
+    assert found.message.startswith(f"Version {OLDER} entered the job; {solver_version()} refuses it: ")
+    assert [(fault["field"], fault["value"]) for fault in found.faults] == [("wish.number", 11.0)]
+    assert "There is no process 'forgotten'." in machine.ended(gone).message
+    assert machine.ended(good).status == "successful"
+
+
+def test_a_field_that_is_gone_is_forgiven_where_the_caller_did_not_state_it(machine: Bench) -> None:
+    """Normalized inputs name every field of their version."""
+    stated = {"wish": {"text": "as stated"}}
+    former = {"wish": {"mode": "write", "text": "as stated", "number": 0.0, "color": "red"}}
+    terms = Terms(stated=json.dumps(stated))
+    job = machine.submissions.submit("fake", "c" * 64, former, stored=False, terms=terms)
+    entered_by(machine, job, OLDER)
+    other = entered_by(machine, machine.submit(text="b"), OLDER, inputs=json.dumps(former))
+    machine.scheduler.start()
+    assert machine.ended(job).status == "successful"
+    assert machine.store.verified(machine.ended(job).key, "database").path.read_text() == "as stated"
+    assert [fault["field"] for fault in machine.ended(other).faults] == ["wish.color"]
+
+
+def test_renewed_work_joins_its_equal_of_this_version(machine: Bench) -> None:
+    """Also one that has the result already; priority and limit are those of the more generous."""
+    older = [
+        entered_by(machine, machine.submit(text="same"), version, key=key * 64)
+        for version, key in ((OLDER, "a"), ("", "b"))
+    ]
+    with writing(machine.engine) as connection:
+        mine = computations.c.id == older[0].computation
+        connection.execute(update(computations).where(mine).values(priority=3))
+    newer = machine.submit(text="same")
+    claim = machine.claims.claim()
+    assert claim is not None and claim.program == OLDER
+    for _ in range(2):  # a step that is repeated changes nothing
+        machine.scheduler._renewal.renew(claim)
+    assert machine.submissions.find(older[0].id).computation == newer.computation
+    assert machine.submissions.find(newer.id).priority == 3
+    machine.scheduler.start()
+    assert {machine.ended(job).status for job in (*older, newer)} == {"successful"}
+    assert len(machine.starts(newer)) == 1
+
+
+def test_a_batch_of_an_older_version_is_done_and_who_subscribed_is_told(machine: Bench) -> None:
+    cases = [BatchCase(key * 64, {"wish": {"text": key}}) for key in "ab"]
     batch = machine.submissions.entry().batch("fake", cases, now())
+    for job in machine.submissions.children(batch):
+        entered_by(machine, job, OLDER, key=job.key)
     calls = Calls(machine.engine)
-    calls.enter(batch, dict.fromkeys(("inProgress", "success", "failed"), "https://hooks.example/"))
-    newer = claims_of(machine, NEWER)
-    assert newer.claim() is None
-    newer.advance_batches()
-    found = machine.submissions.find(batch)
-    assert (found.status, found.message) == ("failed", "2 of 2 jobs have ended, 2 failed.")
+    calls.enter(batch, {"success": "https://hooks.example/"})
+    machine.scheduler.start()
+    found = machine.ended(machine.submissions.find(batch))
+    assert (found.status, found.message) == ("successful", "2 of 2 jobs have ended.")
     call = calls.claim()
-    assert call is not None and (call.job, call.event) == (batch, "failed")
-    assert calls.claim() is None
+    assert call is not None and (call.job, call.event) == (batch, "success")
 
 
 def test_work_of_one_name_in_both_versions_goes_on_for_who_submits_it_to_the_newer(machine: Bench) -> None:
     """A table has the same hash in all versions with one solver: its end would end the new job too."""
-    older = entered_by(machine, machine.submit(text="same"), OLDER)
+    older = machine.submit(text="same")
+    entered_by(machine, older, OLDER, key=older.key)
     newer = machine.submit(text="same")
     assert newer.computation == older.computation
-    claim = claims_of(machine, solver_version()).claim()
-    assert claim is not None and claim.id == older.computation
-
-
-def test_equal_work_of_an_older_version_is_computed_anew(machine: Bench) -> None:
-    """The older version has another hash for it; its end keeps no job of the newer one waiting."""
-    old, new = (machine.submissions.submit("fake", key * 64, {}, stored=False) for key in "ab")
-    entered_by(machine, new, NEWER)
-    claim = claims_of(machine, NEWER).claim()
-    assert claim is not None and claim.id == new.computation
-    assert machine.submissions.find(old.id).status == "failed"
+    claim = machine.claims.claim()
+    assert claim is not None and (claim.id, claim.program) == (older.computation, solver_version())
 
 
 def test_a_request_repeated_after_an_upgrade_is_the_same_job(machine: Bench) -> None:
