@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fe_contact.ste.node_errors import force_error
 from fe_contact.types import FloatArray
+from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.schemas.query import LIMITS, MOST_POINTS, QueryInput
 from lineofaction.gearbox.units import N_PER_UM, factor
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from fe_contact.ste.compiled_force import CompiledForce
     from fe_contact.ste.fields import SteFields
 
+force_error = on_demand("fe_contact.ste.node_errors:force_error")
 _ROW = {"position": 0, "misalignment_um": 1, "center_distance_change_mm": 2, "deflection_um": 3}
 _FACTOR = {name: factor(name) for name in _ROW}
 _REQUIRED = ("position", "deflection_um")

@@ -40,7 +40,7 @@ def printed(file: Path, folder: Path, *options: str) -> str:
 
 def test_the_files_are_read_back_as_cases_and_scene(tmp_path: Path) -> None:
     output = printed(GEARBOX, tmp_path)
-    assert "238 components and values: 199 taken" in output
+    assert "239 components and values: 199 taken" in output
     for name in STAGES:
         validated(Case, tomllib.loads((tmp_path / f"{name}.toml").read_text(encoding="utf-8")))
     scene = validated(SceneInput, tomllib.loads((tmp_path / "scene.toml").read_text("utf-8")))
@@ -48,7 +48,7 @@ def test_the_files_are_read_back_as_cases_and_scene(tmp_path: Path) -> None:
     cases = tomllib.loads((tmp_path / "load_cases.toml").read_text(encoding="utf-8"))["load_cases"]
     assert [case["torque_n_m"] for case in cases] == [50.0, 80.0, 30.0]
     rows = (tmp_path / "import.csv").read_text(encoding="utf-8").splitlines()
-    assert len(rows) == 1 + 238
+    assert len(rows) == 1 + 239
 
 
 def test_as_json_the_report_is_an_object(tmp_path: Path) -> None:
@@ -81,7 +81,7 @@ def test_the_service_answers_with_cases_scene_and_account(client: TestClient) ->
     assert [stage["name"] for stage in unit["cases"]] == list(STAGES)
     scene = validated(SceneInput, unit["scene"])
     assert [mesh.case is not None for mesh in scene.meshes] == [True, True]
-    assert len(unit["lines"]) == 238 and unit["load_cases"][1]["share"] == 0.7
+    assert len(unit["lines"]) == 239 and unit["load_cases"][1]["share"] == 0.7
 
 
 def test_the_service_takes_assumptions(client: TestClient) -> None:
