@@ -209,7 +209,7 @@ def _resonances(at: Excited) -> FloatArray:
     modes = natural_modes(at.linear)
     along = modes.shape @ at.system.arrays.direction[at.system.driving_rows].T
     stiffness = (2.0 * np.pi * modes.frequency) ** 2
-    height = np.max(along**2, axis=1) * np.where(stiffness > 0.0, 1.0, 0.0)
+    height = np.max(along**2, axis=1, initial=0.0) * np.where(stiffness > 0.0, 1.0, 0.0)
     height = height / np.maximum(2.0 * modes.damping_ratio * stiffness, 1e-300)
     reported = modes.frequency[np.argsort(-height)[:MODES]]
     per_speed = np.unique(mesh_frequencies(at.system, np.ones(1)).ravel())

@@ -43,6 +43,8 @@ _AT_ONCE = 8192
 """Touching points that are followed together: what they take stays in the cache of the processor."""
 _AT_EDGE = 1e-12
 """Distance from an edge in m below which a touching point is at it."""
+STEEPEST = 0.5
+"""Largest slope of a relief over the roll length by which gear 2 is turned; usual ones have 0.02."""
 _NEAR = 1e-4
 """Of `STEP`: step of differences of the exact gap, whose slope is nowhere rounded."""
 _Arrays: TypeAlias = tuple[FloatArray, ...]
@@ -425,11 +427,14 @@ class _Flanks:
         return [float(flank_coordinate(gear, gear.tip_form_roll_length)) - _AT_EDGE for gear in gears]
 
     def _slope_of(self, gear: int, x: FloatArray, at_edge: BoolArray) -> tuple[FloatArray, FloatArray]:
-        """Return the slope of what is removed from all flanks of a gear at x, and its change along them."""
+        """Return the slope of what is removed from all flanks of a gear at x, and its change along them.
+
+        Up to `STEEPEST`: a steeper flank falls back nearly as fast as it is turned, and nothing touches there.
+        """
         near = _NEAR * self.step
         here, beside = (
-            flank_slope(self._pair, gear, self._designed, self._places(way), self.step)
-            for way in (x, x + near)
+            np.clip(flank_slope(self._pair, gear, self._designed, places, self.step), -STEEPEST, STEEPEST)
+            for places in (self._places(x), self._places(x + near))
         )
         return np.where(at_edge, 0.0, here), np.where(at_edge, 0.0, (beside - here) / near)
 

@@ -102,7 +102,7 @@ def invoked(*arguments: object) -> None:
     assert done.exit_code == 0, done.output
 
 
-def _planned(_order: object) -> Future[bytes]:
+def _planned(_order: object, _asker: object) -> Future[bytes]:
     answer: Future[bytes] = Future()
     answer.set_result(json.dumps({"prediction": {"stages": {"contact": 1.0}}}).encode())
     return answer
