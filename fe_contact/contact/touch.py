@@ -429,7 +429,7 @@ class _Flanks:
     def _slope_of(self, gear: int, x: FloatArray, at_edge: BoolArray) -> tuple[FloatArray, FloatArray]:
         """Return the slope of what is removed from all flanks of a gear at x, and its change along them.
 
-        Up to `STEEPEST`: a steeper flank falls back nearly as fast as it is turned, and nothing touches there.
+        Up to `STEEPEST`: a steeper flank falls back nearly as fast as it is turned, and nothing touches it.
         """
         near = _NEAR * self.step
         here, beside = (

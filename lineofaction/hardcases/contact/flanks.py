@@ -243,8 +243,8 @@ def _sharp_tips() -> Sequence[Measured]:
     "rounded_tips",
     "A tip edge rounded over 0.15 mm: the relief is so steep that the touching point leaves the line of "
     "action.",
-    "STE changes by less than 1 nm with 1 nm of rounding, rises with its depth, and is continuous; a rounding "
-    "of 0.2 mm turns the normal, so that lever arms may lower STE by 2 %.",
+    "STE changes by less than 1 nm with 1 nm of rounding, rises with its depth, and is continuous; a "
+    "rounding of 0.2 mm turns the normal, so that lever arms may lower STE by 2 %.",
 )
 def _rounded_tips() -> Sequence[Measured]:
     """Round the tip edges off, by a relief steep enough to take them out of contact."""
