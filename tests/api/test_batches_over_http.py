@@ -230,7 +230,8 @@ def test_events_tell_of_the_whole_and_progress_never_falls(http: TestClient) -> 
     lines = http.get(f"/v1/jobs/{batch}/events").text.splitlines()
     states = [json.loads(line[6:]) for line in lines if line.startswith("data: ")]
     progress = [state["progress"] for state in states]
-    assert progress == sorted(progress) and progress[-1] == 100 and len(set(progress)) > 3
+    assert progress == sorted(progress) and progress[-1] == 100
+    assert any(0 < value < 100 for value in progress)  # how many are seen in between, a busy machine decides
     assert states[-1]["status"] == "successful"
 
 
