@@ -422,9 +422,7 @@ def _solve(
     # a freedom at a time in memory, as results have it
     displacement = np.moveaxis(np.empty((pushed.shape[2], kept, *omega.shape), dtype=complex), (2, 3), (0, 1))
     modal = at.system.arrays.sparse.modal
-    first = modal.first
-    if any(np.any(part[first:]) or np.any(part[:, first:]) for term in terms for part in term):
-        first = 0  # gyroscopic and frame terms are of the bodies alone, or nothing is eliminated
+    first = _first_eliminated(modal.first, terms)
     small = _modal_elimination(modal, per_meter, total, damping, mass) if first else None
     by_modes = (
         PartialFractions.of(total, mass, damping) if fractions and small is None and not terms else None
@@ -435,11 +433,7 @@ def _solve(
     for part in speed_blocks(omega.shape, per_meter.size**2):
         exciting = pushed if pushed.shape[0] == 1 else pushed[part]
         right = np.broadcast_to(exciting, (*omega[part].shape, *pushed.shape[2:]))
-        swept = [
-            np.stack([per_meter[:, None] * term[k] * per_meter for term in terms[part]])
-            for k in (0, 1)
-            if terms
-        ]
+        swept = _swept(terms[part], per_meter)
         with np.errstate(divide="ignore", invalid="ignore"):  # of an undamped mode at its very frequency
             if by_modes is not None:
                 moved, miss = by_modes.solve(omega[part], exciting)
@@ -463,6 +457,19 @@ def _solve(
     if not np.maximum(left, np.finfo(float).eps * elastic) <= ROUNDED * most:
         raise unbounded(linear, omega)
     return displacement, float(left / most), largest
+
+
+def _first_eliminated(first: int, terms: Sequence[Terms]) -> int:
+    """Return the first freedom that modes eliminate; 0: none, as gyroscopic or frame terms act there."""
+    acts = any(np.any(part[first:]) or np.any(part[:, first:]) for term in terms for part in term)
+    return 0 if acts else first
+
+
+def _swept(terms: Sequence[Terms], per_meter: FloatArray) -> list[FloatArray]:
+    """Return the scaled damping and stiffness (S, n, n) of terms at some speeds; empty without terms."""
+    if not terms:
+        return []
+    return [np.stack([per_meter[:, None] * term[k] * per_meter for term in terms]) for k in (0, 1)]
 
 
 def _right_sides(force: ComplexArray, rows: FloatArray | None, beside: ComplexArray | None) -> ComplexArray:
