@@ -29,19 +29,14 @@ LEAST, MOST, COVERED = 0.3, 3.0, 11.0 / 12.0
 
 @dataclass(frozen=True)
 class StatedRun:
-    """The step error of a scene as stated, and the true one, m rms.
-
-    Attributes
-    ----------
-    cost : float
-        CPU time of the error estimates over that of the integration.
-    """
+    """The step error of a scene as stated, and the true one, m rms."""
 
     name: str
     stated: float
     true: float
     chaotic: bool
     cost: float
+    """CPU time of the error estimates over that of the integration."""
 
     @property
     def ratio(self) -> float:

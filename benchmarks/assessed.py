@@ -22,24 +22,17 @@ LARGEST_MEDIAN = 3.0
 
 @dataclass(frozen=True)
 class Assessed:
-    """The curves of one table under some loads.
-
-    Attributes
-    ----------
-    name, level : str
-        Of the pair and of its mesh.
-    value, stated, true : ndarray, shape (5, loads)
-        `QUANTITIES`, and their stated and true errors, m.
-    own : ndarray or float
-        Error of the reference that the true errors are against, m; it is forgiven.
-    """
+    """The curves of one table under some loads."""
 
     name: str
     level: str
+    """`name`, `level`: Of the pair and of its mesh."""
     value: FloatArray
     stated: FloatArray
     true: FloatArray
+    """`value`, `stated`, `true`: `QUANTITIES`, and their stated and true errors, m. Shape (5, loads) each."""
     own: FloatArray | float = 0.0
+    """Error of the reference that the true errors are against, m; it is forgiven."""
 
     @property
     def covered(self) -> FloatArray:

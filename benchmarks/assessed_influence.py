@@ -63,22 +63,16 @@ def per_cent_right(found: Sequence[AssessedEffect], quantity: int | None = None)
 
 @dataclass(frozen=True)
 class InfluenceStudy:
-    """What a study counts, and in which words.
-
-    Attributes
-    ----------
-    subject, one, anywhere : str
-        Of its figures; what an ablation is of; where an estimate may be wrong.
-    quantities : tuple of str
-    tolerances : tuple of float
-        At which the decisions of "auto" are assessed.
-    """
+    """What a study counts, and in which words."""
 
     subject: str
     one: str
     anywhere: str
+    """`subject`, `one`, `anywhere`: Of its figures; what an ablation is of; where an estimate may be wrong.
+    """
     quantities: tuple[str, ...]
     tolerances: tuple[float, ...]
+    """At which the decisions of "auto" are assessed."""
 
     def counts(self, found: Sequence[AssessedEffect]) -> list[Figure]:
         """Return how often the estimates are right."""

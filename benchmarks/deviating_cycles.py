@@ -43,17 +43,7 @@ T = TypeVar("T")
 
 
 class AssessedCycle(NamedTuple):
-    """One cycle by derivatives: what is stated of it, what is true, and CPU seconds.
-
-    Attributes
-    ----------
-    stated, true : ndarray, shape (8,)
-        Of `ASSESSED`, m.
-    points : float
-        Part of the positions of pitches not solved that are beyond the error stated of a position.
-    seconds, exact_seconds : float
-        Condensed bodies at hand.
-    """
+    """One cycle by derivatives: what is stated of it, what is true, and CPU seconds."""
 
     name: str
     ripple: float
@@ -61,9 +51,12 @@ class AssessedCycle(NamedTuple):
     pitches: int
     stated: FloatArray
     true: FloatArray
+    """`stated`, `true`: Of `ASSESSED`, m. Shape (8,) each."""
     points: float
+    """Part of the positions of pitches not solved that are beyond the error stated of a position."""
     seconds: float
     exact_seconds: float
+    """`seconds`, `exact_seconds`: Condensed bodies at hand."""
 
 
 def figures() -> list[Figure]:

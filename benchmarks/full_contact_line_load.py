@@ -45,15 +45,7 @@ SPUR_MESH, HELICAL_MESH = Resolution(2.0, layers=11, outermost=0.05), HelicalMes
 
 @dataclass(frozen=True)
 class LineLoadCase:
-    """A pair at one position in base pitches and one torque in N m, at misalignments in m.
-
-    Attributes
-    ----------
-    meshes : tuple
-        Of the peer, the finest first.
-    edge : int or None
-        Pair index of the peer's line that ends at a tip edge.
-    """
+    """A pair at one position in base pitches and one torque in N m, at misalignments in m."""
 
     name: str
     pair: GearPair
@@ -61,7 +53,9 @@ class LineLoadCase:
     torque: float
     misalignments: tuple[float, ...]
     meshes: tuple[PeerMesh, ...]
+    """Of the peer, the finest first."""
     edge: int | None = None
+    """Pair index of the peer's line that ends at a tip edge."""
 
 
 def line_load_cases() -> tuple[LineLoadCase, ...]:

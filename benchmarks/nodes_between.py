@@ -28,28 +28,20 @@ UM = 1e-6
 
 @dataclass(frozen=True)
 class BetweenNodes:
-    """One table at points between its nodes, held against a table that is solved there.
-
-    Attributes
-    ----------
-    name : str
-    met : bool
-        Whether the table says that it meets its tolerance.
-    inserted : int
-        Its inserted loads, misalignments and center distances.
-    mean, ripple : (Q, 4) arrays
-        Value, stated error less that which the solution at the point has in common, true difference, and
-        allowed error of mean and peak-to-peak, m.
-    outside : (Q,) array
-        Part of the positions at which the difference is beyond the band.
-    """
+    """One table at points between its nodes, held against a table that is solved there."""
 
     name: str
     met: bool
+    """Whether the table says that it meets its tolerance."""
     inserted: int
+    """Its inserted loads, misalignments and center distances."""
     mean: FloatArray
     ripple: FloatArray
+    """`mean`, `ripple`: Value, stated error less that which the solution at the point has in common, true
+    difference, and allowed error of mean and peak-to-peak, m. Shape (Q, 4) each.
+    """
     outside: FloatArray
+    """Part of the positions at which the difference is beyond the band. Shape (Q,)."""
 
 
 def drawn_tables(

@@ -20,21 +20,13 @@ RATED = 50.0
 
 @dataclass(frozen=True)
 class PairCase:
-    """One pair with its loads over the rated one.
-
-    Attributes
-    ----------
-    name : str
-    pair : GearPair or InternalGearPair
-    loads : tuple of float
-    options : mapping
-        Further arguments of `analyze`.
-    """
+    """One pair with its loads over the rated one."""
 
     name: str
     pair: ParallelAxes
     loads: tuple[float, ...] = (0.2, 1.0, 2.5)
     options: Mapping[str, Any] = field(default_factory=dict)
+    """Further arguments of `analyze`."""
 
     @property
     def forces(self) -> list[float]:

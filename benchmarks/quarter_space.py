@@ -37,19 +37,15 @@ _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 @dataclass(frozen=True)
 class QuarterDisc:
-    """Six-node triangles on a grid of radii and angles; lengths in half strips, the surface on y = 0.
-
-    Attributes
-    ----------
-    radius : float
-        Of its outer arc, which is fixed.
-    under_strip, angles : int
-        Elements along half the strip, and from the surface to the plane of symmetry x = 0.
-    """
+    """Six-node triangles on a grid of radii and angles; lengths in half strips, the surface on y = 0."""
 
     radius: float = 24.0
+    """Of its outer arc, which is fixed."""
     under_strip: int = 6
     angles: int = 8
+    """`under_strip`, `angles`: Elements along half the strip, and from the surface to the plane of symmetry x
+    = 0.
+    """
 
     @cached_property
     def radii(self) -> FloatArray:

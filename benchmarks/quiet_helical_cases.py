@@ -15,25 +15,16 @@ LOADS = (0.4, 1.0)
 
 @dataclass(frozen=True)
 class QuietPair:
-    """One pair with its nominal torque.
-
-    Attributes
-    ----------
-    name : str
-    pair : GearPair
-    torque : float
-        On the driving gear, N m.
-    misalignment : float
-        m.
-    unseen : bool
-        Whether nothing about the estimates was decided on this pair: it assesses them.
-    """
+    """One pair with its nominal torque."""
 
     name: str
     pair: GearPair
     torque: float
+    """On the driving gear, N m."""
     misalignment: float = 0.0
+    """m."""
     unseen: bool = False
+    """Whether nothing about the estimates was decided on this pair: it assesses them."""
 
     @property
     def torques(self) -> list[float]:

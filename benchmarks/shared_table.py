@@ -31,13 +31,7 @@ _MISALIGNMENTS = np.linspace(-45e-6, 45e-6, 10)
 
 @dataclass(frozen=True)
 class Recording:
-    """Workers, and the CPU seconds of every task of theirs, run by run.
-
-    Attributes
-    ----------
-    workers : Workers
-    runs : list of list of float
-    """
+    """Workers, and the CPU seconds of every task of theirs, run by run."""
 
     workers: Workers
     runs: list[list[float]] = field(default_factory=list)
@@ -67,19 +61,13 @@ class Recording:
 
 @dataclass(frozen=True)
 class Share:
-    """Who spent what on one table.
-
-    Attributes
-    ----------
-    wall, caller : float
-        Wall seconds, and CPU seconds of the caller.
-    runs : list of list of float
-        CPU seconds of the tasks.
-    """
+    """Who spent what on one table."""
 
     wall: float
     caller: float
+    """`wall`, `caller`: Wall seconds, and CPU seconds of the caller."""
     runs: list[list[float]]
+    """CPU seconds of the tasks."""
 
     @property
     def tasks(self) -> float:

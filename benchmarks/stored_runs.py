@@ -28,21 +28,14 @@ VERSION = 4
 
 @dataclass(frozen=True)
 class StoredRun:
-    """One table of a pair.
-
-    Attributes
-    ----------
-    value : ndarray, shape (5, loads)
-        Mean, peak-to-peak and three harmonics, m.
-    sources : ndarray, shape (6, 5, loads)
-        Their stated errors by source, in the order of `AT_NODES`, m.
-    receipt : dict
-        Of its receipt: cost, prediction, plan, tolerance, passes.
-    """
+    """One table of a pair."""
 
     value: FloatArray
+    """Mean, peak-to-peak and three harmonics, m. Shape (5, loads)."""
     sources: FloatArray
+    """Their stated errors by source, in the order of `AT_NODES`, m. Shape (6, 5, loads)."""
     receipt: Json
+    """Of its receipt: cost, prediction, plan, tolerance, passes."""
 
     @property
     def seconds(self) -> float:

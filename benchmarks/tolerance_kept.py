@@ -31,37 +31,29 @@ _MET, _PRICE, _PRICED = 95.0, 2.5, 90.0
 
 @dataclass(frozen=True)
 class ToleranceRun:
-    """A run of one case under the tolerance.
-
-    Attributes
-    ----------
-    name : str
-    ended : str
-        Mesh and slices of the table it gives.
-    passes : int
-    met : bool
-        What its receipt says.
-    stated, true : float
-        Largest stated and true error of mean and peak-to-peak over the loads, in parts of what is allowed;
-        of what is stated the part that a tolerance bounds: without `METHOD`, which no mesh lowers.
-    seconds : float
-        CPU seconds of all passes.
-    least_stated, least_true : float
-        Of the quickest run whose stated, or whose true errors are within the tolerance; NaN if there is none.
-    reason : str
-        Why the passes ended.
-    """
+    """A run of one case under the tolerance."""
 
     name: str
     ended: str
+    """Mesh and slices of the table it gives."""
     passes: int
     met: bool
+    """What its receipt says."""
     stated: float
     true: float
+    """`stated`, `true`: Largest stated and true error of mean and peak-to-peak over the loads, in parts of
+    what is allowed; of what is stated the part that a tolerance bounds: without `METHOD`, which no mesh
+    lowers.
+    """
     seconds: float
+    """CPU seconds of all passes."""
     least_stated: float
     least_true: float
+    """`least_stated`, `least_true`: Of the quickest run whose stated, or whose true errors are within the
+    tolerance; NaN if there is none.
+    """
     reason: str = "met"
+    """Why the passes ended."""
 
     @property
     def price(self) -> float:

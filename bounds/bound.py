@@ -21,32 +21,23 @@ class Bound:
 
     Its ends are written with seven digits, rounded to the side that is accepted, in the unit of the field;
     where they are one, that value is written with twelve.
-
-    Attributes
-    ----------
-    low, high : float or None
-        Ends in SI; None is no end.
-    low_open, high_open : bool
-        Whether the end itself is refused.
-    integer : bool
-        Whether only integers are accepted.
-    unit : str
-        Symbol of the field's SI unit if it is to be written, e.g. ``"m"``.
-    low_name, high_name : str
-        What an end is, written before it, e.g. ``"the bore diameter"``.
-    note : Text
-        What follows, e.g. ``", where the fillet ends"``.
     """
 
     low: float | None = None
     high: float | None = None
+    """`low`, `high`: Ends in SI; None is no end."""
     low_open: bool = False
     high_open: bool = False
+    """`low_open`, `high_open`: Whether the end itself is refused."""
     integer: bool = False
+    """Whether only integers are accepted."""
     unit: str = ""
+    """Symbol of the field's SI unit if it is to be written, e.g. ``"m"``."""
     low_name: str = ""
     high_name: str = ""
+    """`low_name`, `high_name`: What an end is, written before it, e.g. ``"the bore diameter"``."""
     note: Text = NOTHING
+    """What follows, e.g. ``", where the fillet ends"``."""
 
     @classmethod
     def of(cls, ends: Interval, *, integer: bool = False, unit: str = "") -> Bound:

@@ -75,44 +75,31 @@ class Direction(Flag):
 
 @dataclass(frozen=True)
 class Declared:
-    """The declaration of a field of a dataclass.
-
-    Attributes
-    ----------
-    unit : str
-        Symbol of its SI unit; empty for none.
-    bound : Interval, Choice or None
-        What is accepted whatever the other fields are, in SI; None is left to the value itself.
-    description : str
-        What it is. Whoever writes it out puts its unit in place of {unit}, else before the first semicolon.
-    example : object
-        A usual value, in SI.
-    along : Direction
-        Directions along which it acts.
-    written : str
-        Symbol of the unit in which it is usually written, where that is not the usual one of its SI unit.
-    part : type, optional
-        The dataclass of a part; its value is None, or the dataclass's own default, where it is left out.
-    later : bool
-        Whether the field came after results had been stored. At its default it is not written out, so that
-        what says nothing of it keeps the address of its result.
-    most : int
-        Number of parts of a list, at most.
-    with_unit : bool
-        Whether a message has the unit behind the ends of the range.
-    """
+    """The declaration of a field of a dataclass."""
 
     kind: Kind
     unit: str
+    """Symbol of its SI unit; empty for none."""
     bound: Interval | Choice | None
+    """What is accepted whatever the other fields are, in SI; None is left to the value itself."""
     description: str
+    """What it is. Whoever writes it out puts its unit in place of {unit}, else before the first semicolon."""
     example: Any = None
+    """A usual value, in SI."""
     along: Direction = Direction.NONE
+    """Directions along which it acts."""
     written: str = ""
+    """Symbol of the unit in which it is usually written, where that is not the usual one of its SI unit."""
     part: type | None = None
+    """The dataclass of a part; its value is None, or the dataclass's own default, where it is left out."""
     later: bool = False
+    """Whether the field came after results had been stored. At its default it is not written out, so that
+    what says nothing of it keeps the address of its result.
+    """
     most: int = 100
+    """Number of parts of a list, at most."""
     with_unit: bool = False
+    """Whether a message has the unit behind the ends of the range."""
 
     @cached_property
     def limits(self) -> Bound | Choice | None:

@@ -55,28 +55,19 @@ def _suspected_unit(value: float, own: Unit, dimension: str, low: float, high: f
 
 @dataclass(frozen=True)
 class Check:
-    """A limit of practice that a quantity is held against.
-
-    Attributes
-    ----------
-    name : str
-        What a finding is called.
-    quantity : str
-        What is compared, in words.
-    low, high : float or None
-        Bounds in `unit`; None: no such bound.
-    unit : str
-        Unit of the bounds; "1" for a ratio.
-    source : str
-        Where the limit comes from.
-    """
+    """A limit of practice that a quantity is held against."""
 
     name: str
+    """What a finding is called."""
     quantity: str
+    """What is compared, in words."""
     low: float | None
     high: float | None
+    """`low`, `high`: Bounds in `unit`; None: no such bound."""
     unit: str
+    """Unit of the bounds; "1" for a ratio."""
     source: str
+    """Where the limit comes from."""
 
 
 class PlausibilityWarning(UserWarning):
@@ -85,37 +76,27 @@ class PlausibilityWarning(UserWarning):
 
 @dataclass(frozen=True)
 class Finding:
-    """A quantity beyond the limit of a check.
-
-    Attributes
-    ----------
-    check : str
-        Name of the check.
-    field : str
-        Dotted name of the field, as in an `InputError`.
-    value : float
-        Of the field, in `unit`.
-    low, high : float
-        Usual values of the field in `unit`: here, with all that is beside it. No bound is 0 or infinity.
-    unit : str
-        SI unit.
-    reason : str
-        What is implausible, in words.
-    source : str
-        Of the limit.
-    whole : str
-        Other fields that must have slipped with this one, in words; empty if it stands alone.
-    """
+    """A quantity beyond the limit of a check."""
 
     check: str
+    """Name of the check."""
     field: str
+    """Dotted name of the field, as in an `InputError`."""
     value: float
+    """Of the field, in `unit`."""
     low: float
     high: float
+    """`low`, `high`: Usual values of the field in `unit`: here, with all that is beside it. No bound is 0 or
+    infinity.
+    """
     unit: str
+    """SI unit."""
     reason: str
+    """What is implausible, in words."""
     source: str
+    """Of the limit."""
     whole: str = ""
+    """Other fields that must have slipped with this one, in words; empty if it stands alone."""
 
     def message(self, field: str | None = None, own: Unit | None = None) -> str:
         """Say it in one line, in the caller's name and unit of the field (default: ours, SI)."""

@@ -56,24 +56,16 @@ Words = str | _Worded
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number inside a message.
-
-    Attributes
-    ----------
-    value : float
-        In SI.
-    unit : str
-        Symbol of its SI unit, e.g. ``"m"``, ``"N/m^3"``; empty for a pure number.
-    digits : int
-        Significant digits to write.
-    side : "", "low" or "high"
-        "low" and "high": a limit, rounded to the side that is accepted when it is typed.
-    """
+    """A number inside a message."""
 
     value: float
+    """In SI."""
     unit: str = ""
+    """Symbol of its SI unit, e.g. ``"m"``, ``"N/m^3"``; empty for a pure number."""
     digits: int = DIGITS
+    """Significant digits to write."""
     side: Literal["", "low", "high"] = ""
+    """"low" and "high": a limit, rounded to the side that is accepted when it is typed."""
 
     def worded(self, reader: Reader) -> str:
         """Return the number in the reader's unit."""

@@ -14,21 +14,14 @@ LEAST_LEFTOVER = 1e-12
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit as it is written.
-
-    Attributes
-    ----------
-    name : str
-        Its symbol, e.g. ``"mm"``; empty for none.
-    factor : float
-        SI value of one.
-    si : str
-        Symbol of the SI unit of what it measures, e.g. ``"m"``.
-    """
+    """A unit as it is written."""
 
     name: str = ""
+    """Its symbol, e.g. ``"mm"``; empty for none."""
     factor: float = 1.0
+    """SI value of one."""
     si: str = ""
+    """Symbol of the SI unit of what it measures, e.g. ``"m"``."""
 
     @property
     def plain(self) -> str:

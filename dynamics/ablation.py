@@ -50,19 +50,20 @@ class RunFigures(Figures):
         Of the dynamic transmission error of every mesh, m.
     cpu_seconds : float
         Of the run.
-    orders : (m, 5) array
-        Largest amplitude along the run of the mesh orders 1 to 5 of the transmission error, m.
-    bearing_orders : (b, 5) array
-        Of the bearing forces, root of the sum of squares of their components, N; b = 0 if not stored.
-    line_order, line_square : (K,) arrays
-        Orders of the bearing forces and the largest squares along the run of what the scene is computed for;
-        K = 0 of a run too short to tell them.
     """
 
     orders: FloatArray = field(metadata=in_unit("m", "curve", "order"))
+    """Largest amplitude along the run of the mesh orders 1 to 5 of the transmission error, m. Shape (m, 5).
+    """
     bearing_orders: FloatArray = field(metadata=in_unit("n", "bearing", "order"))
+    """Of the bearing forces, root of the sum of squares of their components, N; b = 0 if not stored. Shape
+    (b, 5).
+    """
     line_order: FloatArray = field(default_factory=_no_lines, metadata=in_unit("1", "line"))
     line_square: FloatArray = field(default_factory=_no_lines, metadata=in_unit("1", "line"))
+    """`line_order`, `line_square`: Orders of the bearing forces and the largest squares along the run of what
+    the scene is computed for; K = 0 of a run too short to tell them. Shape (K,) each.
+    """
 
     @property
     def lines(self) -> Lines:
@@ -115,11 +116,10 @@ class EffectAblation(model_studies.EffectAblation[RunFigures, Influence]):
     name, on, reason, with_effect, without_effect, estimate
         Of every ablation; on if any part has it on, the reason is that of the first such part. The estimate
         is of the part of the run that is compared.
-    level : LevelChange
-        What the ledger of the run states, of all of it.
     """
 
     level: LevelChange = field(default_factory=LevelChange)
+    """What the ledger of the run states, of all of it."""
 
     @property
     def level_change(self) -> LevelChange:
@@ -146,12 +146,11 @@ class Ablation(model_studies.Ablation[RunFigures, EffectAblation]):
     ----------
     nominal, effects, left_out
         Of every ablation.
-    mesh, bearing : tuple of str
-        What the rows of the figures are.
     """
 
     mesh: tuple[str, ...]
     bearing: tuple[str, ...]
+    """`mesh`, `bearing`: What the rows of the figures are."""
 
 
 def ablate(

@@ -35,41 +35,28 @@ LEAST_PITCHES = 2.0
 
 @dataclass(frozen=True)
 class _Vibration:
-    """In B blocks of a run: m meshes, b bearings, n mesh orders (of the first mesh for bearings).
-
-    Attributes
-    ----------
-    rms : (B, m) array
-        Of the transmission error about its mean, m.
-    error_orders : (B, m, n) array
-        Amplitudes of the transmission errors, m.
-    force_orders : (B, b, n) array
-        Amplitudes of the bearing forces in their own frames, N: the norm over three directions. NaN where a
-        model has none.
-    """
+    """In B blocks of a run: m meshes, b bearings, n mesh orders (of the first mesh for bearings)."""
 
     rms: FloatArray
+    """Of the transmission error about its mean, m. Shape (B, m)."""
     error_orders: FloatArray
+    """Amplitudes of the transmission errors, m. Shape (B, m, n)."""
     force_orders: FloatArray
+    """Amplitudes of the bearing forces in their own frames, N: the norm over three directions. NaN where a
+    model has none. Shape (B, b, n).
+    """
 
 
 @dataclass(frozen=True)
 class _Blocks:
-    """The output grid that a run is compared on.
-
-    Attributes
-    ----------
-    time : (T,) array
-        Output grid, s.
-    position : (m, T) array
-        Of the meshes in the kinematic motion, unwrapped base pitches.
-    bounds : (B, 2) int array
-        First sample of each block, and the one behind its last.
-    """
+    """The output grid that a run is compared on."""
 
     time: FloatArray
+    """Output grid, s. Shape (T,)."""
     position: FloatArray
+    """Of the meshes in the kinematic motion, unwrapped base pitches. Shape (m, T)."""
     bounds: IntArray
+    """First sample of each block, and the one behind its last. Shape (B, 2)."""
     orders: int
 
     @classmethod
@@ -138,24 +125,17 @@ IN_PLANE = (*BY_TORSION, "x", "y")
 
 @dataclass(frozen=True)
 class _TimeIntegration:
-    """A run of the scene with changes.
-
-    Attributes
-    ----------
-    tolerance : float or None
-        m; None: the scene's own.
-    every : int
-        Position nodes of the tables that are kept: every one, every second ...
-    additions : tuple of str or None
-        What effects may add; those that add something else, or nothing, are off. None: all.
-    """
+    """A run of the scene with changes."""
 
     name: str
     title: str
     family: str
     tolerance: float | None = None
+    """m; None: the scene's own."""
     every: int = 1
+    """Position nodes of the tables that are kept: every one, every second ..."""
     additions: tuple[str, ...] | None = None
+    """What effects may add; those that add something else, or nothing, are off. None: all."""
 
     def refusal(self, scene: Scene) -> str | None:
         """Say that fewer effects change nothing, or that a fixed step knows no tolerance."""
@@ -322,19 +302,18 @@ class FidelityResult(model_studies.FidelityResult):
     name, title : str
     cpu_seconds : float
         One thread, assembly included.
-    rms_error : float
-        Of the rms of the transmission errors, relative: over all blocks and meshes, root of the sum of
-        squares over that of the reference. NaN: not known.
-    transmission_error_orders, bearing_force_orders : float
-        Likewise of the amplitudes at the orders.
     """
 
     FIGURES = FIGURES
 
     family: str
     rms_error: float = NAN
+    """Of the rms of the transmission errors, relative: over all blocks and meshes, root of the sum of squares
+    over that of the reference. NaN: not known.
+    """
     transmission_error_orders: float = NAN
     bearing_force_orders: float = NAN
+    """`transmission_error_orders`, `bearing_force_orders`: Likewise of the amplitudes at the orders."""
 
 
 @dataclass(frozen=True)
@@ -346,15 +325,13 @@ class Frontier(model_studies.Frontier[FidelityResult]):
     results, left_out, knee, chosen
         Of every accuracy study; the errors of the reference are those left by its steps, chosen is what the
         scene's own settings are nearest to, from above; None with a fixed step.
-    orders, blocks : int
-        Orders that were compared, and blocks of the run.
-    transmission_error_rms : (blocks, meshes) array
-        Of the reference, m.
     """
 
     orders: int
     blocks: int
+    """`orders`, `blocks`: Orders that were compared, and blocks of the run."""
     transmission_error_rms: FloatArray = field(metadata=in_unit("m", "block", "mesh"))
+    """Of the reference, m. Shape (blocks, meshes)."""
 
 
 def frontier(

@@ -36,53 +36,40 @@ class _FunctionType(IntEnum):
 
 @dataclass(frozen=True)
 class _Quantity:
-    """An axis of dataset 58.
-
-    Attributes
-    ----------
-    code : int
-        Specific data type: 8 displacement, 9 reaction force, 12 acceleration, 17 time, 18
-        frequency, 19 revolutions per minute, 20 order.
-    length, force : int
-        Exponents of the units of length and force.
-    label, unit : str
-        At most 20 characters.
-    """
+    """An axis of dataset 58."""
 
     code: int
+    """Specific data type: 8 displacement, 9 reaction force, 12 acceleration, 17 time, 18 frequency, 19
+    revolutions per minute, 20 order.
+    """
     length: int
     force: int
+    """`length`, `force`: Exponents of the units of length and force."""
     label: str
     unit: str
+    """`label`, `unit`: At most 20 characters."""
 
 
 @dataclass(frozen=True)
 class _NodalFunction:
-    """A function for dataset 58.
-
-    Attributes
-    ----------
-    lines : tuple of str
-        Up to five lines of text.
-    entity : str
-        Name of the response, at most 10 characters.
-    node, direction : int
-        Of the response: 1, 2, 3 for x, y, z; 4, 5, 6 for rotation about them; 0 scalar.
-    first, increment : float
-        Of the abscissa; the file keeps six digits.
-    values : (N,) array
-    """
+    """A function for dataset 58."""
 
     kind: _FunctionType
     lines: tuple[str, ...]
+    """Up to five lines of text."""
     entity: str
+    """Name of the response, at most 10 characters."""
     node: int
     direction: int
+    """`node`, `direction`: Of the response: 1, 2, 3 for x, y, z; 4, 5, 6 for rotation about them; 0 scalar.
+    """
     abscissa: _Quantity
     ordinate: _Quantity
     first: float
     increment: float
+    """`first`, `increment`: Of the abscissa; the file keeps six digits."""
     values: FloatArray
+    """Shape (N,)."""
 
 
 def _units_dataset() -> str:

@@ -29,21 +29,14 @@ class WarmBearing:
 
 @dataclass(frozen=True)
 class WarmMesh:
-    """What steady temperatures change of a mesh, m.
-
-    Attributes
-    ----------
-    apart : float
-        Growth of the center distance less that of the gears' pitch radii.
-    backlash : float
-        Along the transverse line of action.
-    misalignment : float
-        As the table counts it: from seats of unlike temperature.
-    """
+    """What steady temperatures change of a mesh, m."""
 
     apart: float
+    """Growth of the center distance less that of the gears' pitch radii."""
     backlash: float
+    """Along the transverse line of action."""
     misalignment: float
+    """As the table counts it: from seats of unlike temperature."""
 
 
 @described

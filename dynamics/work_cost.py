@@ -37,23 +37,17 @@ class Cost(NamedTuple):
 
 @dataclass(frozen=True)
 class WorkCost:
-    """Predicted and measured cost of work that was done.
-
-    Attributes
-    ----------
-    predicted_seconds, seconds : float
-        CPU seconds; predicted for this host.
-    predicted_bytes : float
-        Of the largest working set.
-    bytes : float or None
-        By how much the process grew above what it held before; None where it had been as large before, and
-        nobody can tell.
-    """
+    """Predicted and measured cost of work that was done."""
 
     predicted_seconds: float
+    """`predicted_seconds`, `seconds`: CPU seconds; predicted for this host."""
     predicted_bytes: float
+    """Of the largest working set."""
     seconds: float
     bytes: float | None = None
+    """By how much the process grew above what it held before; None where it had been as large before, and
+    nobody can tell.
+    """
 
 
 def on_this_host(kind: str, cost: Cost, cache: Path | None) -> Cost:

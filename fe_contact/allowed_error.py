@@ -19,17 +19,12 @@ class AllowedError:
     """The larger of a part of a quantity and an absolute floor.
 
     One per cent of a ripple of 30 nm cannot be measured: below `scale` the floor counts.
-
-    Attributes
-    ----------
-    relative : float
-        Part of the quantity: mean or peak-to-peak STE.
-    floor : float
-        m; 0: the part alone.
     """
 
     relative: float = 0.01
+    """Part of the quantity: mean or peak-to-peak STE."""
     floor: float = 20e-9
+    """m; 0: the part alone."""
 
     def __post_init__(self) -> None:
         within("tolerance", self.relative, 1e-4, LARGEST_RELATIVE, "0.01 means one per cent.")

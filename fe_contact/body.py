@@ -69,20 +69,14 @@ _WEB_OFFSET = "Middle of the web towards +z from mid-face; the web stays within 
 
 @dataclass(frozen=True)
 class Web:
-    """A body that is narrower than the face.
-
-    Attributes
-    ----------
-    outer_radius, inner_radius : float
-        Inside of the rim and outside of the hub, m.
-    low, high : float
-        Faces of the web along the axis, m; 0 is mid-face.
-    """
+    """A body that is narrower than the face."""
 
     outer_radius: float
     inner_radius: float
+    """`outer_radius`, `inner_radius`: Inside of the rim and outside of the hub, m."""
     low: float
     high: float
+    """`low`, `high`: Faces of the web along the axis, m; 0 is mid-face."""
 
     @property
     def thickness(self) -> float:

@@ -27,24 +27,22 @@ class TableAxes:
     """The axes of a table of transmission error.
 
     Raises `InputError`: a value that cannot be used, by field name.
-
-    Attributes
-    ----------
-    torques, normal_forces : sequence of float
-        Torques on the driving gear in N m, or normal forces F_bn in N: exactly one, increasing, > 0.
-    misalignments, center_distance_changes : sequence of float
-        m, increasing. Misalignment is the tilt of the axes in the plane of action as growth of the gap over
-        the common face width, zero at the pitch point in its middle.
-    pitches : int, optional
-        Base pitches that the table covers if gears have pitch deviations; default: the full period. A smaller
-        number closes the table on itself: at its seam teeth are adjacent that never mesh.
     """
 
     torques: Levels | None = None
     normal_forces: Levels | None = None
+    """`torques`, `normal_forces`: Torques on the driving gear in N m, or normal forces F_bn in N: exactly
+    one, increasing, > 0.
+    """
     misalignments: Levels = (0.0,)
     center_distance_changes: Levels = (0.0,)
+    """`misalignments`, `center_distance_changes`: m, increasing. Misalignment is the tilt of the axes in the
+    plane of action as growth of the gap over the common face width, zero at the pitch point in its middle.
+    """
     pitches: int | None = None
+    """Base pitches that the table covers if gears have pitch deviations; default: the full period. A smaller
+    number closes the table on itself: at its seam teeth are adjacent that never mesh.
+    """
 
     def __post_init__(self) -> None:
         if (self.torques is None) == (self.normal_forces is None):
@@ -88,20 +86,14 @@ class TableAxes:
 
 @dataclass(frozen=True)
 class OperatingPoint:
-    """One load and one alignment of a pair, for results on flanks, roots and deformed gears.
-
-    Attributes
-    ----------
-    torque, normal_force : float
-        Torque on the driving gear in N m, or normal force F_bn in N; exactly one.
-    misalignment, center_distance_change : float
-        As the axes of a table, m.
-    """
+    """One load and one alignment of a pair, for results on flanks, roots and deformed gears."""
 
     torque: float | None = None
     normal_force: float | None = None
+    """`torque`, `normal_force`: Torque on the driving gear in N m, or normal force F_bn in N; exactly one."""
     misalignment: float = 0.0
     center_distance_change: float = 0.0
+    """`misalignment`, `center_distance_change`: As the axes of a table, m."""
 
     @property
     def axes(self) -> TableAxes:
@@ -126,25 +118,18 @@ def _unplanned(_stages: Mapping[str, float]) -> None:
 
 @dataclass(frozen=True)
 class Run:
-    """Workers, cache and progress of a run. They change no bit of its results.
-
-    Attributes
-    ----------
-    workers : Workers
-        Executor of condensation, contact, searches and samples: this process, a pool or a cluster. Receipts
-        count the CPU time of all workers.
-    cache : Path, optional
-        Directory of flank compliances: with it a gear is condensed once.
-    progress : callable
-        Called as progress(stage, fraction); studies of several tables start again with each table.
-    on_plan : callable
-        Called with the predicted CPU seconds by stage of each table, and of each pass of one.
-    """
+    """Workers, cache and progress of a run. They change no bit of its results."""
 
     workers: Workers = InProcess()  # noqa: RUF009 (frozen)
+    """Executor of condensation, contact, searches and samples: this process, a pool or a cluster. Receipts
+    count the CPU time of all workers.
+    """
     cache: Path | None = None
+    """Directory of flank compliances: with it a gear is condensed once."""
     progress: Progress = silent
+    """Called as progress(stage, fraction); studies of several tables start again with each table."""
     on_plan: OnPlan = _unplanned
+    """Called with the predicted CPU seconds by stage of each table, and of each pass of one."""
 
     @property
     def silent(self) -> Run:
@@ -167,41 +152,35 @@ class AnalysisOptions:
 
     None of them means the level "standard". Raises `InputError`: a value that cannot be used, by field name,
     or a level together with a tolerance or a time budget.
-
-    Attributes
-    ----------
-    tolerance : AllowedError, optional
-        Of mean and peak-to-peak STE, without what no mesh lowers. A table is refined by its measured errors
-        until it meets the tolerance, in at most four passes: `receipt["passes"]`; `receipt["tolerance"]` says
-        whether it is met, or why not.
-    time_budget : float, optional
-        CPU seconds that the run may take. With a tolerance, refinement ends before it would exceed them.
-    level : str, optional
-        "draft", "standard" or "fine".
-    model : str
-        "auto" (three dimensions where the scene acts across the face, else plane strain corrected for the
-        finite face width), "plane_strain", "plane_stress" or "3d".
-    positions : int, optional
-        Of a table: equally spaced positions in a base pitch; default: nodes placed so that interpolation
-        keeps 0.2 % of peak-to-peak.
-    effects : mapping
-        Effect name to "on", "off" or "auto"; effects that are not named are "auto".
-    receipt : str
-        Of a table: "full" measures its errors by source; "minimal" does not estimate them: they are NaN, and
-        the receipt says so.
-    on_violation : str
-        What to do if the solution violates an assumption (`receipt["assumptions"]`): "repeat" enables the
-        automatic effect that is needed and solves again, "fail" raises, "report" reports it.
     """
 
     tolerance: AllowedError | None = None
+    """Of mean and peak-to-peak STE, without what no mesh lowers. A table is refined by its measured errors
+    until it meets the tolerance, in at most four passes: `receipt["passes"]`; `receipt["tolerance"]` says
+    whether it is met, or why not.
+    """
     time_budget: float | None = None
+    """CPU seconds that the run may take. With a tolerance, refinement ends before it would exceed them."""
     level: str | None = None
+    """"draft", "standard" or "fine"."""
     model: str = "auto"
+    """"auto" (three dimensions where the scene acts across the face, else plane strain corrected for the
+    finite face width), "plane_strain", "plane_stress" or "3d".
+    """
     positions: int | None = None
+    """Of a table: equally spaced positions in a base pitch; default: nodes placed so that interpolation keeps
+    0.2 % of peak-to-peak.
+    """
     effects: Mapping[str, str] = field(default_factory=dict)
+    """Effect name to "on", "off" or "auto"; effects that are not named are "auto"."""
     receipt: str = "full"
+    """Of a table: "full" measures its errors by source; "minimal" does not estimate them: they are NaN, and
+    the receipt says so.
+    """
     on_violation: str = "repeat"
+    """What to do if the solution violates an assumption (`receipt["assumptions"]`): "repeat" enables the
+    automatic effect that is needed and solves again, "fail" raises, "report" reports it.
+    """
 
     def __post_init__(self) -> None:
         wishes = [name for name in ("tolerance", "time_budget") if getattr(self, name) is not None]

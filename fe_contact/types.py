@@ -27,19 +27,13 @@ class Status(IntEnum):
 
 @dataclass(frozen=True)
 class Estimate:
-    """A number with the estimate of its own error.
-
-    Attributes
-    ----------
-    value, error : float
-        The number and the half-width of its error band, both in `unit`; error >= 0.
-    unit : str
-        SI unit, e.g. "m".
-    """
+    """A number with the estimate of its own error."""
 
     value: float
     error: float
+    """`value`, `error`: The number and the half-width of its error band, both in `unit`; error >= 0."""
     unit: str
+    """SI unit, e.g. "m"."""
 
     def __float__(self) -> float:
         return self.value

@@ -54,22 +54,14 @@ _MB = 1 << 20
 
 @dataclass(frozen=True)
 class Limits:
-    """What a process that reads foreign bytes may take.
-
-    Attributes
-    ----------
-    memory_mb : int or None
-        Private memory that it may write, MB; None: as much as the process that started it.
-    cpu_seconds : int
-        At their end the system kills it.
-    file_bytes : int
-        Size of a file that it writes.
-    open_files : int
-    """
+    """What a process that reads foreign bytes may take."""
 
     memory_mb: int | None = 512
+    """Private memory that it may write, MB; None: as much as the process that started it."""
     cpu_seconds: int = 10
+    """At their end the system kills it."""
     file_bytes: int = 256_000_000
+    """Size of a file that it writes."""
     open_files: int = 64
 
 

@@ -18,21 +18,14 @@ RESIDENT_UNIT = 1 if sys.platform == "darwin" else 1024
 
 
 class Ended(NamedTuple):
-    """An ended child.
-
-    Attributes
-    ----------
-    code : int
-        Exit code, or the negative number of the signal that ended it.
-    cpu_seconds : float
-        Of the child and of those it has waited for.
-    peak_memory : int
-        Most resident memory, bytes.
-    """
+    """An ended child."""
 
     code: int
+    """Exit code, or the negative number of the signal that ended it."""
     cpu_seconds: float
+    """Of the child and of those it has waited for."""
     peak_memory: int
+    """Most resident memory, bytes."""
 
 
 def ending_signal(code: int) -> str:

@@ -16,19 +16,15 @@ TRIFLE = 1e-3
 
 @dataclass(frozen=True)
 class Figures:
-    """The figures that variants of a model are compared by; a library adds its own arrays.
-
-    Attributes
-    ----------
-    mean, peak_to_peak : ndarray, shape (n,)
-        Of the transmission error under every load, or of every mesh, m.
-    cpu_seconds : float
-        Measured.
-    """
+    """The figures that variants of a model are compared by; a library adds its own arrays."""
 
     mean: FloatArray = field(metadata=in_unit("m", "curve"))
     peak_to_peak: FloatArray = field(metadata=in_unit("m", "curve"))
+    """`mean`, `peak_to_peak`: Of the transmission error under every load, or of every mesh, m. Shape (n,)
+    each.
+    """
     cpu_seconds: float
+    """Measured."""
 
     @property
     def cost(self) -> float:
@@ -49,26 +45,18 @@ E = TypeVar("E", bound=Estimate)
 
 @dataclass(frozen=True)
 class EffectAblation(Generic[F, E]):
-    """One effect toggled.
-
-    Attributes
-    ----------
-    on : bool
-        Whether the request has it on.
-    reason : str
-        Why, from the ledger.
-    with_effect, without_effect : Figures
-        One of them is the request itself.
-    estimate : optional
-        Estimated change without it; None: not known.
-    """
+    """One effect toggled."""
 
     name: str
     on: bool
+    """Whether the request has it on."""
     reason: str
+    """Why, from the ledger."""
     with_effect: F
     without_effect: F
+    """`with_effect`, `without_effect`: One of them is the request itself."""
     estimate: E | None
+    """Estimated change without it; None: not known."""
 
     @property
     def toggled(self) -> F:
@@ -101,17 +89,10 @@ A = TypeVar("A", bound=EffectAblation[Any, Any])
 
 @dataclass(frozen=True)
 class Ablation(Generic[F, A]):
-    """All effects of a request, each toggled by itself.
-
-    Attributes
-    ----------
-    nominal : Figures
-        Of the request.
-    effects : tuple of EffectAblation
-    left_out : dict of str to str
-        Effects that were not toggled, and why.
-    """
+    """All effects of a request, each toggled by itself."""
 
     nominal: F
+    """Of the request."""
     effects: tuple[A, ...]
     left_out: dict[str, str]
+    """Effects that were not toggled, and why."""

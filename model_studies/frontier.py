@@ -208,21 +208,15 @@ def knee_of(points: Mapping[str, tuple[float, float]]) -> str | None:
 
 @dataclass(frozen=True)
 class FidelityResult:
-    """The outcome of one fidelity; a library adds its errors and further figures.
-
-    Attributes
-    ----------
-    FIGURES : tuple of str
-        The fields that are relative errors; NaN: not known.
-    cpu_seconds : float
-        Of the whole computation.
-    """
+    """The outcome of one fidelity; a library adds its errors and further figures."""
 
     FIGURES: ClassVar[tuple[str, ...]]
+    """The fields that are relative errors; NaN: not known."""
 
     name: str
     title: str
     cpu_seconds: float
+    """Of the whole computation."""
 
     @property
     def errors(self) -> dict[str, float]:
@@ -241,25 +235,18 @@ R_co = TypeVar("R_co", bound=FidelityResult, covariant=True)
 
 @dataclass(frozen=True)
 class Frontier(Generic[R_co]):
-    """An accuracy study.
-
-    Attributes
-    ----------
-    results : tuple of FidelityResult
-        In the order of their usual cost; the last one is the reference, whose errors are its own.
-    left_out : dict
-        Name of a fidelity to the reason why it has no result.
-    knee : str or None
-        The fidelity after which time buys least, by the largest error; None with fewer than three fidelities,
-        or if the front does not bend.
-    chosen : str or None
-        The fidelity of the request.
-    """
+    """An accuracy study."""
 
     results: tuple[R_co, ...]
+    """In the order of their usual cost; the last one is the reference, whose errors are its own."""
     left_out: dict[str, str]
+    """Name of a fidelity to the reason why it has no result."""
     knee: str | None
+    """The fidelity after which time buys least, by the largest error; None with fewer than three fidelities,
+    or if the front does not bend.
+    """
     chosen: str | None
+    """The fidelity of the request."""
 
     @property
     def reference(self) -> R_co:

@@ -202,21 +202,14 @@ class Variable(NamedTuple):
 
 @dataclass(frozen=True)
 class NetcdfContent:
-    """The content of a file.
-
-    Attributes
-    ----------
-    variables : mapping of str to Variable
-        By name. One that is called as its only dimension is the coordinate along it.
-    attributes : mapping
-        Of the file: texts and numbers.
-    coordinates : tuple of str
-        Variables that are coordinates of others and have a name of their own, as a torque along the forces.
-    """
+    """The content of a file."""
 
     variables: Mapping[str, Variable]
+    """By name. One that is called as its only dimension is the coordinate along it."""
     attributes: Mapping[str, Any]
+    """Of the file: texts and numbers."""
     coordinates: tuple[str, ...] = ()
+    """Variables that are coordinates of others and have a name of their own, as a torque along the forces."""
 
     def to_xarray(self) -> xarray.Dataset:
         """Return the same as a dataset of xarray."""

@@ -15,18 +15,12 @@ from model_studies.workers.executor import RunCost
 
 @dataclass(frozen=True)
 class TimeTaken:
-    """Time of a piece of work.
-
-    Attributes
-    ----------
-    cpu_seconds : float
-        CPU time of this process, its finished children and others' tasks: the cost.
-    wall_seconds : float
-        Elapsed time, s.
-    """
+    """Time of a piece of work."""
 
     cpu_seconds: float = 0.0
+    """CPU time of this process, its finished children and others' tasks: the cost."""
     wall_seconds: float = 0.0
+    """Elapsed time, s."""
 
     @classmethod
     def now(cls, remote: RunCost | None = None) -> TimeTaken:

@@ -50,22 +50,16 @@ def pages() -> list[Path]:
 
 @dataclass(frozen=True)
 class Stale:
-    """A line of a page that no command printed.
-
-    Attributes
-    ----------
-    offset
-        Of its first character in the page.
-    nearest
-        The line of the output that begins most like it.
-    renewed
-        The line with the numbers of the one line of the output that has its words; None without such a line.
-    """
+    """A line of a page that no command printed."""
 
     offset: int
+    """Of its first character in the page."""
     line: str
     nearest: str
+    """The line of the output that begins most like it."""
     renewed: str | None
+    """The line with the numbers of the one line of the output that has its words; None without such a line.
+    """
 
     def __str__(self) -> str:
         """Write the line above what is closest to it."""

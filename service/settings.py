@@ -92,80 +92,60 @@ _ENCRYPTED = ("tls", "wss")
 
 
 class Settings(BaseSettings):
-    """The settings of the service; every `SecretStr` may be in a file too, see `service.settings`.
-
-    Attributes
-    ----------
-    host, port : str, int
-        Where it listens; beyond loopback only with access keys.
-    management_host, management_port : str, int or None
-        Where health, readiness and metrics are answered without a key; None: nowhere.
-    data_directory : Path
-        Jobs, results and the compliance cache.
-    database_url : str or None
-        Database of jobs and of the index of results; None: a SQLite file in the data directory.
-    results_url : str or None
-        Place of the files of results: ``s3://bucket/prefix`` or ``file:///folder``; None: the data directory.
-    results_access_key_id, results_secret_access_key : str or None
-        Credentials of that bucket, both or none; None: those of the AWS_ variables.
-    results_cache_mb : int
-        What the cache of files from elsewhere may hold, MB.
-    retention_days : float or None
-        How long results and ended jobs are kept that nobody asks for; None: for ever.
-    quarantine_days : float
-        How long a removed result can be had back.
-    workers : int
-        Jobs that run at the same time on this machine.
-    processes : int
-        Processes that answer requests.
-    queue_limit : int
-        Computations that may wait; beyond it a submission is answered with 429.
-    body_limit : int
-        Bytes of a request body; beyond it 413.
-    deadline_s : float
-        Longest run of one computation.
-    memory_limit_mb : int or None
-        Memory that one computation may have, MB; None: the machine's over the number of workers.
-    attempts : int
-        How often a computation whose worker died is started.
-    scheduler_unencrypted : bool
-        Whether the network between this machine and the scheduler is trusted with jobs in plain text.
-    scheduler : str or None
-        Address of a Dask scheduler whose workers do the jobs; None: children of this machine do.
-    keys_file : Path or None
-        The file of access keys; None: ``keys.json`` in the data directory.
-    webhook_origins : str
-        Origins that may be called about jobs, such as ``https://hooks.example.com``, separated by commas.
-    webhook_secret : str or None
-        With which these calls are signed: ``whsec_`` and 24 to 64 bytes in base64.
-    """
+    """The settings of the service; every `SecretStr` may be in a file too, see `service.settings`."""
 
     model_config = SettingsConfigDict(env_prefix="LOA_", frozen=True, extra="forbid")
 
     host: str = "127.0.0.1"
     port: int = Field(8321, ge=0, le=65535)
+    """`host`, `port`: Where it listens; beyond loopback only with access keys."""
     management_host: str = "127.0.0.1"
     management_port: int | None = Field(None, ge=0, le=65535)
+    """`management_host`, `management_port`: Where health, readiness and metrics are answered without a key;
+    None: nowhere.
+    """
     data_directory: Annotated[Path, AfterValidator(absolute)] = Field(default_factory=data_home)
+    """Jobs, results and the compliance cache."""
     database_url: SecretStr | None = None
+    """Database of jobs and of the index of results; None: a SQLite file in the data directory."""
     results_url: str | None = None
+    """Place of the files of results: ``s3://bucket/prefix`` or ``file:///folder``; None: the data directory.
+    """
     results_access_key_id: SecretStr | None = None
     results_secret_access_key: SecretStr | None = Field(None, validate_default=True)
+    """`results_access_key_id`, `results_secret_access_key`: Credentials of that bucket, both or none; None:
+    those of the AWS_ variables.
+    """
     results_cache_mb: int = Field(10_000, ge=1, le=1_000_000_000)
+    """What the cache of files from elsewhere may hold, MB."""
     retention_days: float | None = Field(None, ge=1.0, le=100_000.0)
+    """How long results and ended jobs are kept that nobody asks for; None: for ever."""
     quarantine_days: float = Field(7.0, ge=0.0, le=100_000.0)
+    """How long a removed result can be had back."""
     workers: int = Field(1, ge=1, le=256)
+    """Jobs that run at the same time on this machine."""
     processes: int = Field(1, ge=1, le=64)
+    """Processes that answer requests."""
     queue_limit: int = Field(100, ge=1, le=100_000)
+    """Computations that may wait; beyond it a submission is answered with 429."""
     body_limit: int = Field(4_000_000, ge=1_000, le=1_000_000_000)
+    """Bytes of a request body; beyond it 413."""
     deadline_s: float = Field(3600.0, gt=0.0, le=1e6)
+    """Longest run of one computation."""
     memory_limit_mb: int | None = Field(None, ge=LEAST_MEMORY_MB, le=1_000_000_000)
+    """Memory that one computation may have, MB; None: the machine's over the number of workers."""
     attempts: int = Field(2, ge=1, le=10)
+    """How often a computation whose worker died is started."""
     scheduler_unencrypted: bool = False
+    """Whether the network between this machine and the scheduler is trusted with jobs in plain text."""
     scheduler: str | None = None
+    """Address of a Dask scheduler whose workers do the jobs; None: children of this machine do."""
     keys_file: Annotated[Path, AfterValidator(absolute)] | None = None
+    """The file of access keys; None: ``keys.json`` in the data directory."""
     webhook_origins: str = ""
+    """Origins that may be called about jobs, such as ``https://hooks.example.com``, separated by commas."""
     webhook_secret: SecretStr | None = Field(None, validate_default=True)
+    """With which these calls are signed: ``whsec_`` and 24 to 64 bytes in base64."""
 
     @field_validator("keys_file", mode="before")
     @classmethod

@@ -155,24 +155,19 @@ STAGE = "boundary elements"
 
 @dataclass(frozen=True)
 class _SurfacePressure:
-    """The solution of the exterior problem at one frequency.
-
-    Attributes
-    ----------
-    pressure : (N, M) array
-        At the nodes, Pa, complex peak amplitudes of e^{+i omega t} for the shapes with amplitude 1.
-    resistance : (M, M) array
-        From the far field, kg/s.
-    surface_resistance : (M, M) array
-        From pressure and velocity on the hull, Hermitian part; equal but for the discretization.
-    residual : float
-        Of the linear solve, relative.
-    """
+    """The solution of the exterior problem at one frequency."""
 
     pressure: ComplexArray
+    """At the nodes, Pa, complex peak amplitudes of e^{+i omega t} for the shapes with amplitude 1. Shape (N,
+    M).
+    """
     resistance: ComplexArray
+    """From the far field, kg/s. Shape (M, M)."""
     surface_resistance: ComplexArray
+    """From pressure and velocity on the hull, Hermitian part; equal but for the discretization. Shape (M, M).
+    """
     residual: float
+    """Of the linear solve, relative."""
 
     def imbalance(self, amplitudes: ComplexArray) -> float:
         """Return the power into the air at the hull less that in the far field, relative to the latter."""
@@ -185,19 +180,13 @@ class _SurfacePressure:
 
 @dataclass(frozen=True)
 class BoundaryElements:
-    """The radiation model without neglect but for its mesh; needs the extra `boundary-elements`.
-
-    Attributes
-    ----------
-    progress : callable
-        Called as progress("boundary elements", fraction) while the operators of a frequency are assembled.
-    workers : Workers
-        Who assembles them, some panels each.
-    """
+    """The radiation model without neglect but for its mesh; needs the extra `boundary-elements`."""
 
     model_name: str = "boundary_elements"
     progress: Progress = field(default=silent, repr=False, compare=False)
+    """Called as progress("boundary elements", fraction) while the operators of a frequency are assembled."""
     workers: Workers = field(default=InProcess(), repr=False, compare=False)
+    """Who assembles them, some panels each."""
 
     def resistance(self, hull: Hull, frequency: float, shapes: ComplexArray, air: Air) -> ComplexArray:
         """Return the resistance in the far field; see `surface_pressure` for what it raises."""

@@ -26,17 +26,12 @@ class Hull:
     """A surface of plane triangles (panels), closed or open.
 
     Raises `InputError`: shapes are others, a node does not exist or is not finite, or a triangle has no area.
-
-    Attributes
-    ----------
-    nodes : (N, 3) array
-        m.
-    triangles : (T, 3) int array
-        Nodes of each panel, counterclockwise as seen from the air.
     """
 
     nodes: FloatArray
+    """m. Shape (N, 3)."""
     triangles: IntArray
+    """Nodes of each panel, counterclockwise as seen from the air. Shape (T, 3)."""
 
     def __post_init__(self) -> None:
         nodes, triangles = np.asarray(self.nodes, dtype=float), np.asarray(self.triangles)

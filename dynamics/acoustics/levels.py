@@ -102,18 +102,13 @@ class LevelBand:
     """A level and how far it may lie below and above in nine of ten cases.
 
     Contributions are independent: their deviations add up in squares.
-
-    Attributes
-    ----------
-    nominal : float
-        dB.
-    below, above : dict of str to float
-        Deviations by parameter, dB, at least 0.
     """
 
     nominal: float
+    """dB."""
     below: dict[str, float]
     above: dict[str, float]
+    """`below`, `above`: Deviations by parameter, dB, at least 0."""
 
     @property
     def low(self) -> float:

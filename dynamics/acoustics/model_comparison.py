@@ -41,17 +41,13 @@ WAVES_HELD = 4
 
 @dataclass(frozen=True)
 class ElementalRadiators:
-    """Panels smaller than the wavelength; mutual resistance by sin(kr)/(kr) of their distance.
-
-    Attributes
-    ----------
-    baffled : bool
-        True: every panel lies in the same rigid plane (Rayleigh integral, exact for it). False: every panel
-        is a monopole in free space; the hull neither scatters nor shadows. It is right for what breathes
-        below ka = 0.5, and 3.5 dB low for what oscillates as a whole there; see `multipoles`.
-    """
+    """Panels smaller than the wavelength; mutual resistance by sin(kr)/(kr) of their distance."""
 
     baffled: bool = False
+    """True: every panel lies in the same rigid plane (Rayleigh integral, exact for it). False: every panel is
+    a monopole in free space; the hull neither scatters nor shadows. It is right for what breathes below ka =
+    0.5, and 3.5 dB low for what oscillates as a whole there; see `multipoles`.
+    """
 
     @property
     def model_name(self) -> str:
@@ -147,21 +143,14 @@ WORK = "radiation by {}"
 
 @dataclass(frozen=True)
 class _ModelResult:
-    """What a radiation model says of a vibration.
-
-    Attributes
-    ----------
-    power : float
-        W.
-    efficiency : float
-        Radiation efficiency, 1.
-    cost : WorkCost
-        Predicted and measured.
-    """
+    """What a radiation model says of a vibration."""
 
     power: float
+    """W."""
     efficiency: float
+    """Radiation efficiency, 1."""
     cost: WorkCost
+    """Predicted and measured."""
 
     @property
     def level(self) -> float:
@@ -171,20 +160,14 @@ class _ModelResult:
 
 @dataclass(frozen=True)
 class ModelComparison:
-    """Results by the model's name, from coarse to fine, and why others have none.
-
-    Attributes
-    ----------
-    predicted : mapping of str to Cost
-        Cost of every model at this frequency on this host, also of those that were not requested.
-    error_band : mapping of str to (float, float)
-        By how much the level of each may be off, dB, from and to; below 0: too quiet.
-    """
+    """Results by the model's name, from coarse to fine, and why others have none."""
 
     results: Mapping[str, _ModelResult]
     left_out: Mapping[str, str]
     predicted: Mapping[str, Cost]
+    """Cost of every model at this frequency on this host, also of those that were not requested."""
     error_band: Mapping[str, tuple[float, float]]
+    """By how much the level of each may be off, dB, from and to; below 0: too quiet."""
 
     @property
     def errors(self) -> dict[str, float]:

@@ -26,19 +26,14 @@ class ModalResistance:
 
     Between two frequencies R/f^2 is linear in f: that of a pulsation is constant at low frequency, and the
     sum of positive semidefinite matrices is one.
-
-    Attributes
-    ----------
-    frequency : (F,) array
-        Hz, increasing.
-    matrix : (F, M, M) array
-        Hermitian, kg/s for shapes of amplitude in m/s.
     """
 
     frequency: FloatArray = field(metadata=stored("Hz", "frequency", "frequency"))
+    """Hz, increasing. Shape (F,)."""
     matrix: ComplexArray = field(
         metadata=stored("kg s-1", "radiation resistance", "frequency", "coordinate", "coordinate")
     )
+    """Hermitian, kg/s for shapes of amplitude in m/s. Shape (F, M, M)."""
 
     def power(self, frequency: FloatArray, velocity: ComplexArray) -> FloatArray:
         """Return the sound power v^H R v / 2 at every sample, (B,), W.
@@ -130,20 +125,14 @@ class OrderPower:
 
     Orders of different frequency add up in power. Raises `InputError`: shapes differ, a frequency is not
     above zero, or a power is negative.
-
-    Attributes
-    ----------
-    frequency : (K, B) array
-        Hz, above zero.
-    power : (K, B) array
-        W.
-    floor : FloorPower, optional
-        Of orders that are not among these: totals and bands have it.
     """
 
     frequency: FloatArray
+    """Hz, above zero. Shape (K, B)."""
     power: FloatArray
+    """W. Shape (K, B)."""
     floor: FloorPower | None = None
+    """Of orders that are not among these: totals and bands have it."""
 
     def __post_init__(self) -> None:
         frequency, power = np.asarray(self.frequency, dtype=float), np.asarray(self.power, dtype=float)

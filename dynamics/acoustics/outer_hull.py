@@ -147,24 +147,16 @@ QUARTERS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
 
 @dataclass(frozen=True)
 class OuterHull:
-    """What the air outside touches: closed, walls of inner cavities left out, openings capped.
-
-    Attributes
-    ----------
-    hull : Hull
-        Panels of outer faces, four for each face of an element, then the caps.
-    motion : (N, 3, r) array
-        Displacement of each node per reduced coordinate.
-    inner_area : float
-        Of the faces left out, m^2.
-    cap_area : float
-        Of the caps, m^2.
-    """
+    """What the air outside touches: closed, walls of inner cavities left out, openings capped."""
 
     hull: Hull
+    """Panels of outer faces, four for each face of an element, then the caps."""
     motion: FloatArray
+    """Displacement of each node per reduced coordinate. Shape (N, 3, r)."""
     inner_area: float
+    """Of the faces left out, m^2."""
     cap_area: float
+    """Of the caps, m^2."""
 
     @cached_property
     def shapes(self) -> FloatArray:

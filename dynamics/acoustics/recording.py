@@ -32,21 +32,17 @@ class Recording:
 
     Raises `InputError`: samples are no finite row of at least two, or the sample rate is no integer above
     zero.
-
-    Attributes
-    ----------
-    samples : (N,) array
-        In `unit`.
-    sample_rate : int
-        Hz.
-    quantity, unit : str
-        What it is, e.g. ``"sound pressure at 1 m"`` in ``"Pa"``. A bearing force is no sound pressure.
     """
 
     samples: FloatArray
+    """In `unit`. Shape (N,)."""
     sample_rate: int
+    """Hz."""
     quantity: str
     unit: str
+    """`quantity`, `unit`: What it is, e.g. ``"sound pressure at 1 m"`` in ``"Pa"``. A bearing force is no
+    sound pressure.
+    """
 
     def __post_init__(self) -> None:
         samples = np.asarray(self.samples, dtype=float)

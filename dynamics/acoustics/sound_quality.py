@@ -45,22 +45,15 @@ SHORTEST = 0.01
 
 @dataclass(frozen=True)
 class _SoundQuality:
-    """Metrics of a stationary sound.
-
-    Attributes
-    ----------
-    loudness : float
-        sone, of a free field: 1 for a tone of 1 kHz at 40 dB.
-    sharpness : float
-        acum: 1 for a band of noise, a critical band wide about 1 kHz, at 60 dB.
-    tone_frequency, tone_to_noise : (K,) arrays
-        Hz and dB of the prominent tones.
-    """
+    """Metrics of a stationary sound."""
 
     loudness: float
+    """sone, of a free field: 1 for a tone of 1 kHz at 40 dB."""
     sharpness: float
+    """acum: 1 for a band of noise, a critical band wide about 1 kHz, at 60 dB."""
     tone_frequency: FloatArray
     tone_to_noise: FloatArray
+    """`tone_frequency`, `tone_to_noise`: Hz and dB of the prominent tones. Shape (K,) each."""
 
 
 def sound_quality(recording: Recording) -> _SoundQuality:

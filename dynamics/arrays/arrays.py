@@ -40,84 +40,64 @@ def _integral(c: FloatArray, s: FloatArray) -> FloatArray:
 
 
 class KinematicMotion(NamedTuple):
-    """The kinematic motion: every shaft turns by its exact ratios to the k laws (drives, free rotations).
-
-    Attributes
-    ----------
-    speed : Cubics
-        Speed of each law, rad/s.
-    whole, fraction : (S,) arrays
-        Revolutions of the law at the start of each piece, integer and remainder.
-    numerator, denominator : (m + f, k) int arrays
-        Base pitches per revolution of each law for each mesh, then revolutions of each of f frames against
-        another, exact fractions.
-    per_radian : (m + f, k) array
-        The same per radian of each law, rounded.
-    offset : (m + f,) array
-        Position of each mesh at t = 0, base pitches; 0.
-    period : (m + f,) int array
-        Base pitches after which the mesh's table repeats; 1.
-    freedom : (k,) int array
-        For the law of a free train the index of its shaft's rotation in q; -1 for a drive.
-    vector : (k, n) array
-        Change of q when the law's shaft turns by one radian and all parts with it.
-    """
+    """The kinematic motion: every shaft turns by its exact ratios to the k laws (drives, free rotations)."""
 
     speed: Cubics
+    """Speed of each law, rad/s."""
     whole: FloatArray
     fraction: FloatArray
+    """`whole`, `fraction`: Revolutions of the law at the start of each piece, integer and remainder. Shape
+    (S,) each.
+    """
     numerator: IntArray
     denominator: IntArray
+    """`numerator`, `denominator`: Base pitches per revolution of each law for each mesh, then revolutions of
+    each of f frames against another, exact fractions. Shape (m + f, k) each.
+    """
     per_radian: FloatArray
+    """The same per radian of each law, rounded. Shape (m + f, k)."""
     offset: FloatArray
+    """Position of each mesh at t = 0, base pitches; 0. Shape (m + f,)."""
     period: IntArray
+    """Base pitches after which the mesh's table repeats; 1. Shape (m + f,)."""
     freedom: IntArray
+    """For the law of a free train the index of its shaft's rotation in q; -1 for a drive. Shape (k,)."""
     vector: FloatArray
+    """Change of q when the law's shaft turns by one radian and all parts with it. Shape (k, n)."""
 
 
 class Loads(NamedTuple):
-    """Load torques.
-
-    Attributes
-    ----------
-    torque : Cubics
-        One law per load, N m.
-    direction : (l, n) array
-        Generalized force per unit torque.
-    reference : (l, k) array
-        Work per unit torque and per unit angle of each law in the kinematic motion.
-    drive : (l, k) array
-        Torque on the shaft of each rigid drive per unit torque.
-    """
+    """Load torques."""
 
     torque: Cubics
+    """One law per load, N m."""
     direction: FloatArray
+    """Generalized force per unit torque. Shape (l, n)."""
     reference: FloatArray
+    """Work per unit torque and per unit angle of each law in the kinematic motion. Shape (l, k)."""
     drive: FloatArray
+    """Torque on the shaft of each rigid drive per unit torque. Shape (l, k)."""
 
 
 class Drives(NamedTuple):
     """Torque of each law's shaft, about +z; zero for free rotations.
 
     T_k = direction f + stiffness q + damping q' + inertia phi'' - constant - loads, phi'' those of all laws.
-
-    Attributes
-    ----------
-    direction : (k, R) array
-        Derivative of the elements' local coordinates in the rotation of a rigid drive's shaft alone.
-    stiffness, damping : (k, n) arrays
-        Of springs and dampers that the shaft's rotation strains; of the drive's own spring.
-    inertia : (k, k) array
-        kg m^2.
-    constant : (k,) array
-        Torque of pins off their nominal position, N m.
     """
 
     direction: FloatArray
+    """Derivative of the elements' local coordinates in the rotation of a rigid drive's shaft alone. Shape (k,
+    R).
+    """
     stiffness: FloatArray
     damping: FloatArray
+    """`stiffness`, `damping`: Of springs and dampers that the shaft's rotation strains; of the drive's own
+    spring. Shape (k, n) each.
+    """
     inertia: FloatArray
+    """kg m^2. Shape (k, k)."""
     constant: FloatArray
+    """Torque of pins off their nominal position, N m. Shape (k,)."""
 
 
 class SystemArrays(NamedTuple):
@@ -125,47 +105,39 @@ class SystemArrays(NamedTuple):
 
     M q'' + C q' + K q + G^T f(G q + y0, G q', x) = external(t).
     k laws set the kinematic motion.
-
-    Attributes
-    ----------
-    mass, damping, stiffness : (n, n) arrays
-        M, C, K; symmetric.
-    direction : (R, n) array
-        G: derivative of the elements' local coordinates in q. The first m elements are the driving flanks,
-        whose first coordinate is the transmission error.
-    turn : (m + f, n) array
-        Derivative of the meshes' positions in q, base pitches; 0.
-    sparse : SparseMatrices
-        M, C, K, G and `turn` by their entries: who changes them takes `with_matrices`.
-    constant : (n,) array
-        External force that never changes: of pins off their nominal position, of preloaded bearings, of
-        gravity.
-    inertial : (k, n) array
-        External force per angular acceleration of each law: minus inertia times kinematic vector.
-    total_inertia : (k, k) array
-        Of all bodies as seen at the laws, kg m^2: kinetic energy of the kinematic motion.
-    drive : Drives
-        What it takes to impose the motion.
-    scale : (n,) array
-        Meters per unit of q, for error norms: 1, or a base radius for rotations.
-    rate_scale : (n,) array
-        Meters per unit of q': `scale` over the natural frequency of the freedom alone, held by its bushings
-        and meshes. An error of the rate becomes an error of the displacement of this size a quarter period
-        later.
     """
 
     mass: FloatArray
     damping: FloatArray
     stiffness: FloatArray
+    """`mass`, `damping`, `stiffness`: M, C, K; symmetric. Shape (n, n) each."""
     direction: FloatArray
+    """G: derivative of the elements' local coordinates in q. The first m elements are the driving flanks,
+    whose first coordinate is the transmission error. Shape (R, n).
+    """
     turn: FloatArray
+    """Derivative of the meshes' positions in q, base pitches; 0. Shape (m + f, n)."""
     sparse: SparseMatrices
+    """M, C, K, G and `turn` by their entries: who changes them takes `with_matrices`."""
     constant: FloatArray
+    """External force that never changes: of pins off their nominal position, of preloaded bearings, of
+    gravity. Shape (n,).
+    """
     inertial: FloatArray
+    """External force per angular acceleration of each law: minus inertia times kinematic vector. Shape (k,
+    n).
+    """
     total_inertia: FloatArray
+    """Of all bodies as seen at the laws, kg m^2: kinetic energy of the kinematic motion. Shape (k, k)."""
     drive: Drives
+    """What it takes to impose the motion."""
     scale: FloatArray
+    """Meters per unit of q, for error norms: 1, or a base radius for rotations. Shape (n,)."""
     rate_scale: FloatArray
+    """Meters per unit of q': `scale` over the natural frequency of the freedom alone, held by its bushings
+    and meshes. An error of the rate becomes an error of the displacement of this size a quarter period later.
+    Shape (n,).
+    """
     elements: Elements
     reference: KinematicMotion
     load: Loads

@@ -24,26 +24,22 @@ TOGETHER = 4
 
 
 class ModalFreedoms(NamedTuple):
-    """The last b of n freedoms, from `first` on; b = 0 where there are fewer than `LEAST`.
-
-    Attributes
-    ----------
-    first : int
-        Freedoms before them.
-    row : (s,) int array
-        Local coordinates that they move; s is a multiple of `TOGETHER`, what is missing to it repeats one.
-    shape : (s, b) array
-        Motion of these coordinates per amplitude: a block of `SystemArrays.direction`; 0 where one repeats.
-    mass, damping, stiffness : (b,) arrays
-        Diagonals.
-    """
+    """The last b of n freedoms, from `first` on; b = 0 where there are fewer than `LEAST`."""
 
     first: int
+    """Freedoms before them."""
     row: IntArray
+    """Local coordinates that they move; s is a multiple of `TOGETHER`, what is missing to it repeats one.
+    Shape (s,).
+    """
     shape: FloatArray
+    """Motion of these coordinates per amplitude: a block of `SystemArrays.direction`; 0 where one repeats.
+    Shape (s, b).
+    """
     mass: FloatArray
     damping: FloatArray
     stiffness: FloatArray
+    """`mass`, `damping`, `stiffness`: Diagonals. Shape (b,) each."""
 
 
 def _modal_freedoms(
@@ -122,37 +118,26 @@ def subtract_modal_forces(modal: ModalFreedoms, local: FloatArray, force: FloatA
 
 
 class _SparseRows(NamedTuple):
-    """The entries of a matrix that are not 0, row by row.
-
-    Attributes
-    ----------
-    first : (rows + 1,) int array
-        First entry of each row, and the number of entries.
-    column : (entries,) int array
-    weight : (entries,) array
-    """
+    """The entries of a matrix that are not 0, row by row."""
 
     first: IntArray
+    """First entry of each row, and the number of entries. Shape (rows + 1,)."""
     column: IntArray
+    """Shape (entries,)."""
     weight: FloatArray
+    """Shape (entries,)."""
 
 
 class RowRuns(NamedTuple):
-    """Runs of neighboring columns in the entries of a matrix, which products take in vector registers.
-
-    Attributes
-    ----------
-    first : (rows + 1,) int array
-        First run of each row, and the number of runs.
-    entry, column : (runs,) int arrays
-        First entry of each run, and its column.
-    length : (runs,) int array
-    """
+    """Runs of neighboring columns in the entries of a matrix, which products take in vector registers."""
 
     first: IntArray
+    """First run of each row, and the number of runs. Shape (rows + 1,)."""
     entry: IntArray
     column: IntArray
+    """`entry`, `column`: First entry of each run, and its column. Shape (runs,) each."""
     length: IntArray
+    """Shape (runs,)."""
 
 
 def _row_runs(rows: _SparseRows) -> RowRuns:
@@ -173,35 +158,28 @@ def _row_runs(rows: _SparseRows) -> RowRuns:
 
 
 class SparseMatrices(NamedTuple):
-    """What the compiled loops multiply with.
-
-    Attributes
-    ----------
-    damping, stiffness, direction, turn : SparseRows
-        Of `SystemArrays`. The first two have the same entries: those where either matrix is not 0.
-    bodies : SparseRows
-        The entries of `direction` before the modal freedoms.
-    mobility : SparseRows
-        Inverse of the mass matrix.
-    coupling : SparseRows
-        Where the inverse of any sum of mass, damping and stiffness has entries: two freedoms that a chain of
-        entries joins. Weights are 1.
-    coupling_runs, resistance_runs : RowRuns
-        Of `coupling`, and of `damping` and `stiffness`.
-    modal : ModalFreedoms
-        The last freedoms, where each of them is alone in the first two matrices.
-    """
+    """What the compiled loops multiply with."""
 
     damping: _SparseRows
     stiffness: _SparseRows
     direction: _SparseRows
     turn: _SparseRows
+    """`damping`, `stiffness`, `direction`, `turn`: Of `SystemArrays`. The first two have the same entries:
+    those where either matrix is not 0.
+    """
     bodies: _SparseRows
+    """The entries of `direction` before the modal freedoms."""
     mobility: _SparseRows
+    """Inverse of the mass matrix."""
     coupling: _SparseRows
+    """Where the inverse of any sum of mass, damping and stiffness has entries: two freedoms that a chain of
+    entries joins. Weights are 1.
+    """
     coupling_runs: RowRuns
     resistance_runs: RowRuns
+    """`coupling_runs`, `resistance_runs`: Of `coupling`, and of `damping` and `stiffness`."""
     modal: ModalFreedoms
+    """The last freedoms, where each of them is alone in the first two matrices."""
 
 
 def _sparse_rows(matrix: FloatArray, entries: FloatArray | None = None) -> _SparseRows:

@@ -48,27 +48,20 @@ from dynamics.types import FloatArray, IntArray, Json
 
 
 class BearingForce(NamedTuple):
-    """The sparse linear map from local forces (R), displacements (n) and rates (n) to forces at supports.
-
-    Attributes
-    ----------
-    first : (S + 1,) int array
-        Where the entries of each signal begin: 3 or 6 (with moments) signals per support, in its own frame.
-    column : (E,) int array
-        Local force, R + freedom, or R + n + freedom.
-    weight : (E,) array
-        N or N m per unit.
-    constant : (S,) array
-        N or N m.
-    freedoms : int
-        n.
-    """
+    """The sparse linear map from local forces (R), displacements (n) and rates (n) to forces at supports."""
 
     first: IntArray
+    """Where the entries of each signal begin: 3 or 6 (with moments) signals per support, in its own frame.
+    Shape (S + 1,).
+    """
     column: IntArray
+    """Local force, R + freedom, or R + n + freedom. Shape (E,)."""
     weight: FloatArray
+    """N or N m per unit. Shape (E,)."""
     constant: FloatArray
+    """N or N m. Shape (S,)."""
     freedoms: int
+    """n."""
 
     def of(self, local: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
         """Return the signals (S, T) of the local forces (R, T), `q` and `v` (T, n).
@@ -249,61 +242,44 @@ LAWS = frozenset((BEARING_LAWS, ELEMENT_PASSING))
 
 @dataclass(frozen=True)
 class System:
-    """An assembled scene.
-
-    Attributes
-    ----------
-    arrays : SystemArrays
-        For the compiled loops.
-    lines : tuple of LineOfAction
-        One per mesh.
-    flanks : Flanks
-        Force laws as resolved: nominal forces, damping, tables.
-    elements : tuple of Element
-        The driving flanks of all meshes, then everything else.
-    rotors : Bodies
-        A rotor per shaft.
-    supports : Supports
-        Bushings, then planet bearings.
-    seats : Seats
-        The bearings that are more than three springs to rigid ground or pin.
-    bearings : tuple of BearingElement
-        Where the last elements act, those of bearings that are not linear.
-    housed : tuple of BearingElement
-        Where those before them act: linear bearings in housings that move.
-    bearing_stiffness, bearing_damping : (b, 3 or 6, n) arrays
-        Force on the ground, or on the pin, at each support per freedom and its rate; where bearings may
-        exert moments, these too.
-    bearing_map : BearingForce
-        The whole force there.
-    sampling : Sampling
-        How the run is sampled.
-    corrected : dict
-        Base radii of gears as given and as used, m, that were corrected to the base pitch of their train.
-    phases : TrainPhases
-        Positions of the meshes before anything turned.
-    """
+    """An assembled scene."""
 
     scene: Scene
     arrays: SystemArrays
+    """For the compiled loops."""
     freedoms: Freedoms
     kinematics: Kinematics
     lines: tuple[LineOfAction, ...]
+    """One per mesh."""
     flanks: Flanks
+    """Force laws as resolved: nominal forces, damping, tables."""
     elements: tuple[Element, ...]
+    """The driving flanks of all meshes, then everything else."""
     rotors: Bodies
+    """A rotor per shaft."""
     supports: Supports
+    """Bushings, then planet bearings."""
     seats: Seats
+    """The bearings that are more than three springs to rigid ground or pin."""
     bearings: tuple[BearingElement, ...]
+    """Where the last elements act, those of bearings that are not linear."""
     housed: tuple[BearingElement, ...]
+    """Where those before them act: linear bearings in housings that move."""
     couplings: CouplingRows
     bearing_stiffness: FloatArray
     bearing_damping: FloatArray
+    """`bearing_stiffness`, `bearing_damping`: Force on the ground, or on the pin, at each support per freedom
+    and its rate; where bearings may exert moments, these too. Shape (b, 3 or 6, n) each.
+    """
     bearing_map: BearingForce
+    """The whole force there."""
     sampling: Sampling
+    """How the run is sampled."""
     ledger: EffectLedger
     corrected: Corrections
+    """Base radii of gears as given and as used, m, that were corrected to the base pitch of their train."""
     phases: TrainPhases
+    """Positions of the meshes before anything turned."""
 
     @property
     def corrections(self) -> Json:

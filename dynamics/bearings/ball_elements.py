@@ -31,59 +31,43 @@ from dynamics.types import FloatArray, IntArray
 
 @dataclass(frozen=True)
 class RowPlacement:
-    """What a row's geometry does not say.
-
-    Attributes
-    ----------
-    copies : int
-        Each element as so many that share its stiffness, evenly spaced: more than 1 averages its passing.
-    lever : float
-        Length that makes coordinates of tilts, m; 1: coordinates are in rad and moments in N m.
-    shift : float
-        Displacement of the inner ring along z, less that of the outer, at which the coordinates are 0, m.
-    damping : float
-        Damping of an element over its load, s/m.
-    locating : str
-        Directions in which the rings are held in their seats, see `dynamics.bearings.rolling_bearing`.
-    """
+    """What a row's geometry does not say."""
 
     copies: int = 1
+    """Each element as so many that share its stiffness, evenly spaced: more than 1 averages its passing."""
     lever: float = 1.0
+    """Length that makes coordinates of tilts, m; 1: coordinates are in rad and moments in N m."""
     shift: float = 0.0
+    """Displacement of the inner ring along z, less that of the outer, at which the coordinates are 0, m."""
     damping: float = 0.0
+    """Damping of an element over its load, s/m."""
     locating: str = BOTH
+    """Directions in which the rings are held in their seats, see `dynamics.bearings.rolling_bearing`."""
 
 
 class BallElements(NamedTuple):
-    """Balls of l bearings.
-
-    Attributes
-    ----------
-    balls : (l,) int array
-        Their number.
-    stiffness : (l,) array
-        c of a ball between both grooves, N/m^1.5.
-    damping : (l,) array
-        Damping of a ball over its load, s/m.
-    reach : (l,) array
-        A: distance of the centers of curvature of both grooves where the ball just touches, m.
-    radial, axial : (l,) arrays
-        Center of the inner groove seen from that of the outer at no displacement, m.
-    arm_radius, arm_axial : (l,) arrays
-        Center of the inner groove seen from the bearing's center, over the lever of tilts.
-    held : (l,) int array
-        Directions in which the rings are held in their seats, `locating.HELD`.
-    """
+    """Balls of l bearings."""
 
     balls: IntArray
+    """Their number. Shape (l,)."""
     stiffness: FloatArray
+    """c of a ball between both grooves, N/m^1.5. Shape (l,)."""
     damping: FloatArray
+    """Damping of a ball over its load, s/m. Shape (l,)."""
     reach: FloatArray
+    """A: distance of the centers of curvature of both grooves where the ball just touches, m. Shape (l,)."""
     radial: FloatArray
     axial: FloatArray
+    """`radial`, `axial`: Center of the inner groove seen from that of the outer at no displacement, m. Shape
+    (l,) each.
+    """
     arm_radius: FloatArray
     arm_axial: FloatArray
+    """`arm_radius`, `arm_axial`: Center of the inner groove seen from the bearing's center, over the lever of
+    tilts. Shape (l,) each.
+    """
     held: IntArray
+    """Directions in which the rings are held in their seats, `locating.HELD`. Shape (l,)."""
 
     @classmethod
     def packed(cls, rows: Sequence[tuple[BallBearing, RowPlacement]]) -> BallElements:

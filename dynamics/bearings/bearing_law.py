@@ -10,21 +10,14 @@ from dynamics.types import FloatArray
 
 @dataclass(frozen=True)
 class BearingDuty:
-    """What is expected of a bearing.
-
-    Attributes
-    ----------
-    load : float
-        Its typical load, N.
-    mass : float
-        Its share of the mass on the shaft, kg.
-    lever : float
-        Radius that makes lengths of tilts where a law has none of its own, m.
-    """
+    """What is expected of a bearing."""
 
     load: float
+    """Its typical load, N."""
     mass: float
+    """Its share of the mass on the shaft, kg."""
     lever: float
+    """Radius that makes lengths of tilts where a law has none of its own, m."""
 
 
 class BearingLaw(Protocol):

@@ -19,19 +19,13 @@ MOST = 5
 
 
 class LinearBearingLaws(NamedTuple):
-    """l bearings F = K y + C y' of n rows.
-
-    Attributes
-    ----------
-    size : (l,) int array
-        n, up to 5.
-    stiffness, damping : (l, 5, 5) arrays
-        N/m, N s/m; symmetric, positive semidefinite.
-    """
+    """l bearings F = K y + C y' of n rows."""
 
     size: IntArray
+    """n, up to 5. Shape (l,)."""
     stiffness: FloatArray
     damping: FloatArray
+    """`stiffness`, `damping`: N/m, N s/m; symmetric, positive semidefinite. Shape (l, 5, 5) each."""
 
     @classmethod
     def packed(cls, laws: Sequence[tuple[FloatArray, FloatArray]]) -> LinearBearingLaws:

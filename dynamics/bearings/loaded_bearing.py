@@ -36,30 +36,24 @@ LEAST_DAMPING = 1.0  # N/m; a tangent of unloaded elements is singular without
 
 @dataclass(frozen=True)
 class Reaction:
-    """The answer of a bearing of Z elements in L laminae each (balls: 1) to a displacement.
-
-    Attributes
-    ----------
-    force : (5,) array
-        Of the inner ring on the outer, N, N m.
-    tangent : (5, 5) array
-        Its derivative in the displacement, symmetric.
-    viscous : (5, 5) array
-        Its derivative in the rate of displacement if the damping of an element is its load times 1 s/m.
-    energy : float
-        Stored in the contacts, J.
-    slope : float
-        Derivative of the energy in the angle of the cage, J/rad.
-    load : (Z, L) array
-        Normal loads of the elements, N; with copies (Z copies, L): that of a whole element in each place.
-    """
+    """The answer of a bearing of Z elements in L laminae each (balls: 1) to a displacement."""
 
     force: FloatArray
+    """Of the inner ring on the outer, N, N m. Shape (5,)."""
     tangent: FloatArray
+    """Its derivative in the displacement, symmetric. Shape (5, 5)."""
     viscous: FloatArray
+    """Its derivative in the rate of displacement if the damping of an element is its load times 1 s/m. Shape
+    (5, 5).
+    """
     energy: float
+    """Stored in the contacts, J."""
     slope: float
+    """Derivative of the energy in the angle of the cage, J/rad."""
     load: FloatArray
+    """Normal loads of the elements, N; with copies (Z copies, L): that of a whole element in each place.
+    Shape (Z, L).
+    """
 
 
 class LoadedBearing:
@@ -156,21 +150,14 @@ ANGLES = 32
 
 @dataclass(frozen=True)
 class _ElementPassing:
-    """The motion of a bearing's inner ring over the passing of one element.
-
-    Attributes
-    ----------
-    order : float
-        Passings per revolution of the inner ring, the outer at rest.
-    angle : (T,) array
-        Of the first element from x towards y, rad; one pitch, its end left out.
-    displacement : (T, 5) array
-        m, rad.
-    """
+    """The motion of a bearing's inner ring over the passing of one element."""
 
     order: float
+    """Passings per revolution of the inner ring, the outer at rest."""
     angle: FloatArray
+    """Of the first element from x towards y, rad; one pitch, its end left out. Shape (T,)."""
     displacement: FloatArray
+    """m, rad. Shape (T, 5)."""
 
     @property
     def peak_to_peak(self) -> FloatArray:

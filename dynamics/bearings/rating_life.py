@@ -26,18 +26,12 @@ ROLLER_QUALITY = 0.83  # lambda nu: contained in C, but no more once edge loads 
 
 @dataclass(frozen=True)
 class _RatingLife:
-    """The basic reference rating life.
-
-    Attributes
-    ----------
-    revolutions : float
-        L_10r, that 90 % of bearings reach; infinite where nothing is loaded.
-    equivalent_load : float
-        P_ref, N: the radial load of the same life by ISO 281.
-    """
+    """The basic reference rating life."""
 
     revolutions: float
+    """L_10r, that 90 % of bearings reach; infinite where nothing is loaded."""
     equivalent_load: float
+    """P_ref, N: the radial load of the same life by ISO 281."""
 
 
 def rating_life(

@@ -64,23 +64,16 @@ class RingFits:
 
 @dataclass(frozen=True)
 class Cylinder:
-    """A hollow or solid cylinder.
-
-    Attributes
-    ----------
-    bore, outer : float
-        Diameters, m.
-    youngs_modulus, poissons_ratio : float
-        Pa, 1.
-    strain : float
-        Thermal strain.
-    """
+    """A hollow or solid cylinder."""
 
     bore: float
     outer: float
+    """`bore`, `outer`: Diameters, m."""
     youngs_modulus: float = STEEL_YOUNGS_MODULUS
     poissons_ratio: float = STEEL_POISSON_RATIO
+    """`youngs_modulus`, `poissons_ratio`: Pa, 1."""
     strain: float = 0.0
+    """Thermal strain."""
 
     @property
     def _stretch(self) -> float:
@@ -114,18 +107,12 @@ def fit_pressure(inside: Cylinder, around: Cylinder, interference: float) -> flo
 
 @dataclass(frozen=True)
 class WarmRings:
-    """What temperatures do to a row.
-
-    Attributes
-    ----------
-    play : float
-        Change of the row's clearance as it counts it, m.
-    interference : tuple of two floats
-        Of the inner ring on the shaft and the outer in its bore, m; < 0: loose. None: not stated.
-    """
+    """What temperatures do to a row."""
 
     play: float
+    """Change of the row's clearance as it counts it, m."""
     interference: tuple[float, float] | None
+    """Of the inner ring on the shaft and the outer in its bore, m; < 0: loose. None: not stated."""
 
 
 class _Row(Protocol):

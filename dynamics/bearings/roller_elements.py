@@ -24,39 +24,32 @@ DIRECTIONS = 5
 
 
 class RollerElements(NamedTuple):
-    """Rollers of l bearings.
-
-    Attributes
-    ----------
-    rollers : (l,) int array
-        Their number.
-    stiffness : (l,) array
-        c of one lamina between both raceways, N/m^(10/9).
-    damping : (l,) array
-        Damping of a lamina over its load, s/m.
-    cosine, sine : (l,) arrays
-        Of the contact angle; the normal has these parts along radius and axis.
-    arm : (l,) array
-        Radius of the circle of the rollers' centers times the sine, over the lever of tilts.
-    play : (l,) array
-        Approach along the normal at which the middle of a roller just touches, m; negative: preload.
-    first : (l + 1,) int array
-        First lamina of each bearing.
-    place, drop : (L,) arrays
-        Middle of each lamina along the roller over the lever of tilts, and by how much its profile is lower
-        there, on both contacts together, m.
-    """
+    """Rollers of l bearings."""
 
     rollers: IntArray
+    """Their number. Shape (l,)."""
     stiffness: FloatArray
+    """c of one lamina between both raceways, N/m^(10/9). Shape (l,)."""
     damping: FloatArray
+    """Damping of a lamina over its load, s/m. Shape (l,)."""
     cosine: FloatArray
     sine: FloatArray
+    """`cosine`, `sine`: Of the contact angle; the normal has these parts along radius and axis. Shape (l,)
+    each.
+    """
     arm: FloatArray
+    """Radius of the circle of the rollers' centers times the sine, over the lever of tilts. Shape (l,)."""
     play: FloatArray
+    """Approach along the normal at which the middle of a roller just touches, m; negative: preload. Shape
+    (l,).
+    """
     first: IntArray
+    """First lamina of each bearing. Shape (l + 1,)."""
     place: FloatArray
     drop: FloatArray
+    """`place`, `drop`: Middle of each lamina along the roller over the lever of tilts, and by how much its
+    profile is lower there, on both contacts together, m. Shape (L,) each.
+    """
 
     @classmethod
     def packed(cls, rows: Sequence[tuple[RollerBearing, RowPlacement]]) -> RollerElements:

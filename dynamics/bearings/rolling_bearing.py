@@ -128,19 +128,13 @@ LEAST_RATIO = 1e-12  # of the axes: radii that differ by 23 orders of magnitude
 
 @dataclass(frozen=True)
 class EllipticContact:
-    """A Hertz contact.
-
-    Attributes
-    ----------
-    small_radius, large_radius : float
-        Relative radii of curvature in the two principal planes, m, > 0.
-    modulus : float
-        E*, Pa.
-    """
+    """A Hertz contact."""
 
     small_radius: float
     large_radius: float
+    """`small_radius`, `large_radius`: Relative radii of curvature in the two principal planes, m, > 0."""
     modulus: float
+    """E*, Pa."""
 
     def __post_init__(self) -> None:
         for name in ("small_radius", "large_radius", "modulus"):

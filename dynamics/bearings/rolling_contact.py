@@ -21,21 +21,17 @@ LEAST_PRESS = 1e-6  # m; sets the typical load of a bearing that nothing loads
 
 
 class RollingContactLaws(NamedTuple):
-    """Laws of l contacts.
-
-    Attributes
-    ----------
-    stiffness, exponent, clearance : (l,) arrays
-        N/m^n, 1, m.
-    damping, reach : (l,) arrays
-        N s/m in full contact, and the elastic force (N) from which it acts in full.
-    """
+    """Laws of l contacts."""
 
     stiffness: FloatArray
     exponent: FloatArray
     clearance: FloatArray
+    """`stiffness`, `exponent`, `clearance`: N/m^n, 1, m. Shape (l,) each."""
     damping: FloatArray
     reach: FloatArray
+    """`damping`, `reach`: N s/m in full contact, and the elastic force (N) from which it acts in full. Shape
+    (l,) each.
+    """
 
     @classmethod
     def packed(cls, laws: Sequence[tuple[RollingContact, BearingDuty]]) -> RollingContactLaws:
@@ -59,31 +55,23 @@ class RollingContact:
 
     The shaft moves across the axis by u, r = `abs(u)`; a planet relative to its pin. Beyond the clearance the
     restoring force along u is ``stiffness (r - clearance)^exponent``, in all directions; within it, zero.
-
-    Attributes
-    ----------
-    bushing : str
-        The bushing or planet bearing at which it acts; one rolling contact each.
-    stiffness : float
-        Of the whole bearing, N/m^exponent.
-    exponent : float
-        10/9 for rollers (the default), 3/2 for balls; from 1 to 3.
-    clearance : float
-        m, >= 0: radial, from the middle to contact; half the play between the extremes.
-    damping : float or None
-        N s/m along u in full contact; fades to zero at lift-off, and the total force is never tensile. None:
-        ``2 damping_ratio sqrt(k mass)`` with k the tangent stiffness at the typical load and the mass of the
-        shaft and its gears divided by the number of its bushings.
-    damping_ratio : float
-        Used where the damping is None.
     """
 
     bushing: str
+    """The bushing or planet bearing at which it acts; one rolling contact each."""
     stiffness: float
+    """Of the whole bearing, N/m^exponent."""
     exponent: float = ROLLER
+    """10/9 for rollers (the default), 3/2 for balls; from 1 to 3."""
     clearance: float = 0.0
+    """m, >= 0: radial, from the middle to contact; half the play between the extremes."""
     damping: float | None = None
+    """N s/m along u in full contact; fades to zero at lift-off, and the total force is never tensile. None:
+    ``2 damping_ratio sqrt(k mass)`` with k the tangent stiffness at the typical load and the mass of the
+    shaft and its gears divided by the number of its bushings.
+    """
     damping_ratio: float = 0.05
+    """Used where the damping is None."""
 
     def __post_init__(self) -> None:
         positive("stiffness", self.stiffness)

@@ -191,19 +191,13 @@ class PlanetBearing(_Seat):
 
 @dataclass(frozen=True)
 class BearingStiffness:
-    """Stiffness of a bearing, or of all bearings of a shaft seen as one.
-
-    Attributes
-    ----------
-    radial, axial : float
-        N/m, >= 0.
-    tilt : float
-        About any axis across, N m/rad, >= 0.
-    """
+    """Stiffness of a bearing, or of all bearings of a shaft seen as one."""
 
     radial: float
     axial: float = 0.0
+    """`radial`, `axial`: N/m, >= 0."""
     tilt: float = 0.0
+    """About any axis across, N m/rad, >= 0."""
 
     def __post_init__(self) -> None:
         for name in ("radial", "axial", "tilt"):

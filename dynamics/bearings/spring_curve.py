@@ -21,21 +21,14 @@ DIRECTIONS = ("x", "y", "z", "tilt_x", "tilt_y")
 
 
 class SpringCurveLaws(NamedTuple):
-    """Curves.
-
-    Attributes
-    ----------
-    force : Cubics
-        By displacement, m or rad; N, N m.
-    energy : (S,) array
-        Energy at the start of each piece less that at no displacement, J.
-    lever : (l,) array
-        Coordinate over displacement: 1, or a radius in m for tilts.
-    """
+    """Curves."""
 
     force: Cubics
+    """By displacement, m or rad; N, N m."""
     energy: FloatArray
+    """Energy at the start of each piece less that at no displacement, J. Shape (S,)."""
     lever: FloatArray
+    """Coordinate over displacement: 1, or a radius in m for tilts. Shape (l,)."""
 
     @classmethod
     def packed(cls, laws: Sequence[tuple[SpringCurve, BearingDuty]]) -> SpringCurveLaws:
@@ -56,24 +49,18 @@ class SpringCurve:
 
     Acts beside what the bushing does linearly, its damping included. Through the points without overshoot
     (Fritsch and Carlson); beyond the ends on with the slope there.
-
-    Attributes
-    ----------
-    bushing : str
-        The bushing or planet bearing in whose place it acts.
-    direction : str
-        One of x, y, z, tilt_x, tilt_y; one curve each. On a planet bearing x points away from the carrier's
-        axis.
-    displacement : tuple of floats
-        m, rad for a tilt; strictly increasing, at least 2.
-    force : tuple of floats
-        N, N m for a tilt; strictly increasing.
     """
 
     bushing: str
+    """The bushing or planet bearing in whose place it acts."""
     direction: str
+    """One of x, y, z, tilt_x, tilt_y; one curve each. On a planet bearing x points away from the carrier's
+    axis.
+    """
     displacement: tuple[float, ...]
+    """m, rad for a tilt; strictly increasing, at least 2."""
     force: tuple[float, ...]
+    """N, N m for a tilt; strictly increasing."""
 
     def __post_init__(self) -> None:
         one_of("direction", self.direction, DIRECTIONS)

@@ -79,32 +79,26 @@ LIFE_EXPONENT = 10.0 / 3.0
 
 @dataclass(frozen=True)
 class BearingLoad:
-    """The load of a bearing under a load case, mean over the mesh cycle; x, y, z, tilt_x, tilt_y.
-
-    Attributes
-    ----------
-    speed : float
-        Of the shaft against what holds the bearing, rad/s, >= 0.
-    force : (5,) array
-        On the housing, of a planet bearing on the pin, N and N m.
-    largest_radial : float
-        Over the cycle, N.
-    elastic, clearance, seat : (5,) arrays
-        Parts of the displacement of the shaft there, m and rad.
-    rating_life : float
-        Basic reference rating life L_10r at the mean displacement, revolutions; infinite where no element is
-        loaded, NaN if the bearing has no dynamic capacity.
-    """
+    """The load of a bearing under a load case, mean over the mesh cycle; x, y, z, tilt_x, tilt_y."""
 
     name: str
     shaft: str
     speed: float = field(metadata=in_unit("rad_s"))
+    """Of the shaft against what holds the bearing, rad/s, >= 0."""
     force: FloatArray = field(metadata=in_unit("n", "direction"))
+    """On the housing, of a planet bearing on the pin, N and N m. Shape (5,)."""
     largest_radial: float = field(metadata=in_unit("n"))
+    """Over the cycle, N."""
     elastic: FloatArray = field(metadata=in_unit("m", "direction"))
     clearance: FloatArray = field(metadata=in_unit("m", "direction"))
     seat: FloatArray = field(metadata=in_unit("m", "direction"))
+    """`elastic`, `clearance`, `seat`: Parts of the displacement of the shaft there, m and rad. Shape (5,)
+    each.
+    """
     rating_life: float = math.nan
+    """Basic reference rating life L_10r at the mean displacement, revolutions; infinite where no element is
+    loaded, NaN if the bearing has no dynamic capacity.
+    """
 
     @property
     def radial(self) -> float:
@@ -176,15 +170,12 @@ def equivalent_load(
 
 @dataclass(frozen=True)
 class _ShaftLines(ShaftAxes):
-    """The axes of all shafts under a load case, mean over the mesh cycle.
-
-    Attributes
-    ----------
-    motion : (P, 6) array
-        x, y, z (m), tilt_x, tilt_y, rotation (rad): du_x/dz = tilt_y and du_y/dz = -tilt_x but for shear.
-    """
+    """The axes of all shafts under a load case, mean over the mesh cycle."""
 
     motion: FloatArray = field(metadata=in_unit("m", "point", "freedom"))
+    """x, y, z (m), tilt_x, tilt_y, rotation (rad): du_x/dz = tilt_y and du_y/dz = -tilt_x but for shear.
+    Shape (P, 6).
+    """
 
 
 def _shaft_lines(system: System, motion: FloatArray) -> _ShaftLines:
@@ -217,36 +208,27 @@ MOST_POSITIONS = 512
 
 @dataclass(frozen=True)
 class CaseDeflection:
-    """The deflection of a scene under a load case.
-
-    Attributes
-    ----------
-    name, direction : str
-        Of the load case.
-    share : float
-        Of the duration, relative to the other cases.
-    speed, torque : float
-        Of the leading shaft, rad/s and N m, both > 0.
-    status : str
-        Of the search for the rest positions, the worst of the cycle: "converged", "iteration_limit",
-        "unbalanced". Only a converged case has figures to rely on.
-    residual : float
-        Largest unbalanced force over the largest mesh force.
-    forces : tuple of ForceUnderCase
-        Of the scene; none in files of versions that did not keep them.
-    """
+    """The deflection of a scene under a load case."""
 
     name: str
     direction: str
+    """`name`, `direction`: Of the load case."""
     share: float
+    """Of the duration, relative to the other cases."""
     speed: float = field(metadata=in_unit("rad_s"))
     torque: float = field(metadata=in_unit("n_m"))
+    """`speed`, `torque`: Of the leading shaft, rad/s and N m, both > 0."""
     status: str
+    """Of the search for the rest positions, the worst of the cycle: "converged", "iteration_limit",
+    "unbalanced". Only a converged case has figures to rely on.
+    """
     residual: float
+    """Largest unbalanced force over the largest mesh force."""
     meshes: tuple[MeshAlignment, ...]
     bearings: tuple[BearingLoad, ...]
     shafts: _ShaftLines
     forces: tuple[ForceUnderCase, ...] = ()
+    """Of the scene; none in files of versions that did not keep them."""
 
 
 @dataclass(frozen=True)

@@ -71,20 +71,14 @@ class BearingStrain:
     """Displacements x, y, z (m), tilt_x, tilt_y (rad) at b bearings, each (b, 5); their sum is the shaft's.
 
     Of a planet bearing: of the planet against its pin.
-
-    Attributes
-    ----------
-    elastic : (b, 5) array
-        What the bearing yields under its load.
-    clearance : (b, 5) array
-        What it moves before anything presses back.
-    seat : (b, 5) array
-        Of its seat in an elastic housing.
     """
 
     elastic: FloatArray
+    """What the bearing yields under its load. Shape (b, 5)."""
     clearance: FloatArray
+    """What it moves before anything presses back. Shape (b, 5)."""
     seat: FloatArray
+    """Of its seat in an elastic housing. Shape (b, 5)."""
 
     @property
     def shaft(self) -> FloatArray:
@@ -145,33 +139,24 @@ def _condensed_seats(system: System, total: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class Rest:
-    """K rest positions of a system of N freedoms of all rotors, m meshes and b bearings.
-
-    Attributes
-    ----------
-    status : StaticStatus
-        The worst of all positions.
-    residual : float
-        Largest unbalanced force of all positions over the largest mesh force.
-    motion : (K, N) array
-        Six freedoms of every rotor, then elastic coordinates, m and rad.
-    element : (K, R) array
-        Local coordinates of all force elements, m.
-    mesh_force : (K, m) array
-        Transverse, N.
-    load_arm : (K, m) array
-        Of the mesh force from mid-face of the driving gear, m, as in a table; NaN where it acts at mid-face.
-    bearing_force : (K, b, 5) array
-        Force and moment on what holds each bearing, N and N m.
-    """
+    """K rest positions of a system of N freedoms of all rotors, m meshes and b bearings."""
 
     status: StaticStatus
+    """The worst of all positions."""
     residual: float
+    """Largest unbalanced force of all positions over the largest mesh force."""
     motion: FloatArray
+    """Six freedoms of every rotor, then elastic coordinates, m and rad. Shape (K, N)."""
     element: FloatArray
+    """Local coordinates of all force elements, m. Shape (K, R)."""
     mesh_force: FloatArray
+    """Transverse, N. Shape (K, m)."""
     load_arm: FloatArray
+    """Of the mesh force from mid-face of the driving gear, m, as in a table; NaN where it acts at mid-face.
+    Shape (K, m).
+    """
     bearing_force: FloatArray
+    """Force and moment on what holds each bearing, N and N m. Shape (K, b, 5)."""
 
 
 def rest_over(system: System, times: FloatArray) -> Rest:
@@ -313,38 +298,28 @@ class MeshAlignment:
 
     Misalignment is the tilt of the axes in the plane of action as growth of the gap over the common face
     width, towards positive z of the table's driving gear: F_beta before running-in.
-
-    Attributes
-    ----------
-    force : float
-        Transverse, N.
-    misalignment : float
-        m.
-    least, largest : float
-        Misalignment over the cycle, m.
-    causes : (6,) array
-        Parts of the misalignment by `CAUSES`, m.
-    center_distance_change : float
-        m, with what the scene sets.
-    lead_torsion : float
-        Growth of the gap over the common face width by the twist of both shafts along it, m; not part of the
-        misalignment.
-    load_arm : float
-        Of the mesh force from mid-face of the table's driving gear, m; NaN: it acts at mid-face.
-    in_table : bool
-        Whether the table has the misalignments of the whole cycle, or no such axis.
     """
 
     name: str
     force: float = field(metadata=in_unit("n"))
+    """Transverse, N."""
     misalignment: float = field(metadata=in_unit("m"))
+    """m."""
     least: float = field(metadata=in_unit("m"))
     largest: float = field(metadata=in_unit("m"))
+    """`least`, `largest`: Misalignment over the cycle, m."""
     causes: FloatArray = field(metadata=in_unit("m", "cause"))
+    """Parts of the misalignment by `CAUSES`, m. Shape (6,)."""
     center_distance_change: float = field(metadata=in_unit("m"))
+    """m, with what the scene sets."""
     lead_torsion: float = field(metadata=in_unit("m"))
+    """Growth of the gap over the common face width by the twist of both shafts along it, m; not part of the
+    misalignment.
+    """
     load_arm: float = field(metadata=in_unit("m"))
+    """Of the mesh force from mid-face of the table's driving gear, m; NaN: it acts at mid-face."""
     in_table: bool = True
+    """Whether the table has the misalignments of the whole cycle, or no such axis."""
 
 
 def mesh_alignment(system: System, index: int, rest: Rest, strain: BearingStrain) -> MeshAlignment:

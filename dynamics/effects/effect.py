@@ -22,50 +22,34 @@ from dynamics.scene.scene import Scene
 
 @dataclass(frozen=True)
 class Verdict:
-    """Whether a rotor or a mesh calls for an effect.
-
-    Attributes
-    ----------
-    possible : bool
-        False: the scene has no such freedom or data, and requesting it changes nothing.
-    reason : str
-        In words.
-    influence : float
-        Static displacement along the line of action that the effect adds at the nominal force, m.
-    """
+    """Whether a rotor or a mesh calls for an effect."""
 
     on: bool
     possible: bool
+    """False: the scene has no such freedom or data, and requesting it changes nothing."""
     reason: str
+    """In words."""
     influence: float
+    """Static displacement along the line of action that the effect adds at the nominal force, m."""
 
 
 class Effect:
-    """One optional piece of physics.
-
-    Attributes
-    ----------
-    name : str
-        What a scene calls it.
-    cost : str
-        What it costs, in words.
-    adds : tuple of str
-        What it adds to the model: names of `FREEDOMS` that it gives a rotor, names of `additions`.
-    linear : bool
-        Whether linear theory estimates its influence; False: of impacts it says nothing.
-    at_rest : bool or None
-        Whether static deflections follow it. True: wherever the scene has what it needs; False: never, it is
-        one of motion; None: where the scene calls for it, as in a run.
-    compulsory : bool
-        Whether there are scenes that cannot do without it, whatever they choose.
-    """
+    """One optional piece of physics."""
 
     name: ClassVar[str]
+    """What a scene calls it."""
     cost: ClassVar[str]
+    """What it costs, in words."""
     adds: ClassVar[tuple[str, ...]] = ()
+    """What it adds to the model: names of `FREEDOMS` that it gives a rotor, names of `additions`."""
     linear: ClassVar[bool] = True
+    """Whether linear theory estimates its influence; False: of impacts it says nothing."""
     at_rest: ClassVar[bool | None] = None
+    """Whether static deflections follow it. True: wherever the scene has what it needs; False: never, it is
+    one of motion; None: where the scene calls for it, as in a run.
+    """
     compulsory: ClassVar[bool] = False
+    """Whether there are scenes that cannot do without it, whatever they choose."""
 
     def prepared(self, scene: Scene) -> Scene:
         """Return `scene` with what the effect, if it is not switched off, changes of its parts.

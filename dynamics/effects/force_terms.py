@@ -19,27 +19,18 @@ MISALIGNMENT, CENTER_DISTANCE, SLIDING = range(3)
 
 @dataclass(frozen=True)
 class FlankTerms:
-    """A flank of the plane and what effects add to it.
-
-    Attributes
-    ----------
-    table : MeshTable
-        What it reads: of the plane, at one operating point.
-    rows : three (k, N) arrays or None
-        Gradients of each kind of row in all rotors' freedoms; None: it has none.
-    follows : (int, int)
-        1 where the force follows misalignment and center distance, 0 where it stays at the mesh's value.
-    per_face : float
-        1/(face width), 1/m; 0: the force acts at mid-face.
-    friction : float
-        Friction force over the transverse force of a pair.
-    """
+    """A flank of the plane and what effects add to it."""
 
     table: MeshTable
+    """What it reads: of the plane, at one operating point."""
     rows: tuple[FloatArray | None, FloatArray | None, FloatArray | None] = (None, None, None)
+    """Gradients of each kind of row in all rotors' freedoms; None: it has none. Three (k, N) arrays."""
     follows: tuple[int, int] = (0, 0)
+    """1 where the force follows misalignment and center distance, 0 where it stays at the mesh's value."""
     per_face: float = 0.0
+    """1/(face width), 1/m; 0: the force acts at mid-face."""
     friction: float = 0.0
+    """Friction force over the transverse force of a pair."""
 
     def with_rows(self, kind: int, gradients: FloatArray) -> FlankTerms:
         """Return the terms with the rows (k, N) of a kind."""
@@ -58,19 +49,13 @@ class FlankTerms:
 
 @dataclass(frozen=True)
 class FlankInSpace:
-    """One flank of a mesh among its bodies.
-
-    Attributes
-    ----------
-    index : int
-        Its mesh.
-    coast : bool
-        Whether it is the coast flank.
-    """
+    """One flank of a mesh among its bodies."""
 
     mechanism: Mechanism
     index: int
+    """Its mesh."""
     coast: bool
+    """Whether it is the coast flank."""
 
     @property
     def driving(self) -> int:

@@ -32,22 +32,15 @@ class _Verdicts:
 
 @dataclass(frozen=True)
 class _LedgerEntry:
-    """One decision.
-
-    Attributes
-    ----------
-    part : str
-        The shaft or the mesh that it is decided for.
-    choice : str
-        What the scene requests: ``"auto"``, ``"on"``, ``"off"``.
-    verdicts : _Verdicts
-        Of all parts; `index` is that of this one.
-    """
+    """One decision."""
 
     decided: Effect
     part: str
+    """The shaft or the mesh that it is decided for."""
     choice: str
+    """What the scene requests: ``"auto"``, ``"on"``, ``"off"``."""
     verdicts: _Verdicts
+    """Of all parts; `index` is that of this one."""
     index: int
 
     @property

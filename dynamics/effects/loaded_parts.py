@@ -21,27 +21,18 @@ from dynamics.types import FloatArray
 
 @dataclass(frozen=True)
 class _MeshOnRotor:
-    """A mesh as its rotor feels it.
-
-    Attributes
-    ----------
-    force : float
-        Nominal transverse mesh force, N.
-    lever : float
-        Axial distance from the rotor's center of mass, m.
-    axial : float
-        Axial over transverse force, tan(base helix angle), >= 0.
-    radius : float
-        Operating pitch radius, m: the axial force's lever across the shaft.
-    direction : (float, float)
-        Unit vector across the axis of the force on the rotor, along x and y.
-    """
+    """A mesh as its rotor feels it."""
 
     force: float
+    """Nominal transverse mesh force, N."""
     lever: float
+    """Axial distance from the rotor's center of mass, m."""
     axial: float
+    """Axial over transverse force, tan(base helix angle), >= 0."""
     radius: float
+    """Operating pitch radius, m: the axial force's lever across the shaft."""
     direction: tuple[float, float] = (1.0, 0.0)
+    """Unit vector across the axis of the force on the rotor, along x and y."""
 
 
 @dataclass(frozen=True)

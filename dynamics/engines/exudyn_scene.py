@@ -33,28 +33,19 @@ Jacobian = Callable[[Any, float, int, Any, Any, float, float], FloatArray]
 
 @dataclass(frozen=True)
 class PlanarMesh:
-    """A mesh between two bodies with the freedoms x, y and the rotation about +z.
-
-    Attributes
-    ----------
-    element : MeshElement
-        Used at `misalignment` and `center_distance_change`.
-    direction : (float, float)
-        Unit vector along which the driver pushes the driven gear.
-    sense : int
-        +1 or -1: in which the driver turns about +z.
-    internal : bool
-        One of the gears is a ring gear.
-    misalignment, center_distance_change : float
-        Operating point of the table, m.
-    """
+    """A mesh between two bodies with the freedoms x, y and the rotation about +z."""
 
     element: MeshElement
+    """Used at `misalignment` and `center_distance_change`."""
     direction: tuple[float, float]
+    """Unit vector along which the driver pushes the driven gear."""
     sense: int
+    """+1 or -1: in which the driver turns about +z."""
     internal: bool = False
+    """One of the gears is a ring gear."""
     misalignment: float = 0.0
     center_distance_change: float = 0.0
+    """`misalignment`, `center_distance_change`: Operating point of the table, m."""
 
     @property
     def gradient(self) -> FloatArray:
@@ -183,21 +174,14 @@ SOLVERS = ("GeneralizedAlpha", "TrapezoidalIndex2", "RK44", "DOPRI5")
 
 @dataclass(frozen=True)
 class _PlanarRun:
-    """The result of a run in Exudyn.
-
-    Attributes
-    ----------
-    time : (T,) array
-        s.
-    dynamic_transmission_error : (T,) array
-        m.
-    cpu_seconds : float
-        Of the time integration alone.
-    """
+    """The result of a run in Exudyn."""
 
     time: FloatArray
+    """s. Shape (T,)."""
     dynamic_transmission_error: FloatArray
+    """m. Shape (T,)."""
     cpu_seconds: float
+    """Of the time integration alone."""
 
 
 def run_in_exudyn(scene: Scene, *, solver: str = "GeneralizedAlpha", step: float = 5e-6) -> _PlanarRun:

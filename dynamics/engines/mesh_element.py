@@ -24,35 +24,24 @@ class MeshElement:
 
     Angles count in each gear's own sense: the driver's in the sense in which it drives, the driven gear's in
     the sense in which it is driven.
-
-    Attributes
-    ----------
-    table : MeshTable
-        May have axes of misalignment and center-distance change.
-    teeth : (int, int)
-        Of the driver and the driven gear.
-    base_radius : (float, float)
-        m, in the same order, both positive.
-    base_helix_angle : float
-        rad, of the driver; > 0 is right-handed.
-    damping : float
-        N s/m in full contact.
-    damping_reach : float or None
-        Elastic force in N from which the damping acts in full. None: 5 % of the table's last level.
-    position_offset : float
-        Position in base pitches where the driver's angle is zero.
-    coast : CoastFlank or None
-        The backs of the teeth, alike to their fronts, damped as these; None: they never touch.
     """
 
     table: MeshTable
+    """May have axes of misalignment and center-distance change."""
     teeth: tuple[int, int]
+    """Of the driver and the driven gear."""
     base_radius: tuple[float, float]
+    """m, in the same order, both positive."""
     base_helix_angle: float = 0.0
+    """rad, of the driver; > 0 is right-handed."""
     damping: float = 0.0
+    """N s/m in full contact."""
     damping_reach: float | None = None
+    """Elastic force in N from which the damping acts in full. None: 5 % of the table's last level."""
     position_offset: float = 0.0
+    """Position in base pitches where the driver's angle is zero."""
     coast: CoastFlank | None = None
+    """The backs of the teeth, alike to their fronts, damped as these; None: they never touch."""
 
     def __post_init__(self) -> None:
         check_table(self.table, "table")

@@ -28,65 +28,49 @@ TURNED = tuple(int(law) for law, row in COMPILED.items() if "turned" in signatur
 
 @dataclass(frozen=True)
 class Element:
-    """One element with p local coordinates y = gradient q + offset, in meters.
-
-    Attributes
-    ----------
-    entry : int
-        Its index in the arrays of its law.
-    mesh : int
-        The mesh whose position it reads; -1: none.
-    gradient : (p, N) array
-        In the six freedoms of all r rotors.
-    offset : (p,) array
-        m.
-    drift : (p, k) array or None
-        Rate of the coordinates per unit speed of each law of the kinematic motion, m/rad; None: 0.
-    speed : (2, k) array or None
-        Spin and speed of the frame per unit speed of each law, for rotating-frame terms; None: 0.
-    stiffness : (p,) array or None
-        Typical stiffness of a bearing, N/m; None: 0.
-    """
+    """One element with p local coordinates y = gradient q + offset, in meters."""
 
     law: Law
     entry: int
+    """Its index in the arrays of its law."""
     mesh: int
+    """The mesh whose position it reads; -1: none."""
     gradient: FloatArray
+    """In the six freedoms of all r rotors. Shape (p, N)."""
     offset: FloatArray
+    """m. Shape (p,)."""
     drift: FloatArray | None = None
+    """Rate of the coordinates per unit speed of each law of the kinematic motion, m/rad; None: 0. Shape (p,
+    k).
+    """
     stiffness: FloatArray | None = None
+    """Typical stiffness of a bearing, N/m; None: 0. Shape (p,)."""
     speed: FloatArray | None = None
+    """Spin and speed of the frame per unit speed of each law, for rotating-frame terms; None: 0. Shape (2,
+    k).
+    """
 
 
 class Elements(NamedTuple):
-    """E elements with R local coordinates in all, of m meshes: the fields of `Element`, one after the other.
-
-    Attributes
-    ----------
-    law, entry : (E,) int arrays
-    first : (E + 1,) int array
-        First row of each element, and R.
-    mesh : (E,) int array
-        From m on the turn of frames and cages it reads.
-    offset, stiffness : (R,) arrays
-        The stiffness is for error norms and first guesses.
-    drift : (k, R) array
-        0 for flanks, whose coordinates the kinematic motion does not change.
-    speed : (k, E, 2) array
-    carried, turned : int
-        The first row with drift, and the first element with speed; R and E: none.
-    """
+    """E elements with R local coordinates in all, of m meshes: one array a field of `Element`."""
 
     law: IntArray
     entry: IntArray
+    """`law`, `entry`: Shape (E,) each."""
     first: IntArray
+    """First row of each element, and R. Shape (E + 1,)."""
     mesh: IntArray
+    """From m on the turn of frames and cages it reads. Shape (E,)."""
     offset: FloatArray
+    """`offset`, `stiffness`: The stiffness is for error norms and first guesses. Shape (R,) each."""
     drift: FloatArray
+    """0 for flanks, whose coordinates the kinematic motion does not change. Shape (k, R)."""
     stiffness: FloatArray
     speed: FloatArray
+    """Shape (k, E, 2)."""
     carried: int
     turned: int
+    """`carried`, `turned`: The first row with drift, and the first element with speed; R and E: none."""
     laws: ElementLaws
 
     @classmethod

@@ -19,21 +19,14 @@ from dynamics.types import BoolArray, FloatArray, IntArray
 
 @dataclass(frozen=True)
 class FrameTerm:
-    """A term of a rotating-frame element.
-
-    Attributes
-    ----------
-    rows : (2, N) array
-        Its coordinates across the axis, m, in all rotors' freedoms.
-    factors : tuple of five floats
-        Those of `RotatingFrameLaws`.
-    load : (float, float)
-        Its load, kg m.
-    """
+    """A term of a rotating-frame element."""
 
     rows: FloatArray
+    """Its coordinates across the axis, m, in all rotors' freedoms. Shape (2, N)."""
     factors: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0)
+    """Those of `RotatingFrameLaws`."""
     load: tuple[float, float] = (0.0, 0.0)
+    """Its load, kg m."""
 
     def plus(self, other: FrameTerm) -> FrameTerm:
         """Return the sum of two terms whose rows move alike."""
@@ -47,23 +40,16 @@ class RotatingFrameLaws(NamedTuple):
 
     With J = z x the inertia resists by (c_1 w + c_2 W) J y' + (c_3 w W + c_4 W^2) y, a ground damper seen
     from the frame by c_5 W J y, and a body off the frame's axis is pulled outwards by l W^2.
-
-    Attributes
-    ----------
-    factor : (l, 5) array
-        c_1 to c_5: kg, kg/rad ..., N s/m.
-    load : (l, 2) array
-        l: mass times arm from the frame's axis, kg m.
-    lever : (l,) array
-        Of the row of the spin, m: row over angle.
-    spinning : (l,) bool array
-        Whether a third row adds the shaft's own rotation to the spin of the kinematic motion.
     """
 
     factor: FloatArray
+    """c_1 to c_5: kg, kg/rad ..., N s/m. Shape (l, 5)."""
     load: FloatArray
+    """l: mass times arm from the frame's axis, kg m. Shape (l, 2)."""
     lever: FloatArray
+    """Of the row of the spin, m: row over angle. Shape (l,)."""
     spinning: BoolArray
+    """Whether a third row adds the shaft's own rotation to the spin of the kinematic motion. Shape (l,)."""
 
     @classmethod
     def packed(cls, terms: Sequence[FrameTerm], lever: float, spinning: Sequence[bool]) -> RotatingFrameLaws:
@@ -128,18 +114,13 @@ class FrameCouplingLaws(NamedTuple):
 
     and F pushes the first shaft back and, turned by R^T, the second along. K and C are the same in all
     directions across the axis: they commute with R.
-
-    Attributes
-    ----------
-    size : (l,) int array
-        n.
-    stiffness, damping : (l, 4, 4) arrays
-        N/m, N s/m.
     """
 
     size: IntArray
+    """n. Shape (l,)."""
     stiffness: FloatArray
     damping: FloatArray
+    """`stiffness`, `damping`: N/m, N s/m. Shape (l, 4, 4) each."""
 
 
 @inner

@@ -88,21 +88,16 @@ class Compiled(NamedTuple):
     Their parameters say what they read: `laws`, `entry`, `local`, `row` the arrays of the kind, the place in
     them, the state and the first row; `e` the element; `mesh` the mesh, or `turned` the frame or cage, whose
     position it reads.
-
-    Attributes
-    ----------
-    force : Routine or compiled function
-        Writes forces and derivatives.
-    energy : Routine, compiled function or None
-        Returns the energy stored, J, then any derivatives, that in the position first, J per base pitch or
-        revolution. None: no energy.
-    inside : tuple of Routine
-        What both call.
     """
 
     force: Any
+    """Writes forces and derivatives."""
     energy: Any = None
+    """Returns the energy stored, J, then any derivatives, that in the position first, J per base pitch or
+    revolution. None: no energy.
+    """
     inside: tuple[Routine, ...] = ()
+    """What both call."""
 
     @property
     def routines(self) -> tuple[Routine, ...]:

@@ -35,21 +35,14 @@ class _RigidFace:
 
 @dataclass(frozen=True)
 class _Freedoms:
-    """Independent freedoms: three of each free node, then six of each rigid face.
-
-    Attributes
-    ----------
-    motion : (3 n, f) sparse array
-        Displacements of all nodes per freedom.
-    free : int array
-        The free nodes.
-    faces : tuple of RigidFace
-        Those that move. Six freedoms each: x, y, z, rotations about x, y, z through its point.
-    """
+    """Independent freedoms: three of each free node, then six of each rigid face."""
 
     motion: sp.csr_array
+    """Displacements of all nodes per freedom. (3 n, f) sparse array."""
     free: IntArray
+    """The free nodes."""
     faces: tuple[_RigidFace, ...]
+    """Those that move. Six freedoms each: x, y, z, rotations about x, y, z through its point."""
 
     def face(self, name: str) -> IntArray:
         """Return the six freedoms of a rigid face."""
@@ -120,32 +113,22 @@ HELD = 1e-12
 
 @dataclass(frozen=True)
 class AssembledHousing:
-    """M x'' + C x' + K x = B' f; q = B x.
-
-    Attributes
-    ----------
-    freedoms : Freedoms
-        x, f of them.
-    mass, stiffness : (f, f) sparse arrays
-        With the mounts' stiffness.
-    mounts : tuple of two (f, f) sparse arrays
-        Stiffness and damping of the mounts alone.
-    seats : (s, f) sparse array
-        B: motions q of the seats, one after the other.
-    loose : (f, k) array
-        Rigid motions that feet and mounts do not hold; six without any.
-    body : RigidBody
-        Of the mesh.
-    """
+    """M x'' + C x' + K x = B' f; q = B x."""
 
     freedoms: _Freedoms
+    """x, f of them."""
     mass: sp.csr_array
     stiffness: sp.csr_array
+    """`mass`, `stiffness`: With the mounts' stiffness. (f, f) sparse arrays."""
     mounts: tuple[sp.csr_array, sp.csr_array]
+    """Stiffness and damping of the mounts alone. Tuple of two (f, f) sparse arrays."""
     seats: sp.csr_array
+    """B: motions q of the seats, one after the other. (s, f) sparse array."""
     frames: tuple[SeatFrame, ...]
     loose: FloatArray
+    """Rigid motions that feet and mounts do not hold; six without any. Shape (f, k)."""
     body: RigidBody
+    """Of the mesh."""
 
 
 def assemble(housing: MeshedHousing) -> AssembledHousing:
@@ -298,33 +281,24 @@ class ModeStatus(IntEnum):
 
 @dataclass(frozen=True)
 class FreeModes:
-    """Modes, unit modal mass, and static deflections.
-
-    Attributes
-    ----------
-    rigid : (f, k) array
-        Rigid motions that nothing holds.
-    shape : (f, m) array
-    frequency : (m,) array
-        Hz, rising; of elastic modes alone.
-    deflection : (f, s) array
-        Under unit forces on the seats; where the housing is loose, in balance with its inertia.
-    eigen_residual : float
-        Largest |K x - w^2 M x| / |K x|.
-    solve_residual : float
-        Largest work of the unbalanced forces on a deflection, relative to that of its load.
-    rigid_ratio : float
-        Highest frequency found for a rigid motion over that of the first elastic mode; 0 where held.
-    """
+    """Modes, unit modal mass, and static deflections."""
 
     rigid: FloatArray
+    """Rigid motions that nothing holds. Shape (f, k)."""
     shape: FloatArray
+    """Shape (f, m)."""
     frequency: FloatArray
+    """Hz, rising; of elastic modes alone. Shape (m,)."""
     deflection: FloatArray
+    """Under unit forces on the seats; where the housing is loose, in balance with its inertia. Shape (f, s).
+    """
     status: ModeStatus
     eigen_residual: float
+    """Largest |K x - w^2 M x| / |K x|."""
     solve_residual: float
+    """Largest work of the unbalanced forces on a deflection, relative to that of its load."""
     rigid_ratio: float
+    """Highest frequency found for a rigid motion over that of the first elastic mode; 0 where held."""
 
 
 def free_modes(housing: AssembledHousing, count: int) -> FreeModes:

@@ -26,21 +26,16 @@ from dynamics.work_cost import WorkCost
 
 @dataclass(frozen=True)
 class RigidBody:
-    """A body that does not deform.
-
-    Attributes
-    ----------
-    mass : float
-        kg.
-    center : (3,) array
-        Center of gravity, m.
-    inertia : (3, 3) array
-        About the center of gravity along the axes of the mesh, kg m^2; products with a minus sign.
-    """
+    """A body that does not deform."""
 
     mass: float
+    """kg."""
     center: FloatArray
+    """Center of gravity, m. Shape (3,)."""
     inertia: FloatArray
+    """About the center of gravity along the axes of the mesh, kg m^2; products with a minus sign. Shape (3,
+    3).
+    """
 
 
 def rigid_motions(points: FloatArray, about: FloatArray) -> FloatArray:
@@ -77,21 +72,16 @@ VALID = 0.7
 
 @dataclass(frozen=True)
 class SurfaceMotion:
-    """Motion of the surface.
-
-    Attributes
-    ----------
-    points : (p, 3) array
-        m.
-    triangles : (t, 6) int array
-        Corners, counter-clockwise from outside, then mid-side nodes. Walls of inner cavities are among them.
-    motion : (p, 3, r) array
-        Displacement of each point per reduced coordinate.
-    """
+    """Motion of the surface."""
 
     points: FloatArray
+    """m. Shape (p, 3)."""
     triangles: IntArray
+    """Corners, counter-clockwise from outside, then mid-side nodes. Walls of inner cavities are among them.
+    Shape (t, 6).
+    """
     motion: FloatArray
+    """Displacement of each point per reduced coordinate. Shape (p, 3, r)."""
 
 
 @dataclass(frozen=True)
@@ -105,69 +95,48 @@ class PointMotion:
 
 @dataclass(frozen=True)
 class ReductionChecks:
-    """Residuals of a reduction, each to be small against one.
-
-    Attributes
-    ----------
-    volume : float
-        Mass by the mass matrix against that by the volume inside the surface, relative.
-    eigen : float
-        Largest residual of a mode, relative.
-    solve : float
-        Largest work of unbalanced forces on a deflection under a force on a seat, relative to the force's.
-    rigid_frequency : float
-        Highest frequency of a rigid motion over the first elastic mode; 0 if the housing is held.
-    seat_rigid : float
-        Largest deviation of the seats' motion from that of the body in a rigid motion, relative.
-    """
+    """Residuals of a reduction, each to be small against one."""
 
     volume: float
+    """Mass by the mass matrix against that by the volume inside the surface, relative."""
     eigen: float
+    """Largest residual of a mode, relative."""
     solve: float
+    """Largest work of unbalanced forces on a deflection under a force on a seat, relative to the force's."""
     rigid_frequency: float
+    """Highest frequency of a rigid motion over the first elastic mode; 0 if the housing is held."""
     seat_rigid: float
+    """Largest deviation of the seats' motion from that of the body in a rigid motion, relative."""
 
 
 @dataclass(frozen=True)
 class ReducedHousing:
-    """M x'' + C x' + K x = (f, 0): motions of the seats, then amplitudes of modes with the seats held.
-
-    Attributes
-    ----------
-    mass, stiffness, damping : (r, r) arrays
-        Symmetric; SI.
-    seats : tuple of SeatFrame
-        In the order of the coordinates: those of a seat are its `motions`, along its own axes.
-    frequency : (m,) array
-        Natural frequencies kept, with the seats free, Hz, rising; rigid motions first, as zeros.
-    damping_ratio : (m,) array
-        Of these modes.
-    body : RigidBody or None
-        Of the mesh.
-    mount_damping : (r, r) array or None
-        What of `damping` is that of the mounts; None: nothing, or not known apart.
-    mount_stiffness : (r, r) array or None
-        What of `stiffness` is that of the mounts; the same.
-    loss_factor : float or None
-        Of the material, where the rest of `damping` follows from it (`MaterialDamping`).
-    cost : WorkCost or None
-        Of the reduction, predicted and measured; None: nobody measured it.
-    """
+    """M x'' + C x' + K x = (f, 0): motions of the seats, then amplitudes of modes with the seats held."""
 
     mass: FloatArray
     stiffness: FloatArray
     damping: FloatArray
+    """`mass`, `stiffness`, `damping`: Symmetric; SI. Shape (r, r) each."""
     seats: tuple[SeatFrame, ...]
+    """In the order of the coordinates: those of a seat are its `motions`, along its own axes."""
     frequency: FloatArray
+    """Natural frequencies kept, with the seats free, Hz, rising; rigid motions first, as zeros. Shape (m,).
+    """
     damping_ratio: FloatArray
+    """Of these modes. Shape (m,)."""
     body: RigidBody | None = None
+    """Of the mesh."""
     checks: ReductionChecks | None = None
     surface: SurfaceMotion | None = None
     points: tuple[PointMotion, ...] = ()
     mount_damping: FloatArray | None = None
+    """What of `damping` is that of the mounts; None: nothing, or not known apart. Shape (r, r)."""
     mount_stiffness: FloatArray | None = None
+    """What of `stiffness` is that of the mounts; the same. Shape (r, r)."""
     loss_factor: float | None = None
+    """Of the material, where the rest of `damping` follows from it (`MaterialDamping`)."""
     cost: WorkCost | None = None
+    """Of the reduction, predicted and measured; None: nobody measured it."""
 
     @property
     def motions(self) -> int:

@@ -77,25 +77,18 @@ USUAL_DAMPING = MaterialDamping(0.01)
 
 @dataclass(frozen=True)
 class MeshedHousing:
-    """A housing of one material, with bearing seats, feet and points of interest.
-
-    Attributes
-    ----------
-    feet : tuple of Foot
-        Without any the housing is free, and six rigid-body modes are kept besides `modes`.
-    points : mapping of str to (x, y, z)
-        m; the motion of the node next to each is recovered.
-    damping : Damping
-        Default: `USUAL_DAMPING`.
-    """
+    """A housing of one material, with bearing seats, feet and points of interest."""
 
     mesh: TetrahedralMesh
     material: Material
     seats: tuple[SeatBore, ...]
     feet: tuple[Foot, ...] = ()
+    """Without any the housing is free, and six rigid-body modes are kept besides `modes`."""
     points: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    """m; the motion of the node next to each is recovered."""
     modes: int = declared(80, MODES)
     damping: _Damping = USUAL_DAMPING
+    """Default: `USUAL_DAMPING`."""
 
     def __post_init__(self) -> None:
         declared_fields(self)
@@ -140,19 +133,13 @@ NAMES = {
 
 @dataclass(frozen=True)
 class ReducedMatrices:
-    """Matrices over the motions of seats, one seat after the other, then over any modal coordinates.
-
-    Attributes
-    ----------
-    stiffness : (r, r) array
-        SI: N, m, rad, kg. Symmetric, positive semidefinite.
-    mass, damping : (r, r) array or None
-        None: none, as of a static model.
-    """
+    """Matrices over the motions of seats, one seat after the other, then over any modal coordinates."""
 
     stiffness: FloatArray
+    """SI: N, m, rad, kg. Symmetric, positive semidefinite. Shape (r, r)."""
     mass: FloatArray | None = None
     damping: FloatArray | None = None
+    """`mass`, `damping`: None: none, as of a static model. Shape (r, r) each."""
 
     def __post_init__(self) -> None:
         rows = np.shape(self.stiffness)[:1]

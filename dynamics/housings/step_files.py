@@ -69,22 +69,15 @@ class FlatFace:
 
 @dataclass(frozen=True)
 class StepSolid:
-    """What the one solid of a STEP file is, in the frame of the file.
-
-    Attributes
-    ----------
-    volume, surface : float
-        m^3, m^2.
-    bores : tuple of Bore
-        Round holes of which at least half is there; halves of a split one are one.
-    planes : tuple of FlatFace
-        The largest first.
-    """
+    """What the one solid of a STEP file is, in the frame of the file."""
 
     volume: float
     surface: float
+    """`volume`, `surface`: m^3, m^2."""
     bores: tuple[Bore, ...]
+    """Round holes of which at least half is there; halves of a split one are one."""
     planes: tuple[FlatFace, ...]
+    """The largest first."""
 
 
 def step_solid(path: str | Path, seconds: float = STEP_SECONDS) -> StepSolid:

@@ -23,18 +23,13 @@ MOTIONS = ("x", "y", "z", "tilt_x", "tilt_y", "rotation_z")
 
 @dataclass(frozen=True)
 class SeatBore:
-    """A bearing seat.
-
-    Attributes
-    ----------
-    motions : int
-        3: displacements, 5: tilts too, as a bearing holds a shaft; 6: rotation about the axis too.
-    """
+    """A bearing seat."""
 
     name: str
     bore: Bore
     ring: Ring = Ring.WEIGHTED_AVERAGE
     motions: int = 5
+    """3: displacements, 5: tilts too, as a bearing holds a shaft; 6: rotation about the axis too."""
 
     def __post_init__(self) -> None:
         if self.motions not in (3, 5, 6):
@@ -53,26 +48,19 @@ class SeatBore:
 
 @dataclass(frozen=True)
 class SeatFrame:
-    """Position and axes of a seat.
-
-    Attributes
-    ----------
-    position : (3,) array
-        m, in the mesh.
-    axes : (3, 3) array
-        Columns: the seat's x, y, z in the mesh. z is the bore's axis; x is as near as it can be to the mesh's
-        x, or to its y where the axis is along x.
-    ring : Ring
-        Whether the seat is elastic or a rigid ring.
-    motions : tuple of str
-        The directions of its freedoms, of `MOTIONS`.
-    """
+    """Position and axes of a seat."""
 
     name: str
     position: FloatArray
+    """m, in the mesh. Shape (3,)."""
     axes: FloatArray
+    """Columns: the seat's x, y, z in the mesh. z is the bore's axis; x is as near as it can be to the mesh's
+    x, or to its y where the axis is along x. Shape (3, 3).
+    """
     ring: Ring
+    """Whether the seat is elastic or a rigid ring."""
     motions: tuple[str, ...]
+    """The directions of its freedoms, of `MOTIONS`."""
 
 
 def in_axes(frame: SeatFrame) -> FloatArray:
@@ -108,19 +96,14 @@ PRECISION = 1e-6
 
 @dataclass(frozen=True)
 class Mount:
-    """A spring and damper between a rigid foot and the ground, at the centroid of the foot's face.
-
-    Attributes
-    ----------
-    stiffness : 3 by 3 or 6 by 6 matrix
-        Along the axes of the mesh: forces per displacements in N/m, and with six rows moments and rotations,
-        N, N m per m, rad. Symmetric, positive semidefinite.
-    damping : matrix of the same size or None
-        N s/m ...; None: none.
-    """
+    """A spring and damper between a rigid foot and the ground, at the centroid of the foot's face."""
 
     stiffness: Matrix
+    """Along the axes of the mesh: forces per displacements in N/m, and with six rows moments and rotations,
+    N, N m per m, rad. Symmetric, positive semidefinite.
+    """
     damping: Matrix | None = None
+    """N s/m ...; None: none."""
 
     def __post_init__(self) -> None:
         rows = len(check_matrix("stiffness", self.stiffness, (3, 6), PRECISION))
@@ -134,17 +117,12 @@ class Mount:
 
 @dataclass(frozen=True)
 class Foot:
-    """A face of the housing that stays plane and stands on the ground.
-
-    Attributes
-    ----------
-    mount : Mount or None
-        None: fixed.
-    """
+    """A face of the housing that stays plane and stands on the ground."""
 
     name: str
     face: Face
     mount: Mount | None = None
+    """None: fixed."""
 
     def __post_init__(self) -> None:
         if not self.name:

@@ -26,21 +26,14 @@ FACES = np.array([[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0
 
 @dataclass(frozen=True)
 class TetrahedralMesh:
-    """Quadratic tetrahedra with ten nodes.
-
-    Attributes
-    ----------
-    points : (n, 3) array
-        m; every point belongs to a tetrahedron.
-    tetrahedra : (e, 10) int array
-        Four corners with positive volume, then the mid-side nodes of `EDGES`.
-    groups : mapping of str to int array
-        Nodes of named parts of the surface: physical groups, node sets.
-    """
+    """Quadratic tetrahedra with ten nodes."""
 
     points: FloatArray
+    """m; every point belongs to a tetrahedron. Shape (n, 3)."""
     tetrahedra: IntArray
+    """Four corners with positive volume, then the mid-side nodes of `EDGES`. Shape (e, 10)."""
     groups: Mapping[str, IntArray] = field(default_factory=dict)
+    """Nodes of named parts of the surface: physical groups, node sets."""
 
     @cached_property
     def surface(self) -> IntArray:

@@ -34,26 +34,19 @@ class BearingForces:
 
 @dataclass(frozen=True)
 class LevelChange:
-    """Change of a level without an effect, at the order whose amplitude changes most.
-
-    Attributes
-    ----------
-    quantity, unit : str
-        Whose level: `LevelQuantity`.
-    order : float
-        Multiple of the frequency of the first mesh that turns.
-    decibels : float
-        The level without the effect less that with it, each the largest over the speeds; at most `MOST` in
-        size.
-    relative : float
-        Change of that amplitude over the largest of all orders with the effect.
-    """
+    """Change of a level without an effect, at the order whose amplitude changes most."""
 
     quantity: str = ""
     unit: str = "dB"
+    """`quantity`, `unit`: Whose level: `LevelQuantity`."""
     order: float = 0.0
+    """Multiple of the frequency of the first mesh that turns."""
     decibels: float = 0.0
+    """The level without the effect less that with it, each the largest over the speeds; at most `MOST` in
+    size.
+    """
     relative: float = 0.0
+    """Change of that amplitude over the largest of all orders with the effect."""
 
     @property
     def words(self) -> str:

@@ -118,38 +118,30 @@ POSITIONS = 128
 
 @dataclass(frozen=True)
 class LinearFigures:
-    """Figures that a run is expected to show; m meshes, b bearings.
-
-    Attributes
-    ----------
-    mean, peak_to_peak : (m,) arrays
-        Dynamic transmission error, m: over all speeds and loads together.
-    orders : (m, 5) array
-        Largest amplitudes of the mesh orders 1 to 5 of the dynamic transmission error, m.
-    bearing_orders : (b, 5) array
-        Of the bearing forces, root of the sum of squares of the directions, N.
-    bearing_loads : (b,) array
-        Root of the sum of squares of the largest amplitudes that loads excite beside those orders, N.
-    parted : (m,) array
-        How far a linear mesh would pull where flanks part, m; 0 where all stay pressed.
-    freedoms, rows : int
-        Size of the system: freedoms, and local coordinates of its force elements.
-    coasting : bool
-        Whether a mesh has its coast flank.
-    lines : mapping of float to float
-        Of the quantity that the scene is computed for, by order up to 10, as far as runs tell them.
-    """
+    """Figures that a run is expected to show; m meshes, b bearings."""
 
     mean: FloatArray
     peak_to_peak: FloatArray
+    """`mean`, `peak_to_peak`: Dynamic transmission error, m: over all speeds and loads together. Shape (m,)
+    each.
+    """
     orders: FloatArray
+    """Largest amplitudes of the mesh orders 1 to 5 of the dynamic transmission error, m. Shape (m, 5)."""
     bearing_orders: FloatArray
+    """Of the bearing forces, root of the sum of squares of the directions, N. Shape (b, 5)."""
     bearing_loads: FloatArray
+    """Root of the sum of squares of the largest amplitudes that loads excite beside those orders, N. Shape
+    (b,).
+    """
     parted: FloatArray
+    """How far a linear mesh would pull where flanks part, m; 0 where all stay pressed. Shape (m,)."""
     freedoms: int
     rows: int
+    """`freedoms`, `rows`: Size of the system: freedoms, and local coordinates of its force elements."""
     coasting: bool
+    """Whether a mesh has its coast flank."""
     lines: Lines = field(default_factory=dict)
+    """Of the quantity that the scene is computed for, by order up to 10, as far as runs tell them."""
 
     @property
     def bearing_force(self) -> FloatArray:

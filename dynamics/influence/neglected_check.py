@@ -52,55 +52,44 @@ def _no_orders() -> FloatArray:
 
 @dataclass(frozen=True)
 class Influence:
-    """Estimated change by leaving one effect out in all parts of a scene; m meshes, b bearings.
-
-    Attributes
-    ----------
-    mean, peak_to_peak : (m,) arrays
-        Change of the dynamic transmission error, m.
-    bearing_force : (b,) array
-        Change of the mesh orders 1 to 5 of each bearing's force and what loads excite, together, N.
-    relative_mean, relative_peak_to_peak : float
-        The largest of them over the value with the effect.
-    relative_bearing_force : float
-        The largest over the largest of all bearings.
-    freedoms, rows : int
-        That it adds: freedoms, and local coordinates of force elements.
-    on : bool
-        Whether the scene has it on anywhere.
-    orders : (m, 5) array
-        Change of the largest amplitudes along the run of mesh orders 1 to 5 of the transmission error, m.
-    bearing_orders : (b, 5) array
-        Of the bearing forces, N.
-    relative_orders, relative_bearing_orders : (5,) arrays
-        The largest of each order over the largest amplitude of that order with the effect.
-    level : LevelChange
-        Of what the scene is computed for, by default of all bearing forces together.
-    decides : bool
-        Whether the level alone decides on the effect.
-    beyond : str
-        Why a run may change by more, in words; empty where linear theory holds.
-    parts : bool
-        Whether flanks part, with or without the effect.
-    """
+    """Estimated change by leaving one effect out in all parts of a scene; m meshes, b bearings."""
 
     mean: FloatArray = field(metadata=in_unit("m", "curve"))
     peak_to_peak: FloatArray = field(metadata=in_unit("m", "curve"))
+    """`mean`, `peak_to_peak`: Change of the dynamic transmission error, m. Shape (m,) each."""
     bearing_force: FloatArray = field(metadata=in_unit("n", "bearing"))
+    """Change of the mesh orders 1 to 5 of each bearing's force and what loads excite, together, N. Shape
+    (b,).
+    """
     relative_mean: float
     relative_peak_to_peak: float
+    """`relative_mean`, `relative_peak_to_peak`: The largest of them over the value with the effect."""
     relative_bearing_force: float
+    """The largest over the largest of all bearings."""
     freedoms: int
     rows: int
+    """`freedoms`, `rows`: That it adds: freedoms, and local coordinates of force elements."""
     on: bool
+    """Whether the scene has it on anywhere."""
     orders: FloatArray = field(default_factory=_no_orders, metadata=in_unit("m", "curve", "order"))
+    """Change of the largest amplitudes along the run of mesh orders 1 to 5 of the transmission error, m.
+    Shape (m, 5).
+    """
     bearing_orders: FloatArray = field(default_factory=_no_orders, metadata=in_unit("n", "bearing", "order"))
+    """Of the bearing forces, N. Shape (b, 5)."""
     relative_orders: FloatArray = field(default_factory=_no_orders)
     relative_bearing_orders: FloatArray = field(default_factory=_no_orders)
+    """`relative_orders`, `relative_bearing_orders`: The largest of each order over the largest amplitude of
+    that order with the effect. Shape (5,) each.
+    """
     level: LevelChange = field(default_factory=LevelChange)
+    """Of what the scene is computed for, by default of all bearing forces together."""
     decides: bool = False
+    """Whether the level alone decides on the effect."""
     beyond: str = ""
+    """Why a run may change by more, in words; empty where linear theory holds."""
     parts: bool = False
+    """Whether flanks part, with or without the effect."""
 
     @property
     def largest(self) -> float:
@@ -377,27 +366,18 @@ LEVEL_SHARE = 0.5
 
 @dataclass(frozen=True)
 class _Allowance:
-    """What a tolerance allows effects to change, in the unit of `size`.
-
-    Attributes
-    ----------
-    words : str
-        The tolerance.
-    alone : float
-        Change from which on an effect is on that the scene does not call for.
-    together : float
-        What all neglected effects may change in sum.
-    size : callable
-        Change by an effect.
-    parted : bool
-        Whether effects are neglected too where flanks part, of which linear theory knows nothing.
-    """
+    """What a tolerance allows effects to change, in the unit of `size`."""
 
     words: str
+    """The tolerance."""
     alone: float
+    """Change from which on an effect is on that the scene does not call for."""
     together: float
+    """What all neglected effects may change in sum."""
     size: Callable[[Influence], float]
+    """Change by an effect."""
     parted: bool
+    """Whether effects are neglected too where flanks part, of which linear theory knows nothing."""
 
     @classmethod
     def of(cls, scene: Scene) -> _Allowance | None:
@@ -414,24 +394,16 @@ class _Allowance:
 
 @dataclass(frozen=True)
 class Decided:
-    """A scene with what its tolerance decided.
-
-    Attributes
-    ----------
-    scene : Scene
-        Its `effects` say what to do.
-    automatic : mapping of str to str
-        Effects that the tolerance decided against what the scene calls for, and why.
-    influences : mapping of str to Influence
-        Estimates; empty where there was no tolerance to decide by.
-    taken : TimeTaken
-        By deciding.
-    """
+    """A scene with what its tolerance decided."""
 
     scene: Scene
+    """Its `effects` say what to do."""
     automatic: Mapping[str, str] = field(default_factory=dict)
+    """Effects that the tolerance decided against what the scene calls for, and why."""
     influences: Mapping[str, Influence] = field(default_factory=dict)
+    """Estimates; empty where there was no tolerance to decide by."""
     taken: TimeTaken = field(default_factory=TimeTaken)
+    """By deciding."""
 
     @property
     def allowed(self) -> float:

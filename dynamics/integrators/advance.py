@@ -24,30 +24,20 @@ POSITION_LIMIT = 1.0 / 64.0  # base pitches
 
 
 class Control(NamedTuple):
-    """Settings of the step size control.
-
-    Attributes
-    ----------
-    implicit : bool
-        Which method.
-    adaptive : bool
-        False: every step is accepted, and all have the size of the level at the start.
-    audit : bool
-        Whether to integrate the powers.
-    order : int
-        Of the embedded error estimate.
-    tolerance : float
-        Error allowed per step, m.
-    force_tolerance : float
-        What Newton's method may leave, N; 0: to rounding.
-    """
+    """Settings of the step size control."""
 
     implicit: bool
+    """Which method."""
     adaptive: bool
+    """False: every step is accepted, and all have the size of the level at the start."""
     audit: bool
+    """Whether to integrate the powers."""
     order: int
+    """Of the embedded error estimate."""
     tolerance: float
+    """Error allowed per step, m."""
     force_tolerance: float
+    """What Newton's method may leave, N; 0: to rounding."""
     step_limit: int
 
 

@@ -27,18 +27,12 @@ from model_studies.stage_clock import TimeTaken
 
 @dataclass(frozen=True)
 class Trajectory(Ending):
-    """A run as computed: how it ended, and its states on the output grid.
-
-    Attributes
-    ----------
-    time : (T,) array
-        Output grid as far as the run came, s.
-    states : States
-        The samples.
-    """
+    """A run as computed: how it ended, and its states on the output grid."""
 
     time: FloatArray
+    """Output grid as far as the run came, s. Shape (T,)."""
     states: States
+    """The samples."""
 
     @property
     def q(self) -> FloatArray:

@@ -38,29 +38,24 @@ from model_studies.stage_clock import TimeTaken
 
 @dataclass(frozen=True)
 class _SampleFigures:
-    """Figures over the inner grid of a run: m meshes, c coast flanks, b supports, N.
-
-    Attributes
-    ----------
-    mesh_peak, mesh_rms : (m,) arrays
-        Largest magnitude and rms of the driving flanks' forces.
-    coast_peak, coast_rms : (m,) arrays
-        Of the coast flanks; zero where there is none.
-    bearing_peak, bearing_rms : (b, 3 or 6) arrays
-        Of forces (and moments, N m) in the frame of each support.
-    removed, folded : (m,) arrays
-        Rms of what the filter took away from the mesh force; of its content near half the inner rate, a
-        bound on what may have folded into the output.
-    """
+    """Figures over the inner grid of a run: m meshes, c coast flanks, b supports, N."""
 
     mesh_peak: FloatArray
     mesh_rms: FloatArray
+    """`mesh_peak`, `mesh_rms`: Largest magnitude and rms of the driving flanks' forces. Shape (m,) each."""
     coast_peak: FloatArray
     coast_rms: FloatArray
+    """`coast_peak`, `coast_rms`: Of the coast flanks; zero where there is none. Shape (m,) each."""
     bearing_peak: FloatArray
     bearing_rms: FloatArray
+    """`bearing_peak`, `bearing_rms`: Of forces (and moments, N m) in the frame of each support. Shape (b, 3
+    or 6) each.
+    """
     removed: FloatArray
     folded: FloatArray
+    """`removed`, `folded`: Rms of what the filter took away from the mesh force; of its content near half the
+    inner rate, a bound on what may have folded into the output. Shape (m,) each.
+    """
 
     def to_json(self, system: System) -> Json:
         """Return peaks and rms by part, and the sampling error of the mesh forces."""
@@ -191,28 +186,20 @@ class _Passed(NamedTuple):
 
 @dataclass(frozen=True)
 class March:
-    """The state from which a run continues.
-
-    Attributes
-    ----------
-    work : Workspace
-        The state, changed in place.
-    ring : SampleRing
-        The points that the anti-alias filter sees, likewise.
-    initial : (3,) array
-        Kinetic, bushing and mesh energy at the start, J; 0 without an audit.
-    samples : int
-        Of the whole run.
-    """
+    """The state from which a run continues."""
 
     system: System
     work: Workspace
+    """The state, changed in place."""
     ring: SampleRing
+    """The points that the anti-alias filter sees, likewise."""
     control: Control
     sampler: Sampler
     compiled: _Passed
     initial: FloatArray
+    """Kinetic, bushing and mesh energy at the start, J; 0 without an audit. Shape (3,)."""
     samples: int
+    """Of the whole run."""
 
     @property
     def state(self) -> tuple[Workspace, SampleRing]:
@@ -236,43 +223,29 @@ class March:
 
 @dataclass(frozen=True)
 class Ending:
-    """The end of a run, and its steps.
-
-    Attributes
-    ----------
-    samples : int
-        Of the output grid, as far as the run came.
-    end : float
-        Time of the last step's end, s; the energies refer to it.
-    stored : (2, 3) array
-        Kinetic, bushing and mesh energy at the start and at the end, J; 0 without an audit.
-    work : (7,) array
-        Works over the run, J, in the order of `Power`.
-    fallen : float
-        How far a loss fell below its highest value at most, J.
-    count : int array
-        Statistics, in the order of `Count`.
-    step_range : (2,) array
-        Smallest and largest accepted step, s.
-    taken : TimeTaken
-        By the stepping; in a process's first run with reading or making the compiled code.
-    figures : _SampleFigures
-        Peaks and rms over the run, and what the anti-alias filter took away.
-    whole : (W, 2, b) array
-        q and v of the modal freedoms at the samples that were to be whole.
-    """
+    """The end of a run, and its steps."""
 
     status: RunStatus
     samples: int
+    """Of the output grid, as far as the run came."""
     end: float
+    """Time of the last step's end, s; the energies refer to it."""
     stored: FloatArray
+    """Kinetic, bushing and mesh energy at the start and at the end, J; 0 without an audit. Shape (2, 3)."""
     work: FloatArray
+    """Works over the run, J, in the order of `Power`. Shape (7,)."""
     fallen: float
+    """How far a loss fell below its highest value at most, J."""
     count: IntArray
+    """Statistics, in the order of `Count`."""
     step_range: FloatArray
+    """Smallest and largest accepted step, s. Shape (2,)."""
     taken: TimeTaken
+    """By the stepping; in a process's first run with reading or making the compiled code."""
     figures: _SampleFigures
+    """Peaks and rms over the run, and what the anti-alias filter took away."""
     whole: FloatArray
+    """q and v of the modal freedoms at the samples that were to be whole. Shape (W, 2, b)."""
 
 
 def sample_count(system: System) -> int:

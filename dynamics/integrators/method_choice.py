@@ -31,26 +31,19 @@ EVALUATIONS = {"explicit": 6.0, "implicit": 10.0}
 
 @dataclass(frozen=True)
 class MethodChoice:
-    """The method of a run, and what speaks for it.
-
-    Attributes
-    ----------
-    method, requested : str
-        ``"explicit"`` or ``"implicit"``; the latter may be ``"auto"``.
-    rate : float
-        Largest magnitude of an eigenvalue of the motion about the equilibrium at t = 0, rad/s.
-    step : float
-        That accuracy wants, s: the fixed one, or by the fastest natural motion that meshes excite.
-    slowest_decay : float
-        Least rate of decay of natural motions that meshes excite and that are damped lightly, 1/s; infinite:
-        there are none.
-    """
+    """The method of a run, and what speaks for it."""
 
     method: str
     requested: str
+    """`method`, `requested`: ``"explicit"`` or ``"implicit"``; the latter may be ``"auto"``."""
     rate: float
+    """Largest magnitude of an eigenvalue of the motion about the equilibrium at t = 0, rad/s."""
     step: float
+    """That accuracy wants, s: the fixed one, or by the fastest natural motion that meshes excite."""
     slowest_decay: float
+    """Least rate of decay of natural motions that meshes excite and that are damped lightly, 1/s; infinite:
+    there are none.
+    """
 
     @property
     def other(self) -> str:

@@ -45,48 +45,32 @@ THIRD = 1.0 / 3.0
 
 @with_numbers("level", "whole")
 class Sampler(NamedTuple):
-    """The filter and the series that sample the steps.
-
-    Attributes
-    ----------
-    taps : (L,) array
-        Weights of the anti-alias filter.
-    high_pass : (7,) array
-        Weights that pass what lies near half the inner rate.
-    factor : int
-        Points of the inner grid per output sample.
-    rate : float
-        Points per second.
-    static : PackedTables
-        Tables of the static transmission error.
-    nominal_force : (m,) array
-        N.
-    level : (m,) int array
-        Level intervals of these forces in the tables.
-    bearings : BearingForce
-        Of the channels of a point; without signals where no output has them.
-    bodies : int
-        Freedoms that are not modal.
-    kept : int
-        Freedoms that samples have: all, or without the amplitudes of housings where nothing asks for them.
-    filtered : int
-        Channels that the filter takes: without the amplitudes of modal freedoms where no output has them.
-    whole : (W,) int array
-        Samples of which the amplitudes are kept in any case.
-    """
+    """The filter and the series that sample the steps."""
 
     taps: FloatArray
+    """Weights of the anti-alias filter. Shape (L,)."""
     high_pass: FloatArray
+    """Weights that pass what lies near half the inner rate. Shape (7,)."""
     factor: int
+    """Points of the inner grid per output sample."""
     rate: float
+    """Points per second."""
     static: PackedTables
+    """Tables of the static transmission error."""
     nominal_force: FloatArray
+    """N. Shape (m,)."""
     level: IntArray
+    """Level intervals of these forces in the tables. Shape (m,)."""
     bearings: BearingForce
+    """Of the channels of a point; without signals where no output has them."""
     bodies: int
+    """Freedoms that are not modal."""
     kept: int
+    """Freedoms that samples have: all, or without the amplitudes of housings where nothing asks for them."""
     filtered: int
+    """Channels that the filter takes: without the amplitudes of modal freedoms where no output has them."""
     whole: IntArray
+    """Samples of which the amplitudes are kept in any case. Shape (W,)."""
 
     @classmethod
     def of(cls, system: System, whole: IntArray) -> Sampler:
@@ -117,20 +101,18 @@ def _dispensable(system: System) -> bool:
 
 
 class _Peaks(NamedTuple):
-    """Figures of P signals over the inner grid: R local forces, then the forces at the supports.
-
-    Attributes
-    ----------
-    last : (3, P) array
-        Values at the three points before the current one, the nearest first; NaN before the start.
-    now, largest, square : (P,) arrays
-        Values; largest magnitude so far, by the cubic through four points; sum of squares.
-    """
+    """Figures of P signals over the inner grid: R local forces, then the forces at the supports."""
 
     last: FloatArray
+    """Values at the three points before the current one, the nearest first; NaN before the start. Shape (3,
+    P).
+    """
     now: FloatArray
     largest: FloatArray
     square: FloatArray
+    """`now`, `largest`, `square`: Values; largest magnitude so far, by the cubic through four points; sum of
+    squares. Shape (P,) each.
+    """
 
 
 class SampleRing(NamedTuple):
@@ -139,40 +121,30 @@ class SampleRing(NamedTuple):
     A point's C channels are the R local forces, q and v of all freedoms but the modal ones, the m static
     deflections, then q and v of the modal ones, or what they carry (see `States`). Local coordinates are
     linear in q.
-
-    Attributes
-    ----------
-    point : (L, C) array
-        The last L points, in a ring.
-    q, v, a : (n,) arrays
-        Scratch: the state at a point, and accelerations.
-    local : LocalState
-        Of the elements there.
-    motion : (k, 4) array
-        Of the laws there.
-    moved : (k,) int array
-        Scratch: quanta of free trains before a step's end.
-    removed, folded : (R,) arrays
-        Sums over the output samples of the squares of what the filter took away from the local forces, and
-        of their content near half the inner rate.
-    high : (R,) array
-        Scratch: that content at one output sample.
-    whole : (W, 2, b) array
-        q and v of the b modal freedoms at the samples ``Sampler.whole``.
     """
 
     point: FloatArray
+    """The last L points, in a ring. Shape (L, C)."""
     q: FloatArray
     v: FloatArray
     a: FloatArray
+    """`q`, `v`, `a`: Scratch: the state at a point, and accelerations. Shape (n,) each."""
     local: LocalState
+    """Of the elements there."""
     motion: FloatArray
+    """Of the laws there. Shape (k, 4)."""
     moved: IntArray
+    """Scratch: quanta of free trains before a step's end. Shape (k,)."""
     peaks: _Peaks
     removed: FloatArray
     folded: FloatArray
+    """`removed`, `folded`: Sums over the output samples of the squares of what the filter took away from the
+    local forces, and of their content near half the inner rate. Shape (R,) each.
+    """
     high: FloatArray
+    """Scratch: that content at one output sample. Shape (R,)."""
     whole: FloatArray
+    """q and v of the b modal freedoms at the samples ``Sampler.whole``. Shape (W, 2, b)."""
 
     @classmethod
     def of(cls, arrays: SystemArrays, sampler: Sampler) -> SampleRing:

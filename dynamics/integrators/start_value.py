@@ -26,27 +26,18 @@ MOST_SAVED = 128
 
 @dataclass(frozen=True)
 class _SavedState:
-    """State of a march between two steps.
-
-    Attributes
-    ----------
-    state : dict of str to array
-        Fields `STATE` of its workspace.
-    force : (R,) array
-        Local forces at the last step's end.
-    point : (L, C) array
-        Of its ring.
-    figures : tuple of arrays
-        Running figures of its ring: the two last values, peaks and squares (..., P), sums (R,).
-    whole : (W, 2, b) array
-        Of its ring.
-    """
+    """State of a march between two steps."""
 
     state: dict[str, FloatArray]
+    """Fields `STATE` of its workspace."""
     force: FloatArray
+    """Local forces at the last step's end. Shape (R,)."""
     point: FloatArray
+    """Of its ring. Shape (L, C)."""
     figures: tuple[FloatArray, ...]
+    """Running figures of its ring: the two last values, peaks and squares (..., P), sums (R,)."""
     whole: FloatArray
+    """Of its ring. Shape (W, 2, b)."""
 
     @property
     def time(self) -> float:
@@ -95,19 +86,13 @@ class Trail:
 
 @dataclass(frozen=True)
 class StartValue:
-    """Start value of a march that continues another one.
-
-    Attributes
-    ----------
-    rows_of : (R,) int array
-        See `added_rows`.
-    states : callable
-        Gives the other march's output samples from one to before another.
-    """
+    """Start value of a march that continues another one."""
 
     at: _SavedState
     rows_of: IntArray
+    """See `added_rows`. Shape (R,)."""
     states: Callable[[int, int], States]
+    """Gives the other march's output samples from one to before another."""
 
     def into(self, march: March, sink: StateSink) -> None:
         """Start `march` there; `sink` gets the samples before it."""

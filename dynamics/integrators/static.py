@@ -33,22 +33,15 @@ LOST_CONTACT = 1e-6  # of the largest force: below it a search without end has r
 
 @dataclass(frozen=True)
 class StaticSolution:
-    """The rest position of the bodies.
-
-    Attributes
-    ----------
-    displacement : (n,) array
-        Deviations from the kinematic motion, m and rad.
-    mesh_force : (m,) array
-        Transverse, of the driving flanks, N.
-    residual : float
-        Largest unbalanced force (torques over the freedom's scale), N.
-    """
+    """The rest position of the bodies."""
 
     status: StaticStatus
     displacement: FloatArray
+    """Deviations from the kinematic motion, m and rad. Shape (n,)."""
     mesh_force: FloatArray
+    """Transverse, of the driving flanks, N. Shape (m,)."""
     residual: float
+    """Largest unbalanced force (torques over the freedom's scale), N."""
     iterations: int
 
 
@@ -85,25 +78,17 @@ def equilibrium_near(system: System, displacement: FloatArray, time: float = 0.0
 
 @dataclass(frozen=True)
 class RestsBeside:
-    """Rests of systems that differ a little from one at rest, to first order: one factorization for all.
-
-    Attributes
-    ----------
-    displacement : (n,) array
-        Of the system at rest, m and rad.
-    force : (R,) array
-        Of its elements, N.
-    residual : float
-        Largest unbalanced force there, N.
-    compliance : (n, n) array
-        Displacements per force on the freedoms.
-    """
+    """Rests of systems that differ a little from one at rest, to first order: one factorization for all."""
 
     time: float
     displacement: FloatArray
+    """Of the system at rest, m and rad. Shape (n,)."""
     force: FloatArray
+    """Of its elements, N. Shape (R,)."""
     residual: float
+    """Largest unbalanced force there, N."""
     compliance: FloatArray
+    """Displacements per force on the freedoms. Shape (n, n)."""
 
     @classmethod
     def of(cls, system: System, displacement: FloatArray, time: float = 0.0) -> RestsBeside:

@@ -55,111 +55,96 @@ class Workspace(NamedTuple):
 
     The step sizes are geometric, LEVELS_PER_OCTAVE to a factor of 2, so that the matrices of the
     implicit stages are inverted once per level and run. L = entries of ``SparseMatrices.coupling``.
-
-    Attributes
-    ----------
-    time, time_rest, error : (1,) arrays
-        Current time, s, and what its rounding leaves; error of the last accepted step over the tolerance.
-    q, v, v_rest, a : (n,) arrays
-        State at `time`: deviations from the kinematic motion, their rates, what rounding leaves of these, and
-        accelerations.
-    q_new, v_new, a_new, q_error, v_error : (n,) arrays
-        At the end of the step tried.
-    external, unloaded : (n,) arrays
-        Scratch: external force; acceleration without the elements' forces.
-    stage_v, stage_a : (STAGES, n) arrays
-    force : (R,) array
-        Local forces at the current stage, as Newton's method found them, N.
-    local : LocalState
-        Of the elements at the current stage.
-    free, free_rate, free_acceleration : (R,) arrays
-        Local coordinates, their rates and accelerations without the elements' forces.
-    free_position : (m,) array
-        Positions without them.
-    linear : (p, 3) int array
-        Rows of linear elements, and the first and the end among these p of the element of each.
-    resting : (2 p,) array
-        Scratch: coordinates and rates of these rows without any local force.
-    response : (R + m,) array
-        Accelerations of coordinates and positions by the local forces in `force`.
-    motion : (k, 4) array
-        Of the laws at the current stage.
-    speed : (k,) array
-        Their speeds at the start of the step, rad/s, for the audit.
-    moved : (k,) int array
-        Quanta of a revolution by which each free train's own rotation was moved into the reference.
-    update, correction : (R,) arrays
-        Scratch of Newton's method, N.
-    solved : (R + 1,) int array
-        Rows that Newton's method solves for in the current step, ended by -1.
-    jacobian : (R, 2 R) array
-        Its equations in these rows, transposed, and their inverse.
-    power : (STAGES, 7) array
-        Per stage; columns `Power`.
-    work : (7,) array
-        Integrated, J.
-    highest, fallen : (3,) arrays
-        Highest value of each of `LOSSES` so far, J, and how far it fell below it at most.
-    counts : int array
-        See `Count`.
-    step_sizes : (r,) array
-        Step sizes, falling, s; then the one that lands on a law's knot.
-    matrix : (a, a) array
-        Scratch: the matrix to invert, of the freedoms that are not modal.
-    ready : (r,) bool array
-        Whether the matrices of a level are there.
-    inverse : (r, L) array
-        Entries of the inverse of M + h g C + (h g)^2 K.
-    approach : (r, R, R + m) array
-        Accelerations of local coordinates, then of positions, per local force; linear elements follow, so
-        that their own rows are 0.
-    held : (r, R + m, 2 p) array
-        Accelerations by the linear elements, per coordinate and per rate of their rows without local forces.
     """
 
     time: FloatArray
     time_rest: FloatArray
     error: FloatArray
+    """`time`, `time_rest`, `error`: Current time, s, and what its rounding leaves; error of the last accepted
+    step over the tolerance. Shape (1,) each.
+    """
     q: FloatArray
     v: FloatArray
     v_rest: FloatArray
     a: FloatArray
+    """`q`, `v`, `v_rest`, `a`: State at `time`: deviations from the kinematic motion, their rates, what
+    rounding leaves of these, and accelerations. Shape (n,) each.
+    """
     q_new: FloatArray
     v_new: FloatArray
     a_new: FloatArray
     q_error: FloatArray
     v_error: FloatArray
+    """`q_new`, `v_new`, `a_new`, `q_error`, `v_error`: At the end of the step tried. Shape (n,) each."""
     external: FloatArray
     unloaded: FloatArray
+    """`external`, `unloaded`: Scratch: external force; acceleration without the elements' forces. Shape (n,)
+    each.
+    """
     stage_v: FloatArray
     stage_a: FloatArray
+    """`stage_v`, `stage_a`: Shape (STAGES, n) each."""
     force: FloatArray
+    """Local forces at the current stage, as Newton's method found them, N. Shape (R,)."""
     local: LocalState
+    """Of the elements at the current stage."""
     free: FloatArray
     free_rate: FloatArray
     free_acceleration: FloatArray
+    """`free`, `free_rate`, `free_acceleration`: Local coordinates, their rates and accelerations without the
+    elements' forces. Shape (R,) each.
+    """
     free_position: FloatArray
+    """Positions without them. Shape (m,)."""
     linear: IntArray
+    """Rows of linear elements, and the first and the end among these p of the element of each. Shape (p, 3).
+    """
     resting: FloatArray
+    """Scratch: coordinates and rates of these rows without any local force. Shape (2 p,)."""
     response: FloatArray
+    """Accelerations of coordinates and positions by the local forces in `force`. Shape (R + m,)."""
     motion: FloatArray
+    """Of the laws at the current stage. Shape (k, 4)."""
     speed: FloatArray
+    """Their speeds at the start of the step, rad/s, for the audit. Shape (k,)."""
     moved: IntArray
+    """Quanta of a revolution by which each free train's own rotation was moved into the reference. Shape
+    (k,).
+    """
     update: FloatArray
     correction: FloatArray
+    """`update`, `correction`: Scratch of Newton's method, N. Shape (R,) each."""
     solved: IntArray
+    """Rows that Newton's method solves for in the current step, ended by -1. Shape (R + 1,)."""
     jacobian: FloatArray
+    """Its equations in these rows, transposed, and their inverse. Shape (R, 2 R)."""
     power: FloatArray
+    """Per stage; columns `Power`. Shape (STAGES, 7)."""
     work: FloatArray
+    """Integrated, J. Shape (7,)."""
     highest: FloatArray
     fallen: FloatArray
+    """`highest`, `fallen`: Highest value of each of `LOSSES` so far, J, and how far it fell below it at most.
+    Shape (3,) each.
+    """
     counts: IntArray
+    """See `Count`."""
     step_sizes: FloatArray
+    """Step sizes, falling, s; then the one that lands on a law's knot. Shape (r,)."""
     matrix: FloatArray
+    """Scratch: the matrix to invert, of the freedoms that are not modal. Shape (a, a)."""
     ready: BoolArray
+    """Whether the matrices of a level are there. Shape (r,)."""
     inverse: FloatArray
+    """Entries of the inverse of M + h g C + (h g)^2 K. Shape (r, L)."""
     approach: FloatArray
+    """Accelerations of local coordinates, then of positions, per local force; linear elements follow, so that
+    their own rows are 0. Shape (r, R, R + m).
+    """
     held: FloatArray
+    """Accelerations by the linear elements, per coordinate and per rate of their rows without local forces.
+    Shape (r, R + m, 2 p).
+    """
 
     @classmethod
     def of(cls, system: SystemArrays, step_sizes: FloatArray, q: FloatArray, first_step: float) -> Workspace:

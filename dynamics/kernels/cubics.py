@@ -12,21 +12,14 @@ from dynamics.types import FloatArray, IntArray
 
 
 class Cubics(NamedTuple):
-    """Curves one after the other in flat arrays.
-
-    Attributes
-    ----------
-    first : (l + 1,) int array
-        First piece of each curve.
-    start : (S,) array
-        Start of the pieces.
-    coefficient : (S, 4) array
-        Ascending coefficients above the piece's start.
-    """
+    """Curves one after the other in flat arrays."""
 
     first: IntArray
+    """First piece of each curve. Shape (l + 1,)."""
     start: FloatArray
+    """Start of the pieces. Shape (S,)."""
     coefficient: FloatArray
+    """Ascending coefficients above the piece's start. Shape (S, 4)."""
 
     @classmethod
     def packed(cls, curves: Sequence[tuple[FloatArray, FloatArray]]) -> Cubics:

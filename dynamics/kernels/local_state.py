@@ -10,54 +10,43 @@ from dynamics.types import FloatArray, IntArray
 
 
 class LocalState(NamedTuple):
-    """The state that laws read and write at one instant; P = the largest p.
-
-    Attributes
-    ----------
-    position : (m + f,) array
-        Of the meshes, base pitches; then how far frames have turned against each other, revolutions.
-    pace : (m + f,) array
-        Their rates in the kinematic motion, per second.
-    whole : (k,) array
-        Whole revolutions of the laws when `whole_part` was written; NaN: never.
-    whole_part : (m + f, k) array
-        What they add to the positions.
-    coordinate, rate : (R,) arrays
-        y (m) and y' (m/s), those of the deviations from the kinematic motion.
-    drift : (R,) array
-        What the kinematic motion adds to the rates, m/s.
-    acceleration : (R,) array
-        y'' with that of the kinematic motion, m/s^2; kept only for unbalances.
-    clock : (1,) array
-        Time, s.
-    speed : (E, 2) array
-        Spin and speed of the frame in the kinematic motion, rad/s.
-    force, elastic : (R,) arrays
-        f and the part of it that stores energy, N.
-    tangent, viscous : (R, P) arrays
-        Row r: df_r/dy and df_r/dy' in the coordinates of its own element, N/m and N s/m.
-    inertial : (R, P) array
-        Row r: df_r/dy'', kg, of unbalances.
-    hint : (E,) int array
-        Where the last look-up ended: the next starts there.
-    """
+    """The state that laws read and write at one instant; P = the largest p."""
 
     position: FloatArray
+    """Of the meshes, base pitches; then how far frames have turned against each other, revolutions. Shape (m
+    + f,).
+    """
     pace: FloatArray
+    """Their rates in the kinematic motion, per second. Shape (m + f,)."""
     whole: FloatArray
+    """Whole revolutions of the laws when `whole_part` was written; NaN: never. Shape (k,)."""
     whole_part: FloatArray
+    """What they add to the positions. Shape (m + f, k)."""
     coordinate: FloatArray
     rate: FloatArray
+    """`coordinate`, `rate`: y (m) and y' (m/s), those of the deviations from the kinematic motion. Shape (R,)
+    each.
+    """
     drift: FloatArray
+    """What the kinematic motion adds to the rates, m/s. Shape (R,)."""
     acceleration: FloatArray
+    """y'' with that of the kinematic motion, m/s^2; kept only for unbalances. Shape (R,)."""
     clock: FloatArray
+    """Time, s. Shape (1,)."""
     speed: FloatArray
+    """Spin and speed of the frame in the kinematic motion, rad/s. Shape (E, 2)."""
     force: FloatArray
     elastic: FloatArray
+    """`force`, `elastic`: f and the part of it that stores energy, N. Shape (R,) each."""
     tangent: FloatArray
     viscous: FloatArray
+    """`tangent`, `viscous`: Row r: df_r/dy and df_r/dy' in the coordinates of its own element, N/m and N s/m.
+    Shape (R, P) each.
+    """
     inertial: FloatArray
+    """Row r: df_r/dy'', kg, of unbalances. Shape (R, P)."""
     hint: IntArray
+    """Where the last look-up ended: the next starts there. Shape (E,)."""
 
     @classmethod
     def empty(cls, rows: int, most: int, positions: int = 1, elements: int = 1, laws: int = 0) -> LocalState:

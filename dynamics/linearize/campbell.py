@@ -29,27 +29,18 @@ OSCILLATING = 1e-6  # least imaginary part over the largest eigenvalue's size
 
 @dataclass(frozen=True)
 class _WhirlModes:
-    """Modes that oscillate, by rising frequency, as seen in the frame of each shaft.
-
-    Attributes
-    ----------
-    frequency : (a,) array
-        Damped, Hz.
-    damping_ratio : (a,) array
-        -Re/|eigenvalue|; below 0: unstable.
-    shape : (a, n) complex array
-        One mode per row, per freedom in m and rad; the largest entry in meters is 1.
-    freedom : tuple of str
-        Names of the columns, "shaft.kind".
-    scale : (n,) array
-        Meters per unit of each freedom.
-    """
+    """Modes that oscillate, by rising frequency, as seen in the frame of each shaft."""
 
     frequency: FloatArray
+    """Damped, Hz. Shape (a,)."""
     damping_ratio: FloatArray
+    """-Re/|eigenvalue|; below 0: unstable. Shape (a,)."""
     shape: ComplexArray
+    """One mode per row, per freedom in m and rad; the largest entry in meters is 1. Shape (a, n)."""
     freedom: tuple[str, ...]
+    """Names of the columns, "shaft.kind"."""
     scale: FloatArray
+    """Meters per unit of each freedom. Shape (n,)."""
 
 
 def whirl_modes(system: System, time: float = 0.0) -> _WhirlModes:
@@ -166,30 +157,23 @@ STILL = 0.1  # share of kinetic energy across the axis below which a mode has no
 
 @dataclass(frozen=True)
 class WhirlBranches:
-    """A modes over S speeds, n freedoms, p springs; NaN where a mode does not oscillate.
-
-    Attributes
-    ----------
-    speed : (S,) array
-        Of the leading law, rad/s.
-    frequency, damping_ratio : (S, A) arrays
-        Damped, Hz; -Re/|eigenvalue|.
-    whirl : (S, A) array
-        Of the shaft that moves most across its axis: from -1 (circular, against its rotation) over 0 (in a
-        plane, or no shaft moves much, or it is at rest) to +1 (circular, in the sense of its rotation).
-    shape : (S, A, n) complex array
-        The largest entry in meters is 1.
-    strain_energy, kinetic_energy : (S, A, p), (S, A, n) arrays
-        Shares, mean over a cycle.
-    """
+    """A modes over S speeds, n freedoms, p springs; NaN where a mode does not oscillate."""
 
     speed: FloatArray
+    """Of the leading law, rad/s. Shape (S,)."""
     frequency: FloatArray
     damping_ratio: FloatArray
+    """`frequency`, `damping_ratio`: Damped, Hz; -Re/|eigenvalue|. Shape (S, A) each."""
     whirl: FloatArray
+    """Of the shaft that moves most across its axis: from -1 (circular, against its rotation) over 0 (in a
+    plane, or no shaft moves much, or it is at rest) to +1 (circular, in the sense of its rotation). Shape (S,
+    A).
+    """
     shape: ComplexArray
+    """The largest entry in meters is 1. Shape (S, A, n)."""
     strain_energy: FloatArray
     kinetic_energy: FloatArray
+    """`strain_energy`, `kinetic_energy`: Shares, mean over a cycle. (S, A, p), (S, A, n) arrays."""
 
 
 def modes_at(system: System, linear: LinearSystem, speed: float) -> _WhirlModes:

@@ -65,27 +65,19 @@ ALIKE = 0.5  # modal assurance with the mode at either speed
 
 @dataclass(frozen=True)
 class CriticalSpeeds:
-    """Crossings, C of them by rising speed.
-
-    Attributes
-    ----------
-    speed : (C,) array
-        Of the leading law, rad/s.
-    frequency, damping_ratio : (C,) arrays
-        Of the mode there, Hz.
-    mode, mesh, order : (C,) int arrays
-        Branch, mesh, and multiple of its mesh frequency.
-    residual : (C,) array
-        Of the eigenvalue problem there, as an error of the frequency, Hz.
-    """
+    """Crossings, C of them by rising speed."""
 
     speed: FloatArray
+    """Of the leading law, rad/s. Shape (C,)."""
     frequency: FloatArray
     damping_ratio: FloatArray
+    """`frequency`, `damping_ratio`: Of the mode there, Hz. Shape (C,) each."""
     mode: IntArray
     mesh: IntArray
     order: IntArray
+    """`mode`, `mesh`, `order`: Branch, mesh, and multiple of its mesh frequency. Shape (C,) each."""
     residual: FloatArray
+    """Of the eigenvalue problem there, as an error of the frequency, Hz. Shape (C,)."""
 
 
 def critical_speeds(

@@ -24,26 +24,20 @@ LEAST_FORCE = 1e-3  # of the first level: an unloaded flank just touches
 
 @dataclass(frozen=True)
 class FlankCycle:
-    """A driving flank of p rows at T positions, uniform over one period of its table.
-
-    Attributes
-    ----------
-    rows : slice
-        Of its local coordinates.
-    coordinate, force : (T, p) arrays
-        Local coordinates in m: the transmission error that carries the static mesh force, and the others as
-        the bodies rest; local forces, N. The first force is the static one everywhere.
-    tangents : (T, p, p) array
-        Derivatives of the forces in the coordinates, N/m.
-    blocked : (T, p) array
-        Forces while the transmission error is held at its mean, N.
-    """
+    """A driving flank of p rows at T positions, uniform over one period of its table."""
 
     rows: slice
+    """Of its local coordinates."""
     coordinate: FloatArray
     force: FloatArray
+    """`coordinate`, `force`: Local coordinates in m: the transmission error that carries the static mesh
+    force, and the others as the bodies rest; local forces, N. The first force is the static one everywhere.
+    Shape (T, p) each.
+    """
     tangents: FloatArray
+    """Derivatives of the forces in the coordinates, N/m. Shape (T, p, p)."""
     blocked: FloatArray
+    """Forces while the transmission error is held at its mean, N. Shape (T, p)."""
 
     @property
     def static_error(self) -> FloatArray:

@@ -51,22 +51,18 @@ FLANKS = (Law.FLANK, Law.SPATIAL_FLANK)
 
 @dataclass(frozen=True)
 class _Absorber:
-    """A part with k coordinates y = rows q, whose force against its motion is stiffness y + damping y'.
-
-    Attributes
-    ----------
-    name, kind : str
-        Of the part; one of `KINDS`.
-    rows : (k, n) array
-    stiffness, damping : (k, k) arrays
-        N/m, N s/m. A symmetric stiffness takes no power over a cycle, and is 0 where it is known to be.
-    """
+    """A part with k coordinates y = rows q, whose force against its motion is stiffness y + damping y'."""
 
     name: str
     kind: str
+    """`name`, `kind`: Of the part; one of `KINDS`."""
     rows: FloatArray
+    """Shape (k, n)."""
     stiffness: FloatArray
     damping: FloatArray
+    """`stiffness`, `damping`: N/m, N s/m. A symmetric stiffness takes no power over a cycle, and is 0 where
+    it is known to be. Shape (k, k) each.
+    """
 
 
 def _elements(
@@ -146,25 +142,17 @@ FRAMES = "rotating frames"
 
 @dataclass(frozen=True)
 class _PowerBalance:
-    """Mean powers of H harmonics at S speeds, W; p sources, a sinks.
-
-    Attributes
-    ----------
-    source : tuple of str
-        Meshes, by their transmission errors; `LOADS`: forces and unbalances, where they excite.
-    input : (p, S, H) array
-        By each, negative where it brakes the vibration.
-    sink, kind : tuple of str
-        Parts and what they are, one of `KINDS`.
-    loss : (a, S, H) array
-        In each. A mesh whose friction feeds the vibration has a negative one.
-    """
+    """Mean powers of H harmonics at S speeds, W; p sources, a sinks."""
 
     source: tuple[str, ...]
+    """Meshes, by their transmission errors; `LOADS`: forces and unbalances, where they excite."""
     input: FloatArray
+    """By each, negative where it brakes the vibration. Shape (p, S, H)."""
     sink: tuple[str, ...]
     kind: tuple[str, ...]
+    """`sink`, `kind`: Parts and what they are, one of `KINDS`."""
     loss: FloatArray
+    """In each. A mesh whose friction feeds the vibration has a negative one. Shape (a, S, H)."""
 
     @property
     def fields(self) -> dict[str, Any]:
@@ -252,23 +240,7 @@ def _power(force: ComplexArray, rate: ComplexArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class ForcedResponse(HarmonicResponse, ArrayFile):
-    """Harmonic response over S speeds with a measure of its validity.
-
-    Attributes
-    ----------
-    excitation_difference : (m, H) array
-        By how much the largest dynamic transmission error over the speeds changes if the blocked force
-        excites instead of the static error, relative to the largest of all harmonics: what a theory of first
-        order in the ripple cannot tell.
-    natural_frequency : (n,) array
-        With the mean mesh stiffness.
-    power_source, power_input, power_sink, power_sink_kind, power_loss
-        The fields of `power`; empty in files of versions without it.
-    bearing_floor, bearing_floor_error : (b, S) arrays
-        Empty where no orders are left out.
-    facts : dict
-        Plain JSON: `leading_shaft`, `time`, `equilibrium`, `seconds` (CPU by stage), `effect_ledger`.
-    """
+    """Harmonic response over S speeds with a measure of its validity."""
 
     SCHEMA = "lineofaction forced response"
 
@@ -278,9 +250,14 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
             "1", "change of the largest amplitude with the other excitation, relative", "mesh", "order"
         ),
     )
+    """By how much the largest dynamic transmission error over the speeds changes if the blocked force excites
+    instead of the static error, relative to the largest of all harmonics: what a theory of first order in the
+    ripple cannot tell. Shape (m, H).
+    """
     natural_frequency: FloatArray = field(
         default_factory=lambda: np.empty(0), metadata=stored("Hz", "undamped natural frequency", "mode")
     )
+    """With the mean mesh stiffness. Shape (n,)."""
     power_source: tuple[str, ...] = ()
     power_input: FloatArray = field(
         default_factory=lambda: np.empty((0, 0, 0)),
@@ -292,6 +269,9 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
         default_factory=lambda: np.empty((0, 0, 0)),
         metadata=stored("W", "mean power lost", "sink", "speed", "order"),
     )
+    """`power_source`, `power_input`, `power_sink`, `power_sink_kind`, `power_loss`: The fields of `power`;
+    empty in files of versions without it.
+    """
     bearing_floor: FloatArray = field(
         default_factory=lambda: np.empty((0, 0)),
         metadata=stored("N2", "mean square force of the orders left out", "bearing", "speed"),
@@ -300,7 +280,9 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
         default_factory=lambda: np.empty((0, 0)),
         metadata=stored("N2", "by how much it may be off", "bearing", "speed"),
     )
+    """`bearing_floor`, `bearing_floor_error`: Empty where no orders are left out. Shape (b, S) each."""
     facts: Json = field(default_factory=dict)
+    """Plain JSON: `leading_shaft`, `time`, `equilibrium`, `seconds` (CPU by stage), `effect_ledger`."""
 
     @property
     def bearing_mean_square(self) -> FloatArray:
@@ -411,32 +393,22 @@ def _difference(static: FloatArray, blocked: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class _Peak:
-    """A local maximum over the speeds.
-
-    Attributes
-    ----------
-    quantity : str
-        "mesh_force" or "bearing_force".
-    name : str
-        Of the mesh or bearing.
-    order, speed, frequency : float
-        Multiple of the mesh frequency; rad/s; Hz.
-    amplitude : float
-        N; of a bearing the root of the sum of squares of x, y and z.
-    amplification : float
-        Dynamic over static transmission error there; of a bearing that of the mesh where it is largest.
-    natural_frequency : float
-        The nearest, Hz.
-    """
+    """A local maximum over the speeds."""
 
     quantity: str
+    """"mesh_force" or "bearing_force"."""
     name: str
+    """Of the mesh or bearing."""
     order: float
     speed: float
     frequency: float
+    """`order`, `speed`, `frequency`: Multiple of the mesh frequency; rad/s; Hz."""
     amplitude: float
+    """N; of a bearing the root of the sum of squares of x, y and z."""
     amplification: float
+    """Dynamic over static transmission error there; of a bearing that of the mesh where it is largest."""
     natural_frequency: float
+    """The nearest, Hz."""
 
 
 def peaks(response: ForcedResponse) -> tuple[_Peak, ...]:

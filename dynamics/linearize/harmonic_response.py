@@ -51,23 +51,6 @@ class HarmonicResponse:
 
     Complex peak amplitudes A: the quantity is its mean and the sum over h of Re(A exp(2 pi i frequency t)),
     with all meshes at their position offsets at t = 0. Fields state unit, meaning and dimensions of arrays.
-
-    Attributes
-    ----------
-    order : (H,) array
-        Those that are excited; fractions where tables or trains repeat after several pitches.
-    static_transmission_error, load_moment, friction_force : (m, H) complex array
-        At the static mesh forces: what excites. The moment is that of the load as it travels, about the axis
-        of a misalignment, the friction that along the sliding at the pitch point; 0 of flanks without such
-        rows. Empty in older files.
-    bearing_force : (b, 3, S, H) complex array
-        On the ground or the pin, in the bearing's own frame, N; with seats (b, 6, S, H), moments in N m.
-    least_mesh_force : (m, S) array
-        Where it is negative flanks part, and no linear answer holds.
-    residual : float
-        Largest force left by the linear solves, of the largest exciting force.
-    floor : LineFloor or None
-        What the lines left out of a long period do together; None where none is, and of files.
     """
 
     mesh: tuple[str, ...]
@@ -77,10 +60,15 @@ class HarmonicResponse:
     order: FloatArray = field(
         metadata=stored("1", "multiple of the frequency of the first mesh that turns", "order")
     )
+    """Those that are excited; fractions where tables or trains repeat after several pitches. Shape (H,)."""
     frequency: FloatArray = field(metadata=stored("Hz", "frequency of the harmonic", "speed", "order"))
     static_transmission_error: ComplexArray = field(
         metadata=stored("m", "complex amplitude of the excitation", "mesh", "order")
     )
+    """`static_transmission_error`, `load_moment`, `friction_force`: At the static mesh forces: what excites.
+    The moment is that of the load as it travels, about the axis of a misalignment, the friction that along
+    the sliding at the pitch point; 0 of flanks without such rows. Empty in older files. Shape (m, H) each.
+    """
     dynamic_transmission_error: ComplexArray = field(metadata=stored("m", "complex amplitude", "mesh", *GRID))
     mesh_force: ComplexArray = field(metadata=stored("N", "complex amplitude, transverse", "mesh", *GRID))
     bearing_force: ComplexArray = field(
@@ -88,6 +76,9 @@ class HarmonicResponse:
             "N or N m", "complex amplitude on the ground or the pin", "bearing", "direction", *GRID
         )
     )
+    """On the ground or the pin, in the bearing's own frame, N; with seats (b, 6, S, H), moments in N m. Shape
+    (b, 3, S, H).
+    """
     displacement: ComplexArray = field(metadata=stored("m or rad", "complex amplitude", "freedom", *GRID))
     mean_force: FloatArray = field(metadata=stored("N", "static mesh force", "mesh"))
     mean_stiffness: FloatArray = field(
@@ -96,7 +87,9 @@ class HarmonicResponse:
     least_mesh_force: FloatArray = field(
         metadata=stored("N", "least of mean and harmonics together", "mesh", "speed")
     )
+    """Where it is negative flanks part, and no linear answer holds. Shape (m, S)."""
     residual: float = 0.0
+    """Largest force left by the linear solves, of the largest exciting force."""
     load_moment: ComplexArray = field(
         default_factory=_none, metadata=stored("N m", "complex amplitude of the excitation", "mesh", "order")
     )
@@ -104,6 +97,7 @@ class HarmonicResponse:
         default_factory=_none, metadata=stored("N", "complex amplitude of the excitation", "mesh", "order")
     )
     floor: LineFloor | None = None
+    """What the lines left out of a long period do together; None where none is, and of files."""
 
     @property
     def in_contact(self) -> BoolArray:

@@ -32,20 +32,15 @@ BINS = 8
 
 
 class FloorPower(NamedTuple):
-    """Power or mean square of lines left out at S speeds in K bins of frequency.
-
-    Attributes
-    ----------
-    frequency : (S, K) array
-        Mean of those lines in a bin that have power, Hz.
-    power, missed : (S, K) arrays
-        And by how much it may be off, of its unit: what straight lines between the frequencies miss at most,
-        and what a stiffness that varies may change.
-    """
+    """Power or mean square of lines left out at S speeds in K bins of frequency."""
 
     frequency: FloatArray
+    """Mean of those lines in a bin that have power, Hz. Shape (S, K)."""
     power: FloatArray
     missed: FloatArray
+    """`power`, `missed`: And by how much it may be off, of its unit: what straight lines between the
+    frequencies miss at most, and what a stiffness that varies may change. Shape (S, K) each.
+    """
 
     @classmethod
     def of_all(cls, parts: Sequence[FloorPower]) -> FloorPower:
@@ -59,31 +54,21 @@ class FloorPower(NamedTuple):
 
 @dataclass(frozen=True)
 class LineFloor:
-    """Transfer functions at G frequencies of e inputs, and the inputs in L lines at S speeds.
-
-    Attributes
-    ----------
-    pace : (S,) array
-        Frequency of the common period at the speeds, Hz.
-    harmonic : (L,) int array
-        Its multiples that the lines are.
-    inputs : (e, L) complex array
-        Complex peak amplitudes.
-    frequency : (G,) array
-        Hz, rising; those of the lines at all speeds lie among them.
-    bearing_force : (b, 3 or 6, G, e) complex array
-        Forces of bearings per input.
-    changed : (b, S) array
-        What a stiffness that varies may change of the mean squares of forces, relative.
-    """
+    """Transfer functions at G frequencies of e inputs, and the inputs in L lines at S speeds."""
 
     bearing: tuple[str, ...]
     pace: FloatArray
+    """Frequency of the common period at the speeds, Hz. Shape (S,)."""
     harmonic: IntArray
+    """Its multiples that the lines are. Shape (L,)."""
     inputs: ComplexArray
+    """Complex peak amplitudes. Shape (e, L)."""
     frequency: FloatArray
+    """Hz, rising; those of the lines at all speeds lie among them. Shape (G,)."""
     bearing_force: ComplexArray
+    """Forces of bearings per input. Shape (b, 3 or 6, G, e)."""
     changed: FloatArray
+    """What a stiffness that varies may change of the mean squares of forces, relative. Shape (b, S)."""
 
     def power(self, matrix: ComplexArray, changed: FloatArray | None = None) -> FloorPower:
         """Return a power or mean square of all lines: y^H M y of their inputs y, by `matrix` M (G, e, e).
@@ -155,18 +140,12 @@ def _products(inputs: ComplexArray) -> list[FloatArray]:
 
 
 class FloorInputs(NamedTuple):
-    """Directions in which lines excite the rows of the flanks, and by how much.
-
-    Attributes
-    ----------
-    row : (e, n) array
-        Generalized forces per input.
-    size : (e, L) complex array
-        Complex peak amplitudes.
-    """
+    """Directions in which lines excite the rows of the flanks, and by how much."""
 
     row: FloatArray
+    """Generalized forces per input. Shape (e, n)."""
     size: ComplexArray
+    """Complex peak amplitudes. Shape (e, L)."""
 
 
 def floor_inputs(at: Excited, left_out: IntArray) -> FloorInputs:

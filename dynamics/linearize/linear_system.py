@@ -27,35 +27,26 @@ class LinearSystem:
     """M dq'' + C dq' + K dq = 0 for small dq about the equilibrium, n freedoms, m flanks.
 
     How forces change with the flanks' positions is left out: of the order of a deflection over a base pitch.
-
-    Attributes
-    ----------
-    freedom : tuple of str
-        "shaft.kind", as in `Freedoms`.
-    scale : (n,) array
-        Meters per unit of each freedom: 1, or a radius for rotations.
-    mass, damping, stiffness : (n, n) arrays
-        M, C, K; symmetric.
-    rigid : (k, n) array
-        Motions that nothing resists: those of trains without a drive.
-    spring : tuple of str
-        Names of all springs: meshes, bearings with direction, bearings with matrices, housings and couplings
-        (once per principal stiffness), elastic drives, elastic coordinates of shafts.
-    strain : (p, n) array
-        Strain of each spring per freedom, m or rad.
-    spring_stiffness : (p,) array
-        N/m or N m/rad.
     """
 
     freedom: tuple[str, ...]
+    """"shaft.kind", as in `Freedoms`."""
     scale: FloatArray
+    """Meters per unit of each freedom: 1, or a radius for rotations. Shape (n,)."""
     mass: FloatArray
     damping: FloatArray
     stiffness: FloatArray
+    """`mass`, `damping`, `stiffness`: M, C, K; symmetric. Shape (n, n) each."""
     rigid: FloatArray
+    """Motions that nothing resists: those of trains without a drive. Shape (k, n)."""
     spring: tuple[str, ...]
+    """Names of all springs: meshes, bearings with direction, bearings with matrices, housings and couplings
+    (once per principal stiffness), elastic drives, elastic coordinates of shafts.
+    """
     strain: FloatArray
+    """Strain of each spring per freedom, m or rad. Shape (p, n)."""
     spring_stiffness: FloatArray
+    """N/m or N m/rad. Shape (p,)."""
     equilibrium: StaticSolution
 
 
@@ -234,36 +225,24 @@ def freedom_parts(freedom: Sequence[str]) -> tuple[tuple[str, str], ...]:
 
 @dataclass(frozen=True)
 class Modes:
-    """Natural modes, by rising frequency; the motions that nothing resists come first, at 0 Hz exactly.
-
-    Attributes
-    ----------
-    frequency : (n,) array
-        Undamped, Hz.
-    damping_ratio : (n,) array
-        Modal: shape^T C shape / (2 omega); 0 for the modes at 0 Hz.
-    shape : (n, n) array
-        One mode per row, per freedom in m and rad, of unit modal mass: shape M shape^T = 1.
-    freedom : tuple of str
-        Names of the columns, "shaft.kind".
-    scale : (n,) array
-        Meters per unit of each freedom: ``shape * scale`` compares translations and rotations.
-    spring : tuple of str
-        Names of the springs: meshes, bearings with direction, elastic drives.
-    strain_energy : (n, p) array
-        Share of each spring in the strain energy of each mode; 0 at 0 Hz.
-    kinetic_energy : (n, n) array
-        Share of each freedom in the kinetic energy of each mode.
-    """
+    """Natural modes, by rising frequency; the motions that nothing resists come first, at 0 Hz exactly."""
 
     frequency: FloatArray
+    """Undamped, Hz. Shape (n,)."""
     damping_ratio: FloatArray
+    """Modal: shape^T C shape / (2 omega); 0 for the modes at 0 Hz. Shape (n,)."""
     shape: FloatArray
+    """One mode per row, per freedom in m and rad, of unit modal mass: shape M shape^T = 1. Shape (n, n)."""
     freedom: tuple[str, ...]
+    """Names of the columns, "shaft.kind"."""
     scale: FloatArray
+    """Meters per unit of each freedom: ``shape * scale`` compares translations and rotations. Shape (n,)."""
     spring: tuple[str, ...]
+    """Names of the springs: meshes, bearings with direction, elastic drives."""
     strain_energy: FloatArray
+    """Share of each spring in the strain energy of each mode; 0 at 0 Hz. Shape (n, p)."""
     kinetic_energy: FloatArray
+    """Share of each freedom in the kinetic energy of each mode. Shape (n, n)."""
 
 
 def natural_modes(system: System | LinearSystem, time: float = 0.0) -> Modes:

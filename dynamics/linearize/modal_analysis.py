@@ -61,15 +61,6 @@ class ModalAnalysis(ArrayFile):
     modes at rest are: `Modes`; over speed: `WhirlBranches`, NaN where one does not oscillate; where they
     cross orders: `CriticalSpeeds`. Points of the axes of shafts (`ShaftAxes`): none in files of versions that
     did not keep them. Points of the surfaces of housings: none where no surface moves.
-
-    Attributes
-    ----------
-    spring, spring_part, spring_kind : tuples of str, (p)
-        Name, the mesh, bearing, coupling or drive it belongs to, and which of these that is.
-    facts : dict
-        Plain JSON: `leading_shaft`, `time`, `orders`, `equilibrium` (status, residual in N, mesh forces),
-        `seconds` (CPU by stage), `effect_ledger`, `highest_frequency` (Hz, to which shafts that bend are
-        resolved).
     """
 
     SCHEMA = "lineofaction modal analysis"
@@ -80,6 +71,9 @@ class ModalAnalysis(ArrayFile):
     spring: tuple[str, ...]
     spring_part: tuple[str, ...]
     spring_kind: tuple[str, ...]
+    """`spring`, `spring_part`, `spring_kind`: Name, the mesh, bearing, coupling or drive it belongs to, and
+    which of these that is.
+    """
     natural_frequency: FloatArray = field(
         metadata=stored("Hz", "undamped natural frequency at rest", "natural_mode")
     )
@@ -123,6 +117,10 @@ class ModalAnalysis(ArrayFile):
         metadata=stored("Hz", "frequency of the mode less that of the order", "crossing")
     )
     facts: Json = field(default_factory=dict)
+    """Plain JSON: `leading_shaft`, `time`, `orders`, `equilibrium` (status, residual in N, mesh forces),
+    `seconds` (CPU by stage), `effect_ledger`, `highest_frequency` (Hz, to which shafts that bend are
+    resolved).
+    """
     axis_shaft: IntArray = field(
         default_factory=lambda: np.empty(0, dtype=np.int64),
         metadata=stored("1", "shaft of a point of an axis, counted from 0", "axis_point"),

@@ -86,23 +86,16 @@ class CommonPeriod:
     """After how many base pitches all meshes are in phase again, with the laws' speeds in fixed proportion.
 
     Frames that a coupling crosses have turned by whole revolutions then, too, and loads by angle repeat.
-
-    Attributes
-    ----------
-    law : int
-        The leading law: the first that turns.
-    proportion : (k,) array
-        Speed of each law over that of `law`.
-    revolutions : Fraction
-        Of the law's shaft in one common period.
-    pitches : tuple of int
-        Base pitches of each mesh in one common period, > 0 in its driver's sense; 0: at rest.
     """
 
     law: int
+    """The leading law: the first that turns."""
     proportion: FloatArray
+    """Speed of each law over that of `law`. Shape (k,)."""
     revolutions: Fraction
+    """Of the law's shaft in one common period."""
     pitches: tuple[int, ...]
+    """Base pitches of each mesh in one common period, > 0 in its driver's sense; 0: at rest."""
 
     @property
     def counted(self) -> int:

@@ -24,20 +24,14 @@ from dynamics.types import IntArray
 
 @dataclass(frozen=True)
 class OtherFlanks:
-    """A scene about its loaded equilibrium, and the mesh whose flanks are others.
-
-    Attributes
-    ----------
-    mesh : int
-        Its index in the scene.
-    harmonics : (H,) int array
-        Multiples of the common period's frequency.
-    """
+    """A scene about its loaded equilibrium, and the mesh whose flanks are others."""
 
     at: Excited
     mesh: int
+    """Its index in the scene."""
     orders: int
     harmonics: IntArray
+    """Multiples of the common period's frequency. Shape (H,)."""
 
     @classmethod
     def of(cls, system: System, mesh: int, transfer: FlankTransfer) -> OtherFlanks:

@@ -16,25 +16,18 @@ PRECISE = 1e-10
 
 @dataclass(frozen=True)
 class PartialFractions:
-    """The inverse of K + i w C - w^2 M as X diag(1/(i w - r)) Y, for n freedoms.
-
-    Attributes
-    ----------
-    stiffness, mass, damping : (n, n) arrays
-    root : (2 n,) complex array
-        Eigenvalues r of the motion of first order, rad/s.
-    shape : (n, 2 n) complex array
-        X: displacements of its modes.
-    share : (2 n, n) complex array
-        Y: what forces excite of each mode.
-    """
+    """The inverse of K + i w C - w^2 M as X diag(1/(i w - r)) Y, for n freedoms."""
 
     stiffness: FloatArray
     mass: FloatArray
     damping: FloatArray
+    """`stiffness`, `mass`, `damping`: Shape (n, n) each."""
     root: ComplexArray
+    """Eigenvalues r of the motion of first order, rad/s. Shape (2 n,)."""
     shape: ComplexArray
+    """X: displacements of its modes. Shape (n, 2 n)."""
     share: ComplexArray
+    """Y: what forces excite of each mode. Shape (2 n, n)."""
 
     @classmethod
     def of(cls, stiffness: FloatArray, mass: FloatArray, damping: FloatArray) -> PartialFractions | None:

@@ -30,26 +30,20 @@ ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class _ModalElimination:
-    """K, C and M by a bodies' freedoms and b modal ones, which s coordinates z = V u_b couple.
-
-    Attributes
-    ----------
-    bodies : (3, a, a) array
-        K, C, M of the first freedoms.
-    modal : (3, b) array
-        Diagonals of the modal ones alone.
-    shape : (s, b) array
-        V.
-    outward, inward, along : (2, a, s), (2, s, a), (2, s, s) arrays
-        Of K and C: forces on bodies by z, on z by the bodies, on z by z.
-    """
+    """K, C and M by a bodies' freedoms and b modal ones, which s coordinates z = V u_b couple."""
 
     bodies: FloatArray
+    """K, C, M of the first freedoms. Shape (3, a, a)."""
     modal: FloatArray
+    """Diagonals of the modal ones alone. Shape (3, b)."""
     shape: FloatArray
+    """V. Shape (s, b)."""
     outward: FloatArray
     inward: FloatArray
     along: FloatArray
+    """`outward`, `inward`, `along`: Of K and C: forces on bodies by z, on z by the bodies, on z by z. (2, a,
+    s), (2, s, a), (2, s, s) arrays.
+    """
 
     def solve(
         self, omega: FloatArray | ComplexArray, right: ComplexArray, swept: Sequence[FloatArray] = ()
@@ -163,59 +157,41 @@ SWEPT = 0.34
 
 @dataclass(frozen=True)
 class Excited:
-    """A system about its equilibrium under the loads at a time, and what excites it there.
-
-    Attributes
-    ----------
-    time : float
-        s.
-    linear : LinearSystem
-        With the mean tangents of the flanks.
-    at_rest : LocalState
-        The elements there.
-    turning : bool
-        Whether rotating-frame elements act: gyroscopic and frame terms belong to the system.
-    """
+    """A system about its equilibrium under the loads at a time, and what excites it there."""
 
     system: System
     time: float
+    """s."""
     period: CommonPeriod
     linear: LinearSystem
+    """With the mean tangents of the flanks."""
     at_rest: LocalState
+    """The elements there."""
     cycles: tuple[FlankCycle, ...]
     turning: bool = False
+    """Whether rotating-frame elements act: gyroscopic and frame terms belong to the system."""
 
 
 @dataclass(frozen=True)
 class Steady:
-    """Displacements of n freedoms at S speeds in H harmonics of the common period.
-
-    Attributes
-    ----------
-    harmonics : (H,) int array
-        Multiples of the common period's frequency.
-    omega : (S, H) array
-        rad/s.
-    static : (m, H) complex array
-        Static transmission errors, m.
-    force : (1 or S, R', H) complex array
-        What excites the driving flanks' rows, N.
-    displacement : (S, H, n) complex array
-        m and rad.
-    residual : float
-        Largest force left by the linear solves, of the largest exciting force.
-    receptance : (S, H, n, f) complex array
-        Displacements per force on f rows, those of `swept_vibration` of the driving flanks; empty where not
-        requested.
-    """
+    """Displacements of n freedoms at S speeds in H harmonics of the common period."""
 
     harmonics: IntArray
+    """Multiples of the common period's frequency. Shape (H,)."""
     omega: FloatArray
+    """rad/s. Shape (S, H)."""
     static: ComplexArray
+    """Static transmission errors, m. Shape (m, H)."""
     force: ComplexArray
+    """What excites the driving flanks' rows, N. Shape (1 or S, R', H)."""
     displacement: ComplexArray
+    """m and rad. Shape (S, H, n)."""
     residual: float
+    """Largest force left by the linear solves, of the largest exciting force."""
     receptance: ComplexArray
+    """Displacements per force on f rows, those of `swept_vibration` of the driving flanks; empty where not
+    requested. Shape (S, H, n, f).
+    """
 
 
 def excited(system: System, time: float = 0.0, orders: int = 10, samples: int = SAMPLES) -> Excited:

@@ -23,22 +23,16 @@ HELD = 6e6
 
 
 class Lines(NamedTuple):
-    """What a response is solved in.
-
-    Attributes
-    ----------
-    harmonics : (H,) int array
-        Multiples of the common period's frequency, rising.
-    left_out : (L,) int array
-        The others that excite, rising.
-    share : float
-        Root of the sum of the squares of the forces that these excite over that of all, of the mesh order and
-        the row of the flanks where it is largest: between the lines kept stands a floor of many weak ones.
-    """
+    """What a response is solved in."""
 
     harmonics: IntArray
+    """Multiples of the common period's frequency, rising. Shape (H,)."""
     left_out: IntArray
+    """The others that excite, rising. Shape (L,)."""
     share: float = 0.0
+    """Root of the sum of the squares of the forces that these excite over that of all, of the mesh order and
+    the row of the flanks where it is largest: between the lines kept stands a floor of many weak ones.
+    """
 
     def facts(self, in_totals: bool) -> Json:
         """Return what facts say of those left out, and whether totals have them; nothing without any."""

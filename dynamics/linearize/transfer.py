@@ -55,49 +55,36 @@ VERSION = 1
 
 
 class FlankExcitation(NamedTuple):
-    """What flanks do at their equilibrium, and the tangents there; m meshes, R rows, H harmonics.
-
-    Attributes
-    ----------
-    static : (m, H) complex array
-        Static transmission errors, m.
-    force : (R, H) complex array
-        What excites the rows, N: it pushes a deflection up with the transmission error; on the further rows
-        of a mesh the moment of the load as it travels along the face, over a length, and friction.
-    tangent, viscous : (R, R) arrays
-        N/m and N s/m; those of flanks are means over the positions.
-    mean_force : (m,) array
-        Static mesh forces, N.
-    """
+    """What flanks do at their equilibrium, and the tangents there; m meshes, R rows, H harmonics."""
 
     static: ComplexArray
+    """Static transmission errors, m. Shape (m, H)."""
     force: ComplexArray
+    """What excites the rows, N: it pushes a deflection up with the transmission error; on the further rows of
+    a mesh the moment of the load as it travels along the face, over a length, and friction. Shape (R, H).
+    """
     tangent: FloatArray
     viscous: FloatArray
+    """`tangent`, `viscous`: N/m and N s/m; those of flanks are means over the positions. Shape (R, R) each.
+    """
     mean_force: FloatArray
+    """Static mesh forces, N. Shape (m,)."""
 
 
 @dataclass(frozen=True)
 class TransferredResponse:
-    """Linear response of other flanks: `dynamics.vibration.BearingHarmonics`; b bearings, m meshes.
-
-    Attributes
-    ----------
-    bearing_force : (b, 3 or 6, S, H) complex array
-        As that of `HarmonicResponse`.
-    mesh_force : (m, S, H) complex array
-        N, transverse.
-    least_mesh_force : (m, S) array
-        Where it is negative flanks part, and no linear answer holds.
-    """
+    """Linear response of other flanks: `dynamics.vibration.BearingHarmonics`; b bearings, m meshes."""
 
     bearing: tuple[str, ...]
     speed: FloatArray
     order: FloatArray
     frequency: FloatArray
     bearing_force: ComplexArray
+    """As that of `HarmonicResponse`. Shape (b, 3 or 6, S, H)."""
     mesh_force: ComplexArray
+    """N, transverse. Shape (m, S, H)."""
     least_mesh_force: FloatArray
+    """Where it is negative flanks part, and no linear answer holds. Shape (m, S)."""
 
     @property
     def in_contact(self) -> BoolArray:
@@ -115,23 +102,6 @@ class FlankTransfer(ArrayFile):
 
     The first of the 1 + R columns is the vibration under the flanks of the scene and its loads, each further
     one that per N on a row. Complex peak amplitudes as those of `HarmonicResponse`.
-
-    Attributes
-    ----------
-    first : (k + 1,) int array
-        Where the rows begin of each mesh, then of each bearing that is not linear, and their number. Those of
-        a mesh are of its deflection, then of misalignment, center distance, sliding and rolling as far as it
-        has them.
-    gradient : (R, n) array
-        Of the rows in the freedoms.
-    force, tangent, viscous
-        Those of the scene's flanks, as of `FlankExcitation`.
-    motion : (R, S, H, 1 + R) complex array
-        Of the rows: m, and m/N.
-    bearing_force : (b, 3 or 6, S, H, 1 + R) complex array
-        N or N m, and per N.
-    orders, time
-        As requested: harmonics of the first mesh, and when loads are taken, s.
     """
 
     SCHEMA = "lineofaction flank transfer"
@@ -140,6 +110,7 @@ class FlankTransfer(ArrayFile):
     freedom: tuple[str, ...]
     orders: int
     time: float
+    """`orders`, `time`: As requested: harmonics of the first mesh, and when loads are taken, s."""
     harmonics: IntArray = field(metadata=stored("1", "multiple of the common period's frequency", "order"))
     speed: FloatArray = field(metadata=stored("rad s-1", "speed of the leading shaft", "speed"))
     order: FloatArray = field(
@@ -147,16 +118,24 @@ class FlankTransfer(ArrayFile):
     )
     frequency: FloatArray = field(metadata=stored("Hz", "frequency of the harmonic", "speed", "order"))
     first: IntArray = field(metadata=stored("1", "first row of each part, and their number", "bound"))
+    """Where the rows begin of each mesh, then of each bearing that is not linear, and their number. Those of
+    a mesh are of its deflection, then of misalignment, center distance, sliding and rolling as far as it has
+    them. Shape (k + 1,).
+    """
     gradient: FloatArray = field(metadata=stored("1", "gradient of the rows", "row", "freedom"))
+    """Of the rows in the freedoms. Shape (R, n)."""
     force: ComplexArray = field(metadata=stored("N", "what excites the rows", "row", "order"))
     tangent: FloatArray = field(metadata=stored("N m-1", "tangents of the rows", "row", "row"))
     viscous: FloatArray = field(metadata=stored("N s m-1", "damping of the rows", "row", "row"))
+    """`force`, `tangent`, `viscous`: Those of the scene's flanks, as of `FlankExcitation`."""
     motion: ComplexArray = field(
         metadata=stored("m or m N-1", "motion of the rows", "row", "speed", "order", "input")
     )
+    """Of the rows: m, and m/N. Shape (R, S, H, 1 + R)."""
     bearing_force: ComplexArray = field(
         metadata=stored("N or 1", "forces of bearings", "bearing", "direction", "speed", "order", "input")
     )
+    """N or N m, and per N. Shape (b, 3 or 6, S, H, 1 + R)."""
     residual: float = 0.0
 
     def excitation(self, system: System) -> FlankExcitation:

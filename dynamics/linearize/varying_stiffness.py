@@ -116,23 +116,15 @@ def varied_vibration(
 
 @dataclass(frozen=True)
 class _Varying:
-    """A flank of p rows whose tangents vary, in the Q lines of its table among those of the vibration.
-
-    Attributes
-    ----------
-    rows : slice
-    own : (Q + 1,) int array
-        Where its lines are among the mean and the harmonics of the vibration.
-    line : (Q + 1,) int array
-        Multiples of the table's own frequency, 0 first.
-    tangent : (N, p, p) array
-        Less its mean, over the table's period in time, N/m.
-    """
+    """A flank of p rows whose tangents vary, in the Q lines of its table among those of the vibration."""
 
     rows: slice
     own: IntArray
+    """Where its lines are among the mean and the harmonics of the vibration. Shape (Q + 1,)."""
     line: IntArray
+    """Multiples of the table's own frequency, 0 first. Shape (Q + 1,)."""
     tangent: FloatArray
+    """Less its mean, over the table's period in time, N/m. Shape (N, p, p)."""
 
     def pressed(self, made: ComplexArray) -> ComplexArray:
         """Return the Fourier coefficients (Q + 1, p) of the forces by those of what makes them."""
@@ -146,18 +138,12 @@ class _Varying:
 
 @dataclass(frozen=True)
 class VaryingStiffness:
-    """The tangents of flanks about an equilibrium less their means, in H harmonics.
-
-    Attributes
-    ----------
-    parts : tuple
-        Of the flanks whose tangents vary.
-    still : (R', R') array
-        Static receptance of the rows of all driving flanks, m/N.
-    """
+    """The tangents of flanks about an equilibrium less their means, in H harmonics."""
 
     parts: tuple[_Varying, ...]
+    """Of the flanks whose tangents vary."""
     still: FloatArray
+    """Static receptance of the rows of all driving flanks, m/N. Shape (R', R')."""
 
     @classmethod
     def of(cls, at: Excited, harmonics: IntArray, still: FloatArray) -> VaryingStiffness:
@@ -194,19 +180,16 @@ class DirectBalance:
 
     The unknowns of a flank are the real parts 0 to Q, then the imaginary parts 1 to Q, of the coordinates
     that its tangents depend on.
-
-    Attributes
-    ----------
-    pressing : (H + 1, R', N) complex array
-        Fourier coefficients of the forces by the unknowns, N/m.
-    harmonic, row, imaginary : (N,) arrays
-        Which coefficient of the motion an unknown is: harmonic (0 the mean), row, and which part of it.
     """
 
     pressing: ComplexArray
+    """Fourier coefficients of the forces by the unknowns, N/m. Shape (H + 1, R', N)."""
     harmonic: IntArray
     row: IntArray
     imaginary: BoolArray
+    """`harmonic`, `row`, `imaginary`: Which coefficient of the motion an unknown is: harmonic (0 the mean),
+    row, and which part of it. Shape (N,) each.
+    """
 
     @property
     def size(self) -> int:

@@ -24,18 +24,14 @@ class SpeedCurve:
 
     Speed counts positive in the sense in which the kinematic motion turns the shaft, torque positive against
     that sense: a curve of a motor is negative where it drives.
-
-    Attributes
-    ----------
-    speed : tuple of floats
-        Where pieces join, rad/s, strictly increasing.
-    coefficient : tuple of tuples of four floats
-        Ascending in the speed above the piece's start, N m, N m s, ...; one piece more than joints. The
-        first piece, below the first joint, counts from that joint too.
     """
 
     speed: tuple[float, ...]
+    """Where pieces join, rad/s, strictly increasing."""
     coefficient: tuple[Cubic, ...]
+    """Ascending in the speed above the piece's start, N m, N m s, ...; one piece more than joints. The first
+    piece, below the first joint, counts from that joint too.
+    """
 
     def __post_init__(self) -> None:
         increasing("speed", self.speed)
@@ -105,20 +101,14 @@ class BySpeed:
 
 @dataclass(frozen=True)
 class Orders:
-    """A factor by a shaft's angle: mean + sum of amplitude_k cos(order_k angle + phase_k).
-
-    Attributes
-    ----------
-    shaft : str
-        Whose angle: about +z, with the shaft's own vibration, 0 at t = 0.
-    order, amplitude, phase : tuples of floats
-        Events per turn, > 0; factors; rad.
-    """
+    """A factor by a shaft's angle: mean + sum of amplitude_k cos(order_k angle + phase_k)."""
 
     shaft: str
+    """Whose angle: about +z, with the shaft's own vibration, 0 at t = 0."""
     order: tuple[float, ...]
     amplitude: tuple[float, ...]
     phase: tuple[float, ...]
+    """`order`, `amplitude`, `phase`: Events per turn, > 0; factors; rad."""
     mean: float = 0.0
 
     def __post_init__(self) -> None:

@@ -20,18 +20,12 @@ from dynamics.types import BoolArray, FloatArray, IntArray
 
 
 class SpeedTorqueLaws(NamedTuple):
-    """Curves.
-
-    Attributes
-    ----------
-    torque : Cubics
-        N m by rad/s.
-    radius : (l,) array
-        At which torques count as forces and angles as displacements, m.
-    """
+    """Curves."""
 
     torque: Cubics
+    """N m by rad/s."""
     radius: FloatArray
+    """At which torques count as forces and angles as displacements, m. Shape (l,)."""
 
     @classmethod
     def packed(cls, parts: Sequence[SpeedTorque], radius: float) -> SpeedTorqueLaws:
@@ -60,44 +54,38 @@ class ForceCourseLaws(NamedTuple):
 
     With the factor s and the angle a of the frame they act by size s along the first row, or by size s cos a,
     size s sin a and size s along the three. A last row, of the shaft whose speed counts, carries no force.
-
-    Attributes
-    ----------
-    kind : (l,) int array
-        What the factor depends on.
-    size, lever, sense : (l,) arrays
-        N; last row over rotation, m; +1 or -1: the sense in which the speed counts.
-    rows : (l,) int array
-        1, 2 or 3 rows that carry force.
-    phase, frame : (l,) int arrays
-        Phases among the positions, in turns: of the factor, of the frame; -1: none.
-    factor : Cubics
-        Factors by time (s) and by speed (rad/s).
-    first_order, order, amplitude, angle : (l + 1,) int, (O,), (O,), (O,) arrays
-        Of factors by angle; rad.
-    constant : (l,) array
-        Constant part of factors by angle.
-    mean : (l, 2) array
-        Mean of s cos a and s sin a over a turn, of factors by angle.
-    steady : (1,) bool array
-        Whether means act in place of what changes with an angle.
     """
 
     kind: IntArray
+    """What the factor depends on. Shape (l,)."""
     size: FloatArray
     lever: FloatArray
     sense: FloatArray
+    """`size`, `lever`, `sense`: N; last row over rotation, m; +1 or -1: the sense in which the speed counts.
+    Shape (l,) each.
+    """
     rows: IntArray
+    """1, 2 or 3 rows that carry force. Shape (l,)."""
     phase: IntArray
     frame: IntArray
+    """`phase`, `frame`: Phases among the positions, in turns: of the factor, of the frame; -1: none. Shape
+    (l,) each.
+    """
     factor: Cubics
+    """Factors by time (s) and by speed (rad/s)."""
     first_order: IntArray
     order: FloatArray
     amplitude: FloatArray
     angle: FloatArray
+    """`first_order`, `order`, `amplitude`, `angle`: Of factors by angle; rad. (l + 1,) int, (O,), (O,), (O,)
+    arrays.
+    """
     constant: FloatArray
+    """Constant part of factors by angle. Shape (l,)."""
     mean: FloatArray
+    """Mean of s cos a and s sin a over a turn, of factors by angle. Shape (l, 2)."""
     steady: BoolArray
+    """Whether means act in place of what changes with an angle. Shape (1,)."""
 
     @classmethod
     def packed(cls, courses: Sequence[Course], **others: Any) -> ForceCourseLaws:
@@ -188,25 +176,18 @@ class UnbalanceLaws(NamedTuple):
 
         F_x = U (a'^2 cos a + a'' sin a),   F_y = U (a'^2 sin a - a'' cos a),
         M = U (x'' sin a - y'' cos a + g_y cos a - g_x sin a).
-
-    Attributes
-    ----------
-    amount, angle, lever : (l,) arrays
-        U, kg m; a at the phase 0, rad; row over rotation, m.
-    phase : (l,) int array
-        The phase of the shaft's rotation among the positions.
-    gravity : (2,) array
-        g, m/s^2.
-    steady : (1,) bool array
-        Whether only the mean over a turn acts, which is none.
     """
 
     amount: FloatArray
     angle: FloatArray
     lever: FloatArray
+    """`amount`, `angle`, `lever`: U, kg m; a at the phase 0, rad; row over rotation, m. Shape (l,) each."""
     phase: IntArray
+    """The phase of the shaft's rotation among the positions. Shape (l,)."""
     gravity: FloatArray
+    """g, m/s^2. Shape (2,)."""
     steady: BoolArray
+    """Whether only the mean over a turn acts, which is none. Shape (1,)."""
 
 
 @routine

@@ -15,21 +15,14 @@ SHAPES = ("linear", "smooth")
 
 @dataclass(frozen=True)
 class TimeLaw:
-    """Values at times, joined by straight lines or by smooth steps, constant before and after.
-
-    Attributes
-    ----------
-    time : tuple of floats
-        s, strictly increasing.
-    value : tuple of floats
-        Of the same length; rad/s for a speed, N m for a torque.
-    shape : str
-        ``"linear"``: straight between the points. ``"smooth"``: cubic, with zero slope at each of them.
-    """
+    """Values at times, joined by straight lines or by smooth steps, constant before and after."""
 
     time: tuple[float, ...]
+    """s, strictly increasing."""
     value: tuple[float, ...]
+    """Of the same length; rad/s for a speed, N m for a torque."""
     shape: str = "linear"
+    """``"linear"``: straight between the points. ``"smooth"``: cubic, with zero slope at each of them."""
 
     def __post_init__(self) -> None:
         increasing("time", self.time)
@@ -93,17 +86,12 @@ class AngleLaw:
 
     Before the first and after the last time the shaft turns on at the speed it has there. As a law it gives
     the speed, like `TimeLaw`; only differences of the angles matter.
-
-    Attributes
-    ----------
-    time : tuple of floats
-        s, strictly increasing, at least four.
-    angle : tuple of floats
-        rad, of the same length.
     """
 
     time: tuple[float, ...]
+    """s, strictly increasing, at least four."""
     angle: tuple[float, ...]
+    """rad, of the same length."""
 
     def __post_init__(self) -> None:
         increasing("time", self.time)

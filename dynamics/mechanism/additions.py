@@ -23,15 +23,9 @@ TEETH_AS_MADE = "teeth_as_made"
 
 @dataclass(frozen=True)
 class Additions:
-    """What the effects of a scene may add.
-
-    Attributes
-    ----------
-    possible : frozenset of str
-        Names of `FREEDOMS` and of this module that an effect adds which is not switched off.
-    requested : frozenset of str
-        Those of effects that are switched on.
-    """
+    """What the effects of a scene may add."""
 
     possible: frozenset[str]
+    """Names of `FREEDOMS` and of this module that an effect adds which is not switched off."""
     requested: frozenset[str]
+    """Those of effects that are switched on."""

@@ -20,28 +20,20 @@ from dynamics.types import FloatArray
 
 @dataclass(frozen=True)
 class BearingElement:
-    """The bearing and the directions in which the forces of an element act.
-
-    Attributes
-    ----------
-    name : str
-        Of the bearing.
-    support : int
-        The bearing, among the supports.
-    way : (p, 5) array
-        The element's rows per strain of the bearing x, y, z, tilt_x, tilt_y: 1 along a displacement, a radius
-        in m for a tilt.
-    own : (p, 5) array
-        The same per strain in the bearing's own axes.
-    typical : (p,) array
-        Stiffness of the rows at the typical load, N/m; of a linear bearing without cross terms.
-    """
+    """The bearing and the directions in which the forces of an element act."""
 
     name: str
+    """Of the bearing."""
     support: int
+    """The bearing, among the supports."""
     way: FloatArray
+    """The element's rows per strain of the bearing x, y, z, tilt_x, tilt_y: 1 along a displacement, a radius
+    in m for a tilt. Shape (p, 5).
+    """
     own: FloatArray
+    """The same per strain in the bearing's own axes. Shape (p, 5)."""
     typical: FloatArray
+    """Stiffness of the rows at the typical load, N/m; of a linear bearing without cross terms. Shape (p,)."""
 
     @property
     def seat(self) -> FloatArray:

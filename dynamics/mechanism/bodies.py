@@ -29,38 +29,27 @@ Support = TypeVar("Support", Bushing, PlanetBearing)
 
 @dataclass(frozen=True)
 class Rotor:
-    """One body: six rigid freedoms, and the elastic coordinates of its shaft.
-
-    Attributes
-    ----------
-    inertia : Inertia
-        Of shaft, gears and discs about their common center of mass.
-    center : (3,) array
-        That center in the fixed frame, m: the point whose displacements are the freedoms.
-    bushings : tuple of Bushing
-        Its supports on the ground, with damping filled in.
-    planet_bearings : tuple of PlanetBearing
-        Its supports on the carrier's pin, with damping filled in.
-    frame : int or None
-        Rotor of the carrier in whose rotating frame it is described.
-    carrier : int or None
-        The same for a planet: a rotor off the carrier's axis, which the carrier takes along.
-    curved : tuple of ((5, 5) array, float)
-        Typical stiffness of what bearings do that is not linear, and of couplings that hold the rotor where
-        no bearing does, with their levers.
-    elastic : ElasticShaft or None
-        How its shaft bends and twists; None: rigid.
-    """
+    """One body: six rigid freedoms, and the elastic coordinates of its shaft."""
 
     shaft: Shaft
     inertia: Inertia
+    """Of shaft, gears and discs about their common center of mass."""
     center: FloatArray
+    """That center in the fixed frame, m: the point whose displacements are the freedoms. Shape (3,)."""
     bushings: tuple[Bushing, ...]
+    """Its supports on the ground, with damping filled in."""
     planet_bearings: tuple[PlanetBearing, ...]
+    """Its supports on the carrier's pin, with damping filled in."""
     frame: int | None
+    """Rotor of the carrier in whose rotating frame it is described."""
     carrier: int | None
+    """The same for a planet: a rotor off the carrier's axis, which the carrier takes along."""
     curved: tuple[tuple[FloatArray, float], ...] = ()
+    """Typical stiffness of what bearings do that is not linear, and of couplings that hold the rotor where no
+    bearing does, with their levers. Tuple of ((5, 5) array, float).
+    """
     elastic: ElasticShaft | None = None
+    """How its shaft bends and twists; None: rigid."""
 
     @cached_property
     def supports(self) -> tuple[Bushing | PlanetBearing, ...]:
@@ -186,27 +175,19 @@ class _ModalHousing:
     """M = 1, C and K over m modal amplitudes, and the motion of s seats by them.
 
     All modes of the matrices are kept, so that static motions are those of the matrices.
-
-    Attributes
-    ----------
-    bearings : tuple of str
-        That sit in it.
-    stiffness : (m,) array
-        Squares of the natural circular frequencies, rising, 1/s^2.
-    damping : (m, m) array
-        1/s.
-    shape : (s, 5, m) array
-        x, y, z (m), tilt_x, tilt_y (rad) of each seat per amplitude, of unit modal mass.
-    rows : (r, m) array
-        The same of every row of the housing's matrices, modal coordinates among them.
     """
 
     name: str
     bearings: tuple[str, ...]
+    """That sit in it."""
     stiffness: FloatArray
+    """Squares of the natural circular frequencies, rising, 1/s^2. Shape (m,)."""
     damping: FloatArray
+    """1/s. Shape (m, m)."""
     shape: FloatArray
+    """x, y, z (m), tilt_x, tilt_y (rad) of each seat per amplitude, of unit modal mass. Shape (s, 5, m)."""
     rows: FloatArray
+    """The same of every row of the housing's matrices, modal coordinates among them. Shape (r, m)."""
 
     @property
     def kinds(self) -> tuple[str, ...]:

@@ -28,21 +28,18 @@ ACROSS = (0, 1, 3, 4)
 
 @dataclass(frozen=True)
 class CouplingRows:
-    """c couplings.
-
-    Attributes
-    ----------
-    motion : (c, 6, N) array
-        Strain per freedom: motion of the second shaft at the coupling less that of the first, m and rad.
-    stiffness, damping : (c, 6, 6) arrays
-        Force and moment per strain and its rate, N, m, rad, s; across frames only those along the axis and
-        about it.
-    """
+    """c couplings."""
 
     name: tuple[str, ...]
     motion: FloatArray
+    """Strain per freedom: motion of the second shaft at the coupling less that of the first, m and rad. Shape
+    (c, 6, N).
+    """
     stiffness: FloatArray
     damping: FloatArray
+    """`stiffness`, `damping`: Force and moment per strain and its rate, N, m, rad, s; across frames only
+    those along the axis and about it. Shape (c, 6, 6) each.
+    """
 
     def matrix(self, coefficient: FloatArray, left: FloatArray, right: FloatArray) -> FloatArray:
         """Return left^T coefficient right for strains (c, 6, a) and (c, 6, b)."""
@@ -140,33 +137,28 @@ QUARTER[0, 1], QUARTER[1, 0], QUARTER[3, 4], QUARTER[4, 3] = -1.0, 1.0, -1.0, 1.
 
 @dataclass(frozen=True)
 class Seats:
-    """s bearings whose forces on ground or pin are K d + C d' - preload, d their 5 s strains.
-
-    Attributes
-    ----------
-    support : (s,) int array
-        Of each among the supports.
-    frame : tuple of int or None
-        Rotor of the carrier in whose rotating frame the ground is seen from each; None in the fixed frame and
-        on planet bearings, whose pins stay in the carrier's.
-    group : tuple of (str, slice)
-        Parts of the matrix that nothing couples: a bushing or a housing, and its rows.
-    motion : (5 s, N) array
-        Strain per freedom: x, y, z, tilt_x, tilt_y of the shaft's section there, less those of a pin.
-    stiffness, damping : (5 s, 5 s) arrays
-        Of bearing and housing in series.
-    preload : (5 s,) array
-        On the shaft where d = 0, N and N m; on a planet also what a pin off its nominal position exerts.
-    """
+    """s bearings whose forces on ground or pin are K d + C d' - preload, d their 5 s strains."""
 
     name: tuple[str, ...]
     support: IntArray
+    """Of each among the supports. Shape (s,)."""
     frame: tuple[int | None, ...]
+    """Rotor of the carrier in whose rotating frame the ground is seen from each; None in the fixed frame and
+    on planet bearings, whose pins stay in the carrier's.
+    """
     group: tuple[tuple[str, slice], ...]
+    """Parts of the matrix that nothing couples: a bushing or a housing, and its rows."""
     motion: FloatArray
+    """Strain per freedom: x, y, z, tilt_x, tilt_y of the shaft's section there, less those of a pin. Shape (5
+    s, N).
+    """
     stiffness: FloatArray
     damping: FloatArray
+    """`stiffness`, `damping`: Of bearing and housing in series. Shape (5 s, 5 s) each."""
     preload: FloatArray
+    """On the shaft where d = 0, N and N m; on a planet also what a pin off its nominal position exerts. Shape
+    (5 s,).
+    """
 
     @property
     def turned_damping(self) -> FloatArray:
@@ -269,18 +261,12 @@ def seat_compliance(housing: Housing, stiffness: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class Connections:
-    """What joins rotors to the ground and to each other linearly.
-
-    Attributes
-    ----------
-    supports : Supports
-        Bushings, then planet bearings.
-    seats : Seats
-        The bearings that are more than three springs to rigid ground or pin.
-    """
+    """What joins rotors to the ground and to each other linearly."""
 
     supports: Supports
+    """Bushings, then planet bearings."""
     seats: Seats
+    """The bearings that are more than three springs to rigid ground or pin."""
     couplings: CouplingRows
 
     def matrices(self, freedoms: Freedoms) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -18,23 +18,15 @@ HALF = 0.5
 
 @dataclass(frozen=True)
 class FlankAtMesh:
-    """The flank of a gear that carries in a mesh.
-
-    Attributes
-    ----------
-    gear : int
-    sense : int
-        +1 or -1, in which the gear turns about +z.
-    side : int
-        +1 or -1, towards which the flank looks about +z.
-    at_pitch_point : float
-        Its angle where it touches at the pitch point, pitches.
-    """
+    """The flank of a gear that carries in a mesh."""
 
     gear: int
     sense: int
+    """+1 or -1, in which the gear turns about +z."""
     side: int
+    """+1 or -1, towards which the flank looks about +z."""
     at_pitch_point: float
+    """Its angle where it touches at the pitch point, pitches."""
 
     @property
     def key(self) -> tuple[int, int]:

@@ -20,33 +20,22 @@ DAMPING_REACH = 0.05
 
 @dataclass(frozen=True)
 class Flanks:
-    """Resolved force laws of the driving flanks of m meshes, and after them of the coast flanks in use.
-
-    Attributes
-    ----------
-    nominal_force : (m,) array
-        Transverse, N.
-    mean_stiffness : (m,) array
-        Tangent stiffness of the table at the typical force, mean over the positions, N/m.
-    used : tuple of PlainTable
-        The tables after the mesh's technique.
-    law : FlankLaws
-        Table, damping (N s/m) and reach (N), for the compiled loops.
-    coast : tuple of int
-        The meshes whose coast flanks follow.
-    static : PackedTables
-        The driving flanks' tables themselves, whatever the technique: the static reference.
-    tables : tuple of PlainTable
-        Those of `law`, each at its mesh's constant operating point.
-    """
+    """Resolved force laws of the driving flanks of m meshes, and after them of the coast flanks in use."""
 
     nominal_force: FloatArray
+    """Transverse, N. Shape (m,)."""
     mean_stiffness: FloatArray
+    """Tangent stiffness of the table at the typical force, mean over the positions, N/m. Shape (m,)."""
     used: tuple[PlainTable, ...]
+    """The tables after the mesh's technique."""
     law: FlankLaws
+    """Table, damping (N s/m) and reach (N), for the compiled loops."""
     coast: tuple[int, ...]
+    """The meshes whose coast flanks follow."""
     static: PackedTables
+    """The driving flanks' tables themselves, whatever the technique: the static reference."""
     tables: tuple[PlainTable, ...]
+    """Those of `law`, each at its mesh's constant operating point."""
 
 
 def flank_laws(mechanism: Mechanism) -> Flanks:

@@ -53,27 +53,22 @@ COUPLED = ("x", "tilt_y", "bending_x", "y", "tilt_x", "bending_y", "z", "stretch
 
 @dataclass(frozen=True)
 class Freedoms:
-    """The free directions of motion.
-
-    Attributes
-    ----------
-    name : tuple of str
-        "shaft.kind" with kind one of x, y, z (m), tilt_x, tilt_y, rotation (rad); "housing.mode_1" ... (m
-        kg^1/2).
-    column : (n,) int array
-        Of each among the N freedoms of all bodies: 6 rotor + kind, elastic coordinates after all of these,
-        then the amplitudes of housings.
-    motion : (N, n) array
-        All freedoms of all rotors per freedom: one at its index; planets go with their carrier where
-        nothing lets them move on their own.
-    turns : (n,) bool array
-        Whether each is a rotation or a twist about the axis.
-    """
+    """The free directions of motion."""
 
     name: tuple[str, ...]
+    """"shaft.kind" with kind one of x, y, z (m), tilt_x, tilt_y, rotation (rad); "housing.mode_1" ... (m
+    kg^1/2).
+    """
     column: IntArray
+    """Of each among the N freedoms of all bodies: 6 rotor + kind, elastic coordinates after all of these,
+    then the amplitudes of housings. Shape (n,).
+    """
     motion: FloatArray
+    """All freedoms of all rotors per freedom: one at its index; planets go with their carrier where nothing
+    lets them move on their own. Shape (N, n).
+    """
     turns: BoolArray
+    """Whether each is a rotation or a twist about the axis. Shape (n,)."""
 
     def keep(self, matrix: FloatArray) -> FloatArray:
         """Return a matrix whose last axis holds all freedoms of all rotors as one of the free ones."""

@@ -102,30 +102,20 @@ STARTING_SPEED = 1e-6  # rad/s; the speed assumed of a free rotation that starts
 
 @dataclass(frozen=True)
 class Kinematics:
-    """Motion of the shafts if all gears were conjugate: each speed is a sum of ratio times law over the laws.
-
-    Attributes
-    ----------
-    law_shaft : tuple of int
-        The shaft of each law: those of the drives, then those of the free rotations.
-    rigid : tuple of bool
-        Whether the law leaves its shaft no rotation of its own.
-    ratio : tuple of tuples of Fraction
-        (shafts, laws); speeds about +z; exact.
-    mesh_rate : tuple of tuples of Fraction
-        (meshes, laws): base pitches per revolution of each law, in the driver's sense; exact.
-    sense : tuple of int
-        +1, -1 about +z, or 0 for a shaft at rest: in which sense each shaft turns when it is fastest.
-    mesh_sense : tuple of int
-        +1 or -1: the same for the driver of each mesh, seen from the carrier it runs on, if any.
-    """
+    """Motion of the shafts if all gears were conjugate: a speed is a sum of ratio times law over the laws."""
 
     law_shaft: tuple[int, ...]
+    """The shaft of each law: those of the drives, then those of the free rotations."""
     rigid: tuple[bool, ...]
+    """Whether the law leaves its shaft no rotation of its own."""
     ratio: tuple[tuple[Fraction, ...], ...]
+    """(shafts, laws); speeds about +z; exact."""
     mesh_rate: tuple[tuple[Fraction, ...], ...]
+    """(meshes, laws): base pitches per revolution of each law, in the driver's sense; exact."""
     sense: tuple[int, ...]
+    """+1, -1 about +z, or 0 for a shaft at rest: in which sense each shaft turns when it is fastest."""
     mesh_sense: tuple[int, ...]
+    """+1 or -1: the same for the driver of each mesh, seen from the carrier it runs on, if any."""
 
     @cached_property
     def imposed(self) -> frozenset[int]:

@@ -19,22 +19,16 @@ from dynamics.types import FloatArray
 
 @dataclass(frozen=True)
 class LineOfAction:
-    """The line along which the driver pushes the driven gear.
-
-    Attributes
-    ----------
-    point : (3,) array
-        Operating pitch point in the middle of the common face, fixed frame, m.
-    force : (3,) array
-        Force on the driven gear per unit transverse mesh force: a unit vector in the transverse plane, plus
-        the axial part of a helical mesh.
-    working_pressure_angle : float
-        rad.
-    """
+    """The line along which the driver pushes the driven gear."""
 
     point: FloatArray
+    """Operating pitch point in the middle of the common face, fixed frame, m. Shape (3,)."""
     force: FloatArray
+    """Force on the driven gear per unit transverse mesh force: a unit vector in the transverse plane, plus
+    the axial part of a helical mesh. Shape (3,).
+    """
     working_pressure_angle: float
+    """rad."""
 
     def gradient(self, center: FloatArray) -> FloatArray:
         """Return the (6,) wrench of `force` about `center`: the derivative of the approach along the line.

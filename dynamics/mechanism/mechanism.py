@@ -214,41 +214,28 @@ GIVE_INERTIA = "Give the shaft or its gears mass and inertia (see hollow_cylinde
 
 @dataclass(frozen=True)
 class Mechanism:
-    """The parts of a scene before any effect is decided.
-
-    Attributes
-    ----------
-    rotors : Bodies
-        A rotor per shaft.
-    lines : tuple of LineOfAction
-        One per mesh.
-    nominal_force : (m,) array
-        Transverse, N.
-    bearing_duty : dict of str to BearingDuty
-        What is expected of each bearing.
-    bearings : tuple of BearingElement
-        Where the laws of bearings act that are not linear.
-    corrected : dict
-        Base radii of gears as given and as used, m.
-    additions : Additions
-        What the effects may add.
-    passing : frozenset of str
-        Rolling bearings whose elements pass one by one.
-    phases : TrainPhases
-        Positions of the meshes, and what they rest on beyond the geometry.
-    """
+    """The parts of a scene before any effect is decided."""
 
     scene: Scene
     kinematics: Kinematics
     rotors: Bodies
+    """A rotor per shaft."""
     lines: tuple[LineOfAction, ...]
+    """One per mesh."""
     nominal_force: FloatArray
+    """Transverse, N. Shape (m,)."""
     bearing_duty: dict[str, BearingDuty]
+    """What is expected of each bearing."""
     bearings: tuple[BearingElement, ...]
+    """Where the laws of bearings act that are not linear."""
     corrected: Corrections
+    """Base radii of gears as given and as used, m."""
     additions: Additions
+    """What the effects may add."""
     passing: frozenset[str] = frozenset()
+    """Rolling bearings whose elements pass one by one."""
     phases: TrainPhases = NO_PHASES
+    """Positions of the meshes, and what they rest on beyond the geometry."""
 
     @property
     def rotational_inertia(self) -> FloatArray:

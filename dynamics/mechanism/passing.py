@@ -23,29 +23,21 @@ SAME = 1e-9
 
 @dataclass(frozen=True)
 class Excitation:
-    """What repeats at a fixed order of a shaft.
-
-    Attributes
-    ----------
-    kind : str
-        `MESH`, `SIDEBAND`, `SHAFT` or `BEARING`.
-    name : str
-        Of the mesh, shaft or bearing; `part` of a bearing is the ring or element that is passed, of a
-        sideband the side.
-    rate : float
-        Repetitions per revolution of the shaft that orders are of, > 0.
-    harmonics : int
-        Multiples of the rate that are looked at, from 1.
-    beside : tuple of float
-        Added to the order of each harmonic, of sidebands; empty: nothing.
-    """
+    """What repeats at a fixed order of a shaft."""
 
     kind: str
+    """`MESH`, `SIDEBAND`, `SHAFT` or `BEARING`."""
     name: str
+    """Of the mesh, shaft or bearing; `part` of a bearing is the ring or element that is passed, of a sideband
+    the side.
+    """
     part: str
     rate: float
+    """Repetitions per revolution of the shaft that orders are of, > 0."""
     harmonics: int
+    """Multiples of the rate that are looked at, from 1."""
     beside: tuple[float, ...] = ()
+    """Added to the order of each harmonic, of sidebands; empty: nothing."""
 
     def order(self, harmonic: int) -> float:
         """Return the order of a harmonic."""
@@ -54,22 +46,15 @@ class Excitation:
 
 @dataclass(frozen=True)
 class Passing:
-    """A harmonic of an excitation beside the order of a complaint.
-
-    Attributes
-    ----------
-    harmonic : int
-        Multiple of the excitation's rate, from 1.
-    order : float
-        Per revolution of the complaint's shaft.
-    distance : float
-        Relative: positive, it passes above the complaint.
-    """
+    """A harmonic of an excitation beside the order of a complaint."""
 
     excitation: Excitation
     harmonic: int
+    """Multiple of the excitation's rate, from 1."""
     order: float
+    """Per revolution of the complaint's shaft."""
     distance: float
+    """Relative: positive, it passes above the complaint."""
 
     def within(self, tolerance: float) -> bool:
         """Whether it is off by at most a relative tolerance."""

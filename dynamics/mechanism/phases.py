@@ -18,24 +18,16 @@ from dynamics.types import FloatArray
 
 @dataclass(frozen=True)
 class LoadPhase:
-    """An angle in turns.
-
-    Attributes
-    ----------
-    rate : tuple of Fraction
-        Turns per turn of each law; exact.
-    turns : int
-        Turns after which what reads it repeats.
-    shaft : int or None
-        The shaft whose own rotation adds to it.
-    position : float
-        Where along that shaft, m.
-    """
+    """An angle in turns."""
 
     rate: tuple[Fraction, ...]
+    """Turns per turn of each law; exact."""
     turns: int
+    """Turns after which what reads it repeats."""
     shaft: int | None
+    """The shaft whose own rotation adds to it."""
     position: float = 0.0
+    """Where along that shaft, m."""
 
 
 def angle_phase(scene: Scene, kinematics: Kinematics, force: AppliedForce, course: Orders) -> LoadPhase:

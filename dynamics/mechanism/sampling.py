@@ -32,44 +32,34 @@ DIGITS = 3  # of a rate that is chosen
 
 @dataclass(frozen=True)
 class Sampling:
-    """The sampling of a run.
-
-    Attributes
-    ----------
-    rate : float
-        Hz of the output grid.
-    chosen : str
-        Why this rate.
-    mesh_frequency, mode_frequency : float
-        Hz: the highest mesh frequency of the kinematic motion; the highest resolved mode that the meshes
-        excite, 0 where there is none.
-    mesh_orders : int
-        Wanted.
-    band : float
-        Hz: up to it the output is made where its rate is chosen; orders and modes reach beyond it where it is
-        the lower one.
-    pass_frequency, stop_frequency : float
-        Hz: up to the first the filter passes, from the second on it stops; what lies between may fold, to
-        above the first.
-    stop_band : float
-        dB; 0: the output are points of the motion, unfiltered.
-    inner_rate : float
-        Hz of the grid on which the steps are evaluated, filtered, and searched for peaks.
-    taps : int
-        Length of the filter in inner samples: linear phase, its delay compensated.
-    """
+    """The sampling of a run."""
 
     rate: float
+    """Hz of the output grid."""
     chosen: str
+    """Why this rate."""
     mesh_frequency: float
     mode_frequency: float
+    """`mesh_frequency`, `mode_frequency`: Hz: the highest mesh frequency of the kinematic motion; the highest
+    resolved mode that the meshes excite, 0 where there is none.
+    """
     mesh_orders: int
+    """Wanted."""
     band: float
+    """Hz: up to it the output is made where its rate is chosen; orders and modes reach beyond it where it is
+    the lower one.
+    """
     pass_frequency: float
     stop_frequency: float
+    """`pass_frequency`, `stop_frequency`: Hz: up to the first the filter passes, from the second on it stops;
+    what lies between may fold, to above the first.
+    """
     stop_band: float
+    """dB; 0: the output are points of the motion, unfiltered."""
     inner_rate: float
+    """Hz of the grid on which the steps are evaluated, filtered, and searched for peaks."""
     taps: int
+    """Length of the filter in inner samples: linear phase, its delay compensated."""
 
     @property
     def factor(self) -> int:

@@ -15,21 +15,14 @@ from model_studies import in_unit
 
 @dataclass(frozen=True)
 class ShaftAxes:
-    """P points of all shafts in a row.
-
-    Attributes
-    ----------
-    shaft : (P,) int array
-        Index of the shaft in the scene.
-    position : (P,) array
-        Along it from its left end, m, increasing within a shaft.
-    motion : (P, 6, N) array
-        x, y, z (m), tilt_x, tilt_y, rotation (rad) per freedom of all bodies.
-    """
+    """P points of all shafts in a row."""
 
     shaft: IntArray = field(metadata={"dimensions": ("point",)})
+    """Index of the shaft in the scene. Shape (P,)."""
     position: FloatArray = field(metadata=in_unit("m", "point"))
+    """Along it from its left end, m, increasing within a shaft. Shape (P,)."""
     motion: FloatArray
+    """x, y, z (m), tilt_x, tilt_y, rotation (rad) per freedom of all bodies. Shape (P, 6, N)."""
 
 
 def shaft_axes(scene: Scene, rotors: Bodies) -> ShaftAxes:

@@ -68,31 +68,24 @@ def _carrier_of(rotor: Rotor, bearing: PlanetBearing) -> int:
 
 @dataclass(frozen=True)
 class Supports:
-    """b supports, each three springs and dampers along x, y, z: bushings by rotor, then planet bearings.
-
-    Attributes
-    ----------
-    frame : tuple of int or None
-        Rotor of the carrier whose rotating frame the ground is seen from; None: forces are in the fixed frame
-        as they are, or, of a planet bearing, stay in the carrier's.
-    motion : (b, 3, N) array
-        Strain per freedom: displacement of the axis there, less that of the pin on a planet bearing, of the
-        seat in a housing with mass.
-    seat : (b, 3, N) array
-        Of the seat alone: zero but in a housing with mass.
-    stiffness, damping : (b, 3) arrays
-        N/m, N s/m.
-    error : (b, 3) array
-        Strain-free displacement: of a pin off its nominal position, m.
-    """
+    """b supports, each three springs and dampers along x, y, z: bushings by rotor, then planet bearings."""
 
     name: tuple[str, ...]
     frame: tuple[int | None, ...]
+    """Rotor of the carrier whose rotating frame the ground is seen from; None: forces are in the fixed frame
+    as they are, or, of a planet bearing, stay in the carrier's.
+    """
     motion: FloatArray
+    """Strain per freedom: displacement of the axis there, less that of the pin on a planet bearing, of the
+    seat in a housing with mass. Shape (b, 3, N).
+    """
     seat: FloatArray
+    """Of the seat alone: zero but in a housing with mass. Shape (b, 3, N)."""
     stiffness: FloatArray
     damping: FloatArray
+    """`stiffness`, `damping`: N/m, N s/m. Shape (b, 3) each."""
     error: FloatArray
+    """Strain-free displacement: of a pin off its nominal position, m. Shape (b, 3)."""
 
     @property
     def carried(self) -> BoolArray:

@@ -30,38 +30,24 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class AssumedAngle:
-    """An angle between two gears of one speed that no part of the scene states: tooth centers in line.
-
-    Attributes
-    ----------
-    shaft : str
-        That of the second gear; the first is on it, or on a shaft coupled to it.
-    gears : tuple of two str
-    moves : (m,) array
-        Base pitches by which the position of each mesh moves per pitch of the second gear.
-    """
+    """An angle between two gears of one speed that no part of the scene states: tooth centers in line."""
 
     shaft: str
+    """That of the second gear; the first is on it, or on a shaft coupled to it."""
     gears: tuple[str, str]
     moves: FloatArray
+    """Base pitches by which the position of each mesh moves per pitch of the second gear. Shape (m,)."""
 
 
 @dataclass(frozen=True)
 class TrainPhases:
-    """Positions of all meshes where no law has turned yet, and what they rest on beyond the geometry.
-
-    Attributes
-    ----------
-    position : (m,) array
-        Base pitches; stated ones as they are, others within the period of their table.
-    angles : tuple of AssumedAngle
-    thickness : tuple of str
-        Gears whose tooth thickness is assumed.
-    """
+    """Positions of all meshes where no law has turned yet, and what they rest on beyond the geometry."""
 
     position: FloatArray
+    """Base pitches; stated ones as they are, others within the period of their table. Shape (m,)."""
     angles: tuple[AssumedAngle, ...] = ()
     thickness: tuple[str, ...] = ()
+    """Gears whose tooth thickness is assumed."""
 
 
 NO_PHASES = TrainPhases(np.zeros(0))

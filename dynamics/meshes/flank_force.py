@@ -12,21 +12,16 @@ from dynamics.types import FloatArray
 
 
 class FlankLaws(NamedTuple):
-    """Force laws of m flanks.
-
-    Attributes
-    ----------
-    table : PackedTables
-        Their elastic forces.
-    damping : (m,) array
-        N s/m in full contact.
-    reach : (m,) array
-        Elastic force in N from which the damping acts in full; below, it fades smoothly to zero at lift-off.
-    """
+    """Force laws of m flanks."""
 
     table: PackedTables
+    """Their elastic forces."""
     damping: FloatArray
+    """N s/m in full contact. Shape (m,)."""
     reach: FloatArray
+    """Elastic force in N from which the damping acts in full; below, it fades smoothly to zero at lift-off.
+    Shape (m,).
+    """
 
 
 @compiled

@@ -15,34 +15,26 @@ from dynamics.types import FloatArray, IntArray
 
 
 class GridTables(NamedTuple):
-    """Tables of k flanks, one after the other in flat arrays.
-
-    Attributes
-    ----------
-    base : PackedTables
-        Knots of position and levels, and the first knot of the other axes.
-    shape : (k, 3) int array
-        Knots of misalignment, center distance and position.
-    channels : (k,) int array
-        Quantities per level: deflection, stiffness, then the value and slope in force of each lever.
-    axis_first : (k, 2) int array
-        First knot of misalignment and center distance in `axis`.
-    axis : flat array
-        Their knots, m.
-    first : (k,) int array
-        First number of each table.
-    number : flat array
-        By misalignment, center distance, position, level, channel and order of differentiation: in
-        misalignment and center distance (where they have a second knot), then in position.
-    """
+    """Tables of k flanks, one after the other in flat arrays."""
 
     base: PackedTables
+    """Knots of position and levels, and the first knot of the other axes."""
     shape: IntArray
+    """Knots of misalignment, center distance and position. Shape (k, 3)."""
     channels: IntArray
+    """Quantities per level: deflection, stiffness, then the value and slope in force of each lever. Shape
+    (k,).
+    """
     axis_first: IntArray
+    """First knot of misalignment and center distance in `axis`. Shape (k, 2)."""
     axis: FloatArray
+    """Their knots, m. Flat."""
     first: IntArray
+    """First number of each table. Shape (k,)."""
     number: FloatArray
+    """By misalignment, center distance, position, level, channel and order of differentiation: in
+    misalignment and center distance (where they have a second knot), then in position. Flat.
+    """
 
     @classmethod
     def packed(cls, tables: Sequence[MeshTable]) -> GridTables:

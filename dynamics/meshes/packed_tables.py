@@ -55,43 +55,32 @@ LEAST = 4  # knots of a table that can be decimated
 
 @with_numbers("offset")
 class PackedTables(NamedTuple):
-    """Tables of several flanks, one after the other in flat arrays; flanks of one table share it.
-
-    Attributes
-    ----------
-    offset : (m, 6) int array
-        Per flank: first knot, first bucket, number of buckets, first row, first level, number of levels.
-    shift : (m,) array
-        Position of the first knot.
-    period : (m,) array
-        Whole base pitches.
-    density : (m,) array
-        Buckets per base pitch.
-    knot : flat array
-        Knots less `shift`, from 0 to the period inclusive (P + 1 of them).
-    per_width : flat array
-        1 over the width of the interval that begins at each knot; 0 at the period.
-    bucket : flat int array
-        The interval in which each of the equal buckets of the period begins: finding it takes no search.
-    row : (sum of P L, 8) array
-        Per position interval and level the ascending cubic coefficients of deflection (4) and stiffness (4)
-        in the local coordinate 0..1: one cache line each.
-    level : flat array
-        Forces, N.
-    energy : (sum of P L, 10) array
-        See `_energy_below`.
-    """
+    """Tables of several flanks, one after the other in flat arrays; flanks of one table share it."""
 
     offset: IntArray
+    """Per flank: first knot, first bucket, number of buckets, first row, first level, number of levels. Shape
+    (m, 6).
+    """
     shift: FloatArray
+    """Position of the first knot. Shape (m,)."""
     period: FloatArray
+    """Whole base pitches. Shape (m,)."""
     density: FloatArray
+    """Buckets per base pitch. Shape (m,)."""
     knot: FloatArray
+    """Knots less `shift`, from 0 to the period inclusive (P + 1 of them). Flat."""
     per_width: FloatArray
+    """1 over the width of the interval that begins at each knot; 0 at the period. Flat."""
     bucket: IntArray
+    """The interval in which each of the equal buckets of the period begins: finding it takes no search."""
     row: FloatArray
+    """Per position interval and level the ascending cubic coefficients of deflection (4) and stiffness (4) in
+    the local coordinate 0..1: one cache line each. Shape (sum of P L, 8).
+    """
     level: FloatArray
+    """Forces, N. Flat."""
     energy: FloatArray
+    """See `_energy_below`. Shape (sum of P L, 10)."""
 
     def decimated(self, every: int = 2) -> PackedTables:
         """Return the tables on each `every`-th knot of position, with the values and slopes they have there.

@@ -53,23 +53,18 @@ class _Lever(NamedTuple):
 
 
 class _Sliding(NamedTuple):
-    """Friction over the normal force along sliding at the pitch point and about the axis, mu = 1.
-
-    Attributes
-    ----------
-    along : Lever
-        1; its derivatives 1/m.
-    about : Lever
-        m; its derivatives 1.
-    along_rate, mixed_rate, about_rate : float
-        Derivatives of `along` in v, s/m; of `along` in w and of `about` in v, s; of `about` in w, m s.
-    """
+    """Friction over the normal force along sliding at the pitch point and about the axis, mu = 1."""
 
     along: _Lever
+    """1; its derivatives 1/m."""
     about: _Lever
+    """m; its derivatives 1."""
     along_rate: float
     mixed_rate: float
     about_rate: float
+    """`along_rate`, `mixed_rate`, `about_rate`: Derivatives of `along` in v, s/m; of `along` in w and of
+    `about` in v, s; of `about` in w, m s.
+    """
 
 
 @inner
@@ -192,47 +187,34 @@ LOAD_ARM, SLIDING_SHARE, SLIDING_LEVER = 2, 4, 6  # channels
 
 
 class SpatialFlankLaws(NamedTuple):
-    """Force laws of k flanks in space.
-
-    Attributes
-    ----------
-    grid : GridTables
-        Their elastic forces and load arms.
-    damping : (k,) array
-        N s/m in full contact.
-    reach : (k,) array
-        Elastic force in N from which the damping acts in full.
-    row : (k, 3) int array
-        Row of misalignment, center-distance change and sliding after that of the deflection; -1: none. The
-        row of rolling follows that of sliding.
-    fixed : (k, 2) array
-        Their values in m where the table is used at one operating point.
-    follows : (k, 2) int array
-        1 where the force follows the row, 0 where it stays at the fixed value.
-    per_face : (k,) array
-        1/(face width), 1/m; 0: the force acts at mid-face.
-    mid_face : (k,) array
-        Face position of the middle of the common face from that of the driving gear, m.
-    friction : (k,) array
-        Friction force over the transverse force of a pair.
-    radius : (k,) array
-        Of the row of rolling, m.
-    running : (k,) bool array
-        Whether friction has the directions of running gears, at rest as well, instead of those of the sliding
-        velocity: for studies of small motions about gears that run.
-    """
+    """Force laws of k flanks in space."""
 
     grid: GridTables
+    """Their elastic forces and load arms."""
     damping: FloatArray
+    """N s/m in full contact. Shape (k,)."""
     reach: FloatArray
+    """Elastic force in N from which the damping acts in full. Shape (k,)."""
     row: IntArray
+    """Row of misalignment, center-distance change and sliding after that of the deflection; -1: none. The row
+    of rolling follows that of sliding. Shape (k, 3).
+    """
     fixed: FloatArray
+    """Their values in m where the table is used at one operating point. Shape (k, 2)."""
     follows: IntArray
+    """1 where the force follows the row, 0 where it stays at the fixed value. Shape (k, 2)."""
     per_face: FloatArray
+    """1/(face width), 1/m; 0: the force acts at mid-face. Shape (k,)."""
     mid_face: FloatArray
+    """Face position of the middle of the common face from that of the driving gear, m. Shape (k,)."""
     friction: FloatArray
+    """Friction force over the transverse force of a pair. Shape (k,)."""
     radius: FloatArray
+    """Of the row of rolling, m. Shape (k,)."""
     running: BoolArray
+    """Whether friction has the directions of running gears, at rest as well, instead of those of the sliding
+    velocity: for studies of small motions about gears that run. Shape (k,).
+    """
 
     @classmethod
     def packed(cls, tables: Sequence[MeshTable], figures: Mapping[str, Sequence[Any]]) -> SpatialFlankLaws:

@@ -21,26 +21,17 @@ ADDENDUM = 1.0
 
 @dataclass(frozen=True)
 class StandardTeeth:
-    """The teeth of a pair as far as sliding depends on them; SI.
-
-    Attributes
-    ----------
-    teeth : tuple of two int
-        Of pinion and wheel.
-    base_radius : float
-        Of the pinion.
-    working_pressure_angle, base_helix_angle : float
-    face_width : float
-    internal : bool
-        Whether the wheel is a ring gear.
-    """
+    """The teeth of a pair as far as sliding depends on them; SI."""
 
     teeth: tuple[int, int]
+    """Of pinion and wheel."""
     base_radius: float
+    """Of the pinion."""
     working_pressure_angle: float
     base_helix_angle: float
     face_width: float
     internal: bool = False
+    """Whether the wheel is a ring gear."""
 
     @property
     def base_pitch(self) -> float:

@@ -16,23 +16,18 @@ from dynamics.types import FloatArray
 
 @dataclass(frozen=True)
 class ForceBalance:
-    """Forces on n freedoms in a state (q, v) at a time, without inertia.
-
-    Attributes
-    ----------
-    force : (n,) array
-        What accelerates: M q'' = external - C v - K q - G^T f, N and N m.
-    stiffness, damping : (n, n) arrays
-        K + G^T (df/dy) G and C + G^T (df/dy') G: minus the derivatives of `force` in q and v. How forces
-        change with the meshes' positions is left out: of the order of a deflection over a base pitch.
-    local : LocalState
-        Of the elements.
-    """
+    """Forces on n freedoms in a state (q, v) at a time, without inertia."""
 
     force: FloatArray
+    """What accelerates: M q'' = external - C v - K q - G^T f, N and N m. Shape (n,)."""
     stiffness: FloatArray
     damping: FloatArray
+    """`stiffness`, `damping`: K + G^T (df/dy) G and C + G^T (df/dy') G: minus the derivatives of `force` in q
+    and v. How forces change with the meshes' positions is left out: of the order of a deflection over a base
+    pitch. Shape (n, n) each.
+    """
     local: LocalState
+    """Of the elements."""
 
 
 def force_balance(

@@ -28,20 +28,18 @@ from dynamics.types import FloatArray, IntArray
 
 
 class Observed(NamedTuple):
-    """Elements of m meshes with R rows at T times.
-
-    Attributes
-    ----------
-    position : (m + f, T) array
-        Base pitches in [0, period); then turns of frames against each other, revolutions in [0, 1).
-    coordinate, force, elastic : (R, T) arrays
-        Local coordinates, m, local forces, N, and what tables give of those of flanks, N, without damping.
-    """
+    """Elements of m meshes with R rows at T times."""
 
     position: FloatArray
+    """Base pitches in [0, period); then turns of frames against each other, revolutions in [0, 1). Shape (m +
+    f, T).
+    """
     coordinate: FloatArray
     force: FloatArray
     elastic: FloatArray
+    """`coordinate`, `force`, `elastic`: Local coordinates, m, local forces, N, and what tables give of those
+    of flanks, N, without damping. Shape (R, T) each.
+    """
 
 
 def observe(

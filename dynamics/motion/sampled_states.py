@@ -10,30 +10,26 @@ from dynamics.types import FloatArray, IntArray
 
 
 class States(NamedTuple):
-    """Sampled states: n freedoms, k laws, R local forces, C channels (see `SampleRing`).
-
-    Attributes
-    ----------
-    q, v : (T, n) arrays
-        Deviations from the kinematic motion and their rates; without the amplitudes of housings where no
-        output has them.
-    carried : (T, 2 s) array
-        Local coordinates, then their rates, of the rows that these amplitudes move; s = 0 where `q` has them.
-    moved : (T, k) int array
-        Quanta of a revolution by which each free train's own rotation was moved into the kinematic motion.
-    filtered : (T, C) array
-        All channels behind the anti-alias filter.
-    least, largest : (T, R) arrays
-        Extremes of the local forces between the samples, unfiltered.
-    """
+    """Sampled states: n freedoms, k laws, R local forces, C channels (see `SampleRing`)."""
 
     q: FloatArray
     v: FloatArray
+    """`q`, `v`: Deviations from the kinematic motion and their rates; without the amplitudes of housings
+    where no output has them. Shape (T, n) each.
+    """
     carried: FloatArray
+    """Local coordinates, then their rates, of the rows that these amplitudes move; s = 0 where `q` has them.
+    Shape (T, 2 s).
+    """
     moved: IntArray
+    """Quanta of a revolution by which each free train's own rotation was moved into the kinematic motion.
+    Shape (T, k).
+    """
     filtered: FloatArray
+    """All channels behind the anti-alias filter. Shape (T, C)."""
     least: FloatArray
     largest: FloatArray
+    """`least`, `largest`: Extremes of the local forces between the samples, unfiltered. Shape (T, R) each."""
 
     def rows(self, first: int, stop: int) -> States:
         """Return a view of the samples `first` to `stop` - 1."""

@@ -61,21 +61,17 @@ def allowed_levels(
 
 @dataclass(frozen=True)
 class EstimatedRadiation(HousingRadiation):
-    """Radiation resistance whose power of every mode alone is corrected; it stays positive semidefinite.
-
-    Attributes
-    ----------
-    correction : (F, r, r) array
-        What the velocity of the coordinates is multiplied with before monopoles radiate it.
-    mode_error : (2, F, m) array
-        From and to where the level of each mode of `ReducedHousing.modes` is off, dB; below 0: too quiet.
-    by_velocity : (F, m) bool array
-        Where monopoles say nothing of a mode.
-    """
+    """Radiation resistance whose power of every mode alone is corrected; it stays positive semidefinite."""
 
     correction: FloatArray
+    """What the velocity of the coordinates is multiplied with before monopoles radiate it. Shape (F, r, r).
+    """
     mode_error: FloatArray
+    """From and to where the level of each mode of `ReducedHousing.modes` is off, dB; below 0: too quiet.
+    Shape (2, F, m).
+    """
     by_velocity: BoolArray
+    """Where monopoles say nothing of a mode. Shape (F, m)."""
 
     def radiating(self, velocity: ComplexArray, knot: float) -> ComplexArray:
         """Return the velocity (r,) that the model radiates at a computed frequency, Hz."""

@@ -47,42 +47,29 @@ AIR, NAME = Air(), BoundaryElements().model_name
 
 @dataclass(frozen=True)
 class ExactLine:
-    """A line that boundary elements correct.
-
-    Attributes
-    ----------
-    frequency : float
-        Hz.
-    estimate, level : float
-        Sound power level by the estimate and by boundary elements at its loudest point, dB.
-    panels : int
-    seconds : float
-        CPU time when it was computed; a later result takes it from the cache.
-    """
+    """A line that boundary elements correct."""
 
     frequency: float
+    """Hz."""
     estimate: float
     level: float
+    """`estimate`, `level`: Sound power level by the estimate and by boundary elements at its loudest point,
+    dB.
+    """
     panels: int
     seconds: float
+    """CPU time when it was computed; a later result takes it from the cache."""
 
 
 @dataclass(frozen=True)
 class CorrectedRadiation:
-    """The estimate with boundary elements at its loudest lines.
-
-    Attributes
-    ----------
-    radiation : EstimatedRadiation
-    lines : tuple of ExactLine
-        In the order in which they were corrected.
-    left_out : tuple of str
-        Why further lines were not; none: no other line may be as loud.
-    """
+    """The estimate with boundary elements at its loudest lines."""
 
     radiation: EstimatedRadiation
     lines: tuple[ExactLine, ...]
+    """In the order in which they were corrected."""
     left_out: tuple[str, ...]
+    """Why further lines were not; none: no other line may be as loud."""
 
 
 def corrected_radiation(

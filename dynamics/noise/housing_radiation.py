@@ -185,46 +185,24 @@ WORK = "radiation resistance by {}"
 
 @dataclass(frozen=True)
 class RadiationFacts:
-    """How a radiation resistance was computed.
-
-    Attributes
-    ----------
-    panels : int
-        Of the finest hull.
-    cost : WorkCost
-        Without that of the hulls.
-    resolved_frequency : float
-        Hz; above it panels move as parts of a plane (ERP).
-    interpolation_error : float
-        dB.
-    inner_area, cap_area : float
-        As of `OuterHull`, m^2.
-    """
+    """How a radiation resistance was computed."""
 
     panels: int
+    """Of the finest hull."""
     cost: WorkCost
+    """Without that of the hulls."""
     resolved_frequency: float
+    """Hz; above it panels move as parts of a plane (ERP)."""
     interpolation_error: float
+    """dB."""
     inner_area: float
     cap_area: float
+    """`inner_area`, `cap_area`: As of `OuterHull`, m^2."""
 
 
 @dataclass(frozen=True)
 class HousingRadiation(ModalResistance, ArrayFile):
-    """Radiation resistance over the coordinates of a reduced housing.
-
-    Attributes
-    ----------
-    surface : (r, r) array
-        Integral over the hull of the products of normal displacements, m^2: half its quadratic form of
-        velocities is the integral of the mean square in time.
-    area : float
-        Of the outer hull with its caps, m^2.
-    impedance : float
-        rho c of the air, Pa s/m.
-    model_name : str
-        Of the radiation model.
-    """
+    """Radiation resistance over the coordinates of a reduced housing."""
 
     SCHEMA = "lineofaction housing radiation"
     RECORDS = MappingProxyType(
@@ -234,9 +212,15 @@ class HousingRadiation(ModalResistance, ArrayFile):
     surface: FloatArray = field(
         metadata=stored("m2", "integral of products of normal motions", "coordinate", "coordinate")
     )
+    """Integral over the hull of the products of normal displacements, m^2: half its quadratic form of
+    velocities is the integral of the mean square in time. Shape (r, r).
+    """
     area: float
+    """Of the outer hull with its caps, m^2."""
     impedance: float
+    """rho c of the air, Pa s/m."""
     model_name: str
+    """Of the radiation model."""
     facts: RadiationFacts
 
     def hull_at(self, outer: OuterHull, frequency: float, sound_speed: float) -> RadiatingHull | None:

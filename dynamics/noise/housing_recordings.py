@@ -46,18 +46,14 @@ BLOCK = 4_000_000  # phases that are held at a time
 
 @dataclass(frozen=True)
 class _SoundPaths:
-    """Paths from T panels to a microphone.
-
-    Attributes
-    ----------
-    delay : (T,) array
-        Travel time r/c, s.
-    gain : (T, r) array
-        Sound pressure per acceleration of each coordinate, Pa s^2/m (per m/s^2 of a coordinate in m).
-    """
+    """Paths from T panels to a microphone."""
 
     delay: FloatArray
+    """Travel time r/c, s. Shape (T,)."""
     gain: FloatArray
+    """Sound pressure per acceleration of each coordinate, Pa s^2/m (per m/s^2 of a coordinate in m). Shape
+    (T, r).
+    """
 
     def transfer(self, frequency: FloatArray) -> ComplexArray:
         """Return the sound pressure per acceleration of each coordinate, (N, r), at (N,) in Hz."""

@@ -74,18 +74,14 @@ def _coordinate_velocity(
 
 @dataclass(frozen=True)
 class PanelSound:
-    """Sound power of the panels of a hull.
-
-    Attributes
-    ----------
-    hull : Hull
-        That the radiation model takes at this frequency.
-    power : (T,) array
-        W, negative where a panel takes power that others radiate; the sum is the power of the hull.
-    """
+    """Sound power of the panels of a hull."""
 
     hull: Hull
+    """That the radiation model takes at this frequency."""
     power: FloatArray
+    """W, negative where a panel takes power that others radiate; the sum is the power of the hull. Shape
+    (T,).
+    """
 
     @classmethod
     def of_all(cls, sounds: Sequence[PanelSound]) -> PanelSound:
@@ -146,30 +142,20 @@ AXES = "xyz"
 
 @dataclass(frozen=True)
 class Region:
-    """Connected panels that face the same axis of the mesh rather than any other.
-
-    Attributes
-    ----------
-    facing : str
-        The axis, such as "+y".
-    points : tuple of str
-        Named points of the housing next to it.
-    normal : (3,) array
-        Mean outward normal, of length 1.
-    center : (3,) array
-        m.
-    area : float
-        m^2.
-    power : float
-        W, negative where it takes power from the others.
-    """
+    """Connected panels that face the same axis of the mesh rather than any other."""
 
     facing: str
+    """The axis, such as "+y"."""
     points: tuple[str, ...]
+    """Named points of the housing next to it."""
     normal: FloatArray
+    """Mean outward normal, of length 1. Shape (3,)."""
     center: FloatArray
+    """m. Shape (3,)."""
     area: float
+    """m^2."""
     power: float
+    """W, negative where it takes power from the others."""
 
 
 def regions(sound: PanelSound, points: Sequence[PointMotion] = ()) -> tuple[Region, ...]:

@@ -74,24 +74,6 @@ class RadiatedSound(ArrayFile):
     Orders add up in power, and so do several housings. Shares of bearings add up to the power; to those of
     modes what the kept modes lack statically is missing. A share is negative where a part cancels others.
     Fields state unit, meaning and dimensions of arrays.
-
-    Attributes
-    ----------
-    mode_housing : tuple of str
-        The housing of each mode.
-    efficiency : (S, H) array
-        Power over that of a plane with the same mean square velocity.
-    natural_frequency : (m,) array
-        Of the housing on its feet.
-    in_contact : (S,) bool array
-        Where flanks part, no linear answer holds.
-    facts : dict
-        Plain JSON: `radiation` by housing (`HousingRadiation.facts`, `model_name`, `area`, and
-        `valid_frequency` in Hz, to which the modes kept carry the motion).
-    panel_node, panel_corner, panel_power : (N, 3), (T, 3), (T,) arrays
-        Of all housings at the loudest order and speed (`PanelSound`); empty where they were not looked at.
-    floor_frequency, floor_power, floor_missed : (S, K) arrays
-        The fields of `floor`; empty where every order is listed.
     """
 
     SCHEMA = "lineofaction radiated sound"
@@ -99,6 +81,7 @@ class RadiatedSound(ArrayFile):
     housing: tuple[str, ...]
     bearing: tuple[str, ...]
     mode_housing: tuple[str, ...]
+    """The housing of each mode."""
     speed: FloatArray = field(metadata=stored("rad s-1", "speed of the leading drive", "speed"))
     order: FloatArray = field(
         metadata=stored("1", "multiple of the frequency of the first mesh that turns", "order")
@@ -106,6 +89,7 @@ class RadiatedSound(ArrayFile):
     frequency: FloatArray = field(metadata=stored("Hz", "frequency of the harmonic", *POWER))
     power: FloatArray = field(metadata=stored("W", "radiated sound power", *POWER))
     efficiency: FloatArray = field(metadata=stored("1", "radiation efficiency", *POWER))
+    """Power over that of a plane with the same mean square velocity. Shape (S, H)."""
     bearing_share: FloatArray = field(
         metadata=stored("W", "part of the power by the force of a bearing", "bearing", *POWER)
     )
@@ -121,8 +105,13 @@ class RadiatedSound(ArrayFile):
     natural_frequency: FloatArray = field(
         metadata=stored("Hz", "natural frequency of the housing, seats free", "mode")
     )
+    """Of the housing on its feet. Shape (m,)."""
     in_contact: BoolArray = field(metadata=stored("1", "whether all flanks stay in contact", "speed"))
+    """Where flanks part, no linear answer holds. Shape (S,)."""
     facts: Json = field(default_factory=dict)
+    """Plain JSON: `radiation` by housing (`HousingRadiation.facts`, `model_name`, `area`, and
+    `valid_frequency` in Hz, to which the modes kept carry the motion).
+    """
     panel_node: FloatArray = field(
         default_factory=lambda: np.empty((0, 3)),
         metadata=stored("m", "nodes of the panels", "panel_nodes", "xyz"),
@@ -135,6 +124,9 @@ class RadiatedSound(ArrayFile):
         default_factory=lambda: np.empty(0),
         metadata=stored("W", "radiated sound power of each panel", "panel"),
     )
+    """`panel_node`, `panel_corner`, `panel_power`: Of all housings at the loudest order and speed
+    (`PanelSound`); empty where they were not looked at. (N, 3), (T, 3), (T,) arrays.
+    """
     floor_frequency: FloatArray = field(
         default_factory=_no_bins, metadata=stored("Hz", "mean frequency of orders left out, in bins", *BINS)
     )
@@ -144,6 +136,9 @@ class RadiatedSound(ArrayFile):
     floor_missed: FloatArray = field(
         default_factory=_no_bins, metadata=stored("W", "by how much that may be off", *BINS)
     )
+    """`floor_frequency`, `floor_power`, `floor_missed`: The fields of `floor`; empty where every order is
+    listed. Shape (S, K) each.
+    """
 
     @classmethod
     def of_all(cls, sounds: Sequence[RadiatedSound]) -> RadiatedSound:
@@ -278,44 +273,34 @@ QUIET = 30.0
 
 @dataclass(frozen=True)
 class LoudPoint:
-    """An order at a speed at which it is louder than at the speeds beside it.
-
-    Attributes
-    ----------
-    order, speed, frequency : float
-        Multiple of the frequency of the first mesh; rad/s; Hz.
-    level, weighted_level : float
-        dB and dB(A) re 1e-12 W.
-    efficiency : float
-        Radiation efficiency.
-    mode, natural_frequency : int, float
-        Number from 1 on, and frequency in Hz, of the mode of the housing with the largest share.
-    mode_share : float
-        Of it, of the power.
-    bearing : str
-        With the largest share.
-    bearing_level, level_without_bearing : float
-        dB(A): of its force alone, and of what is left without it.
-    in_contact : bool
-        Whether all flanks stay in contact there; where not, no linear answer holds.
-    """
+    """An order at a speed at which it is louder than at the speeds beside it."""
 
     speed_index: int
     order_index: int
     order: float
     speed: float
     frequency: float
+    """`order`, `speed`, `frequency`: Multiple of the frequency of the first mesh; rad/s; Hz."""
     level: float
     weighted_level: float
+    """`level`, `weighted_level`: dB and dB(A) re 1e-12 W."""
     efficiency: float
+    """Radiation efficiency."""
     mode: int
     natural_frequency: float
+    """`mode`, `natural_frequency`: Number from 1 on, and frequency in Hz, of the mode of the housing with the
+    largest share.
+    """
     mode_share: float
+    """Of it, of the power."""
     mode_housing: str
     bearing: str
+    """With the largest share."""
     bearing_level: float
     level_without_bearing: float
+    """`bearing_level`, `level_without_bearing`: dB(A): of its force alone, and of what is left without it."""
     in_contact: bool
+    """Whether all flanks stay in contact there; where not, no linear answer holds."""
 
 
 def loudest(sound: RadiatedSound, count: int = 15) -> tuple[LoudPoint, ...]:

@@ -46,18 +46,12 @@ class DesignFigure:
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """The change of a level with a figure, from two steps of it.
-
-    Attributes
-    ----------
-    figure : DesignFigure
-    change, change_of_two : float
-        Of the level with one step and with two, dB.
-    """
+    """The change of a level with a figure, from two steps of it."""
 
     figure: DesignFigure
     change: float
     change_of_two: float
+    """`change`, `change_of_two`: Of the level with one step and with two, dB."""
 
     @classmethod
     def of(cls, figure: DesignFigure, level: Callable[[float], float]) -> Sensitivity:

@@ -37,21 +37,14 @@ from model_studies.progress import Progress, silent
 
 @dataclass(frozen=True)
 class SoundModel:
-    """A scene with what its housings are and radiate.
-
-    Attributes
-    ----------
-    scene : Scene
-        With the matrices of the housings.
-    housings : mapping of str to ReducedHousing
-        By name, those that radiate.
-    resistance : mapping of str to ModalResistance
-        Of the same, over their reduced coordinates.
-    """
+    """A scene with what its housings are and radiate."""
 
     scene: Scene
+    """With the matrices of the housings."""
     housings: Mapping[str, ReducedHousing]
+    """By name, those that radiate."""
     resistance: Mapping[str, ModalResistance]
+    """Of the same, over their reduced coordinates."""
 
     def with_housing(self, name: str, housing: ReducedHousing) -> SoundModel:
         """Return the model with another reduction of a housing, over the same coordinates."""
@@ -97,22 +90,15 @@ Bearing = TypeVar("Bearing", Bushing, PlanetBearing)
 
 @dataclass(frozen=True)
 class _Guess:
-    """A figure of a scene that is known within a range only.
-
-    Attributes
-    ----------
-    title : str
-        In words.
-    usual : Range
-        Of the factor on what the scene states.
-    varied : callable
-        ``varied(model, factor)``: the model with it; the same object where the scene has no such figure.
-    """
+    """A figure of a scene that is known within a range only."""
 
     name: str
     title: str
+    """In words."""
     usual: Range
+    """Of the factor on what the scene states."""
     varied: Callable[[SoundModel, float], SoundModel]
+    """``varied(model, factor)``: the model with it; the same object where the scene has no such figure."""
 
 
 def _each_housing(
@@ -215,38 +201,29 @@ Levels = Callable[[Mapping[str, float]], FloatArray]
 
 @dataclass(frozen=True)
 class SoundBand:
-    """A-weighted sound power levels of a linear response with their bands, dB(A) re 1e-12 W.
-
-    Attributes
-    ----------
-    speed : (S,) array
-        rad/s.
-    order : (H,) array
-    largest_total : LevelBand
-        Of all orders together, the largest over the speeds, wherever it is; above it `speed_steps`, what a
-        peak between the speeds may have.
-    mean_total : LevelBand
-        Of all orders together, the mean of the power over the speeds: what a run-up of constant acceleration
-        radiates. Narrower, as a resonance that moves is counted once wherever it is, and one of twice the
-        damping has half the power, not a quarter. `speed_steps` is what every other speed misses.
-    largest : tuple of LevelBand
-        Of each order as `largest_total`.
-    loudest_speed : (H,) array
-        Where each order is largest with the nominal values, rad/s.
-    there : tuple of LevelBand
-        Of each order at this speed: much wider than `largest`, as a resonance moves away from it.
-    total : tuple of LevelBand
-        Of all orders together at each speed.
-    """
+    """A-weighted sound power levels of a linear response with their bands, dB(A) re 1e-12 W."""
 
     speed: FloatArray
+    """rad/s. Shape (S,)."""
     order: FloatArray
+    """Shape (H,)."""
     largest_total: LevelBand
+    """Of all orders together, the largest over the speeds, wherever it is; above it `speed_steps`, what a
+    peak between the speeds may have.
+    """
     mean_total: LevelBand
+    """Of all orders together, the mean of the power over the speeds: what a run-up of constant acceleration
+    radiates. Narrower, as a resonance that moves is counted once wherever it is, and one of twice the damping
+    has half the power, not a quarter. `speed_steps` is what every other speed misses.
+    """
     largest: tuple[LevelBand, ...]
+    """Of each order as `largest_total`."""
     loudest_speed: FloatArray
+    """Where each order is largest with the nominal values, rad/s. Shape (H,)."""
     there: tuple[LevelBand, ...]
+    """Of each order at this speed: much wider than `largest`, as a resonance moves away from it."""
     total: tuple[LevelBand, ...]
+    """Of all orders together at each speed."""
 
     @property
     def _bands(self) -> list[LevelBand]:

@@ -28,30 +28,25 @@ LEAKAGE = 3
 
 @dataclass(frozen=True)
 class SoundOverTime:
-    """Sound power in B blocks of a run, J third octaves.
-
-    Attributes
-    ----------
-    time, speed : (B,) arrays
-        Middle of each block, s; speed of the leading shaft there, rad/s, without sign.
-    band : (J,) int array
-        Numbers of the bands, 0 at 1 kHz.
-    power : (B, J) array
-        W.
-    total, weighted : (B,) arrays
-        Of all lines between `lowest` and `highest`, W; A-weighted line by line, W.
-    lowest, highest : float
-        Hz.
-    """
+    """Sound power in B blocks of a run, J third octaves."""
 
     time: FloatArray
     speed: FloatArray
+    """`time`, `speed`: Middle of each block, s; speed of the leading shaft there, rad/s, without sign. Shape
+    (B,) each.
+    """
     band: IntArray
+    """Numbers of the bands, 0 at 1 kHz. Shape (J,)."""
     power: FloatArray
+    """W. Shape (B, J)."""
     total: FloatArray
     weighted: FloatArray
+    """`total`, `weighted`: Of all lines between `lowest` and `highest`, W; A-weighted line by line, W. Shape
+    (B,) each.
+    """
     lowest: float
     highest: float
+    """`lowest`, `highest`: Hz."""
 
     @classmethod
     def of_all(cls, sounds: Sequence[SoundOverTime]) -> SoundOverTime:

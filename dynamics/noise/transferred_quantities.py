@@ -33,27 +33,18 @@ AXES = ("x", "y", "z")
 
 @dataclass(frozen=True)
 class QuantityForm:
-    """A power or mean square at S speeds in H orders by the inputs y of flanks: y^H `matrix` y.
-
-    Attributes
-    ----------
-    unit : str
-        Of the matrix.
-    reference : float
-        Of 0 dB, in it.
-    frequency : (S, H) array
-        Hz.
-    weighting : (S, H) array
-        A-weighting of sound as a factor, else 1.
-    matrix : (S, H, 1 + R, 1 + R) complex array
-        Hermitian, positive semidefinite.
-    """
+    """A power or mean square at S speeds in H orders by the inputs y of flanks: y^H `matrix` y."""
 
     unit: str
+    """Of the matrix."""
     reference: float
+    """Of 0 dB, in it."""
     frequency: FloatArray
+    """Hz. Shape (S, H)."""
     weighting: FloatArray
+    """A-weighting of sound as a factor, else 1. Shape (S, H)."""
     matrix: ComplexArray
+    """Hermitian, positive semidefinite. Shape (S, H, 1 + R, 1 + R)."""
 
     def of(self, inputs: ComplexArray) -> FloatArray:
         """Return the power or mean square of inputs (S, H, 1 + R), (S, H), not weighted."""

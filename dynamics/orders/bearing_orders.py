@@ -36,21 +36,14 @@ SAME = 1e-6
 
 @dataclass(frozen=True)
 class _MeshHarmonics:
-    """Harmonics of meshes, in rising order; one that several meshes share is that of the first of them.
-
-    Attributes
-    ----------
-    order : (H,) array
-        Multiples of the frequency of the mesh that counts.
-    mesh : (H,) int array
-        Whose harmonic each is.
-    multiple : (H,) int array
-        Of the frequency of that mesh.
-    """
+    """Harmonics of meshes, in rising order; one that several meshes share is that of the first of them."""
 
     order: FloatArray
+    """Multiples of the frequency of the mesh that counts. Shape (H,)."""
     mesh: IntArray
+    """Whose harmonic each is. Shape (H,)."""
     multiple: IntArray
+    """Of the frequency of that mesh. Shape (H,)."""
 
     @property
     def closest(self) -> float:
@@ -136,45 +129,40 @@ class BearingOrders:
     that of the mesh in place of 2 pi frequency t.
 
     Windows are in order of speed where it rises or falls all along, or else of time.
-
-    Attributes
-    ----------
-    time : (S,) array
-        Middle of each window, s.
-    speed : (S,) array
-        Of the leading shaft there, rad/s, without sign.
-    order : (H,) array
-        Multiples of the frequency of the first mesh that turns; harmonics of the other meshes are among them.
-    frequency : (S, H) array
-        Hz.
-    bearing_force : (b, 3, S, H) complex array
-        On the ground or the pin, in the bearing's own frame, N; with seats (b, 6, S, H), moments in N m too.
-    in_contact : (S,) bool array
-        Whether all driving flanks stay in contact throughout the window.
-    sweep : (S,) array
-        Change of the mesh frequency within the window, of its mean.
-    smearing : (S, H) array
-        Of an amplitude: what the window rounds off a resonance of the scene (`_smearing`); NaN if the run
-        states no modes.
-    remainder : (b, S) array
-        Share of the variance of each bearing's force, from half the first order to half an order above the
-        last, that belongs to none of the orders: impacts, sidebands, orders of bearings, free vibration.
-    facts : dict
-        Plain JSON: `leading_shaft`, `pitches` of a window, `windows_left_out` (standstill, reversal, too
-        fast a sweep), `effect_ledger` of the run.
     """
 
     bearing: tuple[str, ...]
     time: FloatArray
+    """Middle of each window, s. Shape (S,)."""
     speed: FloatArray
+    """Of the leading shaft there, rad/s, without sign. Shape (S,)."""
     order: FloatArray
+    """Multiples of the frequency of the first mesh that turns; harmonics of the other meshes are among them.
+    Shape (H,).
+    """
     frequency: FloatArray
+    """Hz. Shape (S, H)."""
     bearing_force: ComplexArray
+    """On the ground or the pin, in the bearing's own frame, N; with seats (b, 6, S, H), moments in N m too.
+    Shape (b, 3, S, H).
+    """
     in_contact: BoolArray
+    """Whether all driving flanks stay in contact throughout the window. Shape (S,)."""
     sweep: FloatArray
+    """Change of the mesh frequency within the window, of its mean. Shape (S,)."""
     smearing: FloatArray
+    """Of an amplitude: what the window rounds off a resonance of the scene (`_smearing`); NaN if the run
+    states no modes. Shape (S, H).
+    """
     remainder: FloatArray
+    """Share of the variance of each bearing's force, from half the first order to half an order above the
+    last, that belongs to none of the orders: impacts, sidebands, orders of bearings, free vibration. Shape
+    (b, S).
+    """
     facts: Json = field(default_factory=dict)
+    """Plain JSON: `leading_shaft`, `pitches` of a window, `windows_left_out` (standstill, reversal, too fast
+    a sweep), `effect_ledger` of the run.
+    """
 
     @property
     def floor(self) -> None:

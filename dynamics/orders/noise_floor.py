@@ -24,25 +24,19 @@ ONE_SPEED = 0.02
 
 @dataclass(frozen=True)
 class OrderPower:
-    """The mean power of an order over a range of mesh frequencies.
-
-    Attributes
-    ----------
-    power : float
-        Mean of half the squared amplitude, the noise removed, square of the unit; < 0: none is seen.
-    noise : float
-        Mean power of the noise on its line.
-    deviation : float
-        Standard deviation of `power` by the noise, and by blocks that pass the frequencies in steps.
-    frequency, clean : (B,) arrays
-        Mesh frequencies of the blocks, Hz, rising; their powers without the noise.
-    """
+    """The mean power of an order over a range of mesh frequencies."""
 
     power: float
+    """Mean of half the squared amplitude, the noise removed, square of the unit; < 0: none is seen."""
     noise: float
+    """Mean power of the noise on its line."""
     deviation: float
+    """Standard deviation of `power` by the noise, and by blocks that pass the frequencies in steps."""
     frequency: FloatArray
     clean: FloatArray
+    """`frequency`, `clean`: Mesh frequencies of the blocks, Hz, rising; their powers without the noise. Shape
+    (B,) each.
+    """
 
     @property
     def is_seen(self) -> bool:

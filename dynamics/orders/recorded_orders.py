@@ -29,21 +29,14 @@ SLOWEST = 0.02
 
 @dataclass(frozen=True)
 class PositionedSignal:
-    """A signal (T,) on a uniform grid of time, with the position (T,) of a mesh.
-
-    Attributes
-    ----------
-    time : (T,) array
-        s, uniform.
-    position : (T,) array
-        Base pitches, not wrapped, rising.
-    values : (T,) array
-        In `unit`.
-    """
+    """A signal (T,) on a uniform grid of time, with the position (T,) of a mesh."""
 
     time: FloatArray
+    """s, uniform. Shape (T,)."""
     position: FloatArray
+    """Base pitches, not wrapped, rising. Shape (T,)."""
     values: FloatArray
+    """In `unit`. Shape (T,)."""
     unit: str
 
     def __post_init__(self) -> None:

@@ -19,45 +19,33 @@ FLAT_TOP = (0.21557895, -0.41663158, 0.277263158, -0.083578947, 0.006947368)  # 
 
 @dataclass(frozen=True)
 class Spectrum:
-    """One-sided amplitude spectrum.
-
-    Attributes
-    ----------
-    frequency : (K,) array
-        Hz, from 0.
-    amplitude : (..., K) array
-        Peak amplitude of a sinusoid at each frequency (corrected for the window), in `unit`; the mean at 0
-        Hz.
-    resolution : float
-        Distance of the lines, Hz.
-    noise_bandwidth : float
-        Of the window, in lines: the mean square of a signal is the sum of half the squared amplitudes over
-        it (1 rectangular, 1.5 Hann, 3.77 flat top).
-    """
+    """One-sided amplitude spectrum."""
 
     frequency: FloatArray
+    """Hz, from 0. Shape (K,)."""
     amplitude: FloatArray
+    """Peak amplitude of a sinusoid at each frequency (corrected for the window), in `unit`; the mean at 0 Hz.
+    Shape (..., K).
+    """
     unit: str
     resolution: float
+    """Distance of the lines, Hz."""
     window: str
     noise_bandwidth: float
+    """Of the window, in lines: the mean square of a signal is the sum of half the squared amplitudes over it
+    (1 rectangular, 1.5 Hann, 3.77 flat top).
+    """
 
 
 @dataclass(frozen=True)
 class _MeshOrder:
-    """The band of a harmonic of the mesh frequency in a window of a run-up.
-
-    Attributes
-    ----------
-    order : int
-        Multiple of the mesh frequency.
-    low, high : float
-        Hz: its lowest and highest frequency in the window.
-    """
+    """The band of a harmonic of the mesh frequency in a window of a run-up."""
 
     order: int
+    """Multiple of the mesh frequency."""
     low: float
     high: float
+    """`low`, `high`: Hz: its lowest and highest frequency in the window."""
 
 
 def spectrum(values: FloatArray, sample_rate: float, unit: str = "", window: str = "hann") -> Spectrum:
@@ -110,18 +98,12 @@ def mesh_orders(
 
 @dataclass(frozen=True)
 class _Peak:
-    """A local maximum of a spectrum.
-
-    Attributes
-    ----------
-    frequency : float
-        Hz, between the lines: the vertex of the parabola through the logarithms of the three highest.
-    amplitude : float
-        At that vertex, in the spectrum's unit: within 3 % for a sinusoid under a Hann window.
-    """
+    """A local maximum of a spectrum."""
 
     frequency: float
+    """Hz, between the lines: the vertex of the parabola through the logarithms of the three highest."""
     amplitude: float
+    """At that vertex, in the spectrum's unit: within 3 % for a sinusoid under a Hann window."""
 
 
 def find_peaks(
@@ -160,25 +142,19 @@ REVOLUTIONS = 4
 
 @dataclass(frozen=True)
 class _Sideband:
-    """One line beside a mesh order.
-
-    Attributes
-    ----------
-    source : str
-        What modulates: the name of a gear, or that given.
-    mesh_order, number : int
-        Beside which multiple of the mesh frequency, and the how manieth: < 0 below, 0 the mesh order itself.
-    order : float
-        mesh_order + number * spacing, multiples of the mesh frequency.
-    amplitude : float
-        Peak amplitude, in the unit of the signal.
-    """
+    """One line beside a mesh order."""
 
     source: str
+    """What modulates: the name of a gear, or that given."""
     mesh_order: int
     number: int
+    """`mesh_order`, `number`: Beside which multiple of the mesh frequency, and the how manieth: < 0 below, 0
+    the mesh order itself.
+    """
     order: float
+    """mesh_order + number * spacing, multiples of the mesh frequency."""
     amplitude: float
+    """Peak amplitude, in the unit of the signal."""
 
 
 def sidebands(

@@ -19,29 +19,20 @@ ON_LINE = 1e-6  # of a line's distance
 
 @dataclass(frozen=True)
 class Waterfall:
-    """Spectra of B blocks along a run.
-
-    Attributes
-    ----------
-    line : (K,) array
-        Frequencies in Hz, or orders in multiples of the mesh frequency, from 0, equally spaced.
-    time, mesh_frequency : (B,) arrays
-        Means of each block, s and Hz.
-    amplitude : (..., B, K) array
-        Peak amplitude under the window, in `unit`; the mean at line 0.
-    rms : (..., B) array
-        Of each block about its mean, of all that the signal holds, in `unit`.
-    noise_bandwidth : float
-        Of the window, in lines.
-    """
+    """Spectra of B blocks along a run."""
 
     line: FloatArray
+    """Frequencies in Hz, or orders in multiples of the mesh frequency, from 0, equally spaced. Shape (K,)."""
     time: FloatArray
     mesh_frequency: FloatArray
+    """`time`, `mesh_frequency`: Means of each block, s and Hz. Shape (B,) each."""
     amplitude: FloatArray
+    """Peak amplitude under the window, in `unit`; the mean at line 0. Shape (..., B, K)."""
     rms: FloatArray
+    """Of each block about its mean, of all that the signal holds, in `unit`. Shape (..., B)."""
     unit: str
     noise_bandwidth: float
+    """Of the window, in lines."""
 
     def cut(self, line: float) -> FloatArray:
         """Return the amplitude over the run at one line, (..., B): an order cut where lines are orders.
@@ -164,20 +155,14 @@ class ThirdOctaves:
 
     The bands add up the lines of spectra, so that their mean squares add up to the signal's; they are not
     the filters of the standard, which overlap.
-
-    Attributes
-    ----------
-    band : (K,) int array
-        Number of each band, 0 at 1 kHz.
-    edges : (K + 1,) array
-        Hz.
-    rms : (..., B, K) array
-        In `unit`, of each block of the run.
     """
 
     band: IntArray
+    """Number of each band, 0 at 1 kHz. Shape (K,)."""
     edges: FloatArray
+    """Hz. Shape (K + 1,)."""
     rms: FloatArray
+    """In `unit`, of each block of the run. Shape (..., B, K)."""
     unit: str
 
     @property

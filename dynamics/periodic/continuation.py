@@ -48,21 +48,14 @@ class BranchStatus(IntEnum):
 
 @dataclass(frozen=True)
 class _Bifurcation:
-    """A point where a branch turns back in speed, or gains or loses stability.
-
-    Attributes
-    ----------
-    kind : Instability
-        `FOLD`: the branch turns back; a sweep over the speed jumps here.
-    speed : float
-        rad/s; of a fold solved for, of other kinds interpolated between two motions.
-    point : int
-        The last motion of the branch before it.
-    """
+    """A point where a branch turns back in speed, or gains or loses stability."""
 
     kind: Instability
+    """`FOLD`: the branch turns back; a sweep over the speed jumps here."""
     speed: float
+    """rad/s; of a fold solved for, of other kinds interpolated between two motions."""
     point: int
+    """The last motion of the branch before it."""
 
 
 @dataclass(frozen=True)

@@ -125,21 +125,14 @@ MOST_STEPS = 1_000_000
 
 @dataclass(frozen=True)
 class _PeriodGrid:
-    """N steps of U different sizes, in common periods; the same at all speeds.
-
-    Attributes
-    ----------
-    phase : (N + 1,) array
-        Ends of the steps, from 0 to 1.
-    size : (U,) array
-        Of the steps, and 0 after them.
-    level : (N,) int array
-        Which size each step has.
-    """
+    """N steps of U different sizes, in common periods; the same at all speeds."""
 
     phase: FloatArray
+    """Ends of the steps, from 0 to 1. Shape (N + 1,)."""
     size: FloatArray
+    """Of the steps, and 0 after them. Shape (U,)."""
     level: IntArray
+    """Which size each step has. Shape (N,)."""
 
     @classmethod
     def of(cls, system: System, period: CommonPeriod, largest: float) -> _PeriodGrid:
@@ -268,35 +261,25 @@ class PeriodicProblem:
     """A system prepared for periodic steady states; states y are (2n,) in meters.
 
     y = (q scale, q' rate_scale): displacements, and rates as the displacements that they become.
-
-    Attributes
-    ----------
-    grid : PeriodGrid
-        Steps of one period, the same at all speeds, so that the map depends smoothly on speed.
-    rate, least : float
-        Steps that a period has at least: so many a second, and so many in all.
-    repeat : int
-        Common periods after which the motion is to repeat; 2 finds what period doubling leads to.
-    time : float
-        When loads are taken, s.
-    rest : (2n,) array
-        Static equilibrium, m.
-    size : float
-        Of a state, for tolerances and differences: the largest static displacement, m.
-    force_tolerance : float
-        Of the implicit stages, N.
     """
 
     system: System
     period: CommonPeriod
     grid: _PeriodGrid
+    """Steps of one period, the same at all speeds, so that the map depends smoothly on speed."""
     rate: float
     least: float
+    """`rate`, `least`: Steps that a period has at least: so many a second, and so many in all."""
     repeat: int
+    """Common periods after which the motion is to repeat; 2 finds what period doubling leads to."""
     time: float
+    """When loads are taken, s."""
     rest: FloatArray
+    """Static equilibrium, m. Shape (2n,)."""
     size: float
+    """Of a state, for tolerances and differences: the largest static displacement, m."""
     force_tolerance: float
+    """Of the implicit stages, N."""
 
     @cached_property
     def scale(self) -> FloatArray:

@@ -44,36 +44,26 @@ class OrbitStatus(IntEnum):
 
 @dataclass(frozen=True)
 class Orbit:
-    """A periodic motion at one speed, n freedoms.
-
-    Attributes
-    ----------
-    residual : float
-        Largest change of the state over the period, m.
-    speed : float
-        Of the leading law, rad/s.
-    duration : float
-        Of the period sought, s.
-    state : (2n,) array
-        At t = 0, in meters, as `PeriodicProblem` scales them.
-    monodromy : (2n, 2n) array
-        Derivative of the state after a period in the state before it, in the same scale.
-    multipliers : (2n,) complex array
-        Floquet's, by falling size.
-    step_error : float
-        Estimate of what the steps' errors move the motion by at t = 0, m; close to a fold it grows without
-        limit, as the motion does.
-    """
+    """A periodic motion at one speed, n freedoms."""
 
     status: OrbitStatus
     residual: float
+    """Largest change of the state over the period, m."""
     iterations: int
     speed: float
+    """Of the leading law, rad/s."""
     duration: float
+    """Of the period sought, s."""
     state: FloatArray
+    """At t = 0, in meters, as `PeriodicProblem` scales them. Shape (2n,)."""
     monodromy: FloatArray
+    """Derivative of the state after a period in the state before it, in the same scale. Shape (2n, 2n)."""
     multipliers: ComplexArray
+    """Floquet's, by falling size. Shape (2n,)."""
     step_error: float
+    """Estimate of what the steps' errors move the motion by at t = 0, m; close to a fold it grows without
+    limit, as the motion does.
+    """
 
     @classmethod
     def of(

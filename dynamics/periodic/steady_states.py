@@ -28,36 +28,35 @@ SAMPLES_PER_PITCH = 64  # at least; as many powers of 2 more as there are steps
 
 @dataclass(frozen=True)
 class _PeriodicMotion:
-    """Series over one period on a uniform grid of T samples, its end left out; m meshes, b bearings.
-
-    Attributes
-    ----------
-    time : (T,) array
-        s.
-    position : (m, T) array
-        Base pitches in [0, period of the table).
-    dynamic_transmission_error, static_transmission_error : (m, T) arrays
-        m; the static one at the nominal force, misaligned and apart as the bodies rest.
-    mesh_force, coast_force : (m, T), (c, T) arrays
-        Transverse, of the driving flanks and of the coast flanks in use, N.
-    bearing_force : (b, 3, T) array
-        On the ground or the pin, in the bearing's own frame, N; with seats (b, 6, T), moments in N m.
-    displacement, velocity : (n, T) arrays
-        Deviations from the kinematic motion, m and rad (and per s).
-    order : (T // 2 + 1,) array
-        Of the lines of `spectrum`: multiples of the frequency of the first mesh that turns.
-    """
+    """Series over one period on a uniform grid of T samples, its end left out; m meshes, b bearings."""
 
     time: FloatArray
+    """s. Shape (T,)."""
     position: FloatArray
+    """Base pitches in [0, period of the table). Shape (m, T)."""
     dynamic_transmission_error: FloatArray
     static_transmission_error: FloatArray
+    """`dynamic_transmission_error`, `static_transmission_error`: m; the static one at the nominal force,
+    misaligned and apart as the bodies rest. Shape (m, T) each.
+    """
     mesh_force: FloatArray
     coast_force: FloatArray
+    """`mesh_force`, `coast_force`: Transverse, of the driving flanks and of the coast flanks in use, N. (m,
+    T), (c, T) arrays.
+    """
     bearing_force: FloatArray
+    """On the ground or the pin, in the bearing's own frame, N; with seats (b, 6, T), moments in N m. Shape
+    (b, 3, T).
+    """
     displacement: FloatArray
     velocity: FloatArray
+    """`displacement`, `velocity`: Deviations from the kinematic motion, m and rad (and per s). Shape (n, T)
+    each.
+    """
     order: FloatArray
+    """Of the lines of `spectrum`: multiples of the frequency of the first mesh that turns. Shape (T // 2 +
+    1,).
+    """
 
     @property
     def parted(self) -> FloatArray:
@@ -207,16 +206,6 @@ class SteadyStates(ArrayFile):
 
     m meshes, b bearings, n freedoms; fields state unit, meaning and dimensions of arrays. Figures of motions
     that were not found are NaN; their status says why. The branch goes from the lowest to the highest speed.
-
-    Attributes
-    ----------
-    residual, step_error : (P,) arrays
-        See `Orbit`.
-    rms_bearing_force : (P, b) array
-        Root of the sum of squares of x, y and z.
-    facts : dict
-        Plain JSON: `leading_shaft`, `branch` (status; "none" without), `repeat`, `period_pitches`,
-        `freedoms`, `seconds` (CPU by stage), `effect_ledger`.
     """
 
     SCHEMA = "lineofaction steady states"
@@ -231,6 +220,7 @@ class SteadyStates(ArrayFile):
         metadata=stored("1", "how the search ended: 0 converged, see OrbitStatus", "point")
     )
     residual: FloatArray = field(metadata=stored("m", "largest change of the state over the period", "point"))
+    """`residual`, `step_error`: See `Orbit`. Shape (P,) each."""
     iterations: IntArray = field(metadata=stored("1", "Newton iterations", "point"))
     step_error: FloatArray = field(
         metadata=stored("m", "estimate of what the steps' errors move the motion by", "point")
@@ -255,6 +245,7 @@ class SteadyStates(ArrayFile):
     rms_bearing_force: FloatArray = field(
         metadata=stored("N", "root mean square of the alternating force", "point", "bearing")
     )
+    """Root of the sum of squares of x, y and z. Shape (P, b)."""
     bifurcation_speed: FloatArray = field(
         metadata=stored("rad s-1", "speed of the leading shaft", "bifurcation")
     )
@@ -266,6 +257,9 @@ class SteadyStates(ArrayFile):
         metadata=stored("rad s-1", "last speed before and first after the jump", "jump", "side")
     )
     facts: Json = field(default_factory=dict)
+    """Plain JSON: `leading_shaft`, `branch` (status; "none" without), `repeat`, `period_pitches`, `freedoms`,
+    `seconds` (CPU by stage), `effect_ledger`.
+    """
 
 
 def steady_states(

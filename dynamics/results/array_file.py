@@ -24,17 +24,12 @@ class ArrayFile:
     """A frozen dataclass of arrays, names, records and plain JSON that is kept as a netCDF-4 file.
 
     Fields with the metadata `stored` are arrays; all others are written as JSON.
-
-    Attributes
-    ----------
-    SCHEMA : str
-        What a file of it is.
-    RECORDS : mapping of str to callable
-        The fields that are dataclasses, and what makes one of its JSON.
     """
 
     SCHEMA: ClassVar[str]
+    """What a file of it is."""
     RECORDS: ClassVar[Mapping[str, Callable[[Json], Any]]] = {}
+    """The fields that are dataclasses, and what makes one of its JSON."""
 
     @classmethod
     def arrays(cls) -> dict[str, Stored]:

@@ -19,24 +19,18 @@ class Check:
     Where it does not hold, the result is to be taken with its reason in mind, and an automatic effect may
     mend it. Where it also is not `valid`, the result is wrong and no effect mends it: that ends a run unless
     the scene only wants a report.
-
-    Attributes
-    ----------
-    effect : str
-        That mends it; empty: none.
-    figures : mapping of str to float or None
-        By how much it holds or not, SI.
-    valid : bool or None
-        None: right either way.
     """
 
     effect: str
+    """That mends it; empty: none."""
     assumption: str
     part: str
     holds: bool
     reason: str
     figures: Mapping[str, float | None] = field(default_factory=dict)
+    """By how much it holds or not, SI."""
     valid: bool | None = None
+    """None: right either way."""
 
     def to_json(self) -> Json:
         """Return its entry in the effect ledger."""

@@ -13,43 +13,34 @@ from dynamics.types import FloatArray, Json
 
 @dataclass(frozen=True)
 class EnergyAudit:
-    """Energies in J over the whole run.
-
-    Attributes
-    ----------
-    drive, load : float
-        Work supplied by the drive and by the load torques (negative: they resist).
-    position : float
-        Work supplied by the change of the mesh tables with position: their force is that of a potential V(x,
-        d) in the direction of d only, and the imposed motion of x pays for dV/dx.
-    bushings, meshes : float
-        Dissipated, >= 0.
-    axes : float
-        Work supplied by the change of the mesh tables with misalignment and center distance, less what the
-        moments of forces off mid-face take of it: none where the load's arm belongs to the same table.
-    friction : float
-        Dissipated by sliding flanks.
-    kinetic, stored_bushings, stored_meshes : float
-        Gained from start to end.
-    held : float
-        Elastic energy of meshes and bearings in the equilibrium that the run starts from, >= 0.
-    fallen : float
-        How far the loss in bushings, meshes or by friction fell below its highest value on the way, >= 0:
-        what is dissipated does not come back.
-    """
+    """Energies in J over the whole run."""
 
     drive: float
     load: float
+    """`drive`, `load`: Work supplied by the drive and by the load torques (negative: they resist)."""
     position: float
+    """Work supplied by the change of the mesh tables with position: their force is that of a potential V(x,
+    d) in the direction of d only, and the imposed motion of x pays for dV/dx.
+    """
     bushings: float
     meshes: float
+    """`bushings`, `meshes`: Dissipated, >= 0."""
     axes: float
+    """Work supplied by the change of the mesh tables with misalignment and center distance, less what the
+    moments of forces off mid-face take of it: none where the load's arm belongs to the same table.
+    """
     friction: float
+    """Dissipated by sliding flanks."""
     kinetic: float
     stored_bushings: float
     stored_meshes: float
+    """`kinetic`, `stored_bushings`, `stored_meshes`: Gained from start to end."""
     held: float = 0.0
+    """Elastic energy of meshes and bearings in the equilibrium that the run starts from, >= 0."""
     fallen: float = 0.0
+    """How far the loss in bushings, meshes or by friction fell below its highest value on the way, >= 0: what
+    is dissipated does not come back.
+    """
 
     @property
     def residual(self) -> float:

@@ -59,23 +59,16 @@ def axis_rows(system: System, axis: int, *, follows: bool) -> dict[int, int]:
 
 
 class _Signals(NamedTuple):
-    """The signals that series are made of at T times: n freedoms, R local coordinates, m meshes.
-
-    Attributes
-    ----------
-    q, v : (T, n) arrays
-        Modal freedoms may be missing at their end.
-    coordinate, force : (R, T) arrays
-        Of the elements.
-    static : (m, T) array
-        Static transmission error, m.
-    """
+    """The signals that series are made of at T times: n freedoms, R local coordinates, m meshes."""
 
     q: FloatArray
     v: FloatArray
+    """`q`, `v`: Modal freedoms may be missing at their end. Shape (T, n) each."""
     coordinate: FloatArray
     force: FloatArray
+    """`coordinate`, `force`: Of the elements. Shape (R, T) each."""
     static: FloatArray
+    """Static transmission error, m. Shape (m, T)."""
 
 
 def unfiltered(system: System, seen: Observed, states: States) -> _Signals:

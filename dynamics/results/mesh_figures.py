@@ -33,22 +33,18 @@ def contact_shares(result: RunResult) -> list[dict[str, float]]:
 
 @dataclass(frozen=True)
 class _DynamicFactor:
-    """Mesh force over the nominal one, in B blocks along a run.
-
-    Attributes
-    ----------
-    time, mesh_frequency : (B,) arrays
-        Means of each block, s and Hz.
-    largest, mean, least : (B,) arrays
-        Of the driving flank's force in the block, over the nominal force. `largest` is K_v as ISO 6336-1
-        defines it; `mean` differs from 1 by what accelerates the train.
-    """
+    """Mesh force over the nominal one, in B blocks along a run."""
 
     time: FloatArray
     mesh_frequency: FloatArray
+    """`time`, `mesh_frequency`: Means of each block, s and Hz. Shape (B,) each."""
     largest: FloatArray
     mean: FloatArray
     least: FloatArray
+    """`largest`, `mean`, `least`: Of the driving flank's force in the block, over the nominal force.
+    `largest` is K_v as ISO 6336-1 defines it; `mean` differs from 1 by what accelerates the train. Shape (B,)
+    each.
+    """
 
 
 def dynamic_factor(result: RunResult, pitches: int = 16, mesh: int = 0) -> _DynamicFactor:
@@ -89,24 +85,16 @@ AXIS_AGREEMENT = 1e-9  # m
 
 @dataclass(frozen=True)
 class PlanetLoadSharing:
-    """Shares of the N planets that mesh with one central gear.
-
-    Attributes
-    ----------
-    central : str
-        Name of the sun's or the ring's gear.
-    mesh : tuple of str
-        Names of its N meshes.
-    ratio : (N, T) array
-        N F_p / sum of all F_p: 1 where all carry the same, sums to N; NaN where none carries.
-    mean : (N,) array
-        The same of the forces' means over the run.
-    """
+    """Shares of the N planets that mesh with one central gear."""
 
     central: str
+    """Name of the sun's or the ring's gear."""
     mesh: tuple[str, ...]
+    """Names of its N meshes."""
     ratio: FloatArray
+    """N F_p / sum of all F_p: 1 where all carry the same, sums to N; NaN where none carries. Shape (N, T)."""
     mean: FloatArray
+    """The same of the forces' means over the run. Shape (N,)."""
 
     @property
     def mesh_load_factor(self) -> float:

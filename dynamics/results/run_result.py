@@ -27,29 +27,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class StepStatistics:
-    """Counts and sizes of the steps of a run.
-
-    Attributes
-    ----------
-    accepted, rejected : int
-        Steps.
-    newton_failures : int
-        Rejected steps in which Newton's method failed.
-    newton_mean : float
-        Newton iterations per implicit stage; 0 for an explicit method.
-    newton_most : int
-        In one stage.
-    smallest_step, largest_step : float
-        Accepted, s.
-    """
+    """Counts and sizes of the steps of a run."""
 
     accepted: int
     rejected: int
+    """`accepted`, `rejected`: Steps."""
     newton_failures: int
+    """Rejected steps in which Newton's method failed."""
     newton_mean: float
+    """Newton iterations per implicit stage; 0 for an explicit method."""
     newton_most: int
+    """In one stage."""
     smallest_step: float
     largest_step: float
+    """`smallest_step`, `largest_step`: Accepted, s."""
 
 
 MESH, FREEDOM = ("mesh", "time"), ("freedom", "time")
@@ -61,125 +52,104 @@ class RunResult:
     """Time series on a uniform grid of T samples; m meshes, s shafts, b bearings, n freedoms.
 
     Fields state unit, meaning and dimensions of arrays.
-
-    Attributes
-    ----------
-    time : (T,) array
-        s.
-    mesh, shaft, bearing, freedom, drive, coupling : tuples of str
-        Names along the axes below.
-    position : (m, T) array
-        The period is that of the table.
-    mesh_frequency : (m, T) array
-        Of the kinematic motion and the own rotation of trains without a drive.
-    dynamic_transmission_error : (m, T) array
-        r_b1 theta_1 - r_b2 theta_2 plus the gears' displacements along the line of action; > 0: the
-        driven gear lags.
-    static_transmission_error : (m, T) array
-        The static reference: the table's at the nominal force and the same position, with misalignment and
-        center distance of the static equilibrium at t = 0.
-    mesh_force : (m, T) array
-        Of the driving flank, damping included; filtered against aliasing, which may ring slightly below 0 at
-        lift-off.
-    coast_force : (m, T) array
-        m = 0 here if backlash is off in all meshes.
-    least_mesh_force, largest_mesh_force : (m, T) arrays
-        Of the driving flank around each sample, >= 0.
-    misalignment, center_distance_change : (m, T) arrays
-        As bodies tilt and move; m = 0 here if the effect is off in all meshes.
-    load_arm : (m, T) array
-        Of the mesh force about the middle of the common face, 0 out of contact; m = 0 here if the moving
-        application point is off in all meshes.
-    speed : (s, T) array
-        Of a flexible shaft the mean over its inertia, or where a rigid drive imposes it.
-    drive_torque : (d, T) array
-        On each drive's shaft.
-    coupling_torque : (c, T) array
-        About +z.
-    bearing_force : (b, 3, T) array
-        In the fixed frame x, y, z; of a planet on its pin in the carrier's rotating frame; b = 0 if not
-        requested.
-    bearing_moment : (b, 3, T) array
-        About each bearing's center in the same frames; the one about the axis is 0, since the shaft turns.
-        b = 0 if not requested or if no bearing has tilt stiffness.
-    displacement, velocity, acceleration : (n, T) arrays
-        n = 0 if not requested.
-    status : RunStatus
-    statistics : StepStatistics
-    energy : EnergyAudit or None
-        None if not requested.
-    effect_ledger, receipt, case : dict
-        Plain JSON: effects on and off with reasons; times and error estimate; the scene as resolved, with
-        every damping value used.
-    modes : dict
-        Natural modes about the static equilibrium at t = 0: lists `frequency` (Hz), `damping_ratio`,
-        `freedom` (the one with most of the kinetic energy) and `moves` (the parts with a twentieth of it or
-        more, "shaft, how", with their shares); empty if they were not found. Where gyroscopic
-        terms are on also `over_speed`: whirl modes (a lists of S values each: `frequency` in Hz,
-        `damping_ratio`, `whirl` from -1, backward, to 1, forward) at S speeds of `shaft` (`speed`, rad/s;
-        `mesh_frequency` of every mesh, Hz) from rest to the largest of the run, `freedom` and `moves` at
-        the last.
-    warnings : list of dict
-        Implausible values of the scene; empty if there are none.
-    elastic_force : (m, T) array
-        Of the driving flank: what its table gives at the position and deflection of each sample, the static
-        part of the mesh force. m = 0 if not requested.
-    bearing_acceleration : (b, 3, T) array
-        Of a planet against its pin, in the frame of `bearing_force`; the rotation of a carrier's frame adds
-        no terms. b = 0 if not requested.
     """
 
     time: FloatArray
+    """s. Shape (T,)."""
     mesh: tuple[str, ...]
     shaft: tuple[str, ...]
     bearing: tuple[str, ...]
     freedom: tuple[str, ...]
     drive: tuple[str, ...]
     coupling: tuple[str, ...]
+    """`mesh`, `shaft`, `bearing`, `freedom`, `drive`, `coupling`: Names along the axes below."""
     position: FloatArray = field(
         metadata=stored("1", "position by the driving gear in base pitches, in [0, period)", *MESH)
     )
+    """The period is that of the table. Shape (m, T)."""
     mesh_frequency: FloatArray = field(metadata=stored("Hz", "mesh frequency of the mean motion", *MESH))
+    """Of the kinematic motion and the own rotation of trains without a drive. Shape (m, T)."""
     dynamic_transmission_error: FloatArray = field(metadata=stored("m", "dynamic transmission error", *MESH))
+    """r_b1 theta_1 - r_b2 theta_2 plus the gears' displacements along the line of action; > 0: the driven
+    gear lags. Shape (m, T).
+    """
     static_transmission_error: FloatArray = field(
         metadata=stored("m", "static transmission error at the nominal force", *MESH)
     )
+    """The static reference: the table's at the nominal force and the same position, with misalignment and
+    center distance of the static equilibrium at t = 0. Shape (m, T).
+    """
     mesh_force: FloatArray = field(metadata=stored("N", "transverse mesh force", *MESH))
+    """Of the driving flank, damping included; filtered against aliasing, which may ring slightly below 0 at
+    lift-off. Shape (m, T).
+    """
     coast_force: FloatArray = field(metadata=stored("N", "transverse force of the coast flank", *MESH))
+    """m = 0 here if backlash is off in all meshes. Shape (m, T)."""
     least_mesh_force: FloatArray = field(
         metadata=stored("N", "least mesh force between samples, unfiltered", *MESH)
     )
     largest_mesh_force: FloatArray = field(
         metadata=stored("N", "largest mesh force between samples, unfiltered", *MESH)
     )
+    """`least_mesh_force`, `largest_mesh_force`: Of the driving flank around each sample, >= 0. Shape (m, T)
+    each.
+    """
     contact: FloatArray = field(
         metadata=stored("1", "flanks in contact: 0 none, 1 driving, 2 coast, 3 both", *MESH)
     )
     misalignment: FloatArray = field(metadata=stored("m", "misalignment at which the table was read", *MESH))
     center_distance_change: FloatArray = field(metadata=stored("m", "center-distance change likewise", *MESH))
+    """`misalignment`, `center_distance_change`: As bodies tilt and move; m = 0 here if the effect is off in
+    all meshes. Shape (m, T) each.
+    """
     load_arm: FloatArray = field(
         metadata=stored("m", "arm of the mesh force about mid-face towards +z", *MESH)
     )
+    """Of the mesh force about the middle of the common face, 0 out of contact; m = 0 here if the moving
+    application point is off in all meshes. Shape (m, T).
+    """
     speed: FloatArray = field(metadata=stored("rad s-1", "speed about +z", "shaft", "time"))
+    """Of a flexible shaft the mean over its inertia, or where a rigid drive imposes it. Shape (s, T)."""
     drive_torque: FloatArray = field(metadata=stored("N m", "drive torque about +z", "drive", "time"))
+    """On each drive's shaft. Shape (d, T)."""
     coupling_torque: FloatArray = field(
         metadata=stored("N m", "torque from the first to the second shaft", "coupling", "time")
     )
+    """About +z. Shape (c, T)."""
     bearing_force: FloatArray = field(metadata=stored("N", "force of the shaft on the ground", *BEARING))
+    """In the fixed frame x, y, z; of a planet on its pin in the carrier's rotating frame; b = 0 if not
+    requested. Shape (b, 3, T).
+    """
     bearing_moment: FloatArray = field(metadata=stored("N m", "moment of the shaft on the ground", *BEARING))
+    """About each bearing's center in the same frames; the one about the axis is 0, since the shaft turns. b =
+    0 if not requested or if no bearing has tilt stiffness. Shape (b, 3, T).
+    """
     displacement: FloatArray = field(
         metadata=stored("m or rad", "deviation from the kinematic motion", *FREEDOM)
     )
+    """`displacement`, `velocity`, `acceleration`: n = 0 if not requested. Shape (n, T) each."""
     velocity: FloatArray = field(metadata=stored("m s-1 or rad s-1", "rate of the deviation", *FREEDOM))
     nominal_force: FloatArray = field(metadata=stored("N", "nominal transverse mesh force", "mesh"))
     status: RunStatus
     statistics: StepStatistics
     energy: EnergyAudit | None
+    """None if not requested."""
     effect_ledger: Json = field(default_factory=dict)
     receipt: Json = field(default_factory=dict)
     case: Json = field(default_factory=dict)
+    """`effect_ledger`, `receipt`, `case`: Plain JSON: effects on and off with reasons; times and error
+    estimate; the scene as resolved, with every damping value used.
+    """
     modes: Json = field(default_factory=dict)
+    """Natural modes about the static equilibrium at t = 0: lists `frequency` (Hz), `damping_ratio`, `freedom`
+    (the one with most of the kinetic energy) and `moves` (the parts with a twentieth of it or more, "shaft,
+    how", with their shares); empty if they were not found. Where gyroscopic terms are on also `over_speed`:
+    whirl modes (a lists of S values each: `frequency` in Hz, `damping_ratio`, `whirl` from -1, backward, to
+    1, forward) at S speeds of `shaft` (`speed`, rad/s; `mesh_frequency` of every mesh, Hz) from rest to the
+    largest of the run, `freedom` and `moves` at the last.
+    """
     warnings: list[Json] = field(default_factory=list)
+    """Implausible values of the scene; empty if there are none."""
     acceleration: FloatArray = field(
         default_factory=lambda: np.empty((0, 0)),
         metadata=stored("m s-2 or rad s-2", "second rate of the deviation", *FREEDOM),
@@ -188,10 +158,16 @@ class RunResult:
         default_factory=lambda: np.empty((0, 3, 0)),
         metadata=stored("m s-2", "acceleration of the shaft there", *BEARING),
     )
+    """Of a planet against its pin, in the frame of `bearing_force`; the rotation of a carrier's frame adds no
+    terms. b = 0 if not requested. Shape (b, 3, T).
+    """
     elastic_force: FloatArray = field(
         default_factory=lambda: np.empty((0, 0)),
         metadata=stored("N", "elastic part of the mesh force, unfiltered", *MESH),
     )
+    """Of the driving flank: what its table gives at the position and deflection of each sample, the static
+    part of the mesh force. m = 0 if not requested. Shape (m, T).
+    """
 
     @property
     def sample_rate(self) -> float:

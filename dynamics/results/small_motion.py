@@ -26,26 +26,20 @@ WORKING_DEPTH = 2.0
 
 @dataclass(frozen=True)
 class _Limit:
-    """What a part may move at most.
-
-    Attributes
-    ----------
-    quantity, part, unit : str
-    bound : float
-        SI; times `size` in the `unit`.
-    rows : (k, n) array
-        A displacement per freedom, whose length counts; empty of a transmission error, which is at hand.
-    line : (k,) array or None
-        A line whose end the displacement moves: the change of its length counts.
-    """
+    """What a part may move at most."""
 
     quantity: str
     part: str
     bound: float
+    """SI; times `size` in the `unit`."""
     unit: str = "mm"
     size: float = 1e3
     rows: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
+    """A displacement per freedom, whose length counts; empty of a transmission error, which is at hand. Shape
+    (k, n).
+    """
     line: FloatArray | None = None
+    """A line whose end the displacement moves: the change of its length counts. Shape (k,)."""
 
     def farthest(self, q: FloatArray) -> float:
         """Return the largest motion of the states q (T, n)."""

@@ -38,73 +38,55 @@ class PlanetarySet:
     Shafts and gears are called sun, ring, carrier, planet 1 ... planet N, meshes sun-planet 1 ...,
     ring-planet 1 ..., each behind ``name`` and a dot if that is not empty. Every gear sits in the middle of
     its shaft, with its bearing at the same position. Drives, free rotations and loads are the scene's.
-
-    Attributes
-    ----------
-    teeth : tuple of three ints
-        Of sun, planet, ring.
-    base_radius : tuple of three floats
-        Of sun, planet, ring, m.
-    center_distance : float
-        Carrier axis to pin, m.
-    face_width : float
-        m.
-    sun_table, ring_table : MeshTable
-        Of the sun-planet and the ring-planet mesh.
-    planets : int
-        N.
-    angles : tuple of floats or None
-        Of the pins about +z, rad; None: equally spaced from 0.
-    base_helix_angle : float
-        Of the sun, rad; > 0: right hand.
-    sun_inertia, planet_inertia, ring_inertia, carrier_inertia : Inertia
-        The carrier's without planets.
-    sun_stiffness, ring_stiffness, carrier_stiffness : BearingStiffness, float or None
-        Of the central members' bearings, isotropic across the axis; a number: radial alone, N/m. None: fixed
-        rigidly. Small: floating. A bearing without axial or tilt stiffness is rigid in that direction.
-    planet_stiffness : BearingStiffness, float or None
-        Of the planet bearings, likewise.
-    damping_ratio : float
-        Of all bearings and meshes without a damping of their own.
-    pin_errors : tuple of (radial, tangential) or None
-        Of each pin, m.
-    driver : str
-        ``"sun"``: the sun drives the planets and these the ring (or react on it); ``"ring"``: the reverse.
-    ring_phase : float or None
-        Position of a planet's ring mesh less that of its sun mesh, base pitches (see `ring_phase`). None:
-        that of planets whose teeth are as thick as their spaces.
-    technique : str
-        Of all meshes.
-    name : str
-        Of the set, before the names of its parts.
-    place : tuple of three floats
-        Left end of the carrier's axis in the fixed frame, m.
     """
 
     teeth: tuple[int, int, int]
+    """Of sun, planet, ring."""
     base_radius: tuple[float, float, float]
+    """Of sun, planet, ring, m."""
     center_distance: float
+    """Carrier axis to pin, m."""
     face_width: float
+    """m."""
     sun_table: MeshTable
     ring_table: MeshTable
+    """`sun_table`, `ring_table`: Of the sun-planet and the ring-planet mesh."""
     planets: int
+    """N."""
     sun_inertia: Inertia
     planet_inertia: Inertia
     ring_inertia: Inertia
     carrier_inertia: Inertia
+    """`sun_inertia`, `planet_inertia`, `ring_inertia`, `carrier_inertia`: The carrier's without planets."""
     angles: tuple[float, ...] | None = None
+    """Of the pins about +z, rad; None: equally spaced from 0."""
     base_helix_angle: float = 0.0
+    """Of the sun, rad; > 0: right hand."""
     sun_stiffness: Stiffness = None
     ring_stiffness: Stiffness = None
     carrier_stiffness: Stiffness = None
+    """`sun_stiffness`, `ring_stiffness`, `carrier_stiffness`: Of the central members' bearings, isotropic
+    across the axis; a number: radial alone, N/m. None: fixed rigidly. Small: floating. A bearing without
+    axial or tilt stiffness is rigid in that direction.
+    """
     planet_stiffness: Stiffness = None
+    """Of the planet bearings, likewise."""
     damping_ratio: float = 0.05
+    """Of all bearings and meshes without a damping of their own."""
     pin_errors: tuple[tuple[float, float], ...] | None = None
+    """Of each pin, m."""
     driver: str = "sun"
+    """``"sun"``: the sun drives the planets and these the ring (or react on it); ``"ring"``: the reverse."""
     ring_phase: float | None = None
+    """Position of a planet's ring mesh less that of its sun mesh, base pitches (see `ring_phase`). None: that
+    of planets whose teeth are as thick as their spaces.
+    """
     technique: str = "variable_torque"
+    """Of all meshes."""
     name: str = ""
+    """Of the set, before the names of its parts."""
     place: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Left end of the carrier's axis in the fixed frame, m."""
 
     def __post_init__(self) -> None:
         for label, count in zip(("sun", "planet", "ring"), self.teeth, strict=True):

@@ -305,39 +305,9 @@ class Scene(StatedLaws):
 
     Attributes
     ----------
-    shafts, gears, bushings, planet_bearings, couplings, meshes, drives, free_rotations, loads : tuples
-    speed_torques, housings, discs, rolling_bearings, forces, unbalances : tuples
-        Parts, each with a name unique among its kind. Drives and free rotations together set the kinematic
-        motion of all shafts: one for each independent speed of the gearing.
     rolling_contacts, spring_curves : tuples
         Nonlinear laws of bearings; each names its bushing or planet bearing, which sits in no housing without
         mass.
-    duration : float
-        s.
-    gravity : tuple of three floats
-        Its acceleration in the fixed frame, m/s^2. Across the axis only without rotating frames.
-    effects : mapping of str to str
-        Effect name to ``"auto"``, ``"on"`` or ``"off"``; effects that are not named are ``"auto"``.
-    outputs : Outputs
-    integration : Integration
-    on_violation : str
-        If a run or a study violates an assumption: ``"repeat"`` runs again with the automatic effect that it
-        needs, and raises if the result is invalid and no effect corrects it; ``"fail"`` raises at any
-        violation, ``"report"`` reports it in the ledger's checks.
-    tolerance : float or None
-        Relative change of mean and peak-to-peak transmission error and of bearing forces that neglected
-        automatic effects may cause in a run; None: effects are as the scene calls for them.
-    level_tolerance : float or None
-        Change of levels, dB, that neglected automatic effects may cause in a run, where `tolerance` is None:
-        of what the scene is computed for, by default of bearing forces and transmission errors.
-    highest_frequency : float or None
-        Hz to which flexible shafts are resolved; None: half the rate that all wanted orders need, up to 2.56
-        times the band of the output.
-    temperatures : Temperatures or None
-        Of the housing; shafts, gears and rings of rolling bearings then have their own. None: as drawn.
-    quantity : LevelQuantity or None
-        What the scene is computed for: by the change of its level effects are sized, and with a tolerance
-        decided. None: bearing forces, decided beside transmission errors.
     """
 
     shafts: tuple[Shaft, ...]
@@ -345,6 +315,7 @@ class Scene(StatedLaws):
     meshes: tuple[GearMesh, ...]
     drives: tuple[ImposedRotation, ...]
     duration: float
+    """s."""
     bushings: tuple[Bushing, ...] = ()
     loads: tuple[LoadTorque, ...] = ()
     planet_bearings: tuple[PlanetBearing, ...] = ()
@@ -356,16 +327,39 @@ class Scene(StatedLaws):
     rolling_bearings: tuple[RollingBearing, ...] = ()
     forces: tuple[AppliedForce, ...] = ()
     unbalances: tuple[Unbalance, ...] = ()
+    """`speed_torques`, `housings`, `discs`, `rolling_bearings`, `forces`, `unbalances`: Parts, each with a
+    name unique among its kind. Drives and free rotations together set the kinematic motion of all shafts: one
+    for each independent speed of the gearing.
+    """
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Its acceleration in the fixed frame, m/s^2. Across the axis only without rotating frames."""
     effects: Mapping[str, str] = field(default_factory=dict)
+    """Effect name to ``"auto"``, ``"on"`` or ``"off"``; effects that are not named are ``"auto"``."""
     outputs: Outputs = field(default_factory=Outputs)
     integration: Integration = field(default_factory=Integration)
     on_violation: str = "repeat"
+    """If a run or a study violates an assumption: ``"repeat"`` runs again with the automatic effect that it
+    needs, and raises if the result is invalid and no effect corrects it; ``"fail"`` raises at any violation,
+    ``"report"`` reports it in the ledger's checks.
+    """
     tolerance: float | None = None
+    """Relative change of mean and peak-to-peak transmission error and of bearing forces that neglected
+    automatic effects may cause in a run; None: effects are as the scene calls for them.
+    """
     highest_frequency: float | None = None
+    """Hz to which flexible shafts are resolved; None: half the rate that all wanted orders need, up to 2.56
+    times the band of the output.
+    """
     temperatures: Temperatures | None = None
+    """Of the housing; shafts, gears and rings of rolling bearings then have their own. None: as drawn."""
     quantity: LevelQuantity | None = None
+    """What the scene is computed for: by the change of its level effects are sized, and with a tolerance
+    decided. None: bearing forces, decided beside transmission errors.
+    """
     level_tolerance: float | None = None
+    """Change of levels, dB, that neglected automatic effects may cause in a run, where `tolerance` is None:
+    of what the scene is computed for, by default of bearing forces and transmission errors.
+    """
 
     def __post_init__(self) -> None:
         not_negative("duration", self.duration)

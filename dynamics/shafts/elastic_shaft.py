@@ -84,33 +84,25 @@ TRUNCATION = 0.01
 
 @dataclass(frozen=True)
 class _ElasticModes:
-    """Coordinates e_j of b uncoupled elastic motions: m_j e_j'' + k_j e_j = what forces do on their shapes.
-
-    Attributes
-    ----------
-    shape : (n, b) array
-        Freedoms of the family per coordinate; the largest displacement (rotation) is 1.
-    mass, stiffness : (b,) arrays
-        Modal: kg and N/m, of torsion kg m^2 and N m/rad.
-    inertial : (b, k) array
-        Coupling in the mass matrix with the k rigid motions: zero unless the rigid motion is that of a
-        held freedom.
-    fixed : int
-        Number of modes with the interface held among what they are made of.
-    limit : float
-        The frequency up to which these were kept, Hz.
-    truncation : float
-        Estimate of the largest relative error of frequencies up to the one of interest: that of the free
-        body against the whole beam. Attached to others it may have somewhat more.
-    """
+    """Coordinates e_j of b uncoupled elastic motions: m_j e_j'' + k_j e_j = work of forces on shapes."""
 
     shape: FloatArray
+    """Freedoms of the family per coordinate; the largest displacement (rotation) is 1. Shape (n, b)."""
     mass: FloatArray
     stiffness: FloatArray
+    """`mass`, `stiffness`: Modal: kg and N/m, of torsion kg m^2 and N m/rad. Shape (b,) each."""
     inertial: FloatArray
+    """Coupling in the mass matrix with the k rigid motions: zero unless the rigid motion is that of a held
+    freedom. Shape (b, k).
+    """
     fixed: int
+    """Number of modes with the interface held among what they are made of."""
     limit: float
+    """The frequency up to which these were kept, Hz."""
     truncation: float
+    """Estimate of the largest relative error of frequencies up to the one of interest: that of the free body
+    against the whole beam. Attached to others it may have somewhat more.
+    """
 
     @property
     def frequency(self) -> FloatArray:
@@ -224,21 +216,16 @@ class Disc:
 
 @dataclass(frozen=True)
 class PointOfApplication:
-    """A point of application of forces on a shaft, and the motions of its section there.
-
-    Attributes
-    ----------
-    position : float
-        m from the left end.
-    across, tilt, along, turn : bool
-        Forces across the axis, moments across it, force along it, torque.
-    """
+    """A point of application of forces on a shaft, and the motions of its section there."""
 
     position: float
+    """m from the left end."""
     across: bool = False
     tilt: bool = False
     along: bool = False
     turn: bool = False
+    """`across`, `tilt`, `along`, `turn`: Forces across the axis, moments across it, force along it, torque.
+    """
 
 
 def _families(
@@ -300,31 +287,24 @@ class ElasticShaft:
 
     They are measured against the motion of the shaft as a rigid body about its center of mass with which they
     share no kinetic energy; torsion against the rotation at `held` where that is imposed.
-
-    Attributes
-    ----------
-    position : (N,) array
-        Nodes along the shaft, m.
-    bending, extension, torsion : ElasticModes
-        Shapes (2 N, b): displacement and slope du_x/dz of each node, (N, s) and (N, t).
-    polar : (N, N) array
-        Moments of inertia about the axis as the nodes' rotations have them, kg m^2.
-    highest : float
-        Frequency of interest, Hz.
-    damping_ratio : float
-        Of every elastic coordinate.
-    mesh_error : float
-        Estimated relative error of the frequencies of interest by the lengths of the elements.
     """
 
     position: FloatArray
+    """Nodes along the shaft, m. Shape (N,)."""
     bending: _ElasticModes
     extension: _ElasticModes
     torsion: _ElasticModes
+    """`bending`, `extension`, `torsion`: Shapes (2 N, b): displacement and slope du_x/dz of each node, (N, s)
+    and (N, t).
+    """
     polar: FloatArray
+    """Moments of inertia about the axis as the nodes' rotations have them, kg m^2. Shape (N, N)."""
     highest: float
+    """Frequency of interest, Hz."""
     damping_ratio: float
+    """Of every elastic coordinate."""
     mesh_error: float
+    """Estimated relative error of the frequencies of interest by the lengths of the elements."""
 
     @property
     def kinds(self) -> tuple[str, ...]:

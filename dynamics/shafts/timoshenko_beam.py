@@ -42,22 +42,18 @@ class _Piece(NamedTuple):
 
 
 class _ElementMatrices(NamedTuple):
-    """Mass and stiffness of k elements, at their left and then their right ends.
-
-    Attributes
-    ----------
-    bending_mass, bending : (k, 4, 4) arrays
-        In one plane: deflection (m) and its slope (rad).
-    axial_mass, axial, torsional_mass, torsion : (k, 2, 2) arrays
-        Displacement along the axis, m; rotation, rad.
-    """
+    """Mass and stiffness of k elements, at their left and then their right ends."""
 
     bending_mass: FloatArray
     bending: FloatArray
+    """`bending_mass`, `bending`: In one plane: deflection (m) and its slope (rad). Shape (k, 4, 4) each."""
     axial_mass: FloatArray
     axial: FloatArray
     torsional_mass: FloatArray
     torsion: FloatArray
+    """`axial_mass`, `axial`, `torsional_mass`, `torsion`: Displacement along the axis, m; rotation, rad.
+    Shape (k, 2, 2) each.
+    """
 
 
 class _Along(NamedTuple):
@@ -160,19 +156,13 @@ PER_NODE = 6
 
 @dataclass(frozen=True)
 class TimoshenkoBeam:
-    """N nodes of six freedoms each, node by node; free in space.
-
-    Attributes
-    ----------
-    position : (N,) array
-        Along z from the left end, m.
-    mass, stiffness : (6 N, 6 N) arrays
-        Symmetric; kg, N/m and with m, rad.
-    """
+    """N nodes of six freedoms each, node by node; free in space."""
 
     position: FloatArray
+    """Along z from the left end, m. Shape (N,)."""
     mass: FloatArray
     stiffness: FloatArray
+    """`mass`, `stiffness`: Symmetric; kg, N/m and with m, rad. Shape (6 N, 6 N) each."""
 
     def freedoms(self, position: float) -> IntArray:
         """Return the indices of the six freedoms of the node at `position` (m)."""

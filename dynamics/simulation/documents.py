@@ -55,29 +55,21 @@ NOT_CHECKED = "no; toggling it measures it (ablation)"
 
 @dataclass(frozen=True)
 class RunFacts:
-    """What is known of a run beside its series.
-
-    Attributes
-    ----------
-    scene : Scene
-        Its effects as decided.
-    audit : EnergyAudit or None
-        None if not requested.
-    checks : sequence of Check
-        Of the run on its own model.
-    automatic : mapping of str to str
-        Effects that were left to "auto" and are not as the scene calls for them, and why: for the tolerance,
-        or because a run without them showed that they are needed.
-    influences : mapping of str to Influence
-        What leaving effects out in all their parts is estimated to change.
-    """
+    """What is known of a run beside its series."""
 
     system: System
     scene: Scene
+    """Its effects as decided."""
     audit: EnergyAudit | None
+    """None if not requested."""
     checks: Sequence[Check]
+    """Of the run on its own model."""
     automatic: Mapping[str, str]
+    """Effects that were left to "auto" and are not as the scene calls for them, and why: for the tolerance,
+    or because a run without them showed that they are needed.
+    """
     influences: Mapping[str, Influence]
+    """What leaving effects out in all their parts is estimated to change."""
 
     @classmethod
     def of(

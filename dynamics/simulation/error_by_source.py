@@ -41,37 +41,25 @@ StatesOf = Callable[[int, int], States]
 
 @dataclass(frozen=True)
 class _Window:
-    """A stretch of a run from a sample on; T samples, m meshes, b bearings.
-
-    Attributes
-    ----------
-    first, stop : int
-        Samples.
-    time : (T,) array
-        s from its start.
-    system : System
-        Whose clock starts there.
-    states : States
-        Of the run.
-    start : (2, n) array
-        Displacements and rates of all freedoms at the first sample.
-    position : (m, T) array
-        Unwrapped base pitches.
-    error : (m, T) array
-        Transmission errors, m.
-    force : (b, c, T) array
-        Bearing forces in their own frames, N.
-    """
+    """A stretch of a run from a sample on; T samples, m meshes, b bearings."""
 
     first: int
     stop: int
+    """`first`, `stop`: Samples."""
     time: FloatArray
+    """s from its start. Shape (T,)."""
     system: System
+    """Whose clock starts there."""
     states: States
+    """Of the run."""
     start: FloatArray
+    """Displacements and rates of all freedoms at the first sample. Shape (2, n)."""
     position: FloatArray
+    """Unwrapped base pitches. Shape (m, T)."""
     error: FloatArray
+    """Transmission errors, m. Shape (m, T)."""
     force: FloatArray
+    """Bearing forces in their own frames, N. Shape (b, c, T)."""
 
     def repeated(self, system: System, integration: Integration) -> _Difference | None:
         """Integrate it as `system`, from the run's state at its start; None if that ends early."""
@@ -110,19 +98,15 @@ class _Window:
 
 @dataclass(frozen=True)
 class _Difference:
-    """The difference of another run of a window.
-
-    Attributes
-    ----------
-    rms : float
-        Of the transmission errors, m.
-    error_orders, force_orders : (ORDERS or fewer,) arrays
-        Largest amplitude among the meshes (m) and among the bearings (N) at each order of the first mesh.
-    """
+    """The difference of another run of a window."""
 
     rms: float
+    """Of the transmission errors, m."""
     error_orders: FloatArray
     force_orders: FloatArray
+    """`error_orders`, `force_orders`: Largest amplitude among the meshes (m) and among the bearings (N) at
+    each order of the first mesh. Shape (ORDERS or fewer,) each.
+    """
 
 
 def window_starts(system: System) -> IntArray:

@@ -24,21 +24,14 @@ REPEATED = "repeated.json"
 
 @dataclass(frozen=True)
 class EarlierRun:
-    """A run that is repeated.
-
-    Attributes
-    ----------
-    turned_on : mapping of str to str
-        Automatic effects that it showed to be needed, and why.
-    seconds : float
-        What it took, s of CPU time.
-    since : float
-        Time from which on it is repeated, s: before that the effects carry no force.
-    """
+    """A run that is repeated."""
 
     turned_on: Mapping[str, str] = field(default_factory=dict)
+    """Automatic effects that it showed to be needed, and why."""
     seconds: float = 0.0
+    """What it took, s of CPU time."""
     since: float = 0.0
+    """Time from which on it is repeated, s: before that the effects carry no force."""
 
     @property
     def reasons(self) -> dict[str, str]:

@@ -83,39 +83,30 @@ def finer_run(integration: Integration, end: Ending) -> Integration:
 
 @dataclass(frozen=True)
 class _Traces:
-    """A part of two runs; m meshes, both runs along the first axis of pairs.
-
-    Attributes
-    ----------
-    square : (m,) array
-        Mean square of the difference of the transmission errors, m^2.
-    power : (2, m) array
-        Mean square of the transmission errors about their means, m^2.
-    peak : (2, m) array
-        Largest forces of the driving flanks, N.
-    """
+    """A part of two runs; m meshes, both runs along the first axis of pairs."""
 
     square: FloatArray
+    """Mean square of the difference of the transmission errors, m^2. Shape (m,)."""
     power: FloatArray
+    """Mean square of the transmission errors about their means, m^2. Shape (2, m)."""
     peak: FloatArray
+    """Largest forces of the driving flanks, N. Shape (2, m)."""
 
 
 @dataclass(frozen=True)
 class _Orders:
-    """Amplitudes at K orders of the first mesh at the end of a part of two runs; m meshes, b bearings.
-
-    Attributes
-    ----------
-    error, error_difference : (2, m, K) and (m, K) arrays
-        Of the transmission errors, and of their difference, m.
-    force, force_difference : (2, b, K) and (b, K) arrays
-        Of the bearing forces: norms over three directions, N.
-    """
+    """Amplitudes at K orders of the first mesh at the end of a part of two runs; m meshes, b bearings."""
 
     error: FloatArray
     error_difference: FloatArray
+    """`error`, `error_difference`: Of the transmission errors, and of their difference, m. (2, m, K) and (m,
+    K) arrays.
+    """
     force: FloatArray
     force_difference: FloatArray
+    """`force`, `force_difference`: Of the bearing forces: norms over three directions, N. (2, b, K) and (b,
+    K) arrays.
+    """
 
 
 @dataclass(frozen=True)

@@ -42,26 +42,17 @@ class Group:
 
 @dataclass(frozen=True)
 class Array:
-    """An array of a tuple, or a part of it from item `first` on.
-
-    Attributes
-    ----------
-    data : callable
-        Returns the operand that points to its items.
-    shape : tuple
-        Integers, and `Value` where it is not part of the structure.
-    item : type of instructions
-    alias : metadata or None
-        What tells its accesses from those of other arrays; None: a table of constants.
-    content : array or None
-        Its items, where they are known.
-    """
+    """An array of a tuple, or a part of it from item `first` on."""
 
     data: Callable[[], Any]
+    """Returns the operand that points to its items."""
     shape: tuple[Any, ...]
+    """Integers, and `Value` where it is not part of the structure."""
     item: Any
     alias: Any
+    """What tells its accesses from those of other arrays; None: a table of constants."""
     content: Any = None
+    """Its items, where they are known."""
     first: Any = 0
 
 

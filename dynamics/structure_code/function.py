@@ -90,35 +90,25 @@ def is_number(value: Any) -> bool:
 
 @dataclass
 class Frame:
-    """One call.
-
-    Attributes
-    ----------
-    names, globals : dict
-        What its names stand for.
-    sums : bool
-        Whether the compiler may choose the order of its sums.
-    tree : node
-        The function.
-    own : list of sets
-        Of each branch and loop around the current statement that is decided when it runs, the names that are
-        assigned and read within it alone.
-    results : Slot, tuple or None
-        Where a `return` within one of these leaves its values.
-    done : block or None
-        Where it goes on after such a `return`.
-    loops : list of pairs of blocks
-        Where `continue` and `break` lead; None: the loop is unrolled.
-    """
+    """One call."""
 
     names: dict[str, Any]
     globals: dict[str, Any]
+    """`names`, `globals`: What its names stand for."""
     sums: bool
+    """Whether the compiler may choose the order of its sums."""
     tree: ast.AST
+    """The function."""
     own: list[frozenset[str]] = field(default_factory=list)
+    """Of each branch and loop around the current statement that is decided when it runs, the names that are
+    assigned and read within it alone.
+    """
     results: Any = None
+    """Where a `return` within one of these leaves its values."""
     done: Any = None
+    """Where it goes on after such a `return`."""
     loops: list[tuple[Any, Any]] = field(default_factory=list)
+    """Where `continue` and `break` lead; None: the loop is unrolled."""
 
 
 def alike(value: tuple[Any, ...], items: Iterable[Any]) -> Any:

@@ -20,26 +20,18 @@ MOST_AXES = 3
 
 
 class _Layout(NamedTuple):
-    """Where the words of a tuple are what: A arrays, I numbers.
-
-    Attributes
-    ----------
-    address : (A,) int array
-    dimensions : (A, 3) int array
-        -1: the array has no such axis.
-    bytes : (A,) int array
-        Of an item.
-    known : (A,) bool array
-        Whether it holds integers that are part of a structure.
-    numbers : (I,) int array
-        Integers and flags.
-    """
+    """Where the words of a tuple are what: A arrays, I numbers."""
 
     address: IntArray
+    """Shape (A,)."""
     dimensions: IntArray
+    """-1: the array has no such axis. Shape (A, 3)."""
     bytes: IntArray
+    """Of an item. Shape (A,)."""
     known: BoolArray
+    """Whether it holds integers that are part of a structure. Shape (A,)."""
     numbers: IntArray
+    """Integers and flags. Shape (I,)."""
 
 
 @cache

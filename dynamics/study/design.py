@@ -41,20 +41,14 @@ class Listed:
 
 @dataclass(frozen=True)
 class Normal:
-    """A normal distribution, cut off at `low` and `high`.
-
-    Attributes
-    ----------
-    mean, standard_deviation : float
-        Before it is cut off.
-    low, high : float
-        What lies beyond is rejected; infinite: nothing.
-    """
+    """A normal distribution, cut off at `low` and `high`."""
 
     mean: float
     standard_deviation: float
+    """`mean`, `standard_deviation`: Before it is cut off."""
     low: float = -math.inf
     high: float = math.inf
+    """`low`, `high`: What lies beyond is rejected; infinite: nothing."""
     kind: ClassVar[str] = "normal"
 
     def __post_init__(self) -> None:
@@ -105,21 +99,16 @@ class Design:
     """Grid x list x sample: every combination of levels meets every entry of the list and every sample.
 
     All combinations meet the same samples, so that differences between them are not those of two samples.
-
-    Attributes
-    ----------
-    factors : mapping of str to Factor
-        By name. Levels form a grid, the last factor changing fastest; listed values change together;
-        distributions are sampled.
-    samples : int
-        Of the distributions; 1 without any.
-    seed : int
-        Equal seeds give equal samples; a larger sample begins with a smaller one.
     """
 
     factors: Mapping[str, Factor]
+    """By name. Levels form a grid, the last factor changing fastest; listed values change together;
+    distributions are sampled.
+    """
     samples: int = 1
+    """Of the distributions; 1 without any."""
     seed: int = 0
+    """Equal seeds give equal samples; a larger sample begins with a smaller one."""
 
     def __post_init__(self) -> None:
         if not self.factors:

@@ -22,25 +22,17 @@ SOURCES = ("time_step", "table_interpolation")
 
 @dataclass(frozen=True)
 class _Window:
-    """A run from a time on.
-
-    Attributes
-    ----------
-    part : slice
-        Its samples.
-    highest_order : int
-        Up to which orders are fitted, all together.
-    bearings : tuple of int
-        Whose forces are fitted.
-    mesh : int
-        Whose orders they are.
-    """
+    """A run from a time on."""
 
     run: RunResult
     part: slice
+    """Its samples."""
     highest_order: int
+    """Up to which orders are fitted, all together."""
     bearings: tuple[int, ...]
+    """Whose forces are fitted."""
     mesh: int = 0
+    """Whose orders they are."""
     _fits: dict[int, tuple[FloatArray, dict[int, FloatArray]]] = field(default_factory=dict, repr=False)
 
     @classmethod
@@ -94,47 +86,31 @@ class _Value(NamedTuple):
 
 @dataclass(frozen=True)
 class _Quantity:
-    """What a response is.
-
-    Attributes
-    ----------
-    unit : str
-        SI; empty for a ratio.
-    of : "mesh", "bearing" or ""
-        Whose it is; empty: the whole run's.
-    by_order : bool
-        Whether it is an amplitude at a multiple of the mesh frequency.
-    take : callable
-        ``take(window, row, order)`` to the value.
-    """
+    """What a response is."""
 
     title: str
     unit: str
+    """SI; empty for a ratio."""
     of: str
+    """Whose it is; empty: the whole run's."""
     by_order: bool
+    """Whether it is an amplitude at a multiple of the mesh frequency."""
     take: Callable[[_Window, int, int], _Value]
+    """``take(window, row, order)`` to the value."""
 
 
 @dataclass(frozen=True)
 class Response:
-    """A named response.
-
-    Attributes
-    ----------
-    quantity : str
-        A name of `QUANTITIES`.
-    part : str
-        Name of its mesh or bearing; empty: the largest of all.
-    order : int
-        Multiple of the mesh frequency, for amplitudes by order; else 0.
-    mesh : str
-        Whose frequency the orders of a bearing are of; empty: the first mesh.
-    """
+    """A named response."""
 
     quantity: str
+    """A name of `QUANTITIES`."""
     part: str = ""
+    """Name of its mesh or bearing; empty: the largest of all."""
     order: int = 0
+    """Multiple of the mesh frequency, for amplitudes by order; else 0."""
     mesh: str = ""
+    """Whose frequency the orders of a bearing are of; empty: the first mesh."""
 
     def __post_init__(self) -> None:
         one_of("quantity", self.quantity, QUANTITIES)

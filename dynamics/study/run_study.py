@@ -29,70 +29,56 @@ FRACTIONS = (0.05, 0.5, 0.95)
 
 @dataclass(frozen=True)
 class _Spread:
-    """The distribution of a response over the samples of each of C combinations of grid and list.
-
-    Attributes
-    ----------
-    mean, standard_error : (C,) arrays
-        Of the usable samples; NaN where there are fewer than one, or two.
-    fraction : (Q,) array
-    quantile, low, high : (C, Q) arrays
-        Estimates and confidence bounds, infinite where the sample is too small for a bound.
-    """
+    """The distribution of a response over the samples of each of C combinations of grid and list."""
 
     mean: FloatArray
     standard_error: FloatArray
+    """`mean`, `standard_error`: Of the usable samples; NaN where there are fewer than one, or two. Shape (C,)
+    each.
+    """
     fraction: FloatArray
+    """Shape (Q,)."""
     quantile: FloatArray
     low: FloatArray
     high: FloatArray
+    """`quantile`, `low`, `high`: Estimates and confidence bounds, infinite where the sample is too small for
+    a bound. Shape (C, Q) each.
+    """
 
 
 @dataclass(frozen=True)
 class Study(ArrayFile):
-    """The figures of N runs: f factors, r responses.
-
-    Attributes
-    ----------
-    factor, kind : tuples of str
-        Names of the factors, and "grid", "list", "normal" or "uniform".
-    response, unit : tuples of str
-        Titles and SI units of the responses.
-    value : (N, f) array
-        Of the factors, in the units of their names.
-    figure, error : (N, r) arrays
-        Responses, and their errors where the run states them, else NaN. Of a failed run all are NaN.
-    reason : tuple of str
-        Why a run has no figures; empty where it has.
-    seconds : (N, 2) array
-        CPU time of each run in all, and of its integration, s.
-    samples : int
-        Of each combination of grid and list, in a row.
-    confidence : float
-        Of the bounds of quantiles.
-    worst : (k,) int array
-        Points whose first response is largest, which are kept as full runs.
-    facts : dict
-        Plain JSON: design, start, receipt, what the runs do without.
-    """
+    """The figures of N runs: f factors, r responses."""
 
     factor: tuple[str, ...]
     kind: tuple[str, ...]
+    """`factor`, `kind`: Names of the factors, and "grid", "list", "normal" or "uniform"."""
     response: tuple[str, ...]
     unit: tuple[str, ...]
+    """`response`, `unit`: Titles and SI units of the responses."""
     value: FloatArray = field(
         metadata=stored("", "values of the factors, in the units of their names", "point", "factor")
     )
+    """Of the factors, in the units of their names. Shape (N, f)."""
     figure: FloatArray = field(metadata=stored("", "responses, in their SI units", "point", "response"))
     error: FloatArray = field(metadata=stored("", "stated errors of the responses", "point", "response"))
+    """`figure`, `error`: Responses, and their errors where the run states them, else NaN. Of a failed run all
+    are NaN. Shape (N, r) each.
+    """
     reason: tuple[str, ...]
+    """Why a run has no figures; empty where it has."""
     seconds: FloatArray = field(
         metadata=stored("s", "CPU time in all, and of the integration", "point", "cost")
     )
+    """CPU time of each run in all, and of its integration, s. Shape (N, 2)."""
     samples: int
+    """Of each combination of grid and list, in a row."""
     confidence: float
+    """Of the bounds of quantiles."""
     worst: IntArray = field(metadata=stored("", "points kept as full runs", "kept"))
+    """Points whose first response is largest, which are kept as full runs. Shape (k,)."""
     facts: Json
+    """Plain JSON: design, start, receipt, what the runs do without."""
 
     SCHEMA: ClassVar[str] = "lineofaction study"
 
@@ -184,23 +170,16 @@ Batch = tuple[tuple[float, ...], ...]
 
 @dataclass(frozen=True)
 class StudyTask:
-    """What all batches of a study share.
-
-    Attributes
-    ----------
-    factors : tuple of str
-        Their names.
-    start : float
-        Time from which on responses are taken, s.
-    receipt : "minimal" or "full"
-        Of each run; "full" measures its errors.
-    """
+    """What all batches of a study share."""
 
     scenes: Scenes
     factors: tuple[str, ...]
+    """Their names."""
     responses: tuple[Response, ...]
     start: float = 0.0
+    """Time from which on responses are taken, s."""
     receipt: str = "minimal"
+    """Of each run; "full" measures its errors."""
 
     def scene(self, values: tuple[float, ...]) -> Scene:
         """Return the scene at a point, as it is run on its own."""
@@ -209,22 +188,15 @@ class StudyTask:
 
 @dataclass(frozen=True)
 class _PointResult:
-    """What a study keeps of one run.
-
-    Attributes
-    ----------
-    figures, errors : list of float
-        Of the responses, in SI; NaN where there is none.
-    reason : str
-        Why the run has no figures; empty where it has.
-    seconds : list of float
-        CPU time of all of it and of the time integration, s.
-    """
+    """What a study keeps of one run."""
 
     figures: list[float]
     errors: list[float]
+    """`figures`, `errors`: Of the responses, in SI; NaN where there is none."""
     reason: str
+    """Why the run has no figures; empty where it has."""
     seconds: list[float]
+    """CPU time of all of it and of the time integration, s."""
 
 
 def _batches(design: Design, scenes: Scenes) -> Iterator[tuple[tuple[int, ...], Batch]]:

@@ -118,39 +118,29 @@ def mean_square(motion: ComplexArray, weight: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class HousingVibration:
-    """Vibration at S speeds in H harmonics, of k points.
-
-    Attributes
-    ----------
-    speed : (S,) array
-        Of the leading drive, rad/s.
-    order : (H,) array
-        Multiples of the frequency of the first mesh that turns.
-    frequency : (S, H) array
-        Hz.
-    seat_force : (S, H, s) complex array
-        Peak amplitudes on the motions of the seats, N and N m.
-    velocity : (k, 3, S, H) complex array
-        Peak amplitudes along the axes of the mesh, m/s.
-    mean_square_velocity : (S, H) array
-        Of the outer hull, normal to it, mean over area and time, m^2/s^2; 0 without a surface.
-    highest_valid_frequency : float
-        `ReducedHousing.valid_frequency`, Hz.
-    floor, floor_missed : (k, S) arrays, optional
-        Mean square velocity of each point in the orders of long tables that are not listed, and by how much
-        it may be off, m^2/s^2; None where every order is.
-    """
+    """Vibration at S speeds in H harmonics, of k points."""
 
     point: tuple[str, ...]
     speed: FloatArray
+    """Of the leading drive, rad/s. Shape (S,)."""
     order: FloatArray
+    """Multiples of the frequency of the first mesh that turns. Shape (H,)."""
     frequency: FloatArray
+    """Hz. Shape (S, H)."""
     seat_force: ComplexArray
+    """Peak amplitudes on the motions of the seats, N and N m. Shape (S, H, s)."""
     velocity: ComplexArray
+    """Peak amplitudes along the axes of the mesh, m/s. Shape (k, 3, S, H)."""
     mean_square_velocity: FloatArray
+    """Of the outer hull, normal to it, mean over area and time, m^2/s^2; 0 without a surface. Shape (S, H).
+    """
     highest_valid_frequency: float
+    """`ReducedHousing.valid_frequency`, Hz."""
     floor: FloatArray | None = None
     floor_missed: FloatArray | None = None
+    """`floor`, `floor_missed`: Mean square velocity of each point in the orders of long tables that are not
+    listed, and by how much it may be off, m^2/s^2; None where every order is. Shape (k, S) each.
+    """
 
     @property
     def valid(self) -> BoolArray:

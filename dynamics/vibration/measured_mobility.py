@@ -43,28 +43,21 @@ class Direction(NamedTuple):
 class MeasuredMobility:
     """Velocity of points per force on bearing seats at the lines of a measurement.
 
-    Attributes
-    ----------
-    frequency : (n,) array
-        Lines in Hz, above 0, rising; at least two.
-    response : tuple of Direction
-        Points, q of them with their axes.
-    excitation : tuple of Direction
-        Bearings, e of them with their axes; positive is the force of the shaft on the seat.
-    mobility : (n, q, e) complex array
-        m/(N s), peak velocity per peak force for exp(2 pi i f t); reciprocity is not assumed.
-    axes : (3, 3) array
-        Columns: the axes x, y, z of the measurement in the scene's frame.
-
     Raises `InputError`: shapes differ, a value is not finite, lines do not rise, a direction is there twice,
     or the axes are not perpendicular, of length one and right-handed.
     """
 
     frequency: FloatArray
+    """Lines in Hz, above 0, rising; at least two. Shape (n,)."""
     response: tuple[Direction, ...]
+    """Points, q of them with their axes."""
     excitation: tuple[Direction, ...]
+    """Bearings, e of them with their axes; positive is the force of the shaft on the seat."""
     mobility: ComplexArray
+    """m/(N s), peak velocity per peak force for exp(2 pi i f t); reciprocity is not assumed. Shape (n, q, e).
+    """
     axes: FloatArray = field(default_factory=lambda: np.eye(3))
+    """Columns: the axes x, y, z of the measurement in the scene's frame. Shape (3, 3)."""
 
     def __post_init__(self) -> None:
         lines = np.asarray(self.frequency, dtype=float)
@@ -168,39 +161,30 @@ def _quotient(
 
 @dataclass(frozen=True)
 class MeasuredVibration:
-    """Vibration at S speeds in H orders of k points, by measured mobilities.
-
-    Attributes
-    ----------
-    point : tuple of str
-        k names.
-    speed, order, frequency : (S,), (H,), (S, H) arrays
-        Of the leading drive in rad/s, multiples of the frequency of the first mesh that turns, Hz.
-    velocity : (k, 3, S, H) complex array
-        Peak amplitudes along the axes of the measurement, m/s; NaN outside the measured band and along axes
-        that nobody measured.
-    covered : (S, H) bool array
-        Whether the frequency lies inside the measured band.
-    omitted : tuple of Direction
-        Forces of bearings without a mobility, by the axes of the measurement.
-    omitted_force : (S, H) array
-        Their part of the sum of the squared forces of all bearings, 0 to 1; 0 without forces.
-    moments : bool
-        Whether the bearings press moments on their seats, which are left out.
-    floor : bool
-        Whether the response has lines of a long period that are not listed, which are left out.
-    """
+    """Vibration at S speeds in H orders of k points, by measured mobilities."""
 
     point: tuple[str, ...]
+    """k names."""
     speed: FloatArray
     order: FloatArray
     frequency: FloatArray
+    """`speed`, `order`, `frequency`: Of the leading drive in rad/s, multiples of the frequency of the first
+    mesh that turns, Hz. (S,), (H,), (S, H) arrays.
+    """
     velocity: ComplexArray
+    """Peak amplitudes along the axes of the measurement, m/s; NaN outside the measured band and along axes
+    that nobody measured. Shape (k, 3, S, H).
+    """
     covered: BoolArray
+    """Whether the frequency lies inside the measured band. Shape (S, H)."""
     omitted: tuple[Direction, ...]
+    """Forces of bearings without a mobility, by the axes of the measurement."""
     omitted_force: FloatArray
+    """Their part of the sum of the squared forces of all bearings, 0 to 1; 0 without forces. Shape (S, H)."""
     moments: bool
+    """Whether the bearings press moments on their seats, which are left out."""
     floor: bool
+    """Whether the response has lines of a long period that are not listed, which are left out."""
 
     @property
     def rms(self) -> FloatArray:

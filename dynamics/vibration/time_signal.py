@@ -46,20 +46,14 @@ class _Propagator(Protocol):
 
 @dataclass(frozen=True)
 class _CoupledModes:
-    """Modes that damping couples.
-
-    Attributes
-    ----------
-    transition : (2 m, 2 m) array
-        Of the state: modal amplitudes times `scale`, then their rates times the step.
-    gain : (4, 2 m, s) array
-        State per derivative of the force at the sample, in steps.
-    scale : (m,) array
-    """
+    """Modes that damping couples."""
 
     transition: FloatArray
+    """Of the state: modal amplitudes times `scale`, then their rates times the step. Shape (2 m, 2 m)."""
     gain: FloatArray
+    """State per derivative of the force at the sample, in steps. Shape (4, 2 m, s)."""
     scale: FloatArray
+    """Shape (m,)."""
 
     @classmethod
     def of(cls, natural: FloatArray, damping: FloatArray, push: FloatArray, step: float) -> _CoupledModes:
@@ -94,23 +88,16 @@ class _CoupledModes:
 
 @dataclass(frozen=True)
 class _SeparateModes:
-    """Modes each by itself: damping couples none.
-
-    Attributes
-    ----------
-    transition : (2, 2, m) array
-        Of the state of a mode: amplitude times `scale`, rate times the step.
-    gain : (2, 4, m) array
-        State of a mode per derivative of its modal force, in steps.
-    push : (m, s) array
-        Modal forces per force.
-    scale : (m,) array
-    """
+    """Modes each by itself: damping couples none."""
 
     transition: FloatArray
+    """Of the state of a mode: amplitude times `scale`, rate times the step. Shape (2, 2, m)."""
     gain: FloatArray
+    """State of a mode per derivative of its modal force, in steps. Shape (2, 4, m)."""
     push: FloatArray
+    """Modal forces per force. Shape (m, s)."""
     scale: FloatArray
+    """Shape (m,)."""
 
     @classmethod
     def of(cls, natural: FloatArray, damping: FloatArray, push: FloatArray, step: float) -> _SeparateModes:

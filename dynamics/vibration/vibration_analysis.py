@@ -28,21 +28,14 @@ RESIDUAL = "residual"
 
 @dataclass(frozen=True)
 class Parts:
-    """A motion as a coherent sum.
-
-    Attributes
-    ----------
-    name : tuple of str
-        Bearing seats, or modes by their number from 1; `RESIDUAL` is what is left.
-    frequency : (p,) array
-        Natural frequencies in Hz; NaN of what is no mode.
-    motion : (p, r) complex array
-        Of the reduced coordinates, m and rad; their sum is the whole motion.
-    """
+    """A motion as a coherent sum."""
 
     name: tuple[str, ...]
+    """Bearing seats, or modes by their number from 1; `RESIDUAL` is what is left."""
     frequency: FloatArray
+    """Natural frequencies in Hz; NaN of what is no mode. Shape (p,)."""
     motion: ComplexArray
+    """Of the reduced coordinates, m and rad; their sum is the whole motion. Shape (p, r)."""
 
     @classmethod
     def of_bearings(cls, housing: ReducedHousing, frequency: float, force: ComplexArray) -> Parts:
@@ -153,21 +146,16 @@ def mean_square_mobility(housing: ReducedHousing, frequency: FloatArray, weight:
 
 @dataclass(frozen=True)
 class SurfaceShape:
-    """Complex peak amplitudes of the motion of a surface.
-
-    Attributes
-    ----------
-    points : (p, 3) array
-        m.
-    triangles : (t, 6) or (t, 3) int array
-        Corners, counter-clockwise from outside, then mid-side nodes, if it has them.
-    motion : (p, 3) complex array
-        m, m/s or m/s^2; of a mode, real, with the largest motion 1.
-    """
+    """Complex peak amplitudes of the motion of a surface."""
 
     points: FloatArray
+    """m. Shape (p, 3)."""
     triangles: IntArray
+    """Corners, counter-clockwise from outside, then mid-side nodes, if it has them. (t, 6) or (t, 3) int
+    array.
+    """
     motion: ComplexArray
+    """m, m/s or m/s^2; of a mode, real, with the largest motion 1. Shape (p, 3)."""
 
     @property
     def facets(self) -> IntArray:
@@ -210,69 +198,48 @@ FREQUENCIES = 800
 
 @dataclass(frozen=True)
 class _Mobilities:
-    """Transfer functions from the motions of the seats, n frequencies.
-
-    Attributes
-    ----------
-    seat : tuple of str
-        Bearing and motion of each column, s.
-    frequency : (n,) array
-        Hz.
-    point : (k, 3, n, s) complex array
-        Velocity of points along x, y, z per force, m/(N s) or per moment, 1/(N s).
-    surface : (n, s) array
-        Mean square normal velocity of the outer hull per mean square force; 0 without a surface.
-    """
+    """Transfer functions from the motions of the seats, n frequencies."""
 
     seat: tuple[str, ...]
+    """Bearing and motion of each column, s."""
     frequency: FloatArray
+    """Hz. Shape (n,)."""
     point: ComplexArray
+    """Velocity of points along x, y, z per force, m/(N s) or per moment, 1/(N s). Shape (k, 3, n, s)."""
     surface: FloatArray
+    """Mean square normal velocity of the outer hull per mean square force; 0 without a surface. Shape (n, s).
+    """
 
 
 @dataclass(frozen=True)
 class Shares:
-    """Contributions of bearings or modes, each adding up to 1 (`Parts.shares`).
-
-    Attributes
-    ----------
-    frequency : (p,) array
-        Natural frequencies, Hz; NaN of what is no mode.
-    point : (k, p) array
-        To the mean square velocity of each point.
-    surface : (p,) array
-        To that of the outer hull; NaN without a surface.
-    """
+    """Contributions of bearings or modes, each adding up to 1 (`Parts.shares`)."""
 
     name: tuple[str, ...]
     frequency: FloatArray
+    """Natural frequencies, Hz; NaN of what is no mode. Shape (p,)."""
     point: FloatArray
+    """To the mean square velocity of each point. Shape (k, p)."""
     surface: FloatArray
+    """To that of the outer hull; NaN without a surface. Shape (p,)."""
 
 
 @dataclass(frozen=True)
 class VibrationAnalysis:
-    """Vibration over speed, and what makes it at one speed and order.
-
-    Attributes
-    ----------
-    at_speed, at_order : int
-        Indices of the speed and the order looked at.
-    deflection : SurfaceShape or None
-        Velocity of the surface there; None without a surface.
-    facts : dict
-        Plain JSON, of the response.
-    """
+    """Vibration over speed, and what makes it at one speed and order."""
 
     housing: str
     vibration: HousingVibration
     mobilities: _Mobilities
     at_speed: int
     at_order: int
+    """`at_speed`, `at_order`: Indices of the speed and the order looked at."""
     bearings: Shares
     modes: Shares
     deflection: SurfaceShape | None = None
+    """Velocity of the surface there; None without a surface."""
     facts: Json = field(default_factory=dict)
+    """Plain JSON, of the response."""
 
 
 def analyze_vibration(

@@ -47,22 +47,15 @@ Circle = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Seat:
-    """A bearing's outer ring in the case, mm.
-
-    Attributes
-    ----------
-    name : str
-        Of the bearing.
-    center : (x, y, z)
-        Of the ring, in the frame of the scene.
-    diameter, width : float
-        Of the ring.
-    """
+    """A bearing's outer ring in the case, mm."""
 
     name: str
+    """Of the bearing."""
     center: tuple[float, float, float]
+    """Of the ring, in the frame of the scene. Shape (x, y, z)."""
     diameter: float
     width: float
+    """`diameter`, `width`: Of the ring."""
 
     @property
     def motor_side(self) -> bool:

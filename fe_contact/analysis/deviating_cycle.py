@@ -36,31 +36,21 @@ POSITIONS = 64
 
 @dataclass(frozen=True)
 class DeviatingCycle:
-    """Transmission error over T base pitches, P even positions in each, at L loads.
-
-    Attributes
-    ----------
-    teeth : (int, int)
-        Of the driving and the driven gear.
-    load : ndarray, shape (L,)
-        Normal forces, N.
-    ste : ndarray, shape (T, P, L)
-        m, positive = the driven gear lags.
-    solved : ndarray of bool, shape (T,)
-        Pitches whose contact was solved; the others are by derivatives.
-    error : ndarray, shape (L,)
-        Of a position in a pitch that was not solved, m: what derivatives miss, not what meshes do.
-    quantity_error : ndarray, shape (23, L)
-        The same of mean, peak-to-peak, orders beside the mesh orders, and mesh harmonics, m.
-    predicted : CycleSeconds
-    """
+    """Transmission error over T base pitches, P even positions in each, at L loads."""
 
     teeth: tuple[int, int]
+    """Of the driving and the driven gear."""
     load: FloatArray = field(metadata=in_unit("n", "force"))
+    """Normal forces, N. Shape (L,)."""
     ste: FloatArray = field(metadata=in_unit("m", "pitch", "position", "force"))
+    """m, positive = the driven gear lags. Shape (T, P, L)."""
     solved: BoolArray
+    """Pitches whose contact was solved; the others are by derivatives. Shape (T,)."""
     error: FloatArray = field(metadata=in_unit("m", "force"))
+    """Of a position in a pitch that was not solved, m: what derivatives miss, not what meshes do. Shape (L,).
+    """
     quantity_error: FloatArray = field(metadata=in_unit("m", "quantity", "force"))
+    """The same of mean, peak-to-peak, orders beside the mesh orders, and mesh harmonics, m. Shape (23, L)."""
     predicted: CycleSeconds
 
     def orders(self, load: int = -1) -> Spectrum:

@@ -39,32 +39,23 @@ class PlannedLevel:
 
 @dataclass(frozen=True)
 class RunPlan:
-    """The plan of a run.
-
-    Attributes
-    ----------
-    checked : Checked
-        The request with its model and its ledger of effects.
-    choice : MeshChoice
-        The mesh that would be taken.
-    passes : tuple of PlannedLevel
-        Predictions for the mesh that would be taken and, where it is tried first, for the one behind it.
-    levels : tuple of PlannedLevel
-        That and the other mesh levels of the same model; and what the tolerance needs, where the time does
-        not allow it.
-    conflict : str
-        Why tolerance and time cannot both be had; empty if they can, or if not both were given.
-    cache : Path, optional
-        Of the prediction.
-    """
+    """The plan of a run."""
 
     checked: Checked
+    """The request with its model and its ledger of effects."""
     choice: MeshChoice
+    """The mesh that would be taken."""
     plan: Plan
     passes: tuple[PlannedLevel, ...]
+    """Predictions for the mesh that would be taken and, where it is tried first, for the one behind it."""
     levels: tuple[PlannedLevel, ...]
+    """That and the other mesh levels of the same model; and what the tolerance needs, where the time does not
+    allow it.
+    """
     conflict: str
+    """Why tolerance and time cannot both be had; empty if they can, or if not both were given."""
     cache: Path | None = None
+    """Of the prediction."""
 
     @property
     def chosen(self) -> PlannedLevel:
@@ -133,36 +124,24 @@ _DESIGN = 0.75
 
 
 class PredictedDesigns(NamedTuple):
-    """CPU seconds of other flanks, loads and alignments on the same gears.
-
-    Attributes
-    ----------
-    bodies : float
-        To condense both gears, coarse meshes too.
-    design : float
-        One pair of flanks at one alignment, all loads at once.
-    errors : float
-        The solutions that measure the errors of one.
-    positions : int
-        Of one.
-    across_face : bool
-        Whether the gears are those of three dimensions.
-    bytes : float
-        Largest resident memory of the process.
-    table : float
-        A whole one at one alignment, its errors included.
-    work : ContactWork
-        Of which the contact of a design is made.
-    """
+    """CPU seconds of other flanks, loads and alignments on the same gears."""
 
     bodies: float
+    """To condense both gears, coarse meshes too."""
     design: float
+    """One pair of flanks at one alignment, all loads at once."""
     errors: float
+    """The solutions that measure the errors of one."""
     positions: int
+    """Of one."""
     across_face: bool
+    """Whether the gears are those of three dimensions."""
     bytes: float
+    """Largest resident memory of the process."""
     table: float
+    """A whole one at one alignment, its errors included."""
     work: ContactWork
+    """Of which the contact of a design is made."""
 
 
 def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:

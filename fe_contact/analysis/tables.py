@@ -52,23 +52,19 @@ PROBES = np.array([0.25, 0.5, 0.75])
 
 @dataclass(frozen=True)
 class PositionNodes:
-    """Nodes over one base pitch with the interpolation error between them.
-
-    Attributes
-    ----------
-    position : ndarray, shape (P,)
-        Increasing in [0, 1).
-    interval_error : ndarray, shape (P, L)
-        Difference in m between interpolant and solution in the interval after each node, at the worst probe;
-        (T P, L) where it is known for each of T base pitches. NaN where it was not requested.
-    value, middle : ndarray, shapes (P, L) or (T P, L)
-        STE in m at the nodes and in the middle of the interval after each.
-    """
+    """Nodes over one base pitch with the interpolation error between them."""
 
     position: FloatArray
+    """Increasing in [0, 1). Shape (P,)."""
     interval_error: FloatArray
+    """Difference in m between interpolant and solution in the interval after each node, at the worst probe;
+    (T P, L) where it is known for each of T base pitches. NaN where it was not requested. Shape (P, L).
+    """
     value: FloatArray
     middle: FloatArray
+    """`value`, `middle`: STE in m at the nodes and in the middle of the interval after each. Ndarray, shapes
+    (P, L) or (T P, L).
+    """
 
     @property
     def error(self) -> FloatArray:
@@ -217,32 +213,22 @@ def _curves(points: OperatingPoints, load: FloatArray, position: FloatArray, pit
 
 @dataclass(frozen=True)
 class SolvedTable(SolvedRun):
-    """One run up to its table.
-
-    Attributes
-    ----------
-    decided : Decided
-        Model and discretization.
-    prediction : Prediction
-        What it was expected to cost.
-    kept, support : list of KeptContact
-        Of every place at the loads of the table, and at the support loads.
-    table : SteDatabase
-        Its errors not yet estimated.
-    condition : ndarray or None
-        Condition numbers of the compliances, where workers found them.
-    derived : DerivedCycle, optional
-        What came of derivatives, where they were tried.
-    """
+    """One run up to its table."""
 
     decided: Decided
+    """Model and discretization."""
     prediction: Prediction
+    """What it was expected to cost."""
     nodes: PositionNodes
     kept: Sequence[KeptContact]
     support: Sequence[KeptContact]
+    """`kept`, `support`: Of every place at the loads of the table, and at the support loads."""
     table: SteDatabase
+    """Its errors not yet estimated."""
     condition: FloatArray | None = None
+    """Condition numbers of the compliances, where workers found them."""
     derived: DerivedCycle | None = None
+    """What came of derivatives, where they were tried."""
 
     @property
     def edge_depths(self) -> list[FloatArray]:

@@ -32,27 +32,18 @@ INVERSE_ITERATIONS = 60
 
 @dataclass(frozen=True)
 class CondensedGear:
-    """All that the checks need of one solved gear.
-
-    Attributes
-    ----------
-    sector : SweptSector
-        Mesh of one sector.
-    stiffness : ElementStiffness
-        Its element matrices.
-    condensation : Condensation
-        How its freedoms follow from the kept ones: flank, left cut, right cut.
-    held : HeldSector
-        The sector on its cuts.
-    ring : RingSolution
-        The gear under the loads `_probe_loads`.
-    """
+    """All that the checks need of one solved gear."""
 
     sector: SweptSector
+    """Mesh of one sector."""
     stiffness: ElementStiffness
+    """Its element matrices."""
     condensation: Condensation
+    """How its freedoms follow from the kept ones: flank, left cut, right cut."""
     held: HeldSector
+    """The sector on its cuts."""
     ring: RingSolution
+    """The gear under the loads `_probe_loads`."""
 
     def flank(self, tooth: int, loads: FloatArray) -> FloatArray:
         """Return the flank displacements (nf, p) of a tooth under the probe `loads` (nf, p) on tooth 0."""

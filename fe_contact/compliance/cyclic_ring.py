@@ -46,22 +46,16 @@ STRIP = 256
 
 @dataclass(frozen=True)
 class HeldSector:
-    """A sector whose flank freedoms are eliminated.
-
-    Attributes
-    ----------
-    flank : (nf, nf) array
-        A: flank displacement per flank force, cuts held, m/N.
-    transmitted : (2 nc, nf) array
-        B: force on the cuts per flank force, cuts held; also (transposed) flank displacement per displacement
-        of the cuts. Left cut first.
-    cuts : (2 nc, 2 nc) array
-        K: stiffness condensed on the cuts, N/m.
-    """
+    """A sector whose flank freedoms are eliminated."""
 
     flank: FloatArray
+    """A: flank displacement per flank force, cuts held, m/N. Shape (nf, nf)."""
     transmitted: FloatArray
+    """B: force on the cuts per flank force, cuts held; also (transposed) flank displacement per displacement
+    of the cuts. Left cut first. Shape (2 nc, nf).
+    """
     cuts: FloatArray
+    """K: stiffness condensed on the cuts, N/m. Shape (2 nc, 2 nc)."""
 
     @property
     def cut_size(self) -> int:
@@ -71,21 +65,14 @@ class HeldSector:
 
 @dataclass(frozen=True)
 class EvenSector:
-    """A held sector whose cuts are scaled: K_ll + K_rr = L L' becomes 1.
-
-    Attributes
-    ----------
-    transmitted : (2 nc, nf) array
-        L^-1 B_l and L^-1 B_r.
-    across : (nc, nc) array
-        C = L^-1 K_lr L^-T: force on the left cut per displacement of the right one.
-    scale : (nc, nc) array
-        L, lower triangle.
-    """
+    """A held sector whose cuts are scaled: K_ll + K_rr = L L' becomes 1."""
 
     transmitted: FloatArray
+    """L^-1 B_l and L^-1 B_r. Shape (2 nc, nf)."""
     across: FloatArray
+    """C = L^-1 K_lr L^-T: force on the left cut per displacement of the right one. Shape (nc, nc)."""
     scale: FloatArray
+    """L, lower triangle. Shape (nc, nc)."""
 
     def force(self, forces: FloatArray) -> FloatArray:
         """Return scaled forces L^-1 f of forces (nc, p) on a cut."""
@@ -98,38 +85,34 @@ class EvenSector:
 
 @dataclass(frozen=True)
 class RingSolution:
-    """Flank compliance of the ring, and the cuts under probe loads.
-
-    Attributes
-    ----------
-    blocks : (reach + 1, nf, nf) array
-        S_m: displacement of the flank of tooth m per force on the flank of tooth 0, m/N.
-    left : (z, nc, p) array
-        Displacement of every left cut under the probe loads on tooth 0, m; its energy is exact as `blocks`.
-    shares : (z,) array
-        Shares of the probe loads on each tooth that add up to a load of solved harmonics alone; 1 on tooth 0.
-    solved : (z, nc, p) array
-        Displacement of the left cuts under these, m, but for rounding.
-    error : float
-        What `blocks` may be off, over the largest entry of A; estimated.
-    bore : (z, nc, p) array
-        Displacement of the left cut of every sector under unit forces on the bore of sector 0, where it is
-        free to turn, m/N.
-    turn : (nc,) array
-        Displacement of a cut under a unit turn of the gear, where it is free to turn, m.
-    restraint : float
-        Stiffness against the mean turn of the cuts, N/m per m: force on each left cut is ``turn`` times
-        ``restraint`` times ``turn`` times its mean displacement.
-    """
+    """Flank compliance of the ring, and the cuts under probe loads."""
 
     blocks: FloatArray
+    """S_m: displacement of the flank of tooth m per force on the flank of tooth 0, m/N. Shape (reach + 1, nf,
+    nf).
+    """
     left: FloatArray
+    """Displacement of every left cut under the probe loads on tooth 0, m; its energy is exact as `blocks`.
+    Shape (z, nc, p).
+    """
     shares: FloatArray = field(default_factory=lambda: np.zeros(0))
+    """Shares of the probe loads on each tooth that add up to a load of solved harmonics alone; 1 on tooth 0.
+    Shape (z,).
+    """
     solved: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
+    """Displacement of the left cuts under these, m, but for rounding. Shape (z, nc, p)."""
     error: float = 0.0
+    """What `blocks` may be off, over the largest entry of A; estimated."""
     bore: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
+    """Displacement of the left cut of every sector under unit forces on the bore of sector 0, where it is
+    free to turn, m/N. Shape (z, nc, p).
+    """
     turn: FloatArray = field(default_factory=lambda: np.zeros(0))
+    """Displacement of a cut under a unit turn of the gear, where it is free to turn, m. Shape (nc,)."""
     restraint: float = 0.0
+    """Stiffness against the mean turn of the cuts, N/m per m: force on each left cut is ``turn`` times
+    ``restraint`` times ``turn`` times its mean displacement.
+    """
 
     @property
     def restraining(self) -> FloatArray:
@@ -142,21 +125,14 @@ class RingSolution:
 
 @dataclass(frozen=True)
 class FreeTurn:
-    """A gear that nothing in its sectors keeps from turning.
-
-    Attributes
-    ----------
-    turn : (nc,) array
-        Displacement of a cut under a unit turn, m.
-    flank : int
-        Number of flank freedoms; the other loaded ones are on the bore.
-    key_cut : int array
-        Freedoms of a cut that are on the bore and may be loaded.
-    """
+    """A gear that nothing in its sectors keeps from turning."""
 
     turn: FloatArray
+    """Displacement of a cut under a unit turn, m. Shape (nc,)."""
     flank: int
+    """Number of flank freedoms; the other loaded ones are on the bore."""
     key_cut: IntArray
+    """Freedoms of a cut that are on the bore and may be loaded."""
 
 
 def hold_sector(matrix: FloatArray, flank: int) -> HeldSector:

@@ -44,44 +44,30 @@ INNER = REFERENCE[:8] / np.sqrt(3.0)
 
 @dataclass(frozen=True)
 class _Part:
-    """One batch: its elements (c, m) and, in the frame of its layers, what turns freedoms into stresses.
-
-    Attributes
-    ----------
-    frames : (m, 60, 60) array
-        Cartesian displacement per freedom.
-    gradient : (m, 8, 20, 3) array
-        Gradients of the functions at `INNER`.
-    turns : (c, 3, 3) array
-        From the frame of each layer to that of mid-face.
-    """
+    """One batch: its elements (c, m) and, in the frame of its layers, what turns freedoms into stresses."""
 
     elements: IntArray
     frames: FloatArray
+    """Cartesian displacement per freedom. Shape (m, 60, 60)."""
     gradient: FloatArray
+    """Gradients of the functions at `INNER`. Shape (m, 8, 20, 3)."""
     turns: FloatArray
+    """From the frame of each layer to that of mid-face. Shape (c, 3, 3)."""
 
 
 @dataclass(frozen=True)
 class _SectorElements:
-    """The elements of one sector, in the frame of mid-face, tooth on +y.
-
-    Attributes
-    ----------
-    nodes : (e, 20, 3) array
-        m, in the order of `SweptSector.elements`, which is VTK's; none of an elastic seat.
-    numbers : (e, 20) int array
-        Point of each; nodes that hang on a coarser face have points of their own.
-    points : int
-        Number of points.
-    quality : dict
-        By name, (e,).
-    """
+    """The elements of one sector, in the frame of mid-face, tooth on +y."""
 
     nodes: FloatArray
+    """m, in the order of `SweptSector.elements`, which is VTK's; none of an elastic seat. Shape (e, 20, 3).
+    """
     numbers: IntArray
+    """Point of each; nodes that hang on a coarser face have points of their own. Shape (e, 20)."""
     points: int
+    """Number of points."""
     quality: dict[str, FloatArray]
+    """By name, (e,)."""
     sector: SweptSector
     lame: tuple[float, float]
     parts: tuple[_Part, ...]

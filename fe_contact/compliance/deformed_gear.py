@@ -21,37 +21,30 @@ from fe_contact.types import FloatArray, IntArray
 
 @dataclass(frozen=True)
 class DeformedGear:
-    """Finite elements of a gear, or of some of its teeth, under flank loads.
-
-    Attributes
-    ----------
-    points : (n, 3) array
-        Nodes without load, m. As made: tooth 0 on +y, mid-face at z = 0; see `placed`.
-    cells : (m, 6) or (m, 20) int array
-        Six-node triangles of the transverse section or 20-node hexahedra, numbered as in VTK.
-    tooth : (m,) int array
-        Tooth number of each element, `fe_contact.mesh.export.HUB` in the hub.
-    displacement : (n, 3) array
-        Elastic displacement with the bore held, m.
-    stress : (n, 3, 3) array
-        Mean of the adjoining elements' stresses, each extrapolated from its inner Gauss points, Pa.
-    quality : mapping
-        Quality measures of the elements by name, (m,).
-    flank_displacement : mapping
-        Displacement along the flank's normal by tooth number, m: in the freedoms and with the sign of the
-        flank compliance of the gear.
-    residual : float
-        Norm of f - K u over that of f, on all free freedoms of these elements but outer cuts.
-    """
+    """Finite elements of a gear, or of some of its teeth, under flank loads."""
 
     points: FloatArray
+    """Nodes without load, m. As made: tooth 0 on +y, mid-face at z = 0; see `placed`. Shape (n, 3)."""
     cells: IntArray
+    """Six-node triangles of the transverse section or 20-node hexahedra, numbered as in VTK. (m, 6) or (m,
+    20) int array.
+    """
     tooth: IntArray
+    """Tooth number of each element, `fe_contact.mesh.export.HUB` in the hub. Shape (m,)."""
     displacement: FloatArray
+    """Elastic displacement with the bore held, m. Shape (n, 3)."""
     stress: FloatArray
+    """Mean of the adjoining elements' stresses, each extrapolated from its inner Gauss points, Pa. Shape (n,
+    3, 3).
+    """
     quality: Mapping[str, FloatArray]
+    """Quality measures of the elements by name, (m,)."""
     flank_displacement: Mapping[int, FloatArray]
+    """Displacement along the flank's normal by tooth number, m: in the freedoms and with the sign of the
+    flank compliance of the gear.
+    """
     residual: float
+    """Norm of f - K u over that of f, on all free freedoms of these elements but outer cuts."""
 
     @property
     def von_mises(self) -> FloatArray:

@@ -19,22 +19,17 @@ OFF_CENTRE = 8.0  # dislike of unequal halves against a short cut
 
 @dataclass(frozen=True)
 class Front:
-    """One group of elements.
-
-    Attributes
-    ----------
-    elements : int array
-        Elements gathered here; empty if there are children.
-    children : tuple of Front
-        The halves of the group.
-    inner, border : int arrays
-        Freedoms eliminated here, and those that go up, both by increasing position in the elimination.
-    """
+    """One group of elements."""
 
     elements: IntArray
+    """Elements gathered here; empty if there are children."""
     children: tuple[Front, ...]
+    """The halves of the group."""
     inner: IntArray
     border: IntArray
+    """`inner`, `border`: Freedoms eliminated here, and those that go up, both by increasing position in the
+    elimination.
+    """
 
     @property
     def operations(self) -> float:
@@ -51,18 +46,14 @@ class Front:
 
 @dataclass(frozen=True)
 class EliminationTree:
-    """The order of an elimination.
-
-    Attributes
-    ----------
-    root : Front
-        Its border are the kept freedoms.
-    order : (n,) int array
-        Position of each freedom in the elimination; kept ones are last, in the order they were requested.
-    """
+    """The order of an elimination."""
 
     root: Front
+    """Its border are the kept freedoms."""
     order: IntArray
+    """Position of each freedom in the elimination; kept ones are last, in the order they were requested.
+    Shape (n,).
+    """
 
     @property
     def operations(self) -> float:

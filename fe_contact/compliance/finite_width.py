@@ -35,22 +35,17 @@ from fe_contact.types import FloatArray, IntArray
 
 @dataclass(frozen=True)
 class FiniteWidthCompliance:
-    """Compliance of the flanks of a spur gear under even loads, beyond that in plane strain.
-
-    Attributes
-    ----------
-    s : (k,) array
-        Flank coordinate of the nodes, m; quadratic elements as in `FlankCompliance`.
-    blocks : (reach + 1, k, k) array
-        Mean displacement over the face of the flank of tooth m (row) per force on that of tooth 0 (column),
-        both along the normal, and per unit face width, m / (N/m); of tooth -m: the transpose.
-    teeth : int
-        Number of teeth of the gear.
-    """
+    """Compliance of the flanks of a spur gear under even loads, beyond that in plane strain."""
 
     s: FloatArray
+    """Flank coordinate of the nodes, m; quadratic elements as in `FlankCompliance`. Shape (k,)."""
     blocks: FloatArray
+    """Mean displacement over the face of the flank of tooth m (row) per force on that of tooth 0 (column),
+    both along the normal, and per unit face width, m / (N/m); of tooth -m: the transpose. Shape (reach + 1,
+    k, k).
+    """
     teeth: int
+    """Number of teeth of the gear."""
 
     def block(self, ahead: int) -> FloatArray:
         """Return the (k, k) compliance of the tooth `ahead` of the loaded one; zero beyond the reach."""

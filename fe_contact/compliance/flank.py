@@ -76,32 +76,25 @@ def least_face_width(gear: Toothing, layers: int) -> float:
 
 @dataclass(frozen=True)
 class ComplianceChecks:
-    """Breaches of the laws of a finite-element compliance. All are relative except the last.
-
-    Attributes
-    ----------
-    residual : float
-        Norm of f - K u over that of f, on every free freedom of the uncondensed mesh, under uniform pressure
-        on tooth 0.
-    reciprocity : float
-        Largest |S - S'| over the largest |S|, before S is made exactly symmetric.
-    bore_moment : float
-        Moment of the reactions on the bore against base radius times flank force.
-    energy : float
-        Largest difference among u' K u, f' u and q' S q.
-    least_eigenvalue : float
-        Of S, 1/Pa; above 0.
-    residual_rounding, energy_rounding : float
-        What rounding alone may leave of `residual` and `energy` (`fe_contact.compliance.flank`).
-    """
+    """Breaches of the laws of a finite-element compliance. All are relative except the last."""
 
     residual: float
+    """Norm of f - K u over that of f, on every free freedom of the uncondensed mesh, under uniform pressure
+    on tooth 0.
+    """
     reciprocity: float
+    """Largest |S - S'| over the largest |S|, before S is made exactly symmetric."""
     bore_moment: float
+    """Moment of the reactions on the bore against base radius times flank force."""
     energy: float
+    """Largest difference among u' K u, f' u and q' S q."""
     least_eigenvalue: float
+    """Of S, 1/Pa; above 0."""
     residual_rounding: float
     energy_rounding: float
+    """`residual_rounding`, `energy_rounding`: What rounding alone may leave of `residual` and `energy`
+    (`fe_contact.compliance.flank`).
+    """
 
     @property
     def limits(self) -> dict[str, float]:
@@ -119,51 +112,43 @@ class ComplianceChecks:
 
 @dataclass(frozen=True)
 class FlankCompliance:
-    """Flank displacement per flank force of one gear, bore clamped.
-
-    Attributes
-    ----------
-    s : (k,) array
-        Flank coordinate of the nodes, m, the same for all teeth; quadratic elements with nodes 2e, 2e+1,
-        2e+2, the middle one at the exact middle, so that s is linear within an element.
-    teeth : (t,) int array
-        Consecutive tooth numbers, centered on 0; tooth j is turned by j pitches counter-clockwise from
-        tooth 0.
-    matrix : (t k, t k) array
-        Inward displacement along the flank normal at node a per inward consistent nodal force along the
-        flank normal at node b and per unit face width, m / (N/m). Row n k + a is node a of tooth
-        ``teeth[n]``. Symmetric positive definite.
-    along : (k, k) array
-        Displacement along the flank towards its tip at node a per such force at node b of the same flank.
-    s_form, s_tip : float
-        Flank coordinate of form point and tip edge, m; ``s[-1] == s_tip``.
-    contact_modulus : float
-        E / (1 - nu^2) in plane strain, E in plane stress, Pa: the modulus of the half plane.
-    checks : ComplianceChecks
-        Laws kept.
-    unknowns, condensed_unknowns : int
-        Free freedoms of the mesh, and of the system left after condensing its tooth sectors.
-    seconds : dict
-        CPU seconds by stage, children included.
-    solver : str
-        Name of the sparse solver.
-    from_cache : bool
-        Whether it was read from disk; `seconds` are then those of the computation.
-    """
+    """Flank displacement per flank force of one gear, bore clamped."""
 
     s: FloatArray
+    """Flank coordinate of the nodes, m, the same for all teeth; quadratic elements with nodes 2e, 2e+1, 2e+2,
+    the middle one at the exact middle, so that s is linear within an element. Shape (k,).
+    """
     teeth: IntArray
+    """Consecutive tooth numbers, centered on 0; tooth j is turned by j pitches counter-clockwise from tooth
+    0. Shape (t,).
+    """
     matrix: FloatArray
+    """Inward displacement along the flank normal at node a per inward consistent nodal force along the flank
+    normal at node b and per unit face width, m / (N/m). Row n k + a is node a of tooth ``teeth[n]``.
+    Symmetric positive definite. Shape (t k, t k).
+    """
     along: FloatArray
+    """Displacement along the flank towards its tip at node a per such force at node b of the same flank.
+    Shape (k, k).
+    """
     s_form: float
     s_tip: float
+    """`s_form`, `s_tip`: Flank coordinate of form point and tip edge, m; ``s[-1] == s_tip``."""
     contact_modulus: float
+    """E / (1 - nu^2) in plane strain, E in plane stress, Pa: the modulus of the half plane."""
     checks: ComplianceChecks
+    """Laws kept."""
     unknowns: int
     condensed_unknowns: int
+    """`unknowns`, `condensed_unknowns`: Free freedoms of the mesh, and of the system left after condensing
+    its tooth sectors.
+    """
     seconds: dict[str, float]
+    """CPU seconds by stage, children included."""
     solver: str
+    """Name of the sparse solver."""
     from_cache: bool = False
+    """Whether it was read from disk; `seconds` are then those of the computation."""
 
     def block(self, tooth: int, other: int) -> FloatArray:
         """Return the (k, k) compliance of flank `tooth` under forces on flank `other`, both tooth numbers."""
@@ -215,60 +200,47 @@ class FlankCompliance3D:
     Flank freedoms are displacements and forces along the flank's normal at the nodes of eight-node
     quadrilaterals in (s, z): node (2 l + i, 2 e + j), i and j from 0 to 2, belongs to layer l and profile
     element e; there is none at the center i = j = 1. Teeth are numbered counter-clockwise seen from +z.
-
-    Attributes
-    ----------
-    s : (k,) array
-        Flank coordinate of the profile nodes from root to tip, m; nodes 2e, 2e+1, 2e+2 are one element, the
-        middle one at the exact middle.
-    z : (L + 1,) array
-        Ends of the layers, m, increasing along the gear's axis; z = 0 is mid-face of this gear. Planes of
-        nodes are the ends and middles of layers.
-    index : (2 L + 1, k) int array
-        Flank freedom at plane and profile node; -1 at the centers.
-    blocks : (reach + 1, nf, nf) array
-        Displacement of the flank of tooth m (row) per force on the flank of tooth 0 (column), both along the
-        normal with the same sign, m/N; tooth 0 by tooth -m is the transpose. ``blocks[0]`` is symmetric.
-    s_form, s_tip : float
-        Flank coordinate of form point and tip edge, m; ``s[-1] == s_tip``.
-    contact_modulus : float
-        E / (1 - nu^2), Pa.
-    base_helix_angle : float
-        rad; > 0 is right hand: the same s is further counter-clockwise at larger z.
-    teeth : int
-        Number of teeth of the gear.
-    checks : ComplianceChecks
-        Laws kept.
-    unknowns : int
-        Free freedoms of the mesh of the whole gear.
-    seconds : dict
-        CPU seconds by stage, children included.
-    solver : str
-        How the equations were solved.
-    key_rows : (2 s + 1, r, nf) array
-        Of a keyed bore, by tooth from -s to s around tooth 0; else empty.
-    key_core : (r, r) array
-        ``block(t, o)`` is that of `blocks` plus ``key_rows[t].T @ key_core @ key_rows[o]``, m/N.
-    from_cache : bool
-        Whether it was read from disk; `seconds` are then those of the computation.
     """
 
     s: FloatArray
+    """Flank coordinate of the profile nodes from root to tip, m; nodes 2e, 2e+1, 2e+2 are one element, the
+    middle one at the exact middle. Shape (k,).
+    """
     z: FloatArray
+    """Ends of the layers, m, increasing along the gear's axis; z = 0 is mid-face of this gear. Planes of
+    nodes are the ends and middles of layers. Shape (L + 1,).
+    """
     index: IntArray
+    """Flank freedom at plane and profile node; -1 at the centers. Shape (2 L + 1, k)."""
     blocks: FloatArray
+    """Displacement of the flank of tooth m (row) per force on the flank of tooth 0 (column), both along the
+    normal with the same sign, m/N; tooth 0 by tooth -m is the transpose. ``blocks[0]`` is symmetric. Shape
+    (reach + 1, nf, nf).
+    """
     s_form: float
     s_tip: float
+    """`s_form`, `s_tip`: Flank coordinate of form point and tip edge, m; ``s[-1] == s_tip``."""
     contact_modulus: float
+    """E / (1 - nu^2), Pa."""
     base_helix_angle: float
+    """rad; > 0 is right hand: the same s is further counter-clockwise at larger z."""
     teeth: int
+    """Number of teeth of the gear."""
     checks: ComplianceChecks
+    """Laws kept."""
     unknowns: int
+    """Free freedoms of the mesh of the whole gear."""
     seconds: dict[str, float]
+    """CPU seconds by stage, children included."""
     solver: str
+    """How the equations were solved."""
     from_cache: bool = False
+    """Whether it was read from disk; `seconds` are then those of the computation."""
     key_rows: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
+    """Of a keyed bore, by tooth from -s to s around tooth 0; else empty. Shape (2 s + 1, r, nf)."""
     key_core: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
+    """``block(t, o)`` is that of `blocks` plus ``key_rows[t].T @ key_core @ key_rows[o]``, m/N. Shape (r, r).
+    """
 
     @property
     def reach(self) -> int:

@@ -44,35 +44,23 @@ from model_studies.stage_clock import StageClock
 
 @dataclass(frozen=True)
 class Field:
-    """Displacement of the whole mesh under a flank load on one tooth, per unit face width.
-
-    Attributes
-    ----------
-    displacement : (N, 2) array
-        m per N/m of load.
-    load, internal : (N, 2) array
-        Applied nodal forces and K u, N/m.
-    """
+    """Displacement of the whole mesh under a flank load on one tooth, per unit face width."""
 
     displacement: FloatArray
+    """m per N/m of load. Shape (N, 2)."""
     load: FloatArray
     internal: FloatArray
+    """`load`, `internal`: Applied nodal forces and K u, N/m. Shape (N, 2) each."""
 
 
 @dataclass(frozen=True)
 class _FlankLoad:
-    """Inward normal forces on the involute of one tooth.
-
-    Attributes
-    ----------
-    forces : (k,) array
-        At the flank's nodes, N/m.
-    moment : float
-        Their moment about the gear's axis, N: every normal of an involute touches the base circle.
-    """
+    """Inward normal forces on the involute of one tooth."""
 
     forces: FloatArray
+    """At the flank's nodes, N/m. Shape (k,)."""
     moment: float
+    """Their moment about the gear's axis, N: every normal of an involute touches the base circle."""
 
     def work(self, matrix: FloatArray) -> float:
         """Return q' S q with S the middle diagonal block of a flank compliance."""

@@ -30,18 +30,14 @@ KEPT = 1e-10  # least over largest singular value of what is kept of Z
 
 
 class _KeyUpdate(NamedTuple):
-    """The contribution of the key to the compliance of the ring.
-
-    Attributes
-    ----------
-    rows : (2 span + 1, r, nf) array
-        By tooth from -span to span.
-    core : (r, r) array
-        The compliance of tooth t under forces on tooth o grows by ``rows[t].T @ core @ rows[o]``, m/N.
-    """
+    """The contribution of the key to the compliance of the ring."""
 
     rows: FloatArray
+    """By tooth from -span to span. Shape (2 span + 1, r, nf)."""
     core: FloatArray
+    """The compliance of tooth t under forces on tooth o grows by ``rows[t].T @ core @ rows[o]``, m/N. Shape
+    (r, r).
+    """
 
 
 class _KeyPoints(NamedTuple):

@@ -57,42 +57,32 @@ def _nested_dissection(matrix: sp.csc_array, block: int) -> IntArray:
 
 @dataclass(frozen=True)
 class _CondensedSector:
-    """One tooth sector seen from its boundary, in the tooth frame, per unit face width.
-
-    Attributes
-    ----------
-    boundary : (nb,) int array
-        Sector nodes on the boundary, clamped ones left out; freedom 2 i + c of the arrays below is
-        component c of its node i.
-    stiffness : (2 nb, 2 nb) array
-        Condensed stiffness, Pa.
-    transmitted : (2 nb, k) array
-        Boundary force per unit flank force when the boundary is free to move.
-    flank : (k, k) array
-        Inward flank displacement per unit flank force with the boundary held, 1/Pa.
-    along, along_boundary : (k, k) and (k, 2 nb) arrays
-        Displacement of the flank's nodes along the flank towards the tip: per unit flank force with the
-        boundary held, 1/Pa, and per displacement of the boundary.
-    matrix : (2n, 2n) sparse array
-        Uncondensed stiffness of the sector.
-    loads : (2n, k) sparse array
-        Unit inward normal forces at the flank nodes.
-    interior : int array
-        Interior freedoms.
-    solve : callable
-        K_ii^-1.
-    """
+    """One tooth sector seen from its boundary, in the tooth frame, per unit face width."""
 
     boundary: IntArray
+    """Sector nodes on the boundary, clamped ones left out; freedom 2 i + c of the arrays below is component c
+    of its node i. Shape (nb,).
+    """
     stiffness: FloatArray
+    """Condensed stiffness, Pa. Shape (2 nb, 2 nb)."""
     transmitted: FloatArray
+    """Boundary force per unit flank force when the boundary is free to move. Shape (2 nb, k)."""
     flank: FloatArray
+    """Inward flank displacement per unit flank force with the boundary held, 1/Pa. Shape (k, k)."""
     along: FloatArray
     along_boundary: FloatArray
+    """`along`, `along_boundary`: Displacement of the flank's nodes along the flank towards the tip: per unit
+    flank force with the boundary held, 1/Pa, and per displacement of the boundary. (k, k) and (k, 2 nb)
+    arrays.
+    """
     matrix: sp.csc_array
+    """Uncondensed stiffness of the sector. (2n, 2n) sparse array."""
     loads: sp.csc_array
+    """Unit inward normal forces at the flank nodes. (2n, k) sparse array."""
     interior: IntArray
+    """Interior freedoms."""
     solve: Solve
+    """K_ii^-1."""
 
 
 def freedoms(nodes: IntArray) -> IntArray:
@@ -153,30 +143,20 @@ def condense_sector(mesh: GearMesh, matrix: sp.csc_array, normals: FloatArray) -
 
 @dataclass(frozen=True)
 class Ring:
-    """Condensed stiffness of one gear, bore clamped, per unit face width.
-
-    Attributes
-    ----------
-    mesh : GearMesh
-        Its mesh.
-    sector : CondensedSector
-        One tooth.
-    hub_matrix : sparse array or None
-        Stiffness of the hub on its own freedoms.
-    matrix : (n, n) sparse array
-        Condensed stiffness of the whole gear.
-    position : (2 N,) int array
-        Row in `matrix` of each freedom of the gear mesh, or -1.
-    solve : callable
-        Inverse of `matrix`.
-    """
+    """Condensed stiffness of one gear, bore clamped, per unit face width."""
 
     mesh: GearMesh
+    """Its mesh."""
     sector: _CondensedSector
+    """One tooth."""
     hub_matrix: sp.csc_array | None
+    """Stiffness of the hub on its own freedoms."""
     matrix: sp.csc_array
+    """Condensed stiffness of the whole gear. (n, n) sparse array."""
     position: IntArray
+    """Row in `matrix` of each freedom of the gear mesh, or -1. Shape (2 N,)."""
     solve: Solve
+    """Inverse of `matrix`."""
 
     def rows(self, tooth_index: int) -> IntArray:
         """Return the rows of the boundary freedoms of one sector."""

@@ -17,71 +17,52 @@ RECOVERY_LIMIT = 1e-5
 
 @dataclass(frozen=True)
 class RootStressChecks:
-    """Laws that a root stress must keep, relative.
-
-    Attributes
-    ----------
-    residual : float
-        Norm of f - K u over that of f on the uncondensed mesh, under uniform pressure on tooth 0.
-    recovery : float
-        Stress of that field, from the displacement of all nodes, against unit-load stress times load.
-    """
+    """Laws that a root stress must keep, relative."""
 
     residual: float
+    """Norm of f - K u over that of f on the uncondensed mesh, under uniform pressure on tooth 0."""
     recovery: float
+    """Stress of that field, from the displacement of all nodes, against unit-load stress times load."""
 
 
 @dataclass(frozen=True)
 class UnitRootStress:
-    """Unit-load stress on the surface of the tooth roots of one gear, in the plane or over the face.
-
-    Attributes
-    ----------
-    distance : (d,) int array
-        How many teeth the stressed tooth is ahead of the loaded one, counter-clockwise; consecutive,
-        symmetric about 0.
-    stress : (d, 2, 3, p, q, n) array
-        Stress per force at each flank freedom. Second axis: the root beside the loaded (right) flank, which
-        the load pulls, and the root on the other side. Third: normal stress along the profile, normal stress
-        across it in the surface, shear between the two. Pa/N over the face, Pa/(N/m) in the plane. Forces are
-        along the *inward* normal of the flank.
-    station_s : (p,) array
-        Flank coordinate of the stations, m, from the middle of the tooth space to the form point.
-    station_z : (q,) array
-        Distance of the stations from mid-face of this gear, m; a single 0 in the plane.
-    tangent_angle : (p,) array
-        Angle between the surface there and the tooth's center line, rad; pi/2 at the root circle.
-    s : (k,) array
-        Flank coordinate of the profile nodes that carry forces, m.
-    z : (L + 1,) array
-        Ends of the layers, m; empty in the plane.
-    index : (2 L + 1, k) int array
-        Flank freedom at plane and profile node; (1, k) in the plane.
-    checks : RootStressChecks
-        Laws kept.
-    unknowns : int
-        Free freedoms of the mesh of the whole gear.
-    seconds : dict
-        CPU seconds by stage, children included.
-    solver : str
-        How the equations were solved.
-    from_cache : bool
-        Whether it was read from disk; `seconds` are then those of the computation.
-    """
+    """Unit-load stress on the surface of the tooth roots of one gear, in the plane or over the face."""
 
     distance: IntArray
+    """How many teeth the stressed tooth is ahead of the loaded one, counter-clockwise; consecutive, symmetric
+    about 0. Shape (d,).
+    """
     stress: FloatArray
+    """Stress per force at each flank freedom. Second axis: the root beside the loaded (right) flank, which
+    the load pulls, and the root on the other side. Third: normal stress along the profile, normal stress
+    across it in the surface, shear between the two. Pa/N over the face, Pa/(N/m) in the plane. Forces are
+    along the *inward* normal of the flank. Shape (d, 2, 3, p, q, n).
+    """
     station_s: FloatArray
+    """Flank coordinate of the stations, m, from the middle of the tooth space to the form point. Shape (p,).
+    """
     station_z: FloatArray
+    """Distance of the stations from mid-face of this gear, m; a single 0 in the plane. Shape (q,)."""
     tangent_angle: FloatArray
+    """Angle between the surface there and the tooth's center line, rad; pi/2 at the root circle. Shape (p,).
+    """
     s: FloatArray
+    """Flank coordinate of the profile nodes that carry forces, m. Shape (k,)."""
     z: FloatArray
+    """Ends of the layers, m; empty in the plane. Shape (L + 1,)."""
     index: IntArray
+    """Flank freedom at plane and profile node; (1, k) in the plane. Shape (2 L + 1, k)."""
     checks: RootStressChecks
+    """Laws kept."""
     unknowns: int
+    """Free freedoms of the mesh of the whole gear."""
     seconds: dict[str, float]
+    """CPU seconds by stage, children included."""
     solver: str
+    """How the equations were solved."""
     from_cache: bool = False
+    """Whether it was read from disk; `seconds` are then those of the computation."""
 
     @property
     def across_face(self) -> bool:
@@ -124,19 +105,14 @@ SAMPLES = 4001  # of the exact profile that nodes are sought on
 
 @dataclass(frozen=True)
 class RootSurface:
-    """Both root fillets of one tooth, each with its half of the root land.
-
-    Attributes
-    ----------
-    nodes : (2, 2e + 1) int array
-        Nodes of the transverse section from the middle of the tooth space up to the form point: corner,
-        mid-side, corner ... First the side of the loaded (right) flank, then the other.
-    s : (2e + 1,) array
-        Flank coordinate of both, m, increasing.
-    """
+    """Both root fillets of one tooth, each with its half of the root land."""
 
     nodes: IntArray
+    """Nodes of the transverse section from the middle of the tooth space up to the form point: corner,
+    mid-side, corner ... First the side of the loaded (right) flank, then the other. Shape (2, 2e + 1).
+    """
     s: FloatArray
+    """Flank coordinate of both, m, increasing. Shape (2e + 1,)."""
 
 
 def root_coordinate(profile: FlankProfile, points: FloatArray) -> FloatArray:

@@ -204,21 +204,14 @@ def _quad_root(section: QuadSector, profile: FlankProfile) -> RootSurface:
 
 
 class _SurfaceElements(NamedTuple):
-    """Eight-node quadrilaterals of a surface.
-
-    Attributes
-    ----------
-    nodes : (m, 8, 3) array
-        Places in the order of `ALONG` and `ACROSS`, m.
-    frames : (m, 8, 3, 3) array
-        Axes of the freedoms of each node, one per column.
-    freedoms : (m, 8, 3) int array
-        Their numbers; -1 where held.
-    """
+    """Eight-node quadrilaterals of a surface."""
 
     nodes: FloatArray
+    """Places in the order of `ALONG` and `ACROSS`, m. Shape (m, 8, 3)."""
     frames: FloatArray
+    """Axes of the freedoms of each node, one per column. Shape (m, 8, 3, 3)."""
     freedoms: IntArray
+    """Their numbers; -1 where held. Shape (m, 8, 3)."""
 
 
 def _face_stress(elements: _SurfaceElements, material: Material, size: int) -> sp.csr_array:

@@ -110,18 +110,12 @@ SIDE = [0, 1, 0, 1, 4, 4, 0, 1]
 
 @dataclass(frozen=True)
 class _CoarseFace:
-    """The face that hanging nodes lie on.
-
-    Attributes
-    ----------
-    nodes : (m, 8, 3) array
-        Its nodes, m.
-    weights : (8, 8) array
-        Value of each of its functions (column) at each hanging node (row).
-    """
+    """The face that hanging nodes lie on."""
 
     nodes: FloatArray
+    """Its nodes, m. Shape (m, 8, 3)."""
     weights: FloatArray
+    """Value of each of its functions (column) at each hanging node (row). Shape (8, 8)."""
 
     def attach(self, nodes: FloatArray) -> FloatArray:
         """Return element nodes (m, 20, 3) with the hanging ones placed on this face."""
@@ -195,18 +189,12 @@ def _seat_stiffness(gear: Toothing, grid: SectorGrid, thickness: float, seat: Bo
 
 @dataclass(frozen=True)
 class ElementStiffness:
-    """Stiffness of the elements of a sector.
-
-    Attributes
-    ----------
-    matrices : (p, 60, 60) array
-        N/m; freedoms in the order of `SweptSector.element_freedoms`.
-    of_element : (e,) int array
-        Which of them each element has.
-    """
+    """Stiffness of the elements of a sector."""
 
     matrices: FloatArray
+    """N/m; freedoms in the order of `SweptSector.element_freedoms`. Shape (p, 60, 60)."""
     of_element: IntArray
+    """Which of them each element has. Shape (e,)."""
 
 
 def twist(gear: Toothing) -> float:

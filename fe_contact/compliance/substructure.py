@@ -28,21 +28,14 @@ class _FrontFactor:
 
 @dataclass(frozen=True)
 class Condensation:
-    """How all freedoms of a sector follow from its kept ones.
-
-    Attributes
-    ----------
-    factors : tuple of FrontFactor
-        From the root down: parents before their children.
-    kept : (k,) int array
-        The kept freedoms.
-    size : int
-        Number of all freedoms.
-    """
+    """How all freedoms of a sector follow from its kept ones."""
 
     factors: tuple[_FrontFactor, ...]
+    """From the root down: parents before their children."""
     kept: IntArray
+    """The kept freedoms. Shape (k,)."""
     size: int
+    """Number of all freedoms."""
 
     def expand(self, values: FloatArray) -> FloatArray:
         """Return all freedoms (n, m) from the kept ones (k, m), no force on the others."""

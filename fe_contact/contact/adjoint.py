@@ -35,26 +35,22 @@ from host.loops import inner, njit
 
 @dataclass(frozen=True)
 class _Adjoint:
-    """Influences on transmission error and load arm of P positions at L loads, and the strips; m candidates.
-
-    Attributes
-    ----------
-    weight : ndarray, shape (P, L, m)
-        dSTE per normal approach taken away at each candidate, 1; zero where it does not carry, NaN where the
-        contact is not solved. Their sum over the candidates, times `Candidates.motion_arm`, is 1.
-    arm_weight : ndarray, shape (P, L, m)
-        The same of the load arm; of it this sum is 0.
-    added_arm : ndarray, shape (P, L)
-        Arm of a little more load, m.
-    middle, half : ndarray, shape (P, L, m)
-        Middle of each contact strip from the touching point on, towards tip 1, and half its length, m.
-    """
+    """Influences of m candidates on STE and load arm at P positions and L loads, and the strips."""
 
     weight: FloatArray
+    """dSTE per normal approach taken away at each candidate, 1; zero where it does not carry, NaN where the
+    contact is not solved. Their sum over the candidates, times `Candidates.motion_arm`, is 1. Shape (P, L,
+    m).
+    """
     arm_weight: FloatArray
+    """The same of the load arm; of it this sum is 0. Shape (P, L, m)."""
     added_arm: FloatArray
+    """Arm of a little more load, m. Shape (P, L)."""
     middle: FloatArray
     half: FloatArray
+    """`middle`, `half`: Middle of each contact strip from the touching point on, towards tip 1, and half its
+    length, m. Shape (P, L, m) each.
+    """
 
 
 def load_arm(pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> FloatArray:
@@ -184,38 +180,27 @@ _POINTS = 8
 
 @dataclass(frozen=True)
 class CarryingStrips:
-    """The k strips that carry, of all positions, loads and candidates.
-
-    Attributes
-    ----------
-    shape : (int, int, int)
-        Numbers of positions, loads and candidates.
-    index : ndarray of int, shape (k,)
-        Of each among all of these, flattened.
-    strips : Strips
-    closing : ClosingLag
-    turned : TurnedForces
-        Of all candidates.
-    following : FollowingPatches or None
-        Of all candidates; None where patches stay.
-    normal : float
-        Normal approach taken away per depth removed in the transverse section.
-    weight, arm_weight : ndarray, shape (k,)
-        dSTE, and change of the load arm, per normal approach taken away.
-    added_arm : ndarray, shape (P, L)
-        Arm of a little more load, m.
-    """
+    """The k strips that carry, of all positions, loads and candidates."""
 
     shape: tuple[int, int, int]
+    """Numbers of positions, loads and candidates."""
     index: IntArray
+    """Of each among all of these, flattened. Shape (k,)."""
     strips: Strips
     closing: ClosingLag
     turned: TurnedForces
+    """Of all candidates."""
     following: FollowingPatches | None
+    """Of all candidates; None where patches stay."""
     normal: float
+    """Normal approach taken away per depth removed in the transverse section."""
     weight: FloatArray
     arm_weight: FloatArray
+    """`weight`, `arm_weight`: dSTE, and change of the load arm, per normal approach taken away. Shape (k,)
+    each.
+    """
     added_arm: FloatArray
+    """Arm of a little more load, m. Shape (P, L)."""
 
     @classmethod
     def of(cls, pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> CarryingStrips:

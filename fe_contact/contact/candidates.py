@@ -30,24 +30,16 @@ LONGEST_LAW = 0.5
 
 @dataclass(frozen=True)
 class PatchRule:
-    """The widths of the load patches.
-
-    Attributes
-    ----------
-    half_width : float
-        Away from the tip edges, m.
-    edge_length : float
-        Least length of the patch at a tip edge, m.
-    edge_load : float
-        4 p/(pi E*) of the line load p whose strip the patch at a tip edge follows, m.
-    law_length : float
-        Least reference length of the local law, m: that of the widest strip.
-    """
+    """The widths of the load patches."""
 
     half_width: float
+    """Away from the tip edges, m."""
     edge_length: float
+    """Least length of the patch at a tip edge, m."""
     edge_load: float = 0.0
+    """4 p/(pi E*) of the line load p whose strip the patch at a tip edge follows, m."""
     law_length: float = 0.0
+    """Least reference length of the local law, m: that of the widest strip."""
 
     def lengths(self, offset: FloatArray, radius: FloatArray) -> FloatArray:
         """Return the lengths of patches at a tip edge, m: those of the strip, (4) of docs/theory/hertz.md.

@@ -40,36 +40,24 @@ _SHORTEST = 1e-12
 
 
 class EdgeStrips(NamedTuple):
-    """Strips at tip edges, arrays (..., n) over slices.
-
-    Attributes
-    ----------
-    side : ndarray
-        Direction away from the edge: 1 is towards tip 1, -1 towards tip 2, 0 where no patch is at an edge.
-    offset : ndarray
-        Distance of the touching point from the edge, m; negative = -phi R off the line of action.
-    radius : ndarray
-        Relative radius in the normal section, m.
-    softness : ndarray
-        4/(pi E*) over the width, 1/N m.
-    patch : ndarray
-        Distance of the patch's centroid from the edge, m.
-    missing : ndarray
-        Part of the corner that the local law has not, 0 to 1.
-    corner : ndarray
-        What the corner yields over a half plane, over the width, m/N.
-    length : ndarray
-        Half-width of the patch on a half plane, m.
-    """
+    """Strips at tip edges, arrays (..., n) over slices."""
 
     side: FloatArray
+    """Direction away from the edge: 1 is towards tip 1, -1 towards tip 2, 0 where no patch is at an edge."""
     offset: FloatArray
+    """Distance of the touching point from the edge, m; negative = -phi R off the line of action."""
     radius: FloatArray
+    """Relative radius in the normal section, m."""
     softness: FloatArray
+    """4/(pi E*) over the width, 1/N m."""
     patch: FloatArray
+    """Distance of the patch's centroid from the edge, m."""
     missing: FloatArray
+    """Part of the corner that the local law has not, 0 to 1."""
     corner: FloatArray
+    """What the corner yields over a half plane, over the width, m/N."""
     length: FloatArray
+    """Half-width of the patch on a half plane, m."""
 
 
 def edge_table(strips: EdgeStrips, there: BoolArray) -> FloatArray:
@@ -84,25 +72,18 @@ def no_edges(slices: int) -> FloatArray:
 
 
 class EdgeMotion(NamedTuple):
-    """Derivatives of the energy E by force and tilt, and what the local law lacks of the corner.
-
-    Attributes
-    ----------
-    by_force, by_tilt : float
-        First derivatives, m and N m.
-    force_force, force_tilt, tilt_tilt : float
-        Second derivatives, m/N, m and N m.
-    corner, softness : float
-        Approach that the local law lacks, m, and its derivative by the force, m/N.
-    """
+    """Derivatives of the energy E by force and tilt, and what the local law lacks of the corner."""
 
     by_force: float
     by_tilt: float
+    """`by_force`, `by_tilt`: First derivatives, m and N m."""
     force_force: float
     force_tilt: float
     tilt_tilt: float
+    """`force_force`, `force_tilt`, `tilt_tilt`: Second derivatives, m/N, m and N m."""
     corner: float
     softness: float
+    """`corner`, `softness`: Approach that the local law lacks, m, and its derivative by the force, m/N."""
 
 
 @inner(error_model="numpy")

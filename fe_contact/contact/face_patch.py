@@ -19,21 +19,16 @@ from host.loops import inner, njit
 
 
 class FaceGrid(NamedTuple):
-    """Nodes of one flank.
-
-    Attributes
-    ----------
-    s : ndarray, shape (k,)
-        Flank coordinates, corner and mid-side nodes in turn, m.
-    z : ndarray, shape (L + 1,)
-        Ends of the layers along the face, m.
-    freedom : ndarray of int, shape (2 L + 1, k)
-        Freedom at each plane (layer ends and middles in turn) and profile node; -1 at the centers of faces.
-    """
+    """Nodes of one flank."""
 
     s: FloatArray
+    """Flank coordinates, corner and mid-side nodes in turn, m. Shape (k,)."""
     z: FloatArray
+    """Ends of the layers along the face, m. Shape (L + 1,)."""
     freedom: IntArray
+    """Freedom at each plane (layer ends and middles in turn) and profile node; -1 at the centers of faces.
+    Shape (2 L + 1, k).
+    """
 
 
 class FaceLoads(NamedTuple):
@@ -244,24 +239,19 @@ def add_compliance(
 
 
 class _SliceForces(NamedTuple):
-    """Forces of n slices at P positions on the freedoms that their teeth need.
-
-    Attributes
-    ----------
-    low, width : ndarray of int, shape (n,)
-        First place among those freedoms that each slice loads, and how many from there on.
-    start : ndarray of int, shape (n + 1,)
-        Sums of the widths before each.
-    force : ndarray
-        Those of slice i, (P, width), from P start[i] on.
-    lever : ndarray, shape (P, n)
-    """
+    """Forces of n slices at P positions on the freedoms that their teeth need."""
 
     low: IntArray
     width: IntArray
+    """`low`, `width`: First place among those freedoms that each slice loads, and how many from there on.
+    Shape (n,) each.
+    """
     start: IntArray
+    """Sums of the widths before each. Shape (n + 1,)."""
     force: FloatArray
+    """Those of slice i, (P, width), from P start[i] on."""
     lever: FloatArray
+    """Shape (P, n)."""
 
 
 @inner()

@@ -36,19 +36,15 @@ SMOOTH = 2.0
 
 
 class FreeEnds(NamedTuple):
-    """Ends of one gear up to which its contact runs.
-
-    Attributes
-    ----------
-    low, high : float
-        Face positions of its ends, m from the pinion's mid-face; infinite where the body goes on.
-    softness : float
-        (psi - 1)/2.
-    """
+    """Ends of one gear up to which its contact runs."""
 
     low: float
     high: float
+    """`low`, `high`: Face positions of its ends, m from the pinion's mid-face; infinite where the body goes
+    on.
+    """
     softness: float
+    """(psi - 1)/2."""
 
 
 ENDLESS = FreeEnds(-math.inf, math.inf, 0.0)

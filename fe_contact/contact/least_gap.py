@@ -179,24 +179,16 @@ def _narrow(
 
 
 class Nodes(NamedTuple):
-    """Coordinates at which gaps of n contacts are looked at, in sorted lists one after the other.
-
-    Attributes
-    ----------
-    s : ndarray
-        Coordinates along the flank, m.
-    start : ndarray of int, shape (L + 1,)
-        Where the lists begin.
-    list_of : ndarray of int, shape (K, n)
-        Lists of each contact.
-    origin : ndarray, shape (K, n)
-        Coordinates of the contact by which those of each list count, m.
-    """
+    """Coordinates at which gaps of n contacts are looked at, in sorted lists one after the other."""
 
     s: FloatArray
+    """Coordinates along the flank, m."""
     start: IntArray
+    """Where the lists begin. Shape (L + 1,)."""
     list_of: IntArray
+    """Lists of each contact. Shape (K, n)."""
     origin: FloatArray
+    """Coordinates of the contact by which those of each list count, m. Shape (K, n)."""
 
 
 @njit(cache=True, error_model="numpy")

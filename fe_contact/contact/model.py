@@ -15,28 +15,19 @@ from fe_contact.types import FloatArray, IntArray
 
 @dataclass(frozen=True)
 class Break:
-    """Begin of a modification of one gear along its profile, to a depth of jump d + bend d^2/2.
-
-    Attributes
-    ----------
-    gear : int
-        0 is the pinion, 1 the wheel.
-    place : ndarray
-        Flank coordinate on that gear, m; of no dimension, or one per touching point.
-    side : int
-        +1 where it runs towards the pinion's tip (the wheel's root), else -1.
-    jump, bend : float or ndarray
-        1 and 1/m; arrays where `place` is one.
-    ends_flank : bool
-        Whether the usable flank ends there: a rounded or chamfered tip.
-    """
+    """Begin of a modification of one gear along its profile, to a depth of jump d + bend d^2/2."""
 
     gear: int
+    """0 is the pinion, 1 the wheel."""
     place: FloatArray
+    """Flank coordinate on that gear, m; of no dimension, or one per touching point."""
     side: int
+    """+1 where it runs towards the pinion's tip (the wheel's root), else -1."""
     jump: FloatArray | float
     bend: FloatArray | float
+    """`jump`, `bend`: 1 and 1/m; arrays where `place` is one."""
     ends_flank: bool = False
+    """Whether the usable flank ends there: a rounded or chamfered tip."""
 
     def distance(self, s_1: FloatArray, s_2: FloatArray) -> FloatArray:
         """Return how far it is from touching points at these coordinates, m towards the pinion's tip."""
@@ -88,24 +79,18 @@ class GapTerm(Protocol):
 
 @dataclass(frozen=True)
 class MeetingTeeth:
-    """Pairs of teeth where they touch; arrays that broadcast.
-
-    Attributes
-    ----------
-    meeting : ndarray of int
-        Which pair since position 0. Meeting 0 is pair 0 at position 0; meeting k touches at the pitch point
-        at position k, with the k-th next teeth of both gears.
-    roll_1, roll_2 : ndarray
-        Roll lengths of the two flanks, m.
-    face : ndarray
-        Distance from the pinion's mid-face, m.
-    """
+    """Pairs of teeth where they touch; arrays that broadcast."""
 
     pair: ParallelAxes
     meeting: IntArray
+    """Which pair since position 0. Meeting 0 is pair 0 at position 0; meeting k touches at the pitch point at
+    position k, with the k-th next teeth of both gears.
+    """
     roll_1: FloatArray
     roll_2: FloatArray
+    """`roll_1`, `roll_2`: Roll lengths of the two flanks, m."""
     face: FloatArray
+    """Distance from the pinion's mid-face, m."""
 
     @classmethod
     def at_pitch_point(cls, pair: ParallelAxes, meeting: IntArray) -> MeetingTeeth:
@@ -161,29 +146,22 @@ class ComplianceTerm(Protocol):
 
 @dataclass(frozen=True)
 class ContactModel:
-    """The composed model; neutral as constructed.
-
-    Attributes
-    ----------
-    couple_teeth : bool
-        Load on one tooth moves its neighbors.
-    corner_contact : bool
-        Tip edges may touch off the line of action, before A and after E.
-    across_face : bool
-        Load distributes over the face width: three dimensions instead of the plane.
-    finite_width : bool
-        The plane stands in for gears of finite width: their compliance is that of plane strain and what
-        their free ends add. In three dimensions it is in the compliance anyway.
-    parts : tuple of str
-        Parts of the gears' bodies that are in their compliance (`Toothing.with_parts`); without any they are
-        solid, their bores fixed all over.
-    """
+    """The composed model; neutral as constructed."""
 
     couple_teeth: bool = False
+    """Load on one tooth moves its neighbors."""
     corner_contact: bool = False
+    """Tip edges may touch off the line of action, before A and after E."""
     across_face: bool = False
+    """Load distributes over the face width: three dimensions instead of the plane."""
     finite_width: bool = False
+    """The plane stands in for gears of finite width: their compliance is that of plane strain and what their
+    free ends add. In three dimensions it is in the compliance anyway.
+    """
     parts: tuple[str, ...] = ()
+    """Parts of the gears' bodies that are in their compliance (`Toothing.with_parts`); without any they are
+    solid, their bores fixed all over.
+    """
     gaps: tuple[GapTerm, ...] = ()
     tooth_gaps: tuple[ToothGap, ...] = ()
     compliances: tuple[ComplianceTerm, ...] = ()

@@ -56,31 +56,21 @@ _LEVEL = 0.3
 
 
 class NewtonSystem(NamedTuple):
-    """Newton's equations of the curves over touching contacts; filled up to their number.
-
-    Attributes
-    ----------
-    member : ndarray of int, shape (n,)
-        Those curves.
-    touching : ndarray, shape (n, w)
-        N'DN of all curves with those up to w - 1 before them, N/m.
-    matrix, moved : ndarray, shape (n, n)
-        1 + N'DN K, and K of the members, m/N.
-    right : ndarray, shape (2, n)
-        N'D m in N/m, and what the forces on the curves miss in N.
-    shares : ndarray, shape (n,)
-        N'D n of all curves, N/m.
-    left : ndarray, shape (n,)
-        Forces on curves whose contacts do not touch any more, N.
-    """
+    """Newton's equations of the curves over touching contacts; filled up to their number."""
 
     member: IntArray
+    """Those curves. Shape (n,)."""
     touching: FloatArray
+    """N'DN of all curves with those up to w - 1 before them, N/m. Shape (n, w)."""
     matrix: FloatArray
     moved: FloatArray
+    """`matrix`, `moved`: 1 + N'DN K, and K of the members, m/N. Shape (n, n) each."""
     right: FloatArray
+    """N'D m in N/m, and what the forces on the curves miss in N. Shape (2, n)."""
     shares: FloatArray
+    """N'D n of all curves, N/m. Shape (n,)."""
     left: FloatArray
+    """Forces on curves whose contacts do not touch any more, N. Shape (n,)."""
 
 
 @inner(error_model="numpy")

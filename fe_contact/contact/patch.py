@@ -26,29 +26,21 @@ from host.loops import inner
 
 @dataclass(frozen=True)
 class Patches:
-    """Patches of one gear; arrays (P, n Q), Q side by side on each of n slices.
-
-    Attributes
-    ----------
-    center, half_width : ndarray
-        Flank coordinate of the middle and half the length, m.
-    edge_share : ndarray
-        Share of the load that is singular at the tip edge, 0 to 1.
-    count : int
-        Q.
-    bulge : ndarray or float
-        `fe_contact.hertz.lateral_share` of the material times the curvature of the flank, 1/m; 0 of a half
-        plane.
-    at_tip : ndarray of bool or bool
-        Whether a patch ends at the tip edge.
-    """
+    """Patches of one gear; arrays (P, n Q), Q side by side on each of n slices."""
 
     center: FloatArray
     half_width: FloatArray
+    """`center`, `half_width`: Flank coordinate of the middle and half the length, m."""
     edge_share: FloatArray
+    """Share of the load that is singular at the tip edge, 0 to 1."""
     count: int = 1
+    """Q."""
     bulge: FloatArray | float = 0.0
+    """`fe_contact.hertz.lateral_share` of the material times the curvature of the flank, 1/m; 0 of a half
+    plane.
+    """
     at_tip: BoolArray | bool = False
+    """Whether a patch ends at the tip edge."""
 
     def rows(self, keep: IntArray) -> Patches:
         """Keep some positions."""

@@ -17,58 +17,45 @@ FLAT = 100.0
 
 @dataclass(frozen=True)
 class Touch:
-    """Touching points of the rigid gears; arrays (P, n).
-
-    Attributes
-    ----------
-    s_1, s_2 : ndarray
-        Flank coordinates, m.
-    gap : ndarray
-        On the line of action, m; infinite = the pair cannot touch.
-    radius : ndarray
-        Relative radius of curvature in the transverse section, m.
-    lever_1, lever_2 : ndarray
-        Lever arms of the common normal over the base radii.
-    slope, curvature, low, high : ndarray
-        Gap about the touching points in the transverse section, towards tip 1; see `strip.Gap`.
-    place, jump, bend : ndarray, shape (P, n, B)
-        Its breaks.
-    moved : ndarray
-        How far modifications move the touching point, or the middle of the strip, towards tip 1, m.
-    missed : ndarray
-        Error of the approach on rough flanks; see `RoughStrip`.
-    lag : ndarray
-        Lag of gear 2 that closes a depth removed there, over that depth.
-    slope_1, slope_2 : ndarray
-        How fast what is removed from each flank grows over its roll length towards the tip, of a ring towards
-        the root; zero at its edge.
-    turn_1, turn_2 : ndarray
-        Their changes along the flanks towards tip 1, 1/m.
-    roll_1 : ndarray
-        Nominal roll lengths of gear 1, m.
-    """
+    """Touching points of the rigid gears; arrays (P, n)."""
 
     s_1: FloatArray
     s_2: FloatArray
+    """`s_1`, `s_2`: Flank coordinates, m."""
     gap: FloatArray
+    """On the line of action, m; infinite = the pair cannot touch."""
     radius: FloatArray
+    """Relative radius of curvature in the transverse section, m."""
     lever_1: FloatArray
     lever_2: FloatArray
+    """`lever_1`, `lever_2`: Lever arms of the common normal over the base radii."""
     slope: FloatArray
     curvature: FloatArray
     low: FloatArray
     high: FloatArray
+    """`slope`, `curvature`, `low`, `high`: Gap about the touching points in the transverse section, towards
+    tip 1; see `strip.Gap`.
+    """
     place: FloatArray
     jump: FloatArray
     bend: FloatArray
+    """`place`, `jump`, `bend`: Its breaks. Shape (P, n, B) each."""
     moved: FloatArray
+    """How far modifications move the touching point, or the middle of the strip, towards tip 1, m."""
     missed: FloatArray
+    """Error of the approach on rough flanks; see `RoughStrip`."""
     lag: FloatArray
+    """Lag of gear 2 that closes a depth removed there, over that depth."""
     slope_1: FloatArray
     slope_2: FloatArray
+    """`slope_1`, `slope_2`: How fast what is removed from each flank grows over its roll length towards the
+    tip, of a ring towards the root; zero at its edge.
+    """
     turn_1: FloatArray
     turn_2: FloatArray
+    """`turn_1`, `turn_2`: Their changes along the flanks towards tip 1, 1/m."""
     roll_1: FloatArray
+    """Nominal roll lengths of gear 1, m."""
 
     @property
     def offset_1(self) -> FloatArray:

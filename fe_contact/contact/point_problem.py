@@ -37,24 +37,18 @@ _WIDTH, _FREE, _MODULUS, _MIDDLE, _HALF, _LENGTH = range(6)
 
 
 class LocalLaw(NamedTuple):
-    """The law of m contacts at one position.
-
-    Attributes
-    ----------
-    gap : ndarray, shape (m, 4 + 3 B)
-        About the touching points, a `gap_table`.
-    strip : ndarray, shape (m, 6)
-        Length of contact line of each in m; half strip in m up to which its gap is a parabola alone; contact
-        modulus E* in Pa, less where a tip corner yields; middle and half length of the strip found last, from
-        which the next one is searched, m: a half length of zero is none yet; reference length in m, greater
-        near free ends.
-    length : float
-        Reference length away from free ends, m.
-    """
+    """The law of m contacts at one position."""
 
     gap: FloatArray
+    """About the touching points, a `gap_table`. Shape (m, 4 + 3 B)."""
     strip: FloatArray
+    """Length of contact line of each in m; half strip in m up to which its gap is a parabola alone; contact
+    modulus E* in Pa, less where a tip corner yields; middle and half length of the strip found last, from
+    which the next one is searched, m: a half length of zero is none yet; reference length in m, greater near
+    free ends. Shape (m, 6).
+    """
     length: float
+    """Reference length away from free ends, m."""
 
 
 @inner(error_model="numpy")
@@ -240,40 +234,32 @@ def _strip_at(law: LocalLaw, i: int, value: float, half: float) -> float:
 
 
 class PointProblems(NamedTuple):
-    """All P positions as the compiled solver reads them; position p has the bodies of row p modulo Q.
-
-    Attributes
-    ----------
-    bodies, tilt : ndarray, shape (Q, n, n)
-        The tilt is empty where flanks do not roll.
-    radius : ndarray, shape (P, n) where flanks roll, else (Q, n)
-    edge : ndarray, shape (Q, n, 8) where flanks roll, else (1, n, 8)
-        Of `EdgeStrips`.
-    present : ndarray of bool, shape (Q, n)
-    curves, heights : ndarray, shapes (points of a pair, K), (K, K)
-    gap, motion_arm, torque_arm, width : ndarray, shape (P, m)
-    about : ndarray, shape (P, m, 4 + 3 B)
-        A `gap_table`.
-    length : float
-        Reference length away from free ends, m.
-    lengths, modulus : ndarray, shape (Q, m)
-    """
+    """All P positions as the compiled solver reads them; position p has the bodies of row p modulo Q."""
 
     bodies: FloatArray
     tilt: FloatArray
+    """`bodies`, `tilt`: The tilt is empty where flanks do not roll. Shape (Q, n, n) each."""
     radius: FloatArray
+    """Ndarray, shape (P, n) where flanks roll, else (Q, n)."""
     edge: FloatArray
+    """Of `EdgeStrips`. Ndarray, shape (Q, n, 8) where flanks roll, else (1, n, 8)."""
     present: BoolArray
+    """Shape (Q, n)."""
     curves: FloatArray
     heights: FloatArray
+    """`curves`, `heights`: Ndarray, shapes (points of a pair, K), (K, K)."""
     gap: FloatArray
     motion_arm: FloatArray
     torque_arm: FloatArray
     width: FloatArray
+    """`gap`, `motion_arm`, `torque_arm`, `width`: Shape (P, m) each."""
     about: FloatArray
+    """A `gap_table`. Shape (P, m, 4 + 3 B)."""
     length: float
+    """Reference length away from free ends, m."""
     lengths: FloatArray
     modulus: FloatArray
+    """`lengths`, `modulus`: Shape (Q, m) each."""
 
 
 def point_problems(problem: ContactProblem) -> PointProblems:
@@ -304,59 +290,47 @@ def point_problems(problem: ContactProblem) -> PointProblems:
 
 
 class PointProblem(NamedTuple):
-    """One position: m contacts that can carry force, on n = J K curves of J pairs.
-
-    Attributes
-    ----------
-    bodies : ndarray, shape (n, n)
-        Height of curve i per unit force on j, without what is in the local law, m/N.
-    tilt : ndarray, shape (n, n), or (0, 0) where no radius is above zero
-        Tilt of the flanks at curve i per unit force on j, 1/N; see `ContactProblem`.
-    radius : ndarray, shape (n,)
-        How far tilted flanks move their strip, m.
-    edge : ndarray, shape (n, 8)
-        Of `EdgeStrips`.
-    curve : ndarray, shape (m, w)
-        Parts of the force of each contact on w curves beside each other, and of their heights there.
-    first : ndarray of int, shape (m,)
-        The first of those curves.
-    gap : ndarray, shape (m,)
-        Normal rigid gap in m.
-    motion_arm, torque_arm : ndarray, shape (m,)
-        Normal approach per unit deflection, and share of the load per unit force; > 0.
-    law : LocalLaw
-    """
+    """One position: m contacts that can carry force, on n = J K curves of J pairs."""
 
     bodies: FloatArray
+    """Height of curve i per unit force on j, without what is in the local law, m/N. Shape (n, n)."""
     tilt: FloatArray
+    """Tilt of the flanks at curve i per unit force on j, 1/N; see `ContactProblem`. Ndarray, shape (n, n), or
+    (0, 0) where no radius is above zero.
+    """
     radius: FloatArray
+    """How far tilted flanks move their strip, m. Shape (n,)."""
     edge: FloatArray
+    """Of `EdgeStrips`. Shape (n, 8)."""
     curve: FloatArray
+    """Parts of the force of each contact on w curves beside each other, and of their heights there. Shape (m,
+    w).
+    """
     first: IntArray
+    """The first of those curves. Shape (m,)."""
     gap: FloatArray
+    """Normal rigid gap in m. Shape (m,)."""
     motion_arm: FloatArray
     torque_arm: FloatArray
+    """`motion_arm`, `torque_arm`: Normal approach per unit deflection, and share of the load per unit force;
+    > 0. Shape (m,) each.
+    """
     law: LocalLaw
 
 
 class RowBodies(NamedTuple):
-    """What all problems of one row of bodies have in common.
-
-    Attributes
-    ----------
-    there : ndarray of bool, shape (n,)
-        Slices that any contact can press on.
-    moved, tilt : ndarray
-        See `bodies` and `tilt` of `PointProblem`.
-    curve, first : ndarray, shapes (points, w), (points,)
-        See `PointProblem`, of the points of one pair.
-    """
+    """What all problems of one row of bodies have in common."""
 
     there: BoolArray
+    """Slices that any contact can press on. Shape (n,)."""
     moved: FloatArray
     tilt: FloatArray
+    """`moved`, `tilt`: See `bodies` and `tilt` of `PointProblem`."""
     curve: FloatArray
     first: IntArray
+    """`curve`, `first`: See `PointProblem`, of the points of one pair. Ndarray, shapes (points, w),
+    (points,).
+    """
 
 
 @inner(error_model="numpy")
@@ -420,28 +394,19 @@ def _beside(curves: FloatArray) -> tuple[FloatArray, IntArray]:
 
 
 class State(NamedTuple):
-    """The state of an iteration.
-
-    Attributes
-    ----------
-    held : ndarray, shape (n,)
-        Forces on the curves h, N.
-    moved : ndarray, shape (n,)
-        What they move, u(h), m.
-    yielding : ndarray, shape (n, n)
-        Its derivative, m/N.
-    force, slope : ndarray, shape (m,)
-        Of the contacts under these motions: N, N/m.
-    pressed : ndarray, shape (n,)
-        Those forces on the curves N'F, N.
-    """
+    """The state of an iteration."""
 
     held: FloatArray
+    """Forces on the curves h, N. Shape (n,)."""
     moved: FloatArray
+    """What they move, u(h), m. Shape (n,)."""
     yielding: FloatArray
+    """Its derivative, m/N. Shape (n, n)."""
     force: FloatArray
     slope: FloatArray
+    """`force`, `slope`: Of the contacts under these motions: N, N/m. Shape (m,) each."""
     pressed: FloatArray
+    """Those forces on the curves N'F, N. Shape (n,)."""
 
 
 @inner(error_model="numpy")

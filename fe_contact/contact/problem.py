@@ -30,21 +30,14 @@ POINTS = 6
 
 @dataclass(frozen=True)
 class Slices:
-    """Slices of equal width over the common face width.
-
-    Attributes
-    ----------
-    center : ndarray, shape (K,)
-        Distance of the middle of each slice from the pinion's mid-face, m.
-    width : float
-        Along the face, m.
-    points : int
-        Of the contact line in each slice.
-    """
+    """Slices of equal width over the common face width."""
 
     center: FloatArray
+    """Distance of the middle of each slice from the pinion's mid-face, m. Shape (K,)."""
     width: float
+    """Along the face, m."""
     points: int = 1
+    """Of the contact line in each slice."""
 
     @classmethod
     def of_pair(cls, pair: ParallelAxes, count: int, points: int | None = None) -> Slices:
@@ -103,59 +96,47 @@ def condition_numbers(compliance: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class LoadedSlices:
-    """Slices of the tooth pairs on which forces press: P positions, n slices each, one a pair in the plane.
-
-    Attributes
-    ----------
-    pair : ndarray of int, shape (n,)
-        Pair index; +1 is ahead. Slices of one pair stand together.
-    face_position : ndarray, shape (n,)
-        Distance of the slice's middle from the pinion's mid-face, m.
-    present : ndarray of bool, shape (P, n)
-        Whether any contact can press on it; else its other entries are harmless numbers.
-    touch : Touch
-        Touching points of plain involutes at the middles, arrays (P, n); at the ends of the path of contact
-        where the middle is beyond them.
-    patch_1, patch_2 : Patches
-        Load patches on the driving and the driven gear, one under each point of the contact line.
-    slice_width : float
-        Along the face, m.
-    base_helix_angle : float
-        beta_b of gear 1 in rad, > 0 right hand.
-    corner_1, corner_2 : float
-        What the tip corner of either gear yields over a half plane; see `fe_contact.hertz.wedge_softness`.
-    tip_inclinations : (float, float)
-        Tangent of the pressure angle at the tip of either gear.
-    law_length : float
-        Reference length in m that parts the contact from the bodies: what is nearer to the strip is in the
-        local law, what is further in the finite elements.
-    edge_load : float
-        See `PatchRule`.
-    lateral_shares : (float, float)
-        `fe_contact.hertz.lateral_share` of both gears.
-    turned_normals : ndarray, shape (P, m)
-        By how much normals turn within the strip under each patch, rad.
-    end_1, end_2 : FreeEnds
-        Of the bodies of either gear, in the face positions of the slices.
-    """
+    """Slices of tooth pairs that carry force: P positions, n slices each, one a pair in the plane."""
 
     pair: IntArray
+    """Pair index; +1 is ahead. Slices of one pair stand together. Shape (n,)."""
     face_position: FloatArray
+    """Distance of the slice's middle from the pinion's mid-face, m. Shape (n,)."""
     present: BoolArray
+    """Whether any contact can press on it; else its other entries are harmless numbers. Shape (P, n)."""
     touch: Touch
+    """Touching points of plain involutes at the middles, arrays (P, n); at the ends of the path of contact
+    where the middle is beyond them.
+    """
     patch_1: Patches
     patch_2: Patches
+    """`patch_1`, `patch_2`: Load patches on the driving and the driven gear, one under each point of the
+    contact line.
+    """
     slice_width: float
+    """Along the face, m."""
     base_helix_angle: float
+    """beta_b of gear 1 in rad, > 0 right hand."""
     corner_1: float
     corner_2: float
+    """`corner_1`, `corner_2`: What the tip corner of either gear yields over a half plane; see
+    `fe_contact.hertz.wedge_softness`.
+    """
     tip_inclinations: tuple[float, float]
+    """Tangent of the pressure angle at the tip of either gear."""
     law_length: float
+    """Reference length in m that parts the contact from the bodies: what is nearer to the strip is in the
+    local law, what is further in the finite elements.
+    """
     edge_load: float
+    """See `PatchRule`."""
     lateral_shares: tuple[float, float]
+    """`fe_contact.hertz.lateral_share` of both gears."""
     turned_normals: FloatArray
+    """By how much normals turn within the strip under each patch, rad. Shape (P, m)."""
     end_1: FreeEnds = ENDLESS
     end_2: FreeEnds = ENDLESS
+    """`end_1`, `end_2`: Of the bodies of either gear, in the face positions of the slices."""
 
     @property
     def edge_side(self) -> FloatArray:
@@ -201,36 +182,27 @@ class Candidates:
 
     A candidate that does not exist at a position has an infinite gap; its other entries are then harmless
     numbers.
-
-    Attributes
-    ----------
-    position : ndarray, shape (P,)
-        Base pitches, by the driving gear's angle.
-    pair : ndarray of int, shape (m,)
-        Pair index; +1 is ahead. Candidates of one pair stand together.
-    face_position : ndarray, shape (m,)
-        Distance from the pinion's mid-face, m.
-    touch : Touch
-        Touching points of the rigid flanks, arrays (P, m).
-    width : ndarray, shape (P, m)
-        Length of contact line of each, m; less than usual where the line ends.
-    point_width : float
-        Part of the face that each stands for, m.
-    slices : LoadedSlices
-        On which they press, at Q positions: position p at row p modulo Q.
-    curves, heights : ndarray, shapes (points of a pair, K), (K, slices of a pair)
-        Of the motion over the face; see `Slices.curves`.
     """
 
     position: FloatArray
+    """Base pitches, by the driving gear's angle. Shape (P,)."""
     pair: IntArray
+    """Pair index; +1 is ahead. Candidates of one pair stand together. Shape (m,)."""
     face_position: FloatArray
+    """Distance from the pinion's mid-face, m. Shape (m,)."""
     touch: Touch
+    """Touching points of the rigid flanks, arrays (P, m)."""
     width: FloatArray
+    """Length of contact line of each, m; less than usual where the line ends. Shape (P, m)."""
     point_width: float
+    """Part of the face that each stands for, m."""
     slices: LoadedSlices
+    """On which they press, at Q positions: position p at row p modulo Q."""
     curves: FloatArray
     heights: FloatArray
+    """`curves`, `heights`: Of the motion over the face; see `Slices.curves`. Ndarray, shapes (points of a
+    pair, K), (K, slices of a pair).
+    """
 
     @property
     def blend(self) -> FloatArray:
@@ -351,30 +323,25 @@ class ContactProblem:
 
     The candidates may repeat the positions of the compliance in further base pitches: it does not know one
     tooth from the next.
-
-    Attributes
-    ----------
-    compliance : ndarray, shape (Q, n, n)
-        Of position p at row p modulo Q, P a multiple of Q.
-        Normal approach of slice i per unit normal force on j, both gears, m/N.
-    modulus : float
-        Contact modulus E*, Pa.
-    half_plane_1, half_plane_2 : float
-        2 (1 - nu^2)/(pi E) of the gears, 1/Pa.
-    tilt : ndarray, shape (Q, n, n), or (0, 0, 0) where patches stay
-        How fast the compliance grows as the patches of slice i move towards tip 1, 1/N: how much force on j
-        tilts the flanks at i. By it patches follow the slope of the flanks, and in the plane their tilt.
-    share_1 : ndarray, shape (Q, n), or float
-        Part of gear 1 in the compliance of each slice.
     """
 
     candidates: Candidates
     compliance: FloatArray
+    """Of position p at row p modulo Q, P a multiple of Q. Normal approach of slice i per unit normal force on
+    j, both gears, m/N. Shape (Q, n, n).
+    """
     modulus: float
+    """Contact modulus E*, Pa."""
     half_plane_1: float
     half_plane_2: float
+    """`half_plane_1`, `half_plane_2`: 2 (1 - nu^2)/(pi E) of the gears, 1/Pa."""
     tilt: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
+    """How fast the compliance grows as the patches of slice i move towards tip 1, 1/N: how much force on j
+    tilts the flanks at i. By it patches follow the slope of the flanks, and in the plane their tilt. Ndarray,
+    shape (Q, n, n), or (0, 0, 0) where patches stay.
+    """
     share_1: FloatArray | float = 0.5
+    """Part of gear 1 in the compliance of each slice. Ndarray, shape (Q, n), or float."""
 
     @property
     def half_planes(self) -> tuple[FloatArray, FloatArray]:

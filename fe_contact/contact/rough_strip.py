@@ -53,21 +53,15 @@ GapOf = Callable[[FloatArray, IntArray], FloatArray]
 
 
 class RoughStrip(NamedTuple):
-    """The even gap of n contacts, without ends, and what comes with it.
-
-    Attributes
-    ----------
-    gap : Gap
-    center : ndarray, shape (n,)
-        Where the load lies from the touching point, m.
-    missed : ndarray, shape (n,)
-        Largest error of its approach over the geometric mean of relative radius and 2 p/(pi E*), under the
-        loads that are solved: waves miss more under a larger load, but no more than they are high.
-    """
+    """The even gap of n contacts, without ends, and what comes with it."""
 
     gap: Gap
     center: FloatArray
+    """Where the load lies from the touching point, m. Shape (n,)."""
     missed: FloatArray
+    """Largest error of its approach over the geometric mean of relative radius and 2 p/(pi E*), under the
+    loads that are solved: waves miss more under a larger load, but no more than they are high. Shape (n,).
+    """
 
 
 def rough_strip(gap_of: GapOf, place: FloatArray, curvature: FloatArray, spread: FloatArray) -> RoughStrip:

@@ -37,19 +37,13 @@ def single_pair_deflection(pair: ParallelAxes, problem: ContactProblem, load: Fl
 
 @dataclass(frozen=True)
 class _SinglePairs:
-    """Even forces on each pair alone, at the Q positions of a compliance: J pairs of m/J candidates.
-
-    Attributes
-    ----------
-    share : ndarray, shape (Q, J, m/J)
-        Part of the force on each candidate; sums to 1 where there are any.
-    length : ndarray, shape (Q, J)
-        Of the contact lines, m; 0 where the pair is not on the line of action.
-    """
+    """Even forces on each pair alone, at the Q positions of a compliance: J pairs of m/J candidates."""
 
     problem: ContactProblem
     share: FloatArray
+    """Part of the force on each candidate; sums to 1 where there are any. Shape (Q, J, m/J)."""
     length: FloatArray
+    """Of the contact lines, m; 0 where the pair is not on the line of action. Shape (Q, J)."""
 
     @classmethod
     def of(cls, problem: ContactProblem, usable: BoolArray) -> _SinglePairs:

@@ -47,25 +47,21 @@ _BLUNTEST = 0.05
 
 
 class Gap(NamedTuple):
-    """Gaps of n contacts about their touching points; x > 0 points one way along the flank.
-
-    Attributes
-    ----------
-    slope, curvature : ndarray, shape (n,)
-        s and q; 1 and 1/m. The slope is zero except where flanks touch at an edge or a break.
-    low, high : ndarray, shape (n,)
-        Where the bodies end, m; infinite = nowhere near.
-    place, jump, bend : ndarray, shape (n, B)
-        x_k in m, a_k and b_k in 1/m; a break at infinity is none.
-    """
+    """Gaps of n contacts about their touching points; x > 0 points one way along the flank."""
 
     slope: FloatArray
     curvature: FloatArray
+    """`slope`, `curvature`: s and q; 1 and 1/m. The slope is zero except where flanks touch at an edge or a
+    break. Shape (n,) each.
+    """
     low: FloatArray
     high: FloatArray
+    """`low`, `high`: Where the bodies end, m; infinite = nowhere near. Shape (n,) each."""
     place: FloatArray
     jump: FloatArray
     bend: FloatArray
+    """`place`, `jump`, `bend`: x_k in m, a_k and b_k in 1/m; a break at infinity is none. Shape (n, B) each.
+    """
 
 
 def with_breaks(gap: Gap, count: int) -> Gap:
@@ -250,20 +246,16 @@ def strip_middle(gap: FloatArray, i: int, half: float) -> float:
 
 
 class StripMiddles(NamedTuple):
-    """Middles of strips of given lengths, and the gap about them; arrays over contacts.
-
-    Attributes
-    ----------
-    middle, half : ndarray
-        From the touching point, and half the length, m.
-    slope, curvature : ndarray
-        Means of g' and g'' over the strip; 1 and 1/m. The slope is zero but where an edge holds the strip.
-    """
+    """Middles of strips of given lengths, and the gap about them; arrays over contacts."""
 
     middle: FloatArray
     half: FloatArray
+    """`middle`, `half`: From the touching point, and half the length, m."""
     slope: FloatArray
     curvature: FloatArray
+    """`slope`, `curvature`: Means of g' and g'' over the strip; 1 and 1/m. The slope is zero but where an
+    edge holds the strip.
+    """
 
 
 @njit(cache=True, error_model="numpy")

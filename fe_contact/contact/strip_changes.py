@@ -25,27 +25,19 @@ _AT_TOUCH = 1e-3
 
 @dataclass(frozen=True)
 class Strips:
-    """Strips of k contacts, about their touching points.
-
-    Attributes
-    ----------
-    s_1, s_2 : ndarray, shape (k,)
-        Flank coordinates of the touching points, m.
-    roll_1 : ndarray, shape (k,)
-        Roll length of gear 1 on the line of action, m.
-    face : ndarray, shape (k,)
-        Distance from the pinion's mid-face, m.
-    middle, half : ndarray, shape (k,)
-        Of the strip from the touching point on, m.
-    """
+    """Strips of k contacts, about their touching points."""
 
     pair: ParallelAxes
     s_1: FloatArray
     s_2: FloatArray
+    """`s_1`, `s_2`: Flank coordinates of the touching points, m. Shape (k,) each."""
     roll_1: FloatArray
+    """Roll length of gear 1 on the line of action, m. Shape (k,)."""
     face: FloatArray
+    """Distance from the pinion's mid-face, m. Shape (k,)."""
     middle: FloatArray
     half: FloatArray
+    """`middle`, `half`: Of the strip from the touching point on, m. Shape (k,) each."""
 
     def removed(self, gap: GapTerm) -> FloatArray:
         """Return the mean of a gap over the strips (k,), m."""
@@ -96,30 +88,21 @@ class Strips:
 
 @dataclass(frozen=True)
 class ClosingLag:
-    """How small gaps change the lag that closes the rigid flanks, beside their depth under the strips.
-
-    Attributes
-    ----------
-    strips : Strips
-        Of k contacts.
-    excess : ndarray, shape (k,)
-        Normal approach taken away per depth removed at the touching point, less that depth.
-    lag : ndarray, shape (k,)
-        The same per slope of gear 2's flank (`flank_slope`): how far that flank lags, m.
-    way : ndarray, shape (k,)
-        Way of the touching point per slope of the gap, m; zero where an edge or a break holds it.
-    at_break : ndarray of bool, shape (k,)
-        Whether a break holds the touching point, so that it moves with the break.
-    turns : tuple of ndarray, shape (k,)
-        Change of the slope of either flank along that way, 1/m.
-    """
+    """How small gaps change the lag that closes the rigid flanks, beside their depth under the strips."""
 
     strips: Strips
+    """Of k contacts."""
     excess: FloatArray
+    """Normal approach taken away per depth removed at the touching point, less that depth. Shape (k,)."""
     lag: FloatArray
+    """The same per slope of gear 2's flank (`flank_slope`): how far that flank lags, m. Shape (k,)."""
     way: FloatArray
+    """Way of the touching point per slope of the gap, m; zero where an edge or a break holds it. Shape (k,).
+    """
     at_break: BoolArray
+    """Whether a break holds the touching point, so that it moves with the break. Shape (k,)."""
     turns: tuple[FloatArray, FloatArray]
+    """Change of the slope of either flank along that way, 1/m. Tuple of ndarray, shape (k,)."""
 
     @classmethod
     def of(cls, strips: Strips, candidates: Candidates, at: tuple[IntArray, ...]) -> ClosingLag:
@@ -202,26 +185,19 @@ class ClosingLag:
 
 @dataclass(frozen=True)
 class FollowingPatches:
-    """How patches follow the slope of small gaps, and what motions of the bodies that adds.
-
-    Attributes
-    ----------
-    problem : ContactProblem
-    held : ndarray, shape (P, L, n)
-        Forces on the slices, N.
-    at_rest : Strips
-        Strips under a small load of all candidates, by which patches follow; k = P m.
-    index : ndarray of int, shape (k,)
-        Of each among all positions and candidates, flattened.
-    way : ndarray, shape (k,)
-        Motion of its patch towards tip 1 per slope of the gap, m; patches of a slice move by their mean.
-    """
+    """How patches follow the slope of small gaps, and what motions of the bodies that adds."""
 
     problem: ContactProblem
     held: FloatArray
+    """Forces on the slices, N. Shape (P, L, n)."""
     at_rest: Strips
+    """Strips under a small load of all candidates, by which patches follow; k = P m."""
     index: IntArray
+    """Of each among all positions and candidates, flattened. Shape (k,)."""
     way: FloatArray
+    """Motion of its patch towards tip 1 per slope of the gap, m; patches of a slice move by their mean. Shape
+    (k,).
+    """
 
     @classmethod
     def of(cls, pair: ParallelAxes, problem: ContactProblem, force: FloatArray) -> FollowingPatches:
@@ -267,24 +243,16 @@ class FollowingPatches:
 
 @dataclass(frozen=True)
 class TurnedForces:
-    """How slopes of small gaps change the motions of the bodies by the forces that they turn.
-
-    Attributes
-    ----------
-    problem : ContactProblem
-    held, moved : ndarray, shape (P, L, n)
-        Forces on the slices in N, and what they move in m.
-    closing : ClosingLag
-        Of the k candidates whose slices carry.
-    index : ndarray of int, shape (k,)
-        Of each among all positions and candidates, flattened.
-    """
+    """How slopes of small gaps change the motions of the bodies by the forces that they turn."""
 
     problem: ContactProblem
     held: FloatArray
     moved: FloatArray
+    """`held`, `moved`: Forces on the slices in N, and what they move in m. Shape (P, L, n) each."""
     closing: ClosingLag
+    """Of the k candidates whose slices carry."""
     index: IntArray
+    """Of each among all positions and candidates, flattened. Shape (k,)."""
 
     @classmethod
     def of(cls, pair: ParallelAxes, problem: ContactProblem, force: FloatArray) -> TurnedForces:

@@ -18,37 +18,29 @@ from host.loops import njit
 
 @dataclass(frozen=True)
 class ContactSolution:
-    """Forces, deflection and residuals for P positions, L loads and n contact candidates.
-
-    Attributes
-    ----------
-    load : ndarray, shape (L,)
-        Right-hand side of the equilibrium, T_1/(r_b1 cos beta_b) in N.
-    deflection : ndarray, shape (P, L)
-        Transmission error in m, positive = the driven gear lags; NaN where `status` is not usable.
-    tangent : ndarray, shape (P, L)
-        d(deflection)/d(load) in m/N.
-    force : ndarray, shape (P, L, n)
-        Normal force of each candidate in N.
-    status, iterations : ndarray of int, shape (P, L)
-        `Status` and Newton iterations.
-    residuals : ndarray, shape (P, L, 4)
-        Equilibrium, penetration, tension and complementarity, each relative (to load or deflection).
-    beyond : ndarray of bool, shape (P, L)
-        A contact strip outgrew the load patch of the finite-element model.
-    no_load : ndarray, shape (P,)
-        Deflection at which the first candidate touches, m.
-    """
+    """Forces, deflection and residuals for P positions, L loads and n contact candidates."""
 
     load: FloatArray
+    """Right-hand side of the equilibrium, T_1/(r_b1 cos beta_b) in N. Shape (L,)."""
     deflection: FloatArray
+    """Transmission error in m, positive = the driven gear lags; NaN where `status` is not usable. Shape (P,
+    L).
+    """
     tangent: FloatArray
+    """d(deflection)/d(load) in m/N. Shape (P, L)."""
     force: FloatArray
+    """Normal force of each candidate in N. Shape (P, L, n)."""
     status: IntArray
     iterations: IntArray
+    """`status`, `iterations`: `Status` and Newton iterations. Shape (P, L) each."""
     residuals: FloatArray
+    """Equilibrium, penetration, tension and complementarity, each relative (to load or deflection). Shape (P,
+    L, 4).
+    """
     beyond: BoolArray
+    """A contact strip outgrew the load patch of the finite-element model. Shape (P, L)."""
     no_load: FloatArray
+    """Deflection at which the first candidate touches, m. Shape (P,)."""
 
     @property
     def converged(self) -> bool:
@@ -65,17 +57,14 @@ class Start:
 
     The solution does not depend on them but for rounding: there is one alone. They spare the search for the
     candidates that carry, half of the iterations and more.
-
-    Attributes
-    ----------
-    candidates : Candidates
-        Those that the forces act on.
-    force : ndarray, shape (P, L, n)
-        In N at the positions and loads to be solved; zeros where there is no solution to start from.
     """
 
     candidates: Candidates
+    """Those that the forces act on."""
     force: FloatArray
+    """In N at the positions and loads to be solved; zeros where there is no solution to start from. Shape (P,
+    L, n).
+    """
 
     def on(self, candidates: Candidates) -> FloatArray:
         """Carry the forces over to other candidates (m,) of the same pairs: (P, L, m) in N.

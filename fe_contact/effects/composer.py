@@ -38,26 +38,18 @@ CHOICES = ("on", "off", "auto")
 
 @dataclass(frozen=True)
 class LedgerEntry:
-    """One effect in one run.
-
-    Attributes
-    ----------
-    on : bool
-        Whether it was simulated.
-    choice : str
-        "on", "off" or "auto", as requested.
-    verdict : Verdict
-        What the scene calls for; its reason stands even when the caller decided otherwise.
-    override : str
-        Why it is not as the verdict has it, though the choice is "auto"; empty if it is.
-    """
+    """One effect in one run."""
 
     name: str
     on: bool
+    """Whether it was simulated."""
     choice: str
+    """"on", "off" or "auto", as requested."""
     verdict: Verdict
+    """What the scene calls for; its reason stands even when the caller decided otherwise."""
     cost: str
     override: str = ""
+    """Why it is not as the verdict has it, though the choice is "auto"; empty if it is."""
 
     @property
     def decision(self) -> str:

@@ -21,29 +21,21 @@ from fe_contact.types import FloatArray
 
 @dataclass(frozen=True)
 class ContactScene:
-    """The scene that the effects assess by.
-
-    Attributes
-    ----------
-    torque : ndarray
-        Torques on the driving gear, N m.
-    registry : sequence of Effect
-        The effects that there are.
-    misalignment : ndarray
-        Misalignments of the table axis, m: growth of the gap over the common face width in the plane of
-        action, zero at its middle.
-    center_distance_change : ndarray
-        Changes of the table axis, m.
-    pitches : int, optional
-        Base pitches that the table shall cover where teeth differ; None: until all repeats.
-    """
+    """The scene that the effects assess by."""
 
     pair: ParallelAxes
     torque: FloatArray
+    """Torques on the driving gear, N m."""
     registry: Sequence[Effect]
+    """The effects that there are."""
     misalignment: FloatArray = field(default_factory=lambda: np.zeros(1))
+    """Misalignments of the table axis, m: growth of the gap over the common face width in the plane of
+    action, zero at its middle.
+    """
     center_distance_change: FloatArray = field(default_factory=lambda: np.zeros(1))
+    """Changes of the table axis, m."""
     pitches: int | None = None
+    """Base pitches that the table shall cover where teeth differ; None: until all repeats."""
 
     @property
     def largest_misalignment(self) -> float:
@@ -72,19 +64,13 @@ class ContactScene:
 
 @dataclass(frozen=True)
 class Verdict:
-    """Whether a scene calls for an effect.
-
-    Attributes
-    ----------
-    reason : str
-        Why, in words an engineer would use.
-    neutral : bool
-        Whether the scene holds nothing that the effect could add: on or off is the same.
-    """
+    """Whether a scene calls for an effect."""
 
     on: bool
     reason: str
+    """Why, in words an engineer would use."""
     neutral: bool = False
+    """Whether the scene holds nothing that the effect could add: on or off is the same."""
 
 
 class Effect:

@@ -23,16 +23,11 @@ _BETWEEN = 0.25
 
 @dataclass(frozen=True)
 class ModificationGap:
-    """Material removed from both flanks.
-
-    Attributes
-    ----------
-    pinion, wheel : FlankModification
-        The part of each gear's modification that this gap stands for.
-    """
+    """Material removed from both flanks."""
 
     pinion: FlankModification
     wheel: FlankModification
+    """`pinion`, `wheel`: The part of each gear's modification that this gap stands for."""
 
     @property
     def along_profile(self) -> bool:

@@ -23,21 +23,14 @@ from fe_contact.types import FloatArray
 
 @dataclass(frozen=True)
 class _SeatCompliance:
-    """Displacement of a gear by a unit load on its seat, in any plane through the axis.
-
-    Attributes
-    ----------
-    translation : float
-        Displacement per force, m/N.
-    coupling : float
-        Tilt (slope, > 0 where displacement grows with z) per force, and displacement per moment, 1/N.
-    tilt : float
-        Tilt per moment, 1/(N m).
-    """
+    """Displacement of a gear by a unit load on its seat, in any plane through the axis."""
 
     translation: float
+    """Displacement per force, m/N."""
     coupling: float
+    """Tilt (slope, > 0 where displacement grows with z) per force, and displacement per moment, 1/N."""
     tilt: float
+    """Tilt per moment, 1/(N m)."""
 
     @classmethod
     def of_shaft(cls, shaft: Shaft) -> _SeatCompliance:

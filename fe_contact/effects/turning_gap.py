@@ -23,36 +23,25 @@ _IN_WAVE = 8
 
 @dataclass(frozen=True)
 class TurningGap:
-    """Gap along the line of action by what turns with one gear, m.
-
-    Attributes
-    ----------
-    gear : int
-        0 is the pinion, 1 the wheel.
-    teeth : int
-        Of that gear.
-    base_radius : float
-        Of that gear, m.
-    period : int
-        Base pitches after which it is taken to repeat.
-    turn : float
-        Angle by which the gear turns while it rolls over a whole flank, rad.
-    largest : float
-        Bound of the gap, m.
-    surfaces : ToothSurfaces or None
-        The flanks of single teeth as arrays, if there are any.
-    """
+    """Gap along the line of action by what turns with one gear, m."""
 
     gear: int
+    """0 is the pinion, 1 the wheel."""
     teeth: int
+    """Of that gear."""
     base_radius: float
+    """Of that gear, m."""
     period: int
+    """Base pitches after which it is taken to repeat."""
     turn: float
+    """Angle by which the gear turns while it rolls over a whole flank, rad."""
     run_out: RunOut
     waves: tuple[Wave, ...]
     flanks: tuple[ToothFlank, ...]
     largest: float
+    """Bound of the gap, m."""
     surfaces: ToothSurfaces | None = field(default=None, compare=False, repr=False)
+    """The flanks of single teeth as arrays, if there are any."""
 
     @classmethod
     def of(cls, index: int, gear: Toothing, period: int) -> TurningGap:
@@ -164,29 +153,22 @@ class TurningGap:
 
 
 class Turning(NamedTuple):
-    """How a gear turns, in revolutions, from where a tooth touches at the pitch point in mid-face.
-
-    Attributes
-    ----------
-    period, teeth : int
-        Base pitches after which its teeth repeat, and their number.
-    pitch_point : float
-        Roll length there, m.
-    per_roll, per_face : float
-        Revolutions over roll length, and over distance from the pinion's mid-face; 1/m.
-    axial_offset : float
-        Of its mid-face from the pinion's, m.
-    face_width : float
-        m.
-    """
+    """How a gear turns, in revolutions, from where a tooth touches at the pitch point in mid-face."""
 
     period: int
     teeth: int
+    """`period`, `teeth`: Base pitches after which its teeth repeat, and their number."""
     pitch_point: float
+    """Roll length there, m."""
     per_roll: float
+    """`per_roll`, `per_face`: Revolutions over roll length, and over distance from the pinion's mid-face;
+    1/m.
+    """
     axial_offset: float
+    """Of its mid-face from the pinion's, m."""
     per_face: float
     face_width: float
+    """m."""
 
 
 @njit(cache=True, error_model="numpy")

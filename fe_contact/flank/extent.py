@@ -14,30 +14,22 @@ _KINK = 1000.0
 
 @dataclass(frozen=True)
 class Extent:
-    """Bounds of a gap; floats, or arrays that broadcast.
-
-    Attributes
-    ----------
-    low, high : float or ndarray
-        Bounds from below and above, m.
-    slope : float or ndarray
-        Bound of its change per way along the line of action, m/m.
-    spread : float or ndarray
-        Bound of its highest less its lowest value along a profile, m.
-    kink, bend : float or ndarray
-        Bounds of jumps of the slope, and of the curvature in 1/m, over the roll length.
-    turn : float or ndarray
-        Slope times the square of the base radius of what turns with a gear, m^2: its angle grows with the
-        root of the length along the flank, so that it bends by that, too.
-    """
+    """Bounds of a gap; floats, or arrays that broadcast."""
 
     low: FloatArray | float = 0.0
     high: FloatArray | float = 0.0
+    """`low`, `high`: Bounds from below and above, m."""
     slope: FloatArray | float = 0.0
+    """Bound of its change per way along the line of action, m/m."""
     spread: FloatArray | float = 0.0
+    """Bound of its highest less its lowest value along a profile, m."""
     kink: FloatArray | float = 0.0
     bend: FloatArray | float = 0.0
+    """`kink`, `bend`: Bounds of jumps of the slope, and of the curvature in 1/m, over the roll length."""
     turn: FloatArray | float = 0.0
+    """Slope times the square of the base radius of what turns with a gear, m^2: its angle grows with the root
+    of the length along the flank, so that it bends by that, too.
+    """
 
     def __add__(self, other: Extent) -> Extent:
         """Return the extent of the sum of two gaps."""

@@ -32,15 +32,6 @@ class FlankGrid:
     above 1 cm; nodes between which the surface would leave them by more than 0.1 um beyond what curvature
     makes it.
 
-    Attributes
-    ----------
-    roll_length : tuple of float
-        Roll lengths of the nodes in m, increasing, at least two.
-    face_position : tuple of float
-        Distances of the nodes from mid-face in m, increasing, at least two.
-    removed : tuple of tuple of float
-        Material removed in m, normal to the involute in the transverse plane: one row per roll length.
-
     Notes
     -----
     Between the nodes: the cubic Hermite interpolant of either direction. It is C1, as the search for the
@@ -53,8 +44,11 @@ class FlankGrid:
     """
 
     roll_length: tuple[float, ...]
+    """Roll lengths of the nodes in m, increasing, at least two."""
     face_position: tuple[float, ...]
+    """Distances of the nodes from mid-face in m, increasing, at least two."""
     removed: tuple[tuple[float, ...], ...]
+    """Material removed in m, normal to the involute in the transverse plane: one row per roll length."""
 
     def __post_init__(self) -> None:
         for name in ("roll_length", "face_position"):

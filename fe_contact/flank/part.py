@@ -68,25 +68,18 @@ _ACTING = (Kind.AMOUNT, Kind.SLOPE, Kind.EDGE)
 
 @dataclass(frozen=True)
 class ReliefStart:
-    """Begin of a relief or of the tip's edge along the profile; a distance d inside to jump d + bend d^2/2.
-
-    Attributes
-    ----------
-    roll_length : float or ndarray
-        m; an array of as many as there are face positions, if it differs over the face.
-    towards_tip : bool
-        Whether it runs to the tip; else to the root.
-    jump, bend : float or ndarray
-        Slope and curvature with which it begins, over the arc length of the flank; 1 and 1/m.
-    ends_flank : bool
-        Whether it is the edge of a rounded or chamfered tip, where the usable flank ends.
-    """
+    """Start of a relief or of the tip's edge along the profile; jump d + bend d^2/2 a distance d inside."""
 
     roll_length: FloatArray | float
+    """m; an array of as many as there are face positions, if it differs over the face."""
     towards_tip: bool
+    """Whether it runs to the tip; else to the root."""
     jump: FloatArray | float
     bend: FloatArray | float
+    """`jump`, `bend`: Slope and curvature with which it begins, over the arc length of the flank; 1 and 1/m.
+    """
     ends_flank: bool = False
+    """Whether it is the edge of a rounded or chamfered tip, where the usable flank ends."""
 
 
 SHORTEST = 1e-9
@@ -141,21 +134,14 @@ def involute(gear: Tooth) -> tuple[float, float]:
 
 
 class Polynomial(FlankPart):
-    """A depth times u^m v^n - c, u and v running from -1 to 1 over the roll length and over the face.
-
-    Attributes
-    ----------
-    powers : tuple of int
-        m and n.
-    weight : float
-        Of the depth: one half where it is the difference between two ends.
-    mean : float
-        c: 1/3 where the mean line of a parabola is zero.
-    """
+    """A depth times u^m v^n - c, u and v running from -1 to 1 over the roll length and over the face."""
 
     powers: ClassVar[tuple[int, int]]
+    """m and n."""
     weight: ClassVar[float] = 1.0
+    """Of the depth: one half where it is the difference between two ends."""
     mean: ClassVar[float] = 0.0
+    """c: 1/3 where the mean line of a parabola is zero."""
 
     def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
         """See `FlankPart.removed`."""

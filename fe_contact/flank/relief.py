@@ -25,21 +25,14 @@ _GROWTH = math.e - 1.0
 
 @dataclass(frozen=True)
 class _ReliefShape:
-    """The depth of a relief over the fraction of its length, both 0 where it starts and 1 at its end.
-
-    Attributes
-    ----------
-    depth : callable
-        Depth (...) at fractions (...) from 0 to 1, of a relief whose amount is `ratio` times its length.
-    slope : float
-        Derivative of the depth where it starts; 0 = tangential.
-    bend : callable
-        Second derivative there, of the ratio.
-    """
+    """The depth of a relief over the fraction of its length, both 0 where it starts and 1 at its end."""
 
     depth: Callable[[FloatArray, float], FloatArray]
+    """Depth (...) at fractions (...) from 0 to 1, of a relief whose amount is `ratio` times its length."""
     slope: float
+    """Derivative of the depth where it starts; 0 = tangential."""
     bend: Callable[[float], float]
+    """Second derivative there, of the ratio."""
 
     def __call__(self, fraction: FloatArray, ratio: float) -> FloatArray:
         """Relative depth at fractions of the length: 0 before it starts, 1 from its end on."""

@@ -30,21 +30,15 @@ from fe_contact.flank.part import SHORTEST, Tooth
 
 @dataclass(frozen=True)
 class _Way:
-    """A way to name a point of a flank, and how it and roll lengths in m follow from each other.
-
-    Attributes
-    ----------
-    most : float
-        Largest value, in SI.
-    of_roll_length, roll_length : callable
-        Of the base radius in m and the other.
-    """
+    """A way to name a point of a flank, and how it and roll lengths in m follow from each other."""
 
     words: str
     unit: str
     most: float
+    """Largest value, in SI."""
     of_roll_length: Callable[[float, float], float]
     roll_length: Callable[[float, float], float]
+    """`of_roll_length`, `roll_length`: Of the base radius in m and the other."""
 
 
 WAYS = {

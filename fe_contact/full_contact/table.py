@@ -17,21 +17,14 @@ NOTHING = float("nan")
 
 @dataclass(frozen=True)
 class LineLoad:
-    """Load of a pair of teeth along the face, linear between stations.
-
-    Attributes
-    ----------
-    ahead : int
-        Pair index.
-    face_position : (k,) array
-        From mid-face, m.
-    load : (k,) array
-        Normal force per length of contact line, N/m.
-    """
+    """Load of a pair of teeth along the face, linear between stations."""
 
     ahead: int
+    """Pair index."""
     face_position: FloatArray
+    """From mid-face, m. Shape (k,)."""
     load: FloatArray
+    """Normal force per length of contact line, N/m. Shape (k,)."""
 
     def largest_mean(self, length: float) -> float:
         """Return the largest mean over a length of the face within the stations, N/m."""
@@ -63,46 +56,34 @@ def line_loads(ahead: IntArray, face: FloatArray, force: FloatArray) -> tuple[Li
 
 @dataclass(frozen=True)
 class FullContactPoint:
-    """One solved position under one torque, or why there is none.
-
-    Attributes
-    ----------
-    position : float
-        By the driving gear, base pitches; NaN without a solution.
-    transmission_error : float
-        r_b1 theta_1 - r_b2 theta_2 in m, >= 0 under load; NaN without a solution.
-    reason : str
-        Empty if it converged.
-    residual : float
-        Largest relative breach of the laws that are checked: the moment of the bore's reactions is the torque
-        and, for the condensed peer, u f = p C p, pressures and gaps are >= 0, and one of them is 0.
-    torque_ratio : float
-        Torque of gear 2 over that of gear 1.
-    torque : float
-        On gear 1, N m; NaN if not known.
-    load_share : mapping of int to float
-        Share of each pair in the torque on gear 1, by pair index; empty if not known.
-    max_pressure : float
-        Over the length of an element, Pa; under a tip edge it grows without bound as the mesh is refined. NaN
-        if not known.
-    error_estimate : float
-        Half-width of the discretization's error band, m; NaN if not requested.
-    line_loads : tuple of LineLoad
-        Of the pairs over the face; none of a plane solution.
-    """
+    """One solved position under one torque, or why there is none."""
 
     position: float
+    """By the driving gear, base pitches; NaN without a solution."""
     transmission_error: float
+    """r_b1 theta_1 - r_b2 theta_2 in m, >= 0 under load; NaN without a solution."""
     status: Status
     reason: str
+    """Empty if it converged."""
     iterations: int
     residual: float
+    """Largest relative breach of the laws that are checked: the moment of the bore's reactions is the torque
+    and, for the condensed peer, u f = p C p, pressures and gaps are >= 0, and one of them is 0.
+    """
     torque_ratio: float
+    """Torque of gear 2 over that of gear 1."""
     torque: float = NOTHING
+    """On gear 1, N m; NaN if not known."""
     load_share: Mapping[int, float] = field(default_factory=dict)
+    """Share of each pair in the torque on gear 1, by pair index; empty if not known."""
     max_pressure: float = NOTHING
+    """Over the length of an element, Pa; under a tip edge it grows without bound as the mesh is refined. NaN
+    if not known.
+    """
     error_estimate: float = NOTHING
+    """Half-width of the discretization's error band, m; NaN if not requested."""
     line_loads: tuple[LineLoad, ...] = ()
+    """Of the pairs over the face; none of a plane solution."""
 
     @classmethod
     def failed(
@@ -131,27 +112,18 @@ class FullContactPoint:
 
 @dataclass(frozen=True)
 class FullContactTable:
-    """Solved positions x torques; each point has its own status.
-
-    Attributes
-    ----------
-    position : (P,) array
-        By the driving gear, base pitches.
-    torque : (T,) array
-        On gear 1, N m.
-    points : tuple of tuples of FullContactPoint
-        P x T.
-    unknowns : (P,) int array
-        Displacements of all nodes of both gears; 0 where there is no mesh.
-    cpu_seconds : (P,) array
-        Of each position with its mesh.
-    """
+    """Solved positions x torques; each point has its own status."""
 
     position: FloatArray
+    """By the driving gear, base pitches. Shape (P,)."""
     torque: FloatArray
+    """On gear 1, N m. Shape (T,)."""
     points: tuple[tuple[FullContactPoint, ...], ...]
+    """P x T."""
     unknowns: IntArray
+    """Displacements of all nodes of both gears; 0 where there is no mesh. Shape (P,)."""
     cpu_seconds: FloatArray
+    """Of each position with its mesh. Shape (P,)."""
 
     @property
     def transmission_error(self) -> FloatArray:

@@ -37,33 +37,30 @@ _ROUNDING = 4.0 * float(np.finfo(float).eps)
 
 @dataclass(frozen=True)
 class CornerContact:
-    """State of a tooth pair whose tip edge faces the mating flank; NaN where not `valid`.
-
-    Attributes
-    ----------
-    gap : array
-        Rigid gap in m on the line of action, >= 0: r_b2 times the lag of the driven gear that closes it, the
-        driving gear's angle held.
-    flank_roll_length : array
-        Roll length in m at which the edge touches the mating flank: of gear 1 at approach, of gear 2 at exit.
-        The edge itself stays at its own gear's tip roll length.
-    slope_angle : array
-        Angle phi in rad, >= 0, between the two flanks at the edge: they open by phi per length away from it.
-    lever_arm_ratio_pinion, lever_arm_ratio_wheel : array
-        Moment arm of the corner force about the gear's axis over its base radius. The force acts along the
-        mating flank's normal, so the ratio is 1 for the gear whose flank is touched. For the wheel it is also
-        the rate at which a lag on the line of action closes the distance along that normal.
-    valid : array of bool
-        False where the edge meets no involute (below the form point, or past the tooth's tip), and where the
-        force would pass its gear's axis on the other side and no longer drive.
-    """
+    """State of a tooth pair whose tip edge faces the mating flank; NaN where not `valid`."""
 
     gap: FloatArray
+    """Rigid gap in m on the line of action, >= 0: r_b2 times the lag of the driven gear that closes it, the
+    driving gear's angle held.
+    """
     flank_roll_length: FloatArray
+    """Roll length in m at which the edge touches the mating flank: of gear 1 at approach, of gear 2 at exit.
+    The edge itself stays at its own gear's tip roll length.
+    """
     slope_angle: FloatArray
+    """Angle phi in rad, >= 0, between the two flanks at the edge: they open by phi per length away from it.
+    """
     lever_arm_ratio_pinion: FloatArray
     lever_arm_ratio_wheel: FloatArray
+    """`lever_arm_ratio_pinion`, `lever_arm_ratio_wheel`: Moment arm of the corner force about the gear's axis
+    over its base radius. The force acts along the mating flank's normal, so the ratio is 1 for the gear whose
+    flank is touched. For the wheel it is also the rate at which a lag on the line of action closes the
+    distance along that normal.
+    """
     valid: BoolArray
+    """False where the edge meets no involute (below the form point, or past the tooth's tip), and where the
+    force would pass its gear's axis on the other side and no longer drive.
+    """
 
 
 class _Touch(NamedTuple):

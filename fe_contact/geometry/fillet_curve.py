@@ -89,27 +89,18 @@ def _arc_table(curve: FilletCurve, start: float) -> tuple[FloatArray, FloatArray
 
 @dataclass(frozen=True)
 class Trochoid(FilletCurve):
-    """Fillet of the right flank, in the tooth frame.
-
-    Attributes
-    ----------
-    reference_radius : float
-        Radius in m of the circle that rolls on the tool's pitch line.
-    corner_distance : float
-        Transverse distance in m along the pitch line from the tooth's center line to the rounding's center.
-    corner_height : float
-        Height in m of the rounding's center above the pitch line (usually negative).
-    corner_radius : float
-        Radius rho_fP of the rounding in the normal plane, m.
-    helix_angle : float
-        beta in rad.
-    """
+    """Fillet of the right flank, in the tooth frame."""
 
     reference_radius: float
+    """Radius in m of the circle that rolls on the tool's pitch line."""
     corner_distance: float
+    """Transverse distance in m along the pitch line from the tooth's center line to the rounding's center."""
     corner_height: float
+    """Height in m of the rounding's center above the pitch line (usually negative)."""
     corner_radius: float
+    """Radius rho_fP of the rounding in the normal plane, m."""
     helix_angle: float
+    """beta in rad."""
 
     @property
     def root_angle(self) -> float:
@@ -176,21 +167,14 @@ def turned_clockwise(x: FloatArray, y: FloatArray, angle: FloatArray) -> FloatAr
 
 @dataclass(frozen=True)
 class FormPoint:
-    """End of the usable involute at the root.
-
-    Attributes
-    ----------
-    roll_length : float
-        Roll length of the form point in m, >= 0.
-    tool_angle : float
-        Tool angle of the fillet's first point (see `Trochoid`), rad.
-    undercut : bool
-        Whether the fillet cuts the involute; if not, it leaves it with a common tangent.
-    """
+    """End of the usable involute at the root."""
 
     roll_length: float
+    """Roll length of the form point in m, >= 0."""
     tool_angle: float
+    """Tool angle of the fillet's first point (see `Trochoid`), rad."""
     undercut: bool
+    """Whether the fillet cuts the involute; if not, it leaves it with a common tangent."""
 
 
 def find_form_point(

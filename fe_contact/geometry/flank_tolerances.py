@@ -131,17 +131,11 @@ def check_scope(name: str, gear: Toothing) -> None:
 
 @dataclass(frozen=True)
 class MisalignmentRange:
-    """The misalignment of pairs whose gears and housing keep a class, as growth over the common face width.
-
-    Attributes
-    ----------
-    tolerance_class : int
-    by_source : mapping of str to float
-        m, to either side, in the plane of action.
-    """
+    """Misalignment of pairs whose gears and housing meet a class, as growth over the common face width."""
 
     tolerance_class: int
     by_source: Mapping[str, float]
+    """m, to either side, in the plane of action."""
 
     @property
     def likely(self) -> float:

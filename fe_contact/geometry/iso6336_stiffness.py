@@ -25,24 +25,16 @@ _SERIES = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.
 
 @dataclass(frozen=True)
 class Iso6336Stiffness:
-    """Stiffness per unit face width, N/m per m.
-
-    Attributes
-    ----------
-    theoretical_single_stiffness : float
-        c'_th, of one pair of teeth with solid disc bodies.
-    single_stiffness : float
-        c': the largest stiffness of one pair of teeth, normal to the flank in the transverse plane.
-    mesh_stiffness : float
-        c_gamma_alpha: the mean over the cycle.
-    face_load_mesh_stiffness : float
-        c_gamma_beta, for face load factors.
-    """
+    """Stiffness per unit face width, N/m per m."""
 
     theoretical_single_stiffness: float
+    """c'_th, of one pair of teeth with solid disc bodies."""
     single_stiffness: float
+    """c': the largest stiffness of one pair of teeth, normal to the flank in the transverse plane."""
     mesh_stiffness: float
+    """c_gamma_alpha: the mean over the cycle."""
     face_load_mesh_stiffness: float
+    """c_gamma_beta, for face load factors."""
 
 
 def iso6336_stiffness(pair: GearPair, line_load: float | None = None) -> Iso6336Stiffness:

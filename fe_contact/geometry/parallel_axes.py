@@ -30,24 +30,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PathOfContact:
-    """Points of the path of contact, as roll lengths on the driving gear in m.
-
-    Attributes
-    ----------
-    start : float
-        A: the driven gear's tip meets the driving gear's flank.
-    pitch_point : float
-        C.
-    end : float
-        E: the driving gear's tip leaves.
-    base_pitch : float
-        Transverse base pitch, m.
-    """
+    """Points of the path of contact, as roll lengths on the driving gear in m."""
 
     start: float
+    """A: the driven gear's tip meets the driving gear's flank."""
     pitch_point: float
+    """C."""
     end: float
+    """E: the driving gear's tip leaves."""
     base_pitch: float
+    """Transverse base pitch, m."""
 
     @property
     def inner_single_contact(self) -> float:

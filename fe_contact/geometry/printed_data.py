@@ -21,18 +21,12 @@ from fe_contact.geometry.toothing import Toothing
 
 @dataclass(frozen=True)
 class _PrintedDigits:
-    """The printed form of a quantity.
-
-    Attributes
-    ----------
-    last : tuple of float
-        What one of the last digit may be: a sheet has the first one that fits all its values.
-    round_grid : float
-        Multiples of it are exact.
-    """
+    """The printed form of a quantity."""
 
     last: tuple[float, ...]
+    """What one of the last digit may be: a sheet has the first one that fits all its values."""
     round_grid: float = 0.0
+    """Multiples of it are exact."""
 
     def rounding(self, *values: float) -> float:
         """Return the most that printing moved each of the values, which stand on one sheet."""

@@ -76,31 +76,21 @@ def radial_clearance(
 
 @dataclass(frozen=True)
 class _PinionCutter:
-    """An external involute toothing with rounded tips, rolling inside the gear without backlash.
-
-    Attributes
-    ----------
-    teeth : int
-        z_0.
-    base_radius, base_half_angle : float
-        Base radius in m, and half the cutter tooth's angle there, rad.
-    tip_radius : float
-        d_a0 / 2 in m.
-    corner_radius : float
-        rho_a0: radius of the tip rounding in the transverse plane, m.
-    center_distance : float
-        Distance a_0 in m of the cutter's axis from the gear's at full depth.
-    ratio : float
-        z_0 / z: turn of the gear per turn of the cutter.
-    """
+    """An external involute toothing with rounded tips, rolling inside the gear without backlash."""
 
     teeth: int
+    """z_0."""
     base_radius: float
     base_half_angle: float
+    """`base_radius`, `base_half_angle`: Base radius in m, and half the cutter tooth's angle there, rad."""
     tip_radius: float
+    """d_a0 / 2 in m."""
     corner_radius: float
+    """rho_a0: radius of the tip rounding in the transverse plane, m."""
     center_distance: float
+    """Distance a_0 in m of the cutter's axis from the gear's at full depth."""
     ratio: float
+    """z_0 / z: turn of the gear per turn of the cutter."""
 
     @property
     def working_pressure_angle(self) -> float:
@@ -149,18 +139,12 @@ class _PinionCutter:
 
 @dataclass(frozen=True)
 class _CutterTrochoid(FilletCurve):
-    """Fillet of the right flank of a ring gear, in the tooth frame.
-
-    Attributes
-    ----------
-    cutter : _PinionCutter
-        The tool and its place in the gear.
-    half_pitch_angle : float
-        pi / z of the gear, rad: from its tooth's center line to that of the tooth space.
-    """
+    """Fillet of the right flank of a ring gear, in the tooth frame."""
 
     cutter: _PinionCutter
+    """The tool and its place in the gear."""
     half_pitch_angle: float
+    """pi / z of the gear, rad: from its tooth's center line to that of the tooth space."""
 
     @property
     def root_angle(self) -> float:

@@ -18,26 +18,20 @@ if TYPE_CHECKING:
 
 
 class PackedGrids(NamedTuple):
-    """Surfaces of several teeth one after the other.
-
-    Attributes
-    ----------
-    of_tooth : ndarray of int, shape (T,)
-        Which surface a tooth has; -1: none.
-    sizes, starts : ndarray of int, shape (G, 3)
-        Nodes along the profile, along the face and in all of each surface, and where they begin.
-    roll, face : ndarray
-        Axes of all surfaces, m.
-    nodes : ndarray, shape (4, N)
-        Value, slopes and mixed slope at the nodes of all surfaces; see `FlankGrid`.
-    """
+    """Surfaces of several teeth one after the other."""
 
     of_tooth: IntArray
+    """Which surface a tooth has; -1: none. Shape (T,)."""
     sizes: IntArray
     starts: IntArray
+    """`sizes`, `starts`: Nodes along the profile, along the face and in all of each surface, and where they
+    begin. Shape (G, 3) each.
+    """
     roll: FloatArray
     face: FloatArray
+    """`roll`, `face`: Axes of all surfaces, m."""
     nodes: FloatArray
+    """Value, slopes and mixed slope at the nodes of all surfaces; see `FlankGrid`. Shape (4, N)."""
 
     @classmethod
     def of(cls, grids: Sequence[FlankGrid | None]) -> PackedGrids:
@@ -59,29 +53,21 @@ class PackedGrids(NamedTuple):
 
 @dataclass(frozen=True)
 class ToothSurfaces:
-    """Flanks of single teeth of a gear.
-
-    Attributes
-    ----------
-    ends : (float, float)
-        Roll lengths at the form circle and at the tip, m.
-    face_width : float
-        m.
-    amounts : ndarray, shape (T, 6)
-        Slopes and forms of each tooth in the order of meshing, m, and the numbers of their waves.
-    grids : PackedGrids
-    extents : Extent
-        Of the gaps that they make, arrays (T,): material missing, less that in excess.
-    nodes : tuple of ndarray
-        Roll lengths in m of each tooth between two of which its profile turns back once at most.
-    """
+    """Flanks of single teeth of a gear."""
 
     ends: tuple[float, float]
+    """Roll lengths at the form circle and at the tip, m."""
     face_width: float
+    """m."""
     amounts: FloatArray
+    """Slopes and forms of each tooth in the order of meshing, m, and the numbers of their waves. Shape (T,
+    6).
+    """
     grids: PackedGrids
     extents: Extent
+    """Of the gaps that they make, arrays (T,): material missing, less that in excess."""
     nodes: tuple[FloatArray, ...]
+    """Roll lengths in m of each tooth between two of which its profile turns back once at most."""
 
     @classmethod
     def of(cls, gear: Tooth, amounts: FloatArray, grids: Sequence[FlankGrid | None]) -> ToothSurfaces:

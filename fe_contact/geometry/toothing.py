@@ -50,14 +50,6 @@ class PitchDeviation:
 
     Raises `InputError`: a deviation that is no number, or larger than 1 mm.
 
-    Attributes
-    ----------
-    cumulative : tuple of float
-        Individual cumulative pitch deviation (index deviation) F_pi of every tooth in m, an arc on the
-        reference circle in the transverse section; empty: none. > 0: the flank lies nearer to its mate than
-        it should (material in excess), so that it touches early. In the order in which the teeth come into
-        mesh, whichever gear; the first tooth is that of pair 0 at position 0.
-
     Notes
     -----
     A chart counts its arcs one way round. Counted in the direction in which the loaded flanks face, F_pi has
@@ -69,6 +61,11 @@ class PitchDeviation:
     """
 
     cumulative: tuple[float, ...] = ()
+    """Individual cumulative pitch deviation (index deviation) F_pi of every tooth in m, an arc on the
+    reference circle in the transverse section; empty: none. > 0: the flank lies nearer to its mate than it
+    should (material in excess), so that it touches early. In the order in which the teeth come into mesh,
+    whichever gear; the first tooth is that of pair 0 at position 0.
+    """
 
     def __post_init__(self) -> None:
         checked = (

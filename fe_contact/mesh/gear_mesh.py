@@ -24,32 +24,23 @@ HALF = 0.5  # largest element of the plain ring, in parts of its thickness
 
 @dataclass(frozen=True)
 class _Hub:
-    """The ring without the sectors of the real teeth.
-
-    Attributes
-    ----------
-    points : (n, 2) array
-        Nodes, m.
-    triangles : (m, 6) array
-        Six-node triangles.
-    bottoms : (t, b) int array
-        Nodes shared with the bottom of each sector, left to right.
-    right_side, left_side : int arrays
-        Nodes shared with the first sector's right and the last one's left side, from the bottom up; empty
-        if all teeth are real.
-    bore : int array
-        Nodes on the bore, or on the outside of a ring gear's rim.
-    thickness : (m,) array
-        Axial thickness of each element over the face width: below 1 in a web.
-    """
+    """The ring without the sectors of the real teeth."""
 
     points: FloatArray
+    """Nodes, m. Shape (n, 2)."""
     triangles: IntArray
+    """Six-node triangles. Shape (m, 6)."""
     bottoms: IntArray
+    """Nodes shared with the bottom of each sector, left to right. Shape (t, b)."""
     right_side: IntArray
     left_side: IntArray
+    """`right_side`, `left_side`: Nodes shared with the first sector's right and the last one's left side,
+    from the bottom up; empty if all teeth are real.
+    """
     bore: IntArray
+    """Nodes on the bore, or on the outside of a ring gear's rim."""
     thickness: FloatArray
+    """Axial thickness of each element over the face width: below 1 in a web. Shape (m,)."""
 
 
 @dataclass(frozen=True)
@@ -164,24 +155,16 @@ def _joined(outside: QuadraticMesh, inside: QuadraticMesh) -> QuadraticMesh:
 
 @dataclass(frozen=True)
 class _FlankNodes:
-    """Nodes along the right flank of one tooth.
-
-    Attributes
-    ----------
-    tooth : int
-        Number of the tooth; 0 is on +y, counted counter-clockwise.
-    nodes : (k,) int array
-        Node numbers of the gear mesh from root to tip: corner, mid-side, corner ...
-    s : (k,) array
-        Flank coordinate, m. Mid-side nodes lie at the exact middle of their corners.
-    normals : (k, 2) array
-        Outward unit normals of the exact profile.
-    """
+    """Nodes along the right flank of one tooth."""
 
     tooth: int
+    """Number of the tooth; 0 is on +y, counted counter-clockwise."""
     nodes: IntArray
+    """Node numbers of the gear mesh from root to tip: corner, mid-side, corner ... Shape (k,)."""
     s: FloatArray
+    """Flank coordinate, m. Mid-side nodes lie at the exact middle of their corners. Shape (k,)."""
     normals: FloatArray
+    """Outward unit normals of the exact profile. Shape (k, 2)."""
 
 
 @dataclass(frozen=True)
@@ -189,42 +172,33 @@ class GearMesh:
     """Six-node triangles on the complete ring of one gear, transverse section.
 
     Tooth sectors are copies of one mesh, turned by whole pitches, so all teeth are discretized alike.
-
-    Attributes
-    ----------
-    points : (n, 2) array
-        Nodes, m.
-    triangles : (m, 6) array
-        Nodes of the elements: corners counter-clockwise, then the middles of sides 0-1, 1-2, 2-0 (gmsh, VTK).
-        With e elements per sector those of tooth `teeth[i]` are i e ... (i + 1) e - 1; the hub's follow.
-    bore_nodes : (b,) int array
-        Nodes on the circle that the gear is held by: its bore, or the outside of a ring gear's rim.
-    flanks : tuple of FlankNodes
-        Right flanks of the real teeth, in the order of `teeth`.
-    teeth : (t,) int array
-        Consecutive numbers of the real teeth, 0 among them.
-    pitch_angle : float
-        rad.
-    sector : ToothSector
-        The mesh of one tooth in its own frame.
-    sector_nodes : (t, n_sector) int array
-        Node of the gear mesh that each sector node is.
-    hub_nodes : (n_hub,) int array
-        Node of the gear mesh that each hub node is.
-    hub : _Hub or None
-        None if the sectors reach down to that circle.
     """
 
     points: FloatArray
+    """Nodes, m. Shape (n, 2)."""
     triangles: IntArray
+    """Nodes of the elements: corners counter-clockwise, then the middles of sides 0-1, 1-2, 2-0 (gmsh, VTK).
+    With e elements per sector those of tooth `teeth[i]` are i e ... (i + 1) e - 1; the hub's follow. Shape
+    (m, 6).
+    """
     bore_nodes: IntArray
+    """Nodes on the circle that the gear is held by: its bore, or the outside of a ring gear's rim. Shape
+    (b,).
+    """
     flanks: tuple[_FlankNodes, ...]
+    """Right flanks of the real teeth, in the order of `teeth`."""
     teeth: IntArray
+    """Consecutive numbers of the real teeth, 0 among them. Shape (t,)."""
     pitch_angle: float
+    """rad."""
     sector: ToothSector
+    """The mesh of one tooth in its own frame."""
     sector_nodes: IntArray
+    """Node of the gear mesh that each sector node is. Shape (t, n_sector)."""
     hub_nodes: IntArray
+    """Node of the gear mesh that each hub node is. Shape (n_hub,)."""
     hub: _Hub | None
+    """None if the sectors reach down to that circle."""
 
 
 def real_teeth(teeth: int, modeled: int | None) -> IntArray:

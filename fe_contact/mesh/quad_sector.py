@@ -31,28 +31,21 @@ TAPER = 0.5  # largest height of body elements, in parts of the radius of their 
 
 @dataclass(frozen=True)
 class _SectorOutline:
-    """Divisions of one tooth sector; every other entry is a mid-side node, at the middle parameter.
-
-    Attributes
-    ----------
-    s : (k,) array
-        Flank coordinates of the loaded flank from the split point to the tip, m.
-    land : (2 land_elements + 1,) array
-        Flank coordinates from the middle of the tooth space to the split point, m.
-    across : (p,) array
-        Fractions across the tooth from the right flank (0) to the left one (1).
-    depth : (q,) array
-        Fractions from the root (0) to the bore (1).
-    web_rows : (int, int)
-        See `SectorGrid`.
-    """
+    """Divisions of one tooth sector; every other entry is a mid-side node, at the middle parameter."""
 
     profile: ToothProfile
     s: FloatArray
+    """Flank coordinates of the loaded flank from the split point to the tip, m. Shape (k,)."""
     land: FloatArray
+    """Flank coordinates from the middle of the tooth space to the split point, m. Shape (2 land_elements +
+    1,).
+    """
     across: FloatArray
+    """Fractions across the tooth from the right flank (0) to the left one (1). Shape (p,)."""
     depth: FloatArray
+    """Fractions from the root (0) to the bore (1). Shape (q,)."""
     web_rows: tuple[int, int] = (0, 0)
+    """See `SectorGrid`."""
 
     @property
     def grid(self) -> SectorGrid:
@@ -262,24 +255,16 @@ QUAD_LIMITS = QualityLimits(angle=np.radians(15.0), scaled_jacobian=0.1)
 
 @dataclass(frozen=True)
 class QuadSector:
-    """One pitch of the gear in the tooth frame, from mid space to mid space, bore to tip.
-
-    Attributes
-    ----------
-    points : (n, 2) array
-        Nodes, m.
-    grid : SectorGrid
-        Elements and where nodes lie. The left cut turned clockwise by one pitch is the right one.
-    s : (k,) array
-        Flank coordinates of `grid.flank`, m: corner, mid-side (at the exact middle), corner ...
-    normals : (k, 2) array
-        Outward unit normals of the exact profile there.
-    """
+    """One pitch of the gear in the tooth frame, from mid space to mid space, bore to tip."""
 
     points: FloatArray
+    """Nodes, m. Shape (n, 2)."""
     grid: SectorGrid
+    """Elements and where nodes lie. The left cut turned clockwise by one pitch is the right one."""
     s: FloatArray
+    """Flank coordinates of `grid.flank`, m: corner, mid-side (at the exact middle), corner ... Shape (k,)."""
     normals: FloatArray
+    """Outward unit normals of the exact profile there. Shape (k, 2)."""
 
 
 def quad_sector(gear: Toothing, recipe: SectorRecipe, limits: QualityLimits = QUAD_LIMITS) -> QuadSector:

@@ -18,34 +18,24 @@ _NODES = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [
 
 @dataclass(frozen=True)
 class QualityLimits:
-    """Least acceptable quality.
-
-    Attributes
-    ----------
-    angle : float
-        Least angle between straight sides, rad.
-    scaled_jacobian : float
-        Least ratio of the smallest to the largest Jacobian determinant within an element.
-    """
+    """Least acceptable quality."""
 
     angle: float = math.radians(12.0)
+    """Least angle between straight sides, rad."""
     scaled_jacobian: float = 0.2
+    """Least ratio of the smallest to the largest Jacobian determinant within an element."""
 
 
 @dataclass(frozen=True)
 class _MeshQuality:
-    """Quality of every element of a mesh.
-
-    Attributes
-    ----------
-    angle : (m,) array
-        Least angle between straight sides, rad.
-    scaled_jacobian : (m,) array
-        Lower bound of the smallest over the largest Jacobian determinant; below zero it may be folded.
-    """
+    """Quality of every element of a mesh."""
 
     angle: FloatArray
+    """Least angle between straight sides, rad. Shape (m,)."""
     scaled_jacobian: FloatArray
+    """Lower bound of the smallest over the largest Jacobian determinant; below zero it may be folded. Shape
+    (m,).
+    """
 
 
 def mesh_quality(points: FloatArray, triangles: IntArray) -> _MeshQuality:

@@ -22,33 +22,24 @@ class MeshRecipe:
     """Element sizes of the transverse section of one gear.
 
     Sizes are lengths of element edges; away from the boundary they grow with distance at the rate `growth`.
-
-    Attributes
-    ----------
-    flank_size : float
-        Along the involute and `flank_margin` below it, m.
-    tip_size : float
-        At the tip edge, m. The size grows from there to `flank_size`.
-    fillet_size : float
-        Largest along the fillet and the root land, m.
-    body_size : float
-        Largest inside the ring next to the teeth, m. Deeper in the body it keeps growing.
-    flank_margin : float
-        Length below the form point that is divided as finely as the flank and carries load freedoms, m.
-    growth : float
-        Growth of the element size per unit distance, 0.05 to 1.
-    real_teeth : int or None
-        Number of generated teeth, odd, centered on tooth 0; elsewhere the ring is plain, of root radius.
-        None, or no fewer than the gear has: all teeth.
     """
 
     flank_size: float
+    """Along the involute and `flank_margin` below it, m."""
     tip_size: float
+    """At the tip edge, m. The size grows from there to `flank_size`."""
     fillet_size: float
+    """Largest along the fillet and the root land, m."""
     body_size: float
+    """Largest inside the ring next to the teeth, m. Deeper in the body it keeps growing."""
     flank_margin: float
+    """Length below the form point that is divided as finely as the flank and carries load freedoms, m."""
     growth: float = 0.3
+    """Growth of the element size per unit distance, 0.05 to 1."""
     real_teeth: int | None = None
+    """Number of generated teeth, odd, centered on tooth 0; elsewhere the ring is plain, of root radius. None,
+    or no fewer than the gear has: all teeth.
+    """
 
     def __post_init__(self) -> None:
         for field in ("flank_size", "tip_size", "fillet_size", "body_size", "flank_margin"):
@@ -103,49 +94,41 @@ class SectorRecipe:
     """Element sizes of one tooth sector: transverse section and layers.
 
     A size that grows is ``min(limit, size + growth x)`` at the distance x from where it starts.
-
-    Attributes
-    ----------
-    flank_size : float
-        Along the involute and the part of the fillet that belongs to the tooth, m.
-    tip_size, tip_growth : float
-        At the tip edge, m, growing to `flank_size`.
-    depth_size, depth_limit, depth_growth : float
-        Below the loaded flank, across the tooth, m; the unloaded flank begins with 1.5 times the size.
-    body_size, body_limit, body_growth : float
-        Below the root, towards the bore, m. Deeper than four times the limit elements keep a quarter of
-        their depth.
-    land_elements : int
-        Elements along half the tooth space, below the point where tooth and body part.
-    split : float
-        Where on the fillet tooth and body part: 0 form point, 1 root. Undercut teeth part lower down.
-    layers : int
-        Layers of elements across the face of the tooth.
-    layer_growth : float
-        Thickness of a middle layer over that of an end layer, >= 1.
-    merge_rows : tuple of int
-        Rows of body elements (-1 the highest, decreasing) below which two layers become one. The number of
-        layers must be divisible by 2 for each entry.
-    half_face : bool
-        Only the half above mid-face, a plane of symmetry: for spur gears under loads that are even across
-        the face. The layers then thicken from the end to mid-face.
     """
 
     flank_size: float
+    """Along the involute and the part of the fillet that belongs to the tooth, m."""
     tip_size: float
+    """`tip_size`, `tip_growth`: At the tip edge, m, growing to `flank_size`."""
     depth_size: float
+    """`depth_size`, `depth_limit`, `depth_growth`: Below the loaded flank, across the tooth, m; the unloaded
+    flank begins with 1.5 times the size.
+    """
     depth_limit: float
     body_size: float
+    """`body_size`, `body_limit`, `body_growth`: Below the root, towards the bore, m. Deeper than four times
+    the limit elements keep a quarter of their depth.
+    """
     body_limit: float
     layers: int
+    """Layers of elements across the face of the tooth."""
     tip_growth: float = 0.5
     depth_growth: float = 0.6
     body_growth: float = 0.5
     land_elements: int = 3
+    """Elements along half the tooth space, below the point where tooth and body part."""
     split: float = 0.5
+    """Where on the fillet tooth and body part: 0 form point, 1 root. Undercut teeth part lower down."""
     layer_growth: float = 1.5
+    """Thickness of a middle layer over that of an end layer, >= 1."""
     merge_rows: tuple[int, ...] = (-2,)
+    """Rows of body elements (-1 the highest, decreasing) below which two layers become one. The number of
+    layers must be divisible by 2 for each entry.
+    """
     half_face: bool = False
+    """Only the half above mid-face, a plane of symmetry: for spur gears under loads that are even across the
+    face. The layers then thicken from the end to mid-face.
+    """
 
     def __post_init__(self) -> None:
         for field in _SIZES:

@@ -25,28 +25,21 @@ INWARD_OFFSETS = np.array([(0, 0), (0, 2), (2, 2), (2, 0), (0, 1), (1, 2), (2, 1
 
 @dataclass(frozen=True)
 class SectorGrid:
-    """Eight-node quadrilaterals on a T-shaped grid, mid space to mid space.
-
-    Attributes
-    ----------
-    body_rows, tooth_rows : int
-        Rows of elements from the bore to the split point, and from there to the tip.
-    land : int
-        Columns of elements on each side of the tooth.
-    across : int
-        Columns of elements across the tooth.
-    inward : bool
-        Whether the tooth points to the gear's center: the rows then run from the rim's outside inwards.
-    web_rows : (int, int)
-        First row of the web, and the first one of the rim above it; equal if there is no web.
-    """
+    """Eight-node quadrilaterals on a T-shaped grid, mid space to mid space."""
 
     body_rows: int
     tooth_rows: int
+    """`body_rows`, `tooth_rows`: Rows of elements from the bore to the split point, and from there to the
+    tip.
+    """
     land: int
+    """Columns of elements on each side of the tooth."""
     across: int
+    """Columns of elements across the tooth."""
     inward: bool = False
+    """Whether the tooth points to the gear's center: the rows then run from the rim's outside inwards."""
     web_rows: tuple[int, int] = (0, 0)
+    """First row of the web, and the first one of the rim above it; equal if there is no web."""
 
     @property
     def columns(self) -> int:

@@ -32,21 +32,14 @@ DIGITS = 12  # of a layer's thickness over the face width: equal in them is equa
 
 @dataclass(frozen=True)
 class _Layers:
-    """Layers of elements, or those above mid-face; symmetric unless a web or a seat of the bore is not.
-
-    Attributes
-    ----------
-    ends : (L + 1,) array
-        Axial positions of their ends, m; 0 is mid-face, increasing.
-    kind : (L,) int array
-        Layers of the same kind are equally thick, bit for bit.
-    thickness : (kinds,) array
-        Thickness of each kind, m.
-    """
+    """Layers of elements, or those above mid-face; symmetric unless a web or a seat of the bore is not."""
 
     ends: FloatArray
+    """Axial positions of their ends, m; 0 is mid-face, increasing. Shape (L + 1,)."""
     kind: IntArray
+    """Layers of the same kind are equally thick, bit for bit. Shape (L,)."""
     thickness: FloatArray
+    """Thickness of each kind, m. Shape (kinds,)."""
 
 
 def _layers_to_mid_face(
@@ -120,27 +113,19 @@ LOWER_FACE = [0, 1, 4, 5, 8, 12, 16, 17]
 
 @dataclass(frozen=True)
 class Batch:
-    """Elements above some quadrilaterals that share their matrices layer by layer.
-
-    Attributes
-    ----------
-    quads : (m,) int array
-        Quadrilaterals of the section.
-    thickness : float
-        Of the layer, m.
-    half : int
-        0: conforming. -1, +1: the lower face is the lower or upper half of a face of the next coarser layer.
-    elements : (c, m) int array
-        Rows of `SweptSector.elements`, one line for each of the c layers.
-    seat : bool
-        An elastic seat below the bodies' elements on the bore instead of bodies.
-    """
+    """Elements above some quadrilaterals that share their matrices layer by layer."""
 
     quads: IntArray
+    """Quadrilaterals of the section. Shape (m,)."""
     thickness: float
+    """Of the layer, m."""
     half: int
+    """0: conforming. -1, +1: the lower face is the lower or upper half of a face of the next coarser layer.
+    """
     elements: IntArray
+    """Rows of `SweptSector.elements`, one line for each of the c layers. Shape (c, m)."""
     seat: bool = False
+    """An elastic seat below the bodies' elements on the bore instead of bodies."""
 
 
 Stack = tuple[tuple[Batch, ...], IntArray, FloatArray]
@@ -222,35 +207,27 @@ def _layer(nodes: IntArray, quads: IntArray, low: int, height: int, half: int) -
 
 @dataclass(frozen=True)
 class SweptSector:
-    """Hexahedra of one tooth sector.
-
-    Attributes
-    ----------
-    layers : Layers
-        The layers of the tooth, L of them.
-    nodes : (2 L + 1, n) int array
-        Node above each section node in each plane (layer ends and middles), -1 where there is none.
-    elements : (e, 20) int array
-        Nodes: bottom corners, top corners, bottom middles, top middles, middles between bottom and top;
-        each four in the order of `SectorGrid.quads`.
-    place : (e, 3) array
-        Column, row and layer of each element on the logical grid.
-    batches : tuple of Batch
-        The elements by equal matrices.
-    freedoms : (N, 3) int array
-        Number of each node's freedoms, -1 where held.
-    seat : BoreSeat
-        What the bore rests on.
-    """
+    """Hexahedra of one tooth sector."""
 
     grid: SectorGrid
     layers: _Layers
+    """The layers of the tooth, L of them."""
     nodes: IntArray
+    """Node above each section node in each plane (layer ends and middles), -1 where there is none. Shape (2 L
+    + 1, n).
+    """
     elements: IntArray
+    """Nodes: bottom corners, top corners, bottom middles, top middles, middles between bottom and top; each
+    four in the order of `SectorGrid.quads`. Shape (e, 20).
+    """
     place: FloatArray
+    """Column, row and layer of each element on the logical grid. Shape (e, 3)."""
     batches: tuple[Batch, ...]
+    """The elements by equal matrices."""
     freedoms: IntArray
+    """Number of each node's freedoms, -1 where held. Shape (N, 3)."""
     seat: BoreSeat = CLAMPED
+    """What the bore rests on."""
 
     @property
     def bodies(self) -> int:

@@ -31,17 +31,12 @@ class _ToothOutline:
     Pieces: ``bottom`` (from the center line to the side), ``side`` (to the root), ``land`` (root circle) and
     ``fillet`` where they exist, ``flank`` (from the margin below the form point), ``tip``, ``center``;
     counter-clockwise, of a ring gear, whose bottom is outside, clockwise.
-
-    Attributes
-    ----------
-    outline : Outline
-        The loop.
-    s : (k,) array
-        Flank coordinates of the nodes of the piece ``flank``, root to tip, m.
     """
 
     outline: Outline
+    """The loop."""
     s: FloatArray
+    """Flank coordinates of the nodes of the piece ``flank``, root to tip, m. Shape (k,)."""
 
 
 def tooth_outline(profile: ToothProfile, bottom_radius: float, recipe: MeshRecipe) -> _ToothOutline:
@@ -162,32 +157,24 @@ class ToothSector:
     """One pitch of the gear in the tooth frame, identical for all teeth.
 
     Node lists run along the boundary, corner, mid-side, corner ...
-
-    Attributes
-    ----------
-    points : (n, 2) array
-        Nodes, m; symmetric about x = 0.
-    triangles : (m, 6) array
-        Six-node triangles.
-    right_side, left_side : int arrays
-        Nodes shared with the neighbors, from the bottom to the root. The left side turned clockwise by one
-        pitch is the right one.
-    bottom : int array
-        Nodes of the lower arc from left to right, both corners included.
-    flank, coast_flank : (k,) int arrays
-        Nodes of the right and left flank, root to tip.
-    s : (k,) array
-        Flank coordinate of both, m.
     """
 
     points: FloatArray
+    """Nodes, m; symmetric about x = 0. Shape (n, 2)."""
     triangles: IntArray
+    """Six-node triangles. Shape (m, 6)."""
     right_side: IntArray
     left_side: IntArray
+    """`right_side`, `left_side`: Nodes shared with the neighbors, from the bottom to the root. The left side
+    turned clockwise by one pitch is the right one.
+    """
     bottom: IntArray
+    """Nodes of the lower arc from left to right, both corners included."""
     flank: IntArray
     coast_flank: IntArray
+    """`flank`, `coast_flank`: Nodes of the right and left flank, root to tip. Shape (k,) each."""
     s: FloatArray
+    """Flank coordinate of both, m. Shape (k,)."""
 
 
 def tooth_sector(half: QuadraticMesh, outline: _ToothOutline) -> ToothSector:

@@ -55,18 +55,14 @@ class _Region:
 
 @dataclass(frozen=True)
 class _Triangulation:
-    """Straight triangles.
-
-    Attributes
-    ----------
-    points : (n, 2) array
-        The points of the region's loops first, bit for bit and in their order, then the inner ones.
-    triangles : (m, 3) array
-        Corner indices, counter-clockwise.
-    """
+    """Straight triangles."""
 
     points: FloatArray
+    """The points of the region's loops first, bit for bit and in their order, then the inner ones. Shape (n,
+    2).
+    """
     triangles: IntArray
+    """Corner indices, counter-clockwise. Shape (m, 3)."""
 
 
 def _triangulate(
@@ -114,21 +110,16 @@ SIDES = ((0, 1), (1, 2), (2, 0))
 
 @dataclass(frozen=True)
 class QuadraticMesh:
-    """Isoparametric six-node triangles.
-
-    Attributes
-    ----------
-    points : (n, 2) array
-        Nodes, m; corners first.
-    triangles : (m, 6) array
-        Corners counter-clockwise, then the middles of sides 0-1, 1-2, 2-0 (order of gmsh and VTK).
-    boundary : tuple of int arrays
-        Per outline the node numbers of its `nodes`, in their order.
-    """
+    """Isoparametric six-node triangles."""
 
     points: FloatArray
+    """Nodes, m; corners first. Shape (n, 2)."""
     triangles: IntArray
+    """Corners counter-clockwise, then the middles of sides 0-1, 1-2, 2-0 (order of gmsh and VTK). Shape (m,
+    6).
+    """
     boundary: tuple[IntArray, ...]
+    """Per outline the node numbers of its `nodes`, in their order."""
 
 
 def quadratic_meshes(

@@ -41,18 +41,14 @@ Misalignments = float | Levels
 
 @dataclass(frozen=True)
 class DesignLoads:
-    """L loads, by rising torque; loads of one torque differ in their misalignment.
-
-    Attributes
-    ----------
-    torque : ndarray, shape (L,)
-        On the driving gear, N m.
-    misalignment : ndarray, shape (L,)
-        Growth of the gap over the common face width, m: shafts, bearings and housing yield with the torque.
-    """
+    """L loads, by rising torque; loads of one torque differ in their misalignment."""
 
     torque: FloatArray
+    """On the driving gear, N m. Shape (L,)."""
     misalignment: FloatArray
+    """Growth of the gap over the common face width, m: shafts, bearings and housing yield with the torque.
+    Shape (L,).
+    """
 
     @classmethod
     def of(cls, torques: Levels, misalignment: Misalignments) -> DesignLoads:
@@ -110,27 +106,18 @@ def _misalignments(given: Misalignments, loads: int) -> FloatArray:
 
 @dataclass(frozen=True)
 class DesignStudy:
-    """A pair whose designs can be assessed.
-
-    Attributes
-    ----------
-    decided : Decided
-        Model and discretization, of all designs and all torques.
-    loads : DesignLoads
-        All T of them: those of the full analysis.
-    force : ndarray, shape (T,)
-        Their normal forces, N.
-    counted : ndarray of int, shape (L,)
-        Which of them count; the others are for maps.
-    evaluator : Evaluator
-        At the loads that count.
-    """
+    """A pair whose designs can be assessed."""
 
     decided: Decided
+    """Model and discretization, of all designs and all torques."""
     loads: DesignLoads
+    """All T of them: those of the full analysis."""
     force: FloatArray
+    """Their normal forces, N. Shape (T,)."""
     counted: IntArray
+    """Which of them count; the others are for maps. Shape (L,)."""
     evaluator: Evaluator
+    """At the loads that count."""
 
     @property
     def torque(self) -> FloatArray:
@@ -140,27 +127,20 @@ class DesignStudy:
 
 @dataclass(frozen=True)
 class DesignSpace:
-    """The designs of a pair and their assessment.
-
-    Attributes
-    ----------
-    varied : mapping
-        ``gear.quantity`` to m of a design in which nothing that is varied is zero: by it the effects are
-        decided.
-    misalignment : float or sequence of float
-        About which it scatters, m: one value, or one for each torque.
-    positions : int
-        Equally spaced in a base pitch.
-    options : AnalysisOptions
-        Their `positions`, `receipt` and `on_violation` do not count.
-    """
+    """The designs of a pair and their assessment."""
 
     pair: ParallelAxes
     varied: Mapping[str, float]
+    """``gear.quantity`` to m of a design in which nothing that is varied is zero: by it the effects are
+    decided.
+    """
     scatter: Scatter
     misalignment: Misalignments
+    """About which it scatters, m: one value, or one for each torque."""
     positions: int
+    """Equally spaced in a base pitch."""
     options: AnalysisOptions
+    """Their `positions`, `receipt` and `on_violation` do not count."""
 
     def check(self, torques: Levels, further_torques: Levels = ()) -> Checked:
         """Check the request of a design in which everything acts that may act in any; computes nothing.
@@ -264,33 +244,24 @@ def _refuse_off(checked: Checked, varied: Mapping[str, float], scatter: Scatter)
 
 @dataclass(frozen=True)
 class HarrisMap:
-    """Curves of one design at T torques, and their ripple at S nodes of the scatter.
-
-    Attributes
-    ----------
-    torque : ndarray, shape (T,)
-        On the driving gear, N m, increasing.
-    position : ndarray, shape (P,)
-        Base pitches.
-    ste : ndarray, shape (P, T)
-        Without scatter, m.
-    nominal, nominal_error : ndarray, shape (T,)
-        Peak-to-peak without scatter and its error, m.
-    peak_to_peak, error : ndarray, shape (S, T)
-        At the nodes, m. The error is that of the table at the node's misalignment: deviations of the
-        modification change the ripple, not the discretization.
-    weight : ndarray, shape (S,)
-        Of the nodes.
-    """
+    """Curves of one design at T torques, and their ripple at S nodes of the scatter."""
 
     torque: FloatArray = field(metadata=in_unit("n_m", "torque"))
+    """On the driving gear, N m, increasing. Shape (T,)."""
     position: FloatArray
+    """Base pitches. Shape (P,)."""
     ste: FloatArray = field(metadata=in_unit("m", "position", "torque"))
+    """Without scatter, m. Shape (P, T)."""
     nominal: FloatArray = field(metadata=in_unit("m", "torque"))
     nominal_error: FloatArray = field(metadata=in_unit("m", "torque"))
+    """`nominal`, `nominal_error`: Peak-to-peak without scatter and its error, m. Shape (T,) each."""
     peak_to_peak: FloatArray = field(metadata=in_unit("m", "node", "torque"))
     error: FloatArray = field(metadata=in_unit("m", "node", "torque"))
+    """`peak_to_peak`, `error`: At the nodes, m. The error is that of the table at the node's misalignment:
+    deviations of the modification change the ripple, not the discretization. Shape (S, T) each.
+    """
     weight: FloatArray
+    """Of the nodes. Shape (S,)."""
 
     @property
     def expected(self) -> FloatArray:
@@ -311,31 +282,21 @@ def rising(before: HarrisMap, after: HarrisMap) -> IntArray:
 
 @dataclass(frozen=True)
 class ConfirmedDesign:
-    """A design as analyzed in full.
-
-    Attributes
-    ----------
-    values : dict of str to float
-        ``gear.quantity`` to m.
-    figures : Evaluation
-        Pressures, factors and curves at the nodes and the torques that count.
-    objective : Estimate
-        Its error adds that of the analysis and that of the scatter's rule.
-    scatter_error : float
-        The latter, m.
-    violation : float
-        Of the limits, in parts of them.
-    table : SteDatabase, optional
-        Over torques and misalignments, without scatter of the modifications; of a stored design None.
-    """
+    """A design as analyzed in full."""
 
     values: dict[str, float]
+    """``gear.quantity`` to m."""
     harris_map: HarrisMap
     figures: Evaluation
+    """Pressures, factors and curves at the nodes and the torques that count."""
     objective: Estimate
+    """Its error adds that of the analysis and that of the scatter's rule."""
     scatter_error: float = field(metadata=in_unit("m"))
+    """The latter, m."""
     violation: float
+    """Of the limits, in parts of them."""
     table: SteDatabase | None = field(default=None, metadata=NOT_STORED)
+    """Over torques and misalignments, without scatter of the modifications; of a stored design None."""
 
 
 def confirm(

@@ -58,21 +58,15 @@ class _Memory(Protocol):
 
 @dataclass(frozen=True)
 class SearchProblem(ABC):
-    """The variables, what is solved of a design, and the limits that it has to keep.
-
-    Attributes
-    ----------
-    scale : float
-        Objective of the start; merits are relative to it.
-    memory : Memory, optional
-        Of designs that were assessed before.
-    """
+    """The variables, what is solved of a design, and the limits that it has to keep."""
 
     evaluator: Evaluator
     variables: tuple[DesignVariable, ...]
     limits: Limits
     scale: float
+    """Objective of the start; merits are relative to it."""
     memory: _Memory | None = None
+    """Of designs that were assessed before."""
 
     def __getstate__(self) -> dict[str, object]:
         """Leave the memory behind: it is a file of this machine, for one writer."""

@@ -41,47 +41,31 @@ class Spread:
 
 @dataclass(frozen=True)
 class RippleBand:
-    """What nine of ten pairs have at one torque.
-
-    Attributes
-    ----------
-    position : ndarray, shape (P,)
-        Base pitches.
-    low, high : ndarray, shape (P,)
-        Transmission error less its mean, m.
-    peak_to_peak, first_harmonic : Spread
-    """
+    """What nine of ten pairs have at one torque."""
 
     position: FloatArray
+    """Base pitches. Shape (P,)."""
     low: FloatArray
     high: FloatArray
+    """`low`, `high`: Transmission error less its mean, m. Shape (P,) each."""
     peak_to_peak: Spread
     first_harmonic: Spread
 
 
 @dataclass(frozen=True)
 class DrawnRipple:
-    """Pairs drawn within their tolerances, of which some are solved by now.
-
-    Attributes
-    ----------
-    evaluator : Evaluator
-        Of the pair as designed.
-    names : tuple of str
-        What deviates.
-    deviation : ndarray, shape (N, d)
-        m.
-    model : TangentModel, optional
-        None: not begun.
-    ste : ndarray, shape (n, P, 1)
-        Of the first pairs, m.
-    """
+    """Pairs drawn within their tolerances, of which some are solved by now."""
 
     evaluator: Evaluator
+    """Of the pair as designed."""
     names: tuple[str, ...]
+    """What deviates."""
     deviation: FloatArray
+    """m. Shape (N, d)."""
     model: TangentModel | None = None
+    """None: not begun."""
     ste: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
+    """Of the first pairs, m. Shape (n, P, 1)."""
 
     @classmethod
     def of(

@@ -38,26 +38,19 @@ WOBBLE_SHARE = 0.5
 
 @dataclass(frozen=True)
 class PitchBounds:
-    """What a class allows of pitches, those that the eccentricity makes among them.
-
-    Attributes
-    ----------
-    single, cumulative : float
-        f_pT and F_pT, m, on the reference circle.
-    eccentricity : float
-        The largest that keeps both and the run-out F_rT, m.
-    cosine : float
-        Of the transverse pressure angle: an eccentricity moves teeth by 1 / cosine of it.
-    accumulated : float
-        Part of the square of a single pitch that the teeth behind keep: 0, each tooth is out of its place by
-        itself; 1, pitches are.
-    """
+    """What a class allows of pitches, those that the eccentricity makes among them."""
 
     single: float
     cumulative: float
+    """`single`, `cumulative`: f_pT and F_pT, m, on the reference circle."""
     eccentricity: float
+    """The largest that keeps both and the run-out F_rT, m."""
     cosine: float
+    """Of the transverse pressure angle: an eccentricity moves teeth by 1 / cosine of it."""
     accumulated: float = 0.0
+    """Part of the square of a single pitch that the teeth behind keep: 0, each tooth is out of its place by
+    itself; 1, pitches are.
+    """
 
     @classmethod
     def of(cls, gear: Toothing, tolerance_class: int, accumulated: float = 0.0) -> PitchBounds:
@@ -96,27 +89,19 @@ class PitchBounds:
 
 @dataclass(frozen=True)
 class ToothTolerances:
-    """By how much the teeth of one gear differ at most.
-
-    Attributes
-    ----------
-    gear : {"pinion", "wheel"}
-    teeth : int
-    widths : mapping
-        Half widths in m: ``run_out``, the eccentricity; ``wobble``, the largest helix slope of a revolution;
-        ``pitch_deviation``, the place of each tooth;
-        ``tooth_flanks.profile_slope`` and the like, the part of a tolerance that teeth have not in common.
-    distribution : {"normal", "uniform"}
-        As of `Tolerances`. Normal eccentricity and wobble are so in both directions.
-    pitches : PitchBounds, optional
-        Within which the places of all teeth are scaled; None: nothing bounds them together.
-    """
+    """By how much the teeth of one gear differ at most."""
 
     gear: str
     teeth: int
     widths: Mapping[str, float]
+    """Half widths in m: ``run_out``, the eccentricity; ``wobble``, the largest helix slope of a revolution;
+    ``pitch_deviation``, the place of each tooth; ``tooth_flanks.profile_slope`` and the like, the part of a
+    tolerance that teeth have not in common.
+    """
     distribution: Distribution = "normal"
+    """As of `Tolerances`. Normal eccentricity and wobble are so in both directions."""
     pitches: PitchBounds | None = None
+    """Within which the places of all teeth are scaled; None: nothing bounds them together."""
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -162,22 +147,18 @@ class ToothTolerances:
 
 @dataclass(frozen=True)
 class DrawnTeeth:
-    """N gears of z teeth each.
-
-    Attributes
-    ----------
-    by_axis : mapping of str to ndarray, shape (N,)
-        Eccentricity and wobble in m, their angles as of `RunOut`: complex.
-    by_tooth : mapping of str to ndarray, shape (N, z)
-        Pitch deviations on the reference circle and deviations of single flanks, m; > 0 is material in
-        excess. As drawn, of which `made` is what the class leaves.
-    pitches : PitchBounds, optional
-        As of `ToothTolerances`.
-    """
+    """N gears of z teeth each."""
 
     by_axis: Mapping[str, ComplexArray]
+    """Eccentricity and wobble in m, their angles as of `RunOut`: complex. Mapping of str to ndarray, shape
+    (N,).
+    """
     by_tooth: Mapping[str, FloatArray]
+    """Pitch deviations on the reference circle and deviations of single flanks, m; > 0 is material in excess.
+    As drawn, of which `made` is what the class leaves. Mapping of str to ndarray, shape (N, z).
+    """
     pitches: PitchBounds | None = None
+    """As of `ToothTolerances`."""
 
     @cached_property
     def made(self) -> Mapping[str, FloatArray]:

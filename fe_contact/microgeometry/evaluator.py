@@ -33,32 +33,23 @@ from model_studies import in_unit
 
 @dataclass(frozen=True)
 class Evaluation:
-    """One design at S nodes of the scatter and L loads.
-
-    Attributes
-    ----------
-    ste : ndarray, shape (S, P, L)
-        Transmission error, m; P rows over the period. NaN where the contact was not solved.
-    pressure : ndarray, shape (S, L)
-        Largest Hertzian pressure over positions, Pa.
-    face_load_factor : ndarray, shape (S, L)
-        K_Hbeta of the face load averaged over positions.
-    edge_load_share : ndarray, shape (S, L)
-        Largest part of the load on tip edges over positions.
-    root_stress : ndarray, shape (S, L)
-        Largest principal stress in the tension roots of both gears over positions, Pa; NaN where it is not
-        followed.
-    root_stress_error, pressure_error, face_load_factor_error : ndarray, shape (S, L)
-        Of the discretization; NaN where it is not estimated.
-    """
+    """One design at S nodes of the scatter and L loads."""
 
     ste: FloatArray = field(metadata=in_unit("m", "node", "position", "torque"))
+    """Transmission error, m; P rows over the period. NaN where the contact was not solved. Shape (S, P, L).
+    """
     pressure: FloatArray = field(metadata=in_unit("pa", "node", "torque"))
+    """Largest Hertzian pressure over positions, Pa. Shape (S, L)."""
     face_load_factor: FloatArray
+    """K_Hbeta of the face load averaged over positions. Shape (S, L)."""
     edge_load_share: FloatArray
+    """Largest part of the load on tip edges over positions. Shape (S, L)."""
     root_stress: FloatArray = field(
         default_factory=lambda: np.full((1, 1), np.nan), metadata=in_unit("pa", "node", "torque")
     )
+    """Largest principal stress in the tension roots of both gears over positions, Pa; NaN where it is not
+    followed. Shape (S, L).
+    """
     root_stress_error: FloatArray = field(
         default_factory=lambda: np.full((1, 1), np.nan), metadata=in_unit("pa", "node", "torque")
     )
@@ -66,6 +57,9 @@ class Evaluation:
         default_factory=lambda: np.full((1, 1), np.nan), metadata=in_unit("pa", "node", "torque")
     )
     face_load_factor_error: FloatArray = field(default_factory=lambda: np.full((1, 1), np.nan))
+    """`root_stress_error`, `pressure_error`, `face_load_factor_error`: Of the discretization; NaN where it is
+    not estimated. Shape (S, L) each.
+    """
 
     def at_loads(self, some: BoolArray | IntArray) -> Evaluation:
         """Return the same at some of the loads."""
@@ -96,30 +90,21 @@ class Evaluator:
     """A pair with its compliance, positions, loads and scatter; only the modification varies.
 
     Loads of one misalignment are solved together, each from the one below it.
-
-    Attributes
-    ----------
-    contact : PairContact
-        Its compliance does not depend on the modification.
-    choices : mapping
-        Every effect "on" or "off".
-    position : ndarray, shape (P,)
-        In one base pitch.
-    load : ndarray, shape (L,)
-        Normal forces, N.
-    misalignment : ndarray, shape (L,)
-        Of each load, about which it scatters, m.
-    roots : RootInfluence, optional
-        By which the stress of the roots is followed.
     """
 
     contact: PairContact
+    """Its compliance does not depend on the modification."""
     choices: Mapping[str, str]
+    """Every effect "on" or "off"."""
     position: FloatArray
+    """In one base pitch. Shape (P,)."""
     load: FloatArray
+    """Normal forces, N. Shape (L,)."""
     misalignment: FloatArray
+    """Of each load, about which it scatters, m. Shape (L,)."""
     nodes: ScatterNodes
     roots: RootInfluence | None = None
+    """By which the stress of the roots is followed."""
 
     @property
     def misalignments(self) -> FloatArray:
@@ -236,27 +221,18 @@ def _in_all_pitches(pair: ParallelAxes, problem: ContactProblem, model: ContactM
 
 @dataclass(frozen=True)
 class LoadFigures:
-    """The figures of L loads of one misalignment at one node of the scatter.
-
-    Attributes
-    ----------
-    ste : ndarray, shape (P, L)
-        m; NaN where the contact was not solved.
-    pressure : ndarray, shape (P, L, m)
-        Of every candidate, Pa.
-    face_load : ndarray, shape (L, Z)
-        Mean over the positions at the points of the face, over its mean over the face.
-    edge_load_share : ndarray, shape (P, L)
-        Part of the load on tip edges.
-    root_stress : ndarray, shape (L,)
-        Largest of both gears over the positions, Pa; NaN: not followed.
-    """
+    """The figures of L loads of one misalignment at one node of the scatter."""
 
     ste: FloatArray
+    """m; NaN where the contact was not solved. Shape (P, L)."""
     pressure: FloatArray
+    """Of every candidate, Pa. Shape (P, L, m)."""
     face_load: FloatArray
+    """Mean over the positions at the points of the face, over its mean over the face. Shape (L, Z)."""
     edge_load_share: FloatArray
+    """Part of the load on tip edges. Shape (P, L)."""
     root_stress: FloatArray
+    """Largest of both gears over the positions, Pa; NaN: not followed. Shape (L,)."""
 
     @classmethod
     def of(

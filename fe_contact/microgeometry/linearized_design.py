@@ -58,61 +58,41 @@ DISTANCE_STEP = 1e-7
 
 @dataclass(frozen=True)
 class FlankDerivatives:
-    """Derivatives by the flank itself: by material removed at the nodes of a grid, bilinear between them.
-
-    Attributes
-    ----------
-    roll_length, face_position : ndarray, shapes (R,), (Z,)
-        m, from the gear's mid-face.
-    mean, peak_to_peak : ndarray, shape (F, R, Z)
-        m/m.
-    harmonics : ndarray, shape (20, F, R, Z)
-        Of the amplitudes, m/m.
-    """
+    """Derivatives by the flank itself: by material removed at the nodes of a grid, bilinear between them."""
 
     roll_length: FloatArray
     face_position: FloatArray
+    """`roll_length`, `face_position`: m, from the gear's mid-face. Ndarray, shapes (R,), (Z,)."""
     mean: FloatArray
     peak_to_peak: FloatArray
+    """`mean`, `peak_to_peak`: m/m. Shape (F, R, Z) each."""
     harmonics: FloatArray
+    """Of the amplitudes, m/m. Shape (20, F, R, Z)."""
 
 
 @dataclass(frozen=True)
 class CurveDerivatives:
-    """Curves at F torques and their derivatives by A figures.
-
-    Attributes
-    ----------
-    names : tuple of str
-        ``gear.quantity``, "misalignment", "center_distance_change" or "torque".
-    torque : ndarray, shape (F,)
-        On the driving gear, N m.
-    position : ndarray, shape (P,)
-        Base pitches.
-    ste : ndarray, shape (P, F)
-        m.
-    by : ndarray, shape (A, P, F)
-        dSTE/dfigure, m/m; by the torque in m/(N m).
-    load_arm : ndarray, shape (P, F)
-        Arm of the load about the axis of a misalignment, m.
-    load_arm_by : ndarray, shape (A, P, F)
-        Its derivatives, as `by`.
-    mean, peak_to_peak : ndarray, shape (A, F)
-        Of the curve's mean and peak-to-peak.
-    harmonics : ndarray, shape (A, 20, F)
-        Of the amplitudes of the mesh harmonics.
-    """
+    """Curves at F torques and their derivatives by A figures."""
 
     names: tuple[str, ...]
+    """``gear.quantity``, "misalignment", "center_distance_change" or "torque"."""
     torque: FloatArray
+    """On the driving gear, N m. Shape (F,)."""
     position: FloatArray
+    """Base pitches. Shape (P,)."""
     ste: FloatArray
+    """m. Shape (P, F)."""
     by: FloatArray
+    """dSTE/dfigure, m/m; by the torque in m/(N m). Shape (A, P, F)."""
     load_arm: FloatArray
+    """Arm of the load about the axis of a misalignment, m. Shape (P, F)."""
     load_arm_by: FloatArray
+    """Its derivatives, as `by`. Shape (A, P, F)."""
     mean: FloatArray
     peak_to_peak: FloatArray
+    """`mean`, `peak_to_peak`: Of the curve's mean and peak-to-peak. Shape (A, F) each."""
     harmonics: FloatArray
+    """Of the amplitudes of the mesh harmonics. Shape (A, 20, F)."""
     _strips: CarryingStrips = field(repr=False)
     _quantities: FloatArray = field(repr=False)
 
@@ -277,42 +257,30 @@ _POINT = 1e-9
 
 @dataclass(frozen=True)
 class _LinearizedDesign:
-    """One design at S nodes of the scatter and L loads, to first order in d variables.
-
-    Attributes
-    ----------
-    curves : ndarray, shape (S, P, L, d)
-        dSTE/dvariable, m/m.
-    limits : tuple of Rows
-        Of each limit that is set: in parts of it less 1 (the load on edges: less its limit), at all places
-        at which it may come to count.
-    """
+    """One design at S nodes of the scatter and L loads, to first order in d variables."""
 
     evaluation: Evaluation
     curves: FloatArray
+    """dSTE/dvariable, m/m. Shape (S, P, L, d)."""
     limits: tuple[Rows, ...]
+    """Of each limit that is set: in parts of it less 1 (the load on edges: less its limit), at all places at
+    which it may come to count.
+    """
 
 
 @dataclass(frozen=True)
 class _Solved:
-    """L loads of one misalignment at one node of the scatter with their derivatives by d variables.
-
-    Attributes
-    ----------
-    pair, problem, solution, figures, roots
-    steps : tuple of _Difference
-        Of the variables.
-    opened : ndarray, shape (d, k)
-        Normal approach that each variable takes away from them, m/m.
-    """
+    """L loads of one misalignment at one node of the scatter with their derivatives by d variables."""
 
     pair: ParallelAxes
     problem: ContactProblem
     solution: ContactSolution
     figures: LoadFigures
     steps: tuple[_Difference, ...]
+    """Of the variables."""
     strips: CarryingStrips
     opened: FloatArray
+    """Normal approach that each variable takes away from them, m/m. Shape (d, k)."""
     roots: RootInfluence | None
 
     @cached_property

@@ -22,21 +22,16 @@ from fe_contact.types import FloatArray, IntArray
 
 @dataclass(frozen=True)
 class TabledLoads:
-    """Loads of one misalignment at one node of the scatter: their figures, and their table.
-
-    Attributes
-    ----------
-    by : mapping
-        Fields of the table to their derivatives by d variables (d, P, F), per m; empty where none are taken.
-        Those of the tangent compliance are differences between the loads.
-    limits : tuple of Rows
-        As of `LinearizedNode`.
-    """
+    """Loads of one misalignment at one node of the scatter: their figures, and their table."""
 
     figures: LoadFigures
     table: SteDatabase
     by: Mapping[str, FloatArray]
+    """Fields of the table to their derivatives by d variables (d, P, F), per m; empty where none are taken.
+    Those of the tangent compliance are differences between the loads.
+    """
     limits: tuple[Rows, ...]
+    """As of `LinearizedNode`."""
 
     def at_loads(self, loads: IntArray) -> TabledLoads:
         """Return the table of some of the loads, by their rising indices; figures and limits are of all."""

@@ -83,27 +83,18 @@ class Worst:
 
 @dataclass(frozen=True)
 class Limits:
-    """Limits of a design at every load and every node of the scatter; None: no limit.
-
-    Attributes
-    ----------
-    max_pressure : float, optional
-        Largest Hertzian pressure, Pa.
-    face_load_factor : float, optional
-        K_Hbeta of the mean over a mesh cycle, > 1 (ISO 6336-1).
-    edge_load_share : float, optional
-        Largest part of the load that tip edges carry at any position; 0 forbids their contact.
-    peak_to_peak : float, optional
-        Largest peak-to-peak of the transmission error, m.
-    root_stress : float, optional
-        Largest principal stress in the tension roots of both gears, Pa.
-    """
+    """Limits of a design at every load and every node of the scatter; None: no limit."""
 
     max_pressure: float | None = None
+    """Largest Hertzian pressure, Pa."""
     face_load_factor: float | None = None
+    """K_Hbeta of the mean over a mesh cycle, > 1 (ISO 6336-1)."""
     edge_load_share: float | None = None
+    """Largest part of the load that tip edges carry at any position; 0 forbids their contact."""
     peak_to_peak: float | None = None
+    """Largest peak-to-peak of the transmission error, m."""
     root_stress: float | None = None
+    """Largest principal stress in the tension roots of both gears, Pa."""
 
     def __post_init__(self) -> None:
         if self.max_pressure is not None:
@@ -154,29 +145,20 @@ Rows = tuple[FloatArray, FloatArray]
 
 @dataclass(frozen=True)
 class LinearMerit:
-    """Merit of designs to first order in d variables.
-
-    Attributes
-    ----------
-    curves : ndarray, shape (S, P, L)
-        Transmission error at S nodes of the scatter, in parts of the scale of the merit.
-    by : ndarray, shape (S, P, L, d)
-        Its derivatives.
-    node_weight : ndarray, shape (S,)
-    load_weight : ndarray, shape (R, L)
-        Rows of the objective: the largest counts.
-    limits : tuple of Rows
-        Of each limit: by how much it is exceeded; the largest counts, if it is above 0.
-    penalty : float
-        Of exceeding them.
-    """
+    """Merit of designs to first order in d variables."""
 
     curves: FloatArray
+    """Transmission error at S nodes of the scatter, in parts of the scale of the merit. Shape (S, P, L)."""
     by: FloatArray
+    """Its derivatives. Shape (S, P, L, d)."""
     node_weight: FloatArray
+    """Shape (S,)."""
     load_weight: FloatArray
+    """Rows of the objective: the largest counts. Shape (R, L)."""
     limits: tuple[Rows, ...]
+    """Of each limit: by how much it is exceeded; the largest counts, if it is above 0."""
     penalty: float
+    """Of exceeding them."""
 
     def least(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, float]:
         """Return the step (d,) between two ends (d,) at which the merit is least, and that merit."""

@@ -40,44 +40,32 @@ CLOSE = 0.03
 
 @dataclass(frozen=True)
 class OptimizationRequest:
-    """A pair, its design variables, and the assessment of its designs.
-
-    Attributes
-    ----------
-    pair : GearPair or InternalGearPair
-        Its own modifications are the start; those that are not varied stay.
-    torques : sequence of float
-        Design torques, N m on the driving gear, increasing; equal ones only at different misalignments.
-    variables : tuple of DesignVariable
-    scatter : Scatter
-        Of misalignment and modifications, about the design.
-    misalignment : float or sequence of float
-        About which it scatters, m: one value, or one for each torque. Further torques of the maps have it
-        linear in between, and held beyond the lowest and the highest design torque.
-    objective : Objective
-        `WeightedMean` or `Worst` of the expectations at the torques.
-    limits : Limits
-        Pressure, face load factor, load on tip edges.
-    search : Search
-        Method, seed, starts, evaluations, positions.
-    options : AnalysisOptions
-        `positions`, `receipt` and `on_violation` are ignored. Effects are decided once, for the design with
-        every variable at the middle of its bounds and the scattered misalignment: all designs are assessed by
-        one model.
-    map_torques : sequence of float, optional
-        Further torques of the Harris maps, N m; default: up to 1.25 times the largest design torque.
-    """
+    """A pair, its design variables, and the assessment of its designs."""
 
     pair: ParallelAxes
+    """Its own modifications are the start; those that are not varied stay."""
     torques: Levels
+    """Design torques, N m on the driving gear, increasing; equal ones only at different misalignments."""
     variables: tuple[DesignVariable, ...]
     scatter: Scatter = NO_SCATTER
+    """Of misalignment and modifications, about the design."""
     misalignment: Misalignments = 0.0
+    """About which it scatters, m: one value, or one for each torque. Further torques of the maps have it
+    linear in between, and held beyond the lowest and the highest design torque.
+    """
     objective: Objective = WeightedMean()  # noqa: RUF009 (frozen)
+    """`WeightedMean` or `Worst` of the expectations at the torques."""
     limits: Limits = NO_LIMITS
+    """Pressure, face load factor, load on tip edges."""
     search: Search = Search()  # noqa: RUF009 (frozen)
+    """Method, seed, starts, evaluations, positions."""
     options: AnalysisOptions = AnalysisOptions()  # noqa: RUF009 (frozen)
+    """`positions`, `receipt` and `on_violation` are ignored. Effects are decided once, for the design with
+    every variable at the middle of its bounds and the scattered misalignment: all designs are assessed by one
+    model.
+    """
     map_torques: Levels | None = None
+    """Further torques of the Harris maps, N m; default: up to 1.25 times the largest design torque."""
 
     @property
     def own(self) -> tuple[float, ...]:
@@ -176,67 +164,46 @@ def excess(optimum: _Confirmed) -> str:
 
 @dataclass(frozen=True)
 class Perturbation:
-    """The change by a small step of one variable from the optimum.
-
-    Attributes
-    ----------
-    low, high : float
-        Values of the variable on both sides, m: a standard deviation away where it scatters, else a twentieth
-        of its range, kept within its bounds.
-    change_low, change_high : float
-        Of the objective there, m.
-    """
+    """The change by a small step of one variable from the optimum."""
 
     name: str
     low: float = field(metadata=in_unit("m"))
     high: float = field(metadata=in_unit("m"))
+    """`low`, `high`: Values of the variable on both sides, m: a standard deviation away where it scatters,
+    else a twentieth of its range, kept within its bounds.
+    """
     change_low: float = field(metadata=in_unit("m"))
     change_high: float = field(metadata=in_unit("m"))
+    """`change_low`, `change_high`: Of the objective there, m."""
 
 
 @dataclass(frozen=True)
 class Optimization:
-    """Result of `optimize`.
-
-    Attributes
-    ----------
-    outcome : Outcome
-    reason : str
-        The outcome, and how the search ended, in words.
-    variables : tuple of DesignVariable
-    torque : ndarray, shape (L,)
-        Torques that count, N m.
-    misalignment : ndarray, shape (L,)
-        Of each, about which it scatters, m.
-    nodes : ScatterNodes
-    start, optimum : ConfirmedDesign
-    runs : tuple of SearchRun
-        One for each start, and one more each time the best design had to be brought back within the limits;
-        `best_run` is the index of the decisive one.
-    best_run : int
-    sensitivity : tuple of Perturbation
-    not_tried : tuple of str
-        What the search did not vary, in words.
-    cost : dict
-        Evaluations and CPU seconds by stage; the search's are those of all its processes.
-    asked : dict
-        What was requested, in SI units.
-    """
+    """Result of `optimize`."""
 
     outcome: Outcome
     reason: str
+    """The outcome, and how the search ended, in words."""
     variables: tuple[DesignVariable, ...]
     torque: FloatArray = field(metadata=in_unit("n_m", "torque"))
+    """Torques that count, N m. Shape (L,)."""
     misalignment: FloatArray = field(metadata=in_unit("m", "torque"))
+    """Of each, about which it scatters, m. Shape (L,)."""
     nodes: ScatterNodes
     start: ConfirmedDesign
     optimum: ConfirmedDesign
     runs: tuple[SearchRun, ...]
+    """One for each start, and one more each time the best design had to be brought back within the limits;
+    `best_run` is the index of the decisive one.
+    """
     best_run: int
     sensitivity: tuple[Perturbation, ...]
     not_tried: tuple[str, ...]
+    """What the search did not vary, in words."""
     cost: Json
+    """Evaluations and CPU seconds by stage; the search's are those of all its processes."""
     asked: Json
+    """What was requested, in SI units."""
 
     def __post_init__(self) -> None:
         # files of version 0.2 hold one value for all torques

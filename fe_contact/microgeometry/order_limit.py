@@ -24,24 +24,16 @@ BASE_PAIRS = 1024
 
 @dataclass(frozen=True)
 class OrderLimit:
-    """What the amplitude of an order is to stay below: of the mesh, or beside it by the turns of a gear.
-
-    Attributes
-    ----------
-    order : int
-        Of the mesh; 1: the mesh frequency. 0 with a gear: the order is one of its shaft.
-    amplitude : float
-        m.
-    gear : {"", "pinion", "wheel"}
-        Whose teeth make it; without one it is a mesh order.
-    turns : int
-        Turns of the gear beside the mesh order, either way, at most half its teeth.
-    """
+    """What the amplitude of an order is to stay below: of the mesh, or beside it by the turns of a gear."""
 
     order: int
+    """Of the mesh; 1: the mesh frequency. 0 with a gear: the order is one of its shaft."""
     amplitude: float
+    """m."""
     gear: str = ""
+    """Whose teeth make it; without one it is a mesh order."""
     turns: int = 0
+    """Turns of the gear beside the mesh order, either way, at most half its teeth."""
 
     def __post_init__(self) -> None:
         integer("limit.order", self.order, 0 if self.gear else 1, 10_000)
@@ -86,46 +78,36 @@ class OrderLimit:
 
 @dataclass(frozen=True)
 class PairsAbove:
-    """Pairs above a limit at L torques, and what of d deviations decides at the one with most of them.
-
-    Attributes
-    ----------
-    limit : OrderLimit
-    names : tuple of str
-        The deviations.
-    amplitude : ndarray, shape (N, L)
-        Of the order, m.
-    nominal : ndarray, shape (L,)
-        As designed, m.
-    share, low, high : ndarray, shape (L,)
-        Part of all pairs above, and its bounds: by Wilson, and wider by what the model misses of pairs that
-        it is held against.
-    load : int
-        Index of the torque at which most are above, the last of equal ones.
-    first_order, total : ndarray, shape (d,)
-        Sobol' indices of the level in dB there: the part of its variance that a deviation makes alone, and
-        with others.
-    cured : ndarray, shape (d,)
-        Share there if the tolerance of one deviation is tightened by a class.
-    missed : ndarray, shape (L,)
-        Root of the mean square by which the model misses the amplitude of pairs it is held against, m.
-    beyond : ndarray, shape (L,)
-        Part of those pairs that it puts on the other side of the limit.
-    """
+    """Pairs above a limit at L torques, and what of d deviations decides at the one with most of them."""
 
     limit: OrderLimit
     names: tuple[str, ...]
+    """The deviations."""
     amplitude: FloatArray = field(metadata=in_unit("m", "sample", "torque"))
+    """Of the order, m. Shape (N, L)."""
     nominal: FloatArray = field(metadata=in_unit("m", "torque"))
+    """As designed, m. Shape (L,)."""
     share: FloatArray
     low: FloatArray
     high: FloatArray
+    """`share`, `low`, `high`: Part of all pairs above, and its bounds: by Wilson, and wider by what the model
+    misses of pairs that it is held against. Shape (L,) each.
+    """
     load: int
+    """Index of the torque at which most are above, the last of equal ones."""
     first_order: FloatArray
     total: FloatArray
+    """`first_order`, `total`: Sobol' indices of the level in dB there: the part of its variance that a
+    deviation makes alone, and with others. Shape (d,) each.
+    """
     cured: FloatArray
+    """Share there if the tolerance of one deviation is tightened by a class. Shape (d,)."""
     missed: FloatArray = field(metadata=in_unit("m", "torque"))
+    """Root of the mean square by which the model misses the amplitude of pairs it is held against, m. Shape
+    (L,).
+    """
     beyond: FloatArray
+    """Part of those pairs that it puts on the other side of the limit. Shape (L,)."""
 
     @property
     def decides(self) -> int:
@@ -141,66 +123,45 @@ class PairsAbove:
 
 @dataclass(frozen=True)
 class DrawnPairs:
-    """N pairs that deviate by (N, d) in m, the first n of which were solved: ste (n, P, L) in m.
-
-    Attributes
-    ----------
-    names : tuple of str
-        The deviations.
-    held : int
-        From which of the solved pairs on the model does not know them.
-    of_pair : sequence
-        Distribution of each deviation.
-    """
+    """N pairs that deviate by (N, d) in m, the first n of which were solved: ste (n, P, L) in m."""
 
     names: tuple[str, ...]
+    """The deviations."""
     deviation: FloatArray
     ste: FloatArray
     held: int
+    """From which of the solved pairs on the model does not know them."""
     model: TangentModel
     of_pair: Sequence[Any]
+    """Distribution of each deviation."""
     period: int
     seed: int
 
 
 class Causes(NamedTuple):
-    """What d deviations do to an order at one load, by a model.
-
-    Attributes
-    ----------
-    first_order, total : ndarray, shape (d,)
-        Sobol' indices of the level in dB.
-    share : float
-        Of pairs above the limit.
-    tightened : ndarray, shape (d,)
-        The same with the tolerance of one deviation tightened by a class.
-    """
+    """What d deviations do to an order at one load, by a model."""
 
     first_order: FloatArray
     total: FloatArray
+    """`first_order`, `total`: Sobol' indices of the level in dB. Shape (d,) each."""
     share: float
+    """Of pairs above the limit."""
     tightened: FloatArray
+    """The same with the tolerance of one deviation tightened by a class. Shape (d,)."""
 
 
 @dataclass(frozen=True)
 class ModeledPairs:
-    """Amplitudes of one order of pairs that a model knows all of: modeled (N, L), and solved (n, L), m.
-
-    Attributes
-    ----------
-    names : tuple of str
-        The deviations.
-    nominal : ndarray, shape (L,)
-        As designed, m.
-    held : int
-        From which of the solved pairs on the model does not know them.
-    """
+    """Amplitudes of one order of pairs that a model knows all of: modeled (N, L), and solved (n, L), m."""
 
     names: tuple[str, ...]
+    """The deviations."""
     nominal: FloatArray
+    """As designed, m. Shape (L,)."""
     solved: FloatArray
     modeled: FloatArray
     held: int = 0
+    """From which of the solved pairs on the model does not know them."""
 
     def above(self, limit: OrderLimit, confidence: float, causes: Callable[[int], Causes]) -> PairsAbove:
         """Count the pairs above a limit; `causes` says why at one of the loads."""

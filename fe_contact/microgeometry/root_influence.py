@@ -28,23 +28,15 @@ FEWEST = 3
 
 @dataclass(frozen=True)
 class RootInfluence:
-    """Unit-load stress of both gears, driving gear first.
-
-    Attributes
-    ----------
-    units : pair of UnitRootStress
-    offset : float
-        Distance of the driven gear's mid-face from the driving gear's, m.
-    rough : RootInfluence, optional
-        On coarser meshes; of these themselves None.
-    remaining : float
-        Error left over the difference to these.
-    """
+    """Unit-load stress of both gears, driving gear first."""
 
     units: tuple[UnitRootStress, UnitRootStress]
     offset: float
+    """Distance of the driven gear's mid-face from the driving gear's, m."""
     rough: RootInfluence | None = None
+    """On coarser meshes; of these themselves None."""
     remaining: float = math.nan
+    """Error left over the difference to these."""
 
     @classmethod
     def of(cls, contact: PairContact, cache: Path | None = None) -> RootInfluence:
@@ -88,22 +80,17 @@ class RootInfluence:
 
 @dataclass(frozen=True)
 class _GearRoots:
-    """What forces on the slices of T pairs do to the tension roots of their teeth of one gear.
-
-    Attributes
-    ----------
-    on_nodes : ndarray, shape (Q, T, Z, K)
-        Parts of the force on a slice at each of K nodes of the profile, at Q positions.
-    influence : ndarray, shape (D, Z, K, 3, R)
-        Stress along the profile, across it and in shear at R stations by a force at a node under a slice, of
-        teeth one after the other, Pa/N.
-    row : ndarray of int, shape (T, T)
-        Row of D by which the tooth of the first is loaded by that of the second; -1: not at all.
-    """
+    """What forces on the slices of T pairs do to the tension roots of their teeth of one gear."""
 
     on_nodes: FloatArray
+    """Parts of the force on a slice at each of K nodes of the profile, at Q positions. Shape (Q, T, Z, K)."""
     influence: FloatArray
+    """Stress along the profile, across it and in shear at R stations by a force at a node under a slice, of
+    teeth one after the other, Pa/N. Shape (D, Z, K, 3, R).
+    """
     row: IntArray
+    """Row of D by which the tooth of the first is loaded by that of the second; -1: not at all. Shape (T, T).
+    """
 
     @classmethod
     def of(

@@ -71,18 +71,12 @@ class GaussHermite:
 
 @dataclass(frozen=True)
 class SobolSample:
-    """Fixed sample of equal weights: a scrambled Sobol' sequence through the normal quantile.
-
-    Attributes
-    ----------
-    log2_size : int
-        The sample has 2**log2_size points, 0 to 10.
-    seed : int
-        Of the scrambling.
-    """
+    """Fixed sample of equal weights: a scrambled Sobol' sequence through the normal quantile."""
 
     log2_size: int = 4
+    """The sample has 2**log2_size points, 0 to 10."""
     seed: int = 0
+    """Of the scrambling."""
 
     def __post_init__(self) -> None:
         integer("scatter.rule.log2_size", self.log2_size, 0, 10)
@@ -107,22 +101,16 @@ class SobolSample:
 
 @dataclass(frozen=True)
 class Scatter:
-    """Independent normal deviations from the design.
-
-    Attributes
-    ----------
-    misalignment : float
-        Standard deviation of the misalignment in m, >= 0.
-    modification : mapping
-        ``gear.quantity`` to the standard deviation of that quantity in m, > 0. Removed material is not
-        scattered below zero: such a deviate counts as zero.
-    rule : ScatterRule
-        Nodes of the expectation.
-    """
+    """Independent normal deviations from the design."""
 
     misalignment: float = 0.0
+    """Standard deviation of the misalignment in m, >= 0."""
     modification: Mapping[str, float] = field(default_factory=dict)
+    """``gear.quantity`` to the standard deviation of that quantity in m, > 0. Removed material is not
+    scattered below zero: such a deviate counts as zero.
+    """
     rule: _ScatterRule = GaussHermite()
+    """Nodes of the expectation."""
 
     def __post_init__(self) -> None:
         if finite("scatter.misalignment", self.misalignment, SiNote("In m: 10 µm is 1e-5.")) < 0.0:
@@ -157,24 +145,16 @@ NO_SCATTER = Scatter()
 
 @dataclass(frozen=True)
 class ScatterNodes:
-    """Nodes at which a design is assessed.
-
-    Attributes
-    ----------
-    names : tuple of str
-        What deviates: "misalignment" and ``gear.quantity``.
-    deviation : ndarray, shape (S, d)
-        m.
-    weight : ndarray, shape (S,)
-        Of the expectation, sum 1.
-    finer : ScatterNodes or None
-        By which the error of the expectation is estimated; None where nothing scatters.
-    """
+    """Nodes at which a design is assessed."""
 
     names: tuple[str, ...]
+    """What deviates: "misalignment" and ``gear.quantity``."""
     deviation: FloatArray = field(metadata=in_unit("m"))
+    """m. Shape (S, d)."""
     weight: FloatArray
+    """Of the expectation, sum 1. Shape (S,)."""
     finer: ScatterNodes | None = None
+    """By which the error of the expectation is estimated; None where nothing scatters."""
 
     @property
     def misalignment(self) -> FloatArray:

@@ -107,13 +107,6 @@ class SequentialLinearProgramming:
     designs, the best of them to its end. Where a contact begins curves have kinks that a program sees from
     one side only; so it is taken up again a little beside where it ended.
 
-    Attributes
-    ----------
-    sample : int
-        Points of the sequence, 0 to 4096; 0: from the start alone.
-    trials : int
-        The best of them that are followed, 0 to 64.
-
     References
     ----------
     .. [1] K. Madsen, H. Schjaer-Jacobsen, Linearly constrained minimax optimization, Math. Programming 14
@@ -121,7 +114,9 @@ class SequentialLinearProgramming:
     """
 
     sample: int = 64
+    """Points of the sequence, 0 to 4096; 0: from the start alone."""
     trials: int = 3
+    """The best of them that are followed, 0 to 64."""
 
     def __post_init__(self) -> None:
         integer("method.sample", self.sample, 0, 4096)
@@ -334,29 +329,19 @@ class Ended(StrEnum):
 
 @dataclass(frozen=True)
 class Search:
-    """The method and the size of a search.
-
-    Attributes
-    ----------
-    method : Method
-    seed : int
-        Of all random numbers: equal searches give equal results.
-    starts : int
-        Independent searches; the first starts at the given pair, others at points of a Sobol' sequence.
-    evaluations : int
-        Largest number of designs that each of them evaluates.
-    positions : int
-        Equally spaced in a base pitch; the analysis at the end places its own.
-    exploration : int
-        Positions by which designs are ranked before any is followed, at most `positions`.
-    """
+    """The method and the size of a search."""
 
     method: Method = SequentialLinearProgramming()
     seed: int = 0
+    """Of all random numbers: equal searches give equal results."""
     starts: int = 1
+    """Independent searches; the first starts at the given pair, others at points of a Sobol' sequence."""
     evaluations: int = 1000
+    """Largest number of designs that each of them evaluates."""
     positions: int = 64
+    """Equally spaced in a base pitch; the analysis at the end places its own."""
     exploration: int = 16
+    """Positions by which designs are ranked before any is followed, at most `positions`."""
 
     def __post_init__(self) -> None:
         integer("search.seed", self.seed, 0, 2**32 - 1)
@@ -398,29 +383,22 @@ def usual_designs(search: Search) -> float:
 
 @dataclass(frozen=True)
 class SearchRun:
-    """The result of one start of a search.
-
-    Attributes
-    ----------
-    place : ndarray, shape (d,)
-        Best design, in parts of the ranges of the variables.
-    explored : int
-        Of the evaluations, those at few positions.
-    spread : float
-        Largest less least objective of all others.
-    ends : tuple of float
-        Objectives to which its walks came from each start, few positions and no scatter; of those that keep
-        the limits best.
-    """
+    """The result of one start of a search."""
 
     place: FloatArray
+    """Best design, in parts of the ranges of the variables. Shape (d,)."""
     assessed: Assessed
     evaluations: int
     ended: Ended
     cpu_seconds: float
     explored: int = 0
+    """Of the evaluations, those at few positions."""
     spread: float = 0.0
+    """Largest less least objective of all others."""
     ends: tuple[float, ...] = ()
+    """Objectives to which its walks came from each start, few positions and no scatter; of those that keep
+    the limits best.
+    """
 
     @property
     def converged(self) -> bool:

@@ -52,24 +52,20 @@ _LEAST = 1e-15
 
 @dataclass(frozen=True)
 class ToothPassing:
-    """What the teeth of a gear add to one order at L loads, to first order.
-
-    Attributes
-    ----------
-    line : int
-        The order, per revolution of the gear.
-    turns : int
-        By how many turns of the gear it is beside the mesh.
-    by_tooth : mapping of str to ndarray, shape (L,)
-        Complex amplitude by the Fourier sum of a deviation over the teeth, m/m.
-    by_wobble : ndarray, shape (L,)
-        By the amount of wobble at the angle 0, m/m: where the load is off mid-face as a pitch passes.
-    """
+    """What the teeth of a gear add to one order at L loads, to first order."""
 
     line: int
+    """The order, per revolution of the gear."""
     turns: int
+    """By how many turns of the gear it is beside the mesh."""
     by_tooth: Mapping[str, ComplexArray]
+    """Complex amplitude by the Fourier sum of a deviation over the teeth, m/m. Mapping of str to ndarray,
+    shape (L,).
+    """
     by_wobble: ComplexArray
+    """By the amount of wobble at the angle 0, m/m: where the load is off mid-face as a pitch passes. Shape
+    (L,).
+    """
 
     @classmethod
     def of(cls, evaluator: Evaluator, limit: OrderLimit, names: Sequence[str]) -> ToothPassing:

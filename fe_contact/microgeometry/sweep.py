@@ -38,18 +38,13 @@ Values = Mapping[str, float]
 
 @dataclass(frozen=True)
 class SweepAxis:
-    """An axis of a sweep.
-
-    Attributes
-    ----------
-    name : str
-        One of `CONDITIONS`, a design variable ``gear.quantity``, or ``quantity`` alone: of both gears alike.
-    values : tuple of float
-        Increasing, at least two; N m, or m.
-    """
+    """An axis of a sweep."""
 
     name: str
+    """One of `CONDITIONS`, a design variable ``gear.quantity``, or ``quantity`` alone: of both gears alike.
+    """
     values: tuple[float, ...]
+    """Increasing, at least two; N m, or m."""
 
     @property
     def variables(self) -> tuple[str, ...]:
@@ -66,25 +61,18 @@ class SweepAxis:
 
 @dataclass(frozen=True)
 class SweepRequest:
-    """A pair, and what of it is swept.
-
-    Attributes
-    ----------
-    pair : GearPair or InternalGearPair
-        Its own modifications hold where they are not swept.
-    axes : tuple of SweepAxis
-        One or two.
-    point : OperatingPoint
-        Holds where it is not swept.
-    options : AnalysisOptions
-        `positions`, `receipt` and `on_violation` do not count. Model and mesh are chosen once, for the values
-        that act most.
-    """
+    """A pair, and what of it is swept."""
 
     pair: ParallelAxes
+    """Its own modifications hold where they are not swept."""
     axes: tuple[SweepAxis, ...]
+    """One or two."""
     point: OperatingPoint
+    """Holds where it is not swept."""
     options: AnalysisOptions = AnalysisOptions()  # noqa: RUF009 (frozen)
+    """`positions`, `receipt` and `on_violation` do not count. Model and mesh are chosen once, for the values
+    that act most.
+    """
 
     @property
     def torques(self) -> FloatArray:
@@ -171,22 +159,17 @@ none."""
 
 @dataclass(frozen=True)
 class SweptQuantity:
-    """A quantity at all N points.
-
-    Attributes
-    ----------
-    name, unit : str
-        Of `SWEPT`.
-    value, error : ndarray, shape (N,)
-        In the unit; NaN where the contact was not solved. The error of a ripple is that of its table; that of
-        pressure and face load factor is the sum of what half the slices, the coarse meshes and half the
-        positions change.
-    """
+    """A quantity at all N points."""
 
     name: str
     unit: str
+    """`name`, `unit`: Of `SWEPT`."""
     value: FloatArray = field(metadata=in_unit("1", "point"))
     error: FloatArray = field(metadata=in_unit("1", "point"))
+    """`value`, `error`: In the unit; NaN where the contact was not solved. The error of a ripple is that of
+    its table; that of pressure and face load factor is the sum of what half the slices, the coarse meshes and
+    half the positions change. Shape (N,) each.
+    """
 
     @property
     def least(self) -> int:
@@ -202,28 +185,19 @@ class SweptQuantity:
 
 @dataclass(frozen=True)
 class Sweep:
-    """A pair over a grid of N points, the first axis running slowest.
-
-    Attributes
-    ----------
-    axes : tuple of str
-        Names of one or two `SweepAxis`.
-    point : ndarray, shape (N, axes)
-        N m of the torque, m of all others.
-    reason : tuple of str
-        Why a point has no figures, empty if it has (N,).
-    held : dict
-        What was not swept of torque, misalignment and change of the center distance; SI units.
-    cost : dict
-        CPU seconds of all who worked and wall seconds, by stage.
-    """
+    """A pair over a grid of N points, the first axis running slowest."""
 
     axes: tuple[str, ...]
+    """Names of one or two `SweepAxis`."""
     point: FloatArray = field(metadata=in_unit("1", "point", "axis"))
+    """N m of the torque, m of all others. Shape (N, axes)."""
     quantities: tuple[SweptQuantity, ...]
     reason: tuple[str, ...]
+    """Why a point has no figures, empty if it has (N,)."""
     held: Json
+    """What was not swept of torque, misalignment and change of the center distance; SI units."""
     cost: Json
+    """CPU seconds of all who worked and wall seconds, by stage."""
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -22,27 +22,18 @@ AT_ONCE = 4_000_000
 
 @dataclass(frozen=True)
 class TangentModel:
-    """Tangents about T pairs at P positions and L loads, by d deviations.
-
-    Attributes
-    ----------
-    least : ndarray, shape (d,)
-        Deviations count from here: nothing is removed below zero, m.
-    state : ndarray, shape (T, d)
-        The pairs, m.
-    value : ndarray, shape (T, P, L)
-        Their transmission error, m.
-    by : ndarray, shape (T, P, L, d)
-        Its derivatives, m/m.
-    correction : ndarray, shape (P, L)
-        What the least tangent is above in the mean, m.
-    """
+    """Tangents about T pairs at P positions and L loads, by d deviations."""
 
     least: FloatArray
+    """Deviations count from here: nothing is removed below zero, m. Shape (d,)."""
     state: FloatArray
+    """The pairs, m. Shape (T, d)."""
     value: FloatArray
+    """Their transmission error, m. Shape (T, P, L)."""
     by: FloatArray
+    """Its derivatives, m/m. Shape (T, P, L, d)."""
     correction: FloatArray
+    """What the least tangent is above in the mean, m. Shape (P, L)."""
 
     @classmethod
     def of(cls, least: FloatArray, state: FloatArray, value: FloatArray, by: FloatArray) -> TangentModel:

@@ -47,20 +47,16 @@ from model_studies.stage_clock import StageClock
 
 @dataclass(frozen=True)
 class Quantile:
-    """A quantile of peak-to-peak at each of L torques.
-
-    Attributes
-    ----------
-    fraction : float
-        Part of all pairs that lie below.
-    value, low, high : ndarray, shape (L,)
-        Estimate and confidence bounds, m; infinite or zero where the sample is too small for a bound.
-    """
+    """A quantile of peak-to-peak at each of L torques."""
 
     fraction: float
+    """Part of all pairs that lie below."""
     value: FloatArray = field(metadata=in_unit("m", "torque"))
     low: FloatArray = field(metadata=in_unit("m", "torque"))
     high: FloatArray = field(metadata=in_unit("m", "torque"))
+    """`value`, `low`, `high`: Estimate and confidence bounds, m; infinite or zero where the sample is too
+    small for a bound. Shape (L,) each.
+    """
 
 
 def _quantile(sample: FloatArray, fraction: float, confidence: float) -> Quantile:
@@ -74,30 +70,20 @@ def _quantile(sample: FloatArray, fraction: float, confidence: float) -> Quantil
 
 @dataclass(frozen=True)
 class Sampling:
-    """A sample of pairs and its quantiles.
-
-    Attributes
-    ----------
-    samples : int
-        Pairs, 2 to 1 000 000.
-    seed : int
-        Equal seeds give equal results to the last bit, with any workers.
-    confidence : float
-        Of the bounds of the quantiles.
-    fractions : sequence of float
-        Quantiles to estimate.
-    positions : int
-        Equally spaced in a base pitch.
-    exact : int
-        So many pairs are solved; further ones are by tangents about some of these, held against the others.
-    """
+    """A sample of pairs and its quantiles."""
 
     samples: int = 1000
+    """Pairs, 2 to 1 000 000."""
     seed: int = 0
+    """Equal seeds give equal results to the last bit, with any workers."""
     confidence: float = 0.95
+    """Of the bounds of the quantiles."""
     fractions: Sequence[float] = (0.05, 0.5, 0.95)
+    """Quantiles to estimate."""
     positions: int = 64
+    """Equally spaced in a base pitch."""
     exact: int = 300
+    """So many pairs are solved; further ones are by tangents about some of these, held against the others."""
 
     def __post_init__(self) -> None:
         integer("samples", self.samples, 2, 1_000_000)
@@ -128,53 +114,39 @@ ACTING = SobolSample(1)
 
 @dataclass(frozen=True)
 class ToleranceStudy:
-    """Peak-to-peak of N pairs at L torques.
-
-    Attributes
-    ----------
-    torque : ndarray, shape (L,)
-        N m.
-    names : tuple of str
-        The deviations: "misalignment" and ``gear.quantity``.
-    deviation : ndarray, shape (N, d)
-        m.
-    peak_to_peak : ndarray, shape (N, L)
-        m.
-    nominal, error : ndarray, shape (L,)
-        Without deviations, and the error of the analysis there, m.
-    quantiles : tuple of Quantile
-    first_order : ndarray, shape (N, L)
-        Peak-to-peak of the same pairs from the nominal curves and their derivatives, m.
-    confidence : float
-        Of the bounds of the quantiles.
-    cost : dict
-        CPU and wall seconds by stage, of this process.
-    asked : dict
-    solved, held : int
-        The first so many pairs are solved, the others by the model; so many of them it did not know.
-    missed, missed_largest : ndarray, shape (L,)
-        By how much the model misses the peak-to-peak of the pairs that are held against it: root of the mean
-        square, and most, m.
-    above : PairsAbove, optional
-        Pairs above a limit.
-    """
+    """Peak-to-peak of N pairs at L torques."""
 
     torque: FloatArray = field(metadata=in_unit("n_m", "torque"))
+    """N m. Shape (L,)."""
     names: tuple[str, ...]
+    """The deviations: "misalignment" and ``gear.quantity``."""
     deviation: FloatArray = field(metadata=in_unit("m", "sample", "deviating"))
+    """m. Shape (N, d)."""
     peak_to_peak: FloatArray = field(metadata=in_unit("m", "sample", "torque"))
+    """m. Shape (N, L)."""
     nominal: FloatArray = field(metadata=in_unit("m", "torque"))
     error: FloatArray = field(metadata=in_unit("m", "torque"))
+    """`nominal`, `error`: Without deviations, and the error of the analysis there, m. Shape (L,) each."""
     quantiles: tuple[Quantile, ...]
     first_order: FloatArray = field(metadata=in_unit("m", "sample", "torque"))
+    """Peak-to-peak of the same pairs from the nominal curves and their derivatives, m. Shape (N, L)."""
     confidence: float
+    """Of the bounds of the quantiles."""
     cost: Json
+    """CPU and wall seconds by stage, of this process."""
     asked: Json
     solved: int = 0
     held: int = 0
+    """`solved`, `held`: The first so many pairs are solved, the others by the model; so many of them it did
+    not know.
+    """
     missed: FloatArray = field(default_factory=lambda: np.zeros(0), metadata=in_unit("m", "torque"))
     missed_largest: FloatArray = field(default_factory=lambda: np.zeros(0), metadata=in_unit("m", "torque"))
+    """`missed`, `missed_largest`: By how much the model misses the peak-to-peak of the pairs that are held
+    against it: root of the mean square, and most, m. Shape (L,) each.
+    """
     above: PairsAbove | None = None
+    """Pairs above a limit."""
 
     @property
     def mean(self) -> FloatArray:

@@ -30,21 +30,14 @@ PROCESS_SPREAD = 3.0
 
 @dataclass(frozen=True)
 class Tolerances:
-    """Half widths of tolerance bands about the design, and the distribution within them.
-
-    Attributes
-    ----------
-    misalignment : float
-        m, >= 0.
-    modification : mapping
-        ``gear.quantity`` to m, > 0.
-    distribution : {"normal", "uniform"}
-        Normal: three standard deviations are the tolerance, and deviations beyond are rejected.
-    """
+    """Half widths of tolerance bands about the design, and the distribution within them."""
 
     misalignment: float = 0.0
+    """m, >= 0."""
     modification: Mapping[str, float] = field(default_factory=dict)
+    """``gear.quantity`` to m, > 0."""
     distribution: Distribution = "normal"
+    """Normal: three standard deviations are the tolerance, and deviations beyond are rejected."""
 
     def __post_init__(self) -> None:
         if self.misalignment:

@@ -23,20 +23,15 @@ ACROSS_FACE = tuple(name for name in QUANTITIES if Direction.FACE in FLANK_FIELD
 
 @dataclass(frozen=True)
 class DesignVariable:
-    """One quantity of one gear's modification, free between bounds.
-
-    Attributes
-    ----------
-    name : str
-        ``gear.quantity``, such as ``"pinion.tip_relief"``: a gear of `GEARS` and a field of
-        `FlankModification` among `QUANTITIES`.
-    low, high : float
-        Bounds in m, low < high.
-    """
+    """One quantity of one gear's modification, free between bounds."""
 
     name: str
+    """``gear.quantity``, such as ``"pinion.tip_relief"``: a gear of `GEARS` and a field of
+    `FlankModification` among `QUANTITIES`.
+    """
     low: float = field(metadata=in_unit("m"))
     high: float = field(metadata=in_unit("m"))
+    """`low`, `high`: Bounds in m, low < high."""
 
     def __post_init__(self) -> None:
         gear_and_quantity(f"variables.{self.name}", self.name)

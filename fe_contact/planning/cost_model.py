@@ -258,27 +258,18 @@ class _Cost(NamedTuple):
 
 @dataclass(frozen=True)
 class Prediction:
-    """Predicted cost of one run.
-
-    Attributes
-    ----------
-    parts : dict
-        CPU seconds on this host by stage and part of it, in the order of the work.
-    correction : dict
-        Factor by stage from earlier runs, 1 without any.
-    memory_bytes : int
-        Largest resident memory of the process.
-    positions : int
-        Of the table, expected where they are placed adaptively.
-    kind : str
-        "plane" or "face": what `run_log` keeps apart.
-    """
+    """Predicted cost of one run."""
 
     parts: dict[str, dict[str, float]]
+    """CPU seconds on this host by stage and part of it, in the order of the work."""
     correction: dict[str, float]
+    """Factor by stage from earlier runs, 1 without any."""
     memory_bytes: int
+    """Largest resident memory of the process."""
     positions: int
+    """Of the table, expected where they are placed adaptively."""
     kind: str
+    """"plane" or "face": what `run_log` keeps apart."""
 
     @property
     def raw(self) -> dict[str, float]:

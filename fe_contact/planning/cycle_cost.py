@@ -15,25 +15,17 @@ from fe_contact.types import Json
 
 @dataclass(frozen=True)
 class CycleCost:
-    """Size of a table and what it costs.
-
-    Attributes
-    ----------
-    pitches : int
-        Base pitches of the period.
-    positions : int
-        In each of them; the least number where they are placed adaptively.
-    alignments : int
-        Misalignments x center distances.
-    cpu_seconds, memory_bytes : float
-        Predicted for the contact with its error estimate.
-    """
+    """Size of a table and what it costs."""
 
     pitches: int
+    """Base pitches of the period."""
     positions: int
+    """In each of them; the least number where they are placed adaptively."""
     alignments: int
+    """Misalignments x center distances."""
     cpu_seconds: float
     memory_bytes: float
+    """`cpu_seconds`, `memory_bytes`: Predicted for the contact with its error estimate."""
 
     @property
     def rows(self) -> int:

@@ -53,20 +53,18 @@ COARSER = 1.5
 
 @dataclass(frozen=True)
 class PlaneDiscretization:
-    """Transverse sections.
-
-    Attributes
-    ----------
-    recipes, coarse_recipes : (MeshRecipe, MeshRecipe)
-        Driving and driven gear; the coarse ones are half as fine, for the discretization error.
-    finite_width : (SectorRecipe, SectorRecipe) or None
-        Solids of half the face that give what a finite width adds; None: the plane alone.
-    """
+    """Transverse sections."""
 
     hypothesis: PlaneHypothesis
     recipes: tuple[MeshRecipe, MeshRecipe]
     coarse_recipes: tuple[MeshRecipe, MeshRecipe]
+    """`recipes`, `coarse_recipes`: Driving and driven gear; the coarse ones are half as fine, for the
+    discretization error. Shape (MeshRecipe, MeshRecipe) each.
+    """
     finite_width: tuple[SectorRecipe, SectorRecipe] | None = None
+    """Solids of half the face that give what a finite width adds; None: the plane alone. Shape (SectorRecipe,
+    SectorRecipe).
+    """
 
     slices = 1
     remaining = 1.0 / 3.0
@@ -90,23 +88,19 @@ class PlaneDiscretization:
 
 @dataclass(frozen=True)
 class FaceDiscretization:
-    """Tooth sectors over the face width.
-
-    Attributes
-    ----------
-    recipes, coarse_recipes : (SectorRecipe, SectorRecipe)
-        Driving and driven gear; the coarse ones for the discretization error.
-    slices : int
-        Of the common face width.
-    most_slices : int
-        Of two thirds of a layer of either gear, narrower ones would move the same freedoms of the bodies, and
-        of `SLICE_OVER_PATCH`.
-    """
+    """Tooth sectors over the face width."""
 
     recipes: tuple[SectorRecipe, SectorRecipe]
     coarse_recipes: tuple[SectorRecipe, SectorRecipe]
+    """`recipes`, `coarse_recipes`: Driving and driven gear; the coarse ones for the discretization error.
+    Shape (SectorRecipe, SectorRecipe) each.
+    """
     slices: int
+    """Of the common face width."""
     most_slices: int
+    """Of two thirds of a layer of either gear, narrower ones would move the same freedoms of the bodies, and
+    of `SLICE_OVER_PATCH`.
+    """
 
     corrected = False
     resolved, resolved_edge = FACE_RESOLVED, FACE_EDGE
@@ -213,27 +207,18 @@ SUPPORT_RATIO = 5.0
 
 @dataclass(frozen=True)
 class NodeRule:
-    """The density of positions where none are requested.
-
-    Attributes
-    ----------
-    start : int
-        Equally spaced nodes to begin with.
-    tolerance : float
-        Interpolation error to keep, as a fraction of each load's peak-to-peak STE.
-    most : int
-        Largest number of nodes.
-    assessed_pitches : int
-        Base pitches of a longer period that are looked at.
-    least_ripple : float
-        Peak-to-peak STE in m that smaller ones count as.
-    """
+    """The density of positions where none are requested."""
 
     start: int
+    """Equally spaced nodes to begin with."""
     tolerance: float
+    """Interpolation error to keep, as a fraction of each load's peak-to-peak STE."""
     most: int
+    """Largest number of nodes."""
     assessed_pitches: int = 3
+    """Base pitches of a longer period that are looked at."""
     least_ripple: float = 0.0
+    """Peak-to-peak STE in m that smaller ones count as."""
 
     def reached_beside(self, position: FloatArray) -> BoolArray:
         """Whether positions (P,) of a base pitch are nodes of interpolants in the pitches beside it."""
@@ -276,39 +261,28 @@ FACE_NODES = NodeRule(64, 0.005, 192, 3)
 
 @dataclass(frozen=True)
 class Plan:
-    """Discretization of one run.
-
-    Attributes
-    ----------
-    patch, coarse_patch : PatchRule
-        Load patches, and wider ones, which the coarse meshes resolve.
-    remaining_patches : float
-        Error left over the change to the wider ones: of second order in the width, against patches as narrow
-        as the strips of the largest load ask for; 0 where the run has those.
-    positions : int or None
-        Fixed number, or None for adaptive nodes.
-    nodes : NodeRule
-        How those are placed.
-    load : ndarray
-        Requested normal forces F_bn in N.
-    support : ndarray
-        Further loads in N that carry the force extraction down to lift-off and into overload.
-    parts : tuple of str
-        Parts of the gears' bodies that the finite elements have, as in `ContactModel`.
-    level : str
-        "draft", "standard" or "fine": that of the meshes.
-    """
+    """Discretization of one run."""
 
     discretization: Discretization
     patch: PatchRule
     coarse_patch: PatchRule
+    """`patch`, `coarse_patch`: Load patches, and wider ones, which the coarse meshes resolve."""
     remaining_patches: float
+    """Error left over the change to the wider ones: of second order in the width, against patches as narrow
+    as the strips of the largest load ask for; 0 where the run has those.
+    """
     positions: int | None
+    """Fixed number, or None for adaptive nodes."""
     nodes: NodeRule
+    """How those are placed."""
     load: FloatArray
+    """Requested normal forces F_bn in N."""
     support: FloatArray
+    """Further loads in N that carry the force extraction down to lift-off and into overload."""
     parts: tuple[str, ...]
+    """Parts of the gears' bodies that the finite elements have, as in `ContactModel`."""
     level: str = "standard"
+    """"draft", "standard" or "fine": that of the meshes."""
 
     def bodies(self, pair: ParallelAxes) -> tuple[Toothing, Toothing]:
         """Return both gears as their finite elements have them."""

@@ -36,28 +36,19 @@ _PLANE_RIPPLE, _SPUR_RIPPLE, _HELICAL_RIPPLE = 0.4, 0.4, 0.15
 
 @dataclass(frozen=True)
 class ExpectedCurves:
-    """Mean and peak-to-peak STE of some curves of a table.
-
-    Attributes
-    ----------
-    force : ndarray, shape (C,)
-        Normal force, N.
-    added : ndarray, shape (C,)
-        Mean less that at no load, m.
-    mean, peak_to_peak : ndarray, shape (C,)
-        m.
-    allowed : AllowedError
-        Says below which size errors count absolutely.
-    absolute : bool
-        Whether these are sizes of the case; False: parts of its mean, as usual pairs have them.
-    """
+    """Mean and peak-to-peak STE of some curves of a table."""
 
     force: FloatArray
+    """Normal force, N. Shape (C,)."""
     added: FloatArray
+    """Mean less that at no load, m. Shape (C,)."""
     mean: FloatArray
     peak_to_peak: FloatArray
+    """`mean`, `peak_to_peak`: m. Shape (C,) each."""
     allowed: AllowedError
+    """Says below which size errors count absolutely."""
     absolute: bool = True
+    """Whether these are sizes of the case; False: parts of its mean, as usual pairs have them."""
 
     @property
     def scale(self) -> FloatArray:
@@ -100,36 +91,27 @@ class ExpectedError:
 
     Parts are of the size that a tolerance counts by: of the quantity or, where that is less, of the size at
     which the floor holds.
-
-    Attributes
-    ----------
-    mesh : float
-        Finite elements.
-    slices : float
-        Slices of the face; 0 in the plane.
-    positions : float
-        Interpolation between positions.
-    plane : float
-        The plane standing in for three dimensions.
-    method : float
-        What the method leaves out of full contact, whatever the mesh (`model_error`).
-    mean, peak_to_peak : float or None
-        The largest errors over the loads without `bias`, m; None where no size is known before the run.
-    chosen : bool
-        Whether the caller chose the model, so that no run of this request lowers `plane`.
-    bias : PlaneBias, optional
-        What a plane leaves out where it is not corrected; `plane` is its size then.
     """
 
     mesh: float
+    """Finite elements."""
     slices: float
+    """Slices of the face; 0 in the plane."""
     positions: float
+    """Interpolation between positions."""
     plane: float
+    """The plane standing in for three dimensions."""
     method: float
+    """What the method leaves out of full contact, whatever the mesh (`model_error`)."""
     mean: float | None = None
     peak_to_peak: float | None = None
+    """`mean`, `peak_to_peak`: The largest errors over the loads without `bias`, m; None where no size is
+    known before the run.
+    """
     chosen: bool = False
+    """Whether the caller chose the model, so that no run of this request lowers `plane`."""
     bias: PlaneBias | None = None
+    """What a plane leaves out where it is not corrected; `plane` is its size then."""
 
     @property
     def numerical(self) -> float:
@@ -226,23 +208,17 @@ def _parts(pair: ParallelAxes, plan: Plan, known: ExpectedCurves) -> dict[str, F
 
 @dataclass(frozen=True)
 class MeshOption:
-    """A mesh with its slices.
-
-    Attributes
-    ----------
-    level : str
-        "draft", "standard" or "fine".
-    slices : int
-        Of the face; 1 in the plane.
-    effort : float
-        Work of a run, in CPU seconds of the host on which the models were measured and with nothing in the
-        cache: equal on every host, so that the choice is.
-    """
+    """A mesh with its slices."""
 
     level: str
+    """"draft", "standard" or "fine"."""
     slices: int
+    """Of the face; 1 in the plane."""
     error: ExpectedError
     effort: float
+    """Work of a run, in CPU seconds of the host on which the models were measured and with nothing in the
+    cache: equal on every host, so that the choice is.
+    """
 
     @property
     def name(self) -> str:
@@ -252,19 +228,13 @@ class MeshOption:
 
 @dataclass(frozen=True)
 class MeshChoice:
-    """A mesh with its slices, the reason, and whether the request can be met.
-
-    Attributes
-    ----------
-    met : bool
-        Whether the models promise what was requested.
-    reason : str
-        In words.
-    """
+    """A mesh with its slices, the reason, and whether the request can be met."""
 
     option: MeshOption
     met: bool
+    """Whether the models promise what was requested."""
     reason: str
+    """In words."""
 
     @property
     def level(self) -> str:

@@ -23,35 +23,28 @@ LIFTED_OFF, ABOVE_TABLE, OUTSIDE_MISALIGNMENT, OUTSIDE_CENTER_DISTANCE = 1, 2, 4
 
 
 class _KernelTable(NamedTuple):
-    """The arrays that the kernel reads.
-
-    Attributes
-    ----------
-    knots, spacing : (K,) arrays
-        Of position, misalignment and center-distance change, one axis after the other; widths of the
-        intervals that begin at the knots (unused at the last knot of an open axis).
-    first, size : (3,) arrays
-        Where each axis begins, and how many knots it has.
-    period : float
-        Of the position.
-    level : (L,) array
-        Forces of the levels.
-    deflection, stiffness : (P M D L O,) arrays
-        O derivatives for every knot and level, side by side. O is also the number of a cell's corners, 2^A
-        over A axes of several knots.
-    order : (O, A) array
-        Which axes each derivative is taken in.
-    """
+    """The arrays that the kernel reads."""
 
     knots: FloatArray
     spacing: FloatArray
+    """`knots`, `spacing`: Of position, misalignment and center-distance change, one axis after the other;
+    widths of the intervals that begin at the knots (unused at the last knot of an open axis). Shape (K,)
+    each.
+    """
     first: IntArray
     size: IntArray
+    """`first`, `size`: Where each axis begins, and how many knots it has. Shape (3,) each."""
     period: float
+    """Of the position."""
     level: FloatArray
+    """Forces of the levels. Shape (L,)."""
     deflection: FloatArray
     stiffness: FloatArray
+    """`deflection`, `stiffness`: O derivatives for every knot and level, side by side. O is also the number
+    of a cell's corners, 2^A over A axes of several knots. Shape (P M D L O,) each.
+    """
     order: IntArray
+    """Which axes each derivative is taken in. Shape (O, A)."""
 
 
 @inner(nogil=True, error_model="numpy")

@@ -23,19 +23,13 @@ from fe_contact.types import Estimate, FloatArray
 
 @dataclass(frozen=True)
 class OperatingPoint:
-    """One load and one alignment inside a table.
-
-    Attributes
-    ----------
-    force : float
-        Total normal tooth force F_bn, N.
-    misalignment, center_distance_change : float
-        m.
-    """
+    """One load and one alignment inside a table."""
 
     force: float
+    """Total normal tooth force F_bn, N."""
     misalignment: float
     center_distance_change: float
+    """`misalignment`, `center_distance_change`: m."""
 
 
 def operating_point(
@@ -225,59 +219,46 @@ _FARTHEST = 1000  # periods from the reference; load shares get a column per pai
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """Transmission error over position at one load and alignment.
-
-    Attributes
-    ----------
-    point : OperatingPoint
-        Normal force in N, misalignment and center-distance change in m.
-    torque : float
-        The load as torque on gear 1, N m.
-    position : (Q,) array
-        Base pitches, as requested (not wrapped).
-    ste : (Q,) array
-        Static transmission error, m.
-    error : (Q,) array
-        Half-width of its error band, m.
-    interval_error : float
-        Part of every band that interpolation between the nodes of load, misalignment and center distance
-        has, m: 0 on nodes, NaN where not estimated.
-    pair : (N,) array
-        Pair index of each column of `_load_share`; the stored pairs if all positions lie in [0, 1) or the
-        period is longer than a pitch.
-    load_share : (Q, N) array
-        Part of the load on each pair.
-    mean, peak_to_peak : Estimate
-        Over one period, whatever `position` holds. An error of NaN was not estimated.
-    harmonics : tuple of Estimate
-        Mesh harmonics: amplitudes A_n of ste(x) = mean + sum A_n cos(2 pi n x + phi_n), n = 1 .. 20.
-    harmonic_phases : (20,) array
-        phi_n in rad.
-    spectrum : Spectrum
-        All orders up to the 20th mesh harmonic: with a period of many pitches also what lies between the
-        mesh harmonics.
-    period : int
-        Of the table, base pitches.
-    over_face : OverFace, optional
-        Mean and peak-to-peak of the gears of finite width, where the table is of a plane that is not
-        corrected: the errors above are towards the plane model.
-    """
+    """Transmission error over position at one load and alignment."""
 
     point: OperatingPoint
+    """Normal force in N, misalignment and center-distance change in m."""
     torque: float
+    """The load as torque on gear 1, N m."""
     position: FloatArray
+    """Base pitches, as requested (not wrapped). Shape (Q,)."""
     ste: FloatArray
+    """Static transmission error, m. Shape (Q,)."""
     error: FloatArray
+    """Half-width of its error band, m. Shape (Q,)."""
     interval_error: float
+    """Part of every band that interpolation between the nodes of load, misalignment and center distance has,
+    m: 0 on nodes, NaN where not estimated.
+    """
     pair: NDArray[np.int64]
+    """Pair index of each column of `_load_share`; the stored pairs if all positions lie in [0, 1) or the
+    period is longer than a pitch. Shape (N,).
+    """
     load_share: FloatArray
+    """Part of the load on each pair. Shape (Q, N)."""
     mean: Estimate
     peak_to_peak: Estimate
+    """`mean`, `peak_to_peak`: Over one period, whatever `position` holds. An error of NaN was not estimated.
+    """
     harmonics: tuple[Estimate, ...]
+    """Mesh harmonics: amplitudes A_n of ste(x) = mean + sum A_n cos(2 pi n x + phi_n), n = 1 .. 20."""
     harmonic_phases: FloatArray
+    """phi_n in rad. Shape (20,)."""
     spectrum: Spectrum
+    """All orders up to the 20th mesh harmonic: with a period of many pitches also what lies between the mesh
+    harmonics.
+    """
     period: int
+    """Of the table, base pitches."""
     over_face: OverFace | None = None
+    """Mean and peak-to-peak of the gears of finite width, where the table is of a plane that is not
+    corrected: the errors above are towards the plane model.
+    """
 
 
 def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: ArrayLike | None) -> Curve:

@@ -22,28 +22,20 @@ _SPECTRUM_PER_PITCH, _SPECTRUM_PER_PERIOD, _SPECTRUM_FEWEST = 4096, 2**18, 256
 
 @dataclass(frozen=True, eq=False)
 class Spectrum:
-    """Amplitudes of ste(x) = mean + sum A_k cos(2 pi o_k x + phi_k), x in base pitches.
-
-    Attributes
-    ----------
-    order : (K,) array
-        o_k in cycles per base pitch: whole numbers are the mesh harmonics, others sidebands and the orders
-        of single teeth. 1/period, 2/period .. 20.
-    amplitude : (K,) array
-        A_k in m.
-    phase : (K,) array
-        phi_k in rad.
-    error : (K,) array
-        Half-widths of the error bands of the amplitudes, m; NaN: not estimated.
-    teeth : (int, int)
-        Of the driving and the driven gear.
-    """
+    """Amplitudes of ste(x) = mean + sum A_k cos(2 pi o_k x + phi_k), x in base pitches."""
 
     order: FloatArray
+    """o_k in cycles per base pitch: whole numbers are the mesh harmonics, others sidebands and the orders of
+    single teeth. 1/period, 2/period .. 20. Shape (K,).
+    """
     amplitude: FloatArray
+    """A_k in m. Shape (K,)."""
     phase: FloatArray
+    """phi_k in rad. Shape (K,)."""
     error: FloatArray
+    """Half-widths of the error bands of the amplitudes, m; NaN: not estimated. Shape (K,)."""
     teeth: tuple[int, int]
+    """Of the driving and the driven gear."""
 
     @property
     def pinion_order(self) -> FloatArray:

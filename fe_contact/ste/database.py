@@ -40,24 +40,18 @@ _LEAST_COMPLIANCE = 0.1
 
 @dataclass(frozen=True)
 class Repair:
-    """The change by `SteDatabase.monotone_repaired`.
-
-    Attributes
-    ----------
-    curves : int
-        Load series (one per position and alignment) that were changed.
-    largest_change : float
-        Largest change of a stored transmission error, m.
-    position, force, misalignment, center_distance_change : float
-        Where that is (base pitches, N, m, m).
-    """
+    """The change by `SteDatabase.monotone_repaired`."""
 
     curves: int
+    """Load series (one per position and alignment) that were changed."""
     largest_change: float
+    """Largest change of a stored transmission error, m."""
     position: float
     force: float
     misalignment: float
     center_distance_change: float
+    """`position`, `force`, `misalignment`, `center_distance_change`: Where that is (base pitches, N, m, m).
+    """
 
 
 def _without_failed(table: Table) -> Table:
@@ -134,22 +128,15 @@ def _isotonic(levels: FloatArray, force: FloatArray, least: float) -> FloatArray
 
 @dataclass(frozen=True)
 class SupportLoads:
-    """Solutions at further loads of a table.
-
-    Attributes
-    ----------
-    force : (S,) array
-        N, increasing.
-    deflection, tangent : (P, S, M, D) arrays
-        STE in m, and its derivative in m/N.
-    pairs : (P, S, M, D) integer array
-        Number of pairs that carry load.
-    """
+    """Solutions at further loads of a table."""
 
     force: FloatArray
+    """N, increasing. Shape (S,)."""
     deflection: FloatArray
     tangent: FloatArray
+    """`deflection`, `tangent`: STE in m, and its derivative in m/N. Shape (P, S, M, D) each."""
     pairs: IntArray
+    """Number of pairs that carry load. (P, S, M, D) integer array."""
 
 
 def with_support_loads(table: Table, loads: SupportLoads) -> Table:

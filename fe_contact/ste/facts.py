@@ -41,44 +41,32 @@ not the error of their interval; up to 5 all alignments are requested ones."""
 
 @dataclass(frozen=True)
 class PairFacts:
-    """The closed-form facts of a gear pair that a user of its table needs; SI units.
-
-    Attributes
-    ----------
-    teeth : tuple of int
-        Numbers of teeth, driving gear first; > 0 for a ring gear too.
-    base_radius : tuple of float
-        r_b1, r_b2 in m, > 0 for a ring gear too.
-    base_pitch : float
-        Transverse base pitch p_bt in m.
-    base_helix_angle : float
-        beta_b in rad, >= 0.
-    center_distance : float
-        a in m.
-    working_pressure_angle : float
-        Transverse working pressure angle alpha_wt in rad.
-    face_width : float
-        Common face width in m.
-    helix_hand : int
-        Hand of gear 1: 1 right, -1 left, 0 spur. An external wheel has the opposite hand, a ring gear the
-        same.
-    internal : bool
-        Whether gear 2 is a ring gear: a cos(alpha_wt) is then r_b2 - r_b1, else r_b1 + r_b2, and both gears
-        turn the same way. STE stays r_b1 theta_1 - r_b2 theta_2, either angle counted as its gear is driven.
-    base_tooth_thickness : tuple of float or None
-        s_bt1, s_bt2 in m, arcs of the base circles; a ring gear's may be < 0. None: not known.
-    """
+    """The closed-form facts of a gear pair that a user of its table needs; SI units."""
 
     teeth: tuple[int, int]
+    """Numbers of teeth, driving gear first; > 0 for a ring gear too."""
     base_radius: tuple[float, float]
+    """r_b1, r_b2 in m, > 0 for a ring gear too."""
     base_pitch: float
+    """Transverse base pitch p_bt in m."""
     base_helix_angle: float
+    """beta_b in rad, >= 0."""
     center_distance: float
+    """a in m."""
     working_pressure_angle: float
+    """Transverse working pressure angle alpha_wt in rad."""
     face_width: float
+    """Common face width in m."""
     helix_hand: int
+    """Hand of gear 1: 1 right, -1 left, 0 spur. An external wheel has the opposite hand, a ring gear the
+    same.
+    """
     internal: bool = False
+    """Whether gear 2 is a ring gear: a cos(alpha_wt) is then r_b2 - r_b1, else r_b1 + r_b2, and both gears
+    turn the same way. STE stays r_b1 theta_1 - r_b2 theta_2, either angle counted as its gear is driven.
+    """
     base_tooth_thickness: tuple[float, float] | None = None
+    """s_bt1, s_bt2 in m, arcs of the base circles; a ring gear's may be < 0. None: not known."""
 
     @classmethod
     def of(cls, pair: ParallelAxes) -> PairFacts:
@@ -142,33 +130,22 @@ class PairFacts:
 
 @dataclass(frozen=True)
 class Metadata:
-    """The computation of a database: plain JSON throughout, copied on construction.
-
-    Attributes
-    ----------
-    case : dict
-        The case with all defaults echoed.
-    effect_ledger : dict or list
-        For each registered effect: on or off, why, influence and cost.
-    receipt : dict
-        Time and memory by stage, error estimate by source.
-    content_hash : str
-        RFC 8785 hash of the validated input with the solver and schema version.
-    software_versions : dict
-        Version by package name.
-    schema_version : int
-        Version of the file layout.
-    warnings : list of dict
-        What is implausible about the case or its results; empty where nothing is.
-    """
+    """The computation of a database: plain JSON throughout, copied on construction."""
 
     case: Json = field(default_factory=dict)
+    """The case with all defaults echoed."""
     effect_ledger: Json | list[Any] = field(default_factory=dict)
+    """For each registered effect: on or off, why, influence and cost."""
     receipt: Json = field(default_factory=dict)
+    """Time and memory by stage, error estimate by source."""
     content_hash: str = ""
+    """RFC 8785 hash of the validated input with the solver and schema version."""
     software_versions: dict[str, str] = field(default_factory=dict)
+    """Version by package name."""
     schema_version: int = SCHEMA_VERSION
+    """Version of the file layout."""
     warnings: list[Any] = field(default_factory=list)
+    """What is implausible about the case or its results; empty where nothing is."""
 
     def __post_init__(self) -> None:
         for entry in fields(self):

@@ -71,106 +71,99 @@ class SteFields:
     """Arrays on the grid position P x force F x misalignment M x center-distance change D; all read-only.
 
     Raises `DatabaseError`: shapes, order, signs or magnitudes contradict what follows.
-
-    Attributes
-    ----------
-    position : (P,) array
-        Phase of the driving gear in transverse base pitches, increasing in [0, period).
-    force : (F,) array
-        Total normal tooth force F_bn in N, increasing, > 0.
-    torque : (F,) array
-        The same loads as torque on gear 1 in N m.
-    misalignment : (M,) array
-        Tilt of the axes in the plane of action as growth of the gap over the common face width, m; zero at
-        the pitch point in mid-face. In tables without `load_arm` a helix slope, zero at mid-face.
-    center_distance_change : (D,) array
-        Deviation from the nominal center distance, m.
-    pair : (N,) array
-        Consecutive indices of the tooth pairs, counted anew at every whole pitch: pair j touches at phase
-        `position` - floor(`position`) + j.
-    static_transmission_error : (P, F, M, D) array
-        m along the transverse line of action, positive = the driven gear lags; NaN where the solve failed.
-    tangent_compliance : (P, F, M, D) array
-        d STE / d F_bn in m/N, > 0.
-    no_load_transmission_error : (P, M, D) array
-        Transmission error at first contact, m.
-    load_share : (P, F, M, D, N) array
-        Part of the load on each pair, >= 0, sums to 1.
-    face_centroid : (P, F, M, D) array
-        Offset of the load's centroid from mid-face, m.
-    max_pressure : (P, F, M, D) array
-        Largest contact pressure, Pa, away from edges, 0 where these alone carry; of tables without
-        `edge_pressure` that of edges, too.
-    pairs_in_contact, status : (P, F, M, D) integer arrays
-        Number of pairs that carry load; `fe_contact.types.Status` of the solve.
-    error_estimate : (P, F, M, D) array
-        Half-width of the error band of the transmission error, m, >= 0; NaN where it was not estimated.
-    residuals : (P, F, M, D, 4) array
-        Equilibrium, penetration, tension, complementarity of the contact solution; NaN in base pitches that
-        were not solved but follow from derivatives.
-    support_force : (S,) array
-        Further loads in N, not among `force`, solved only to carry the force extraction down to lift-off and
-        beyond the highest load; S may be 0.
-    support_transmission_error, support_tangent_compliance, support_pairs_in_contact : (P, S, M, D) arrays
-        As the arrays of the same names without `support`.
-    period : int
-        Whole base pitches after which everything repeats: 1 where all teeth of a gear are alike.
-    curve_error : (9 or 10, 23, F, M, D) array
-        Errors of mean, peak-to-peak, any order beside the mesh orders, and 20 harmonics in m, >= 0, by source
-        (`ste.curve.SOURCES`, and `DERIVATIVES` where base pitches were not solved); NaN: not estimated.
-        Empty for tables without, whose errors follow from the bands.
-    edge_pressure : (P, F, M, D) array
-        Largest pressure of the contacts that reach an edge of a flank, Pa: Hertz's as if the flank went on,
-        where the true one is singular; 0 where none does. Empty for tables without.
-    load_arm : (P, F, M, D) array
-        Arm of the load about the axis of a misalignment, m: over all points of the contact lines the mean of
-        the offset from mid-face less tan(beta_b) times the way from the pitch point along the line of action.
-        On spur gears `face_centroid`. Empty for tables without.
-    load_arm_error : (3 or 4, 23, F, M, D) array
-        Errors of the same quantities of it in m, >= 0, by source (`ste.curve.OF_LOAD_ARM`, and as above);
-        NaN: not estimated. Empty for tables without.
-    interval_error : (3, F, M, D) array
-        Largest error of the transmission error between each node and the next of an axis, m, >= 0: of loads,
-        misalignments, center distances; 0 after the last node, NaN: not estimated. Empty for older tables.
-    pair_pressure : (P, F, M, D, N) array
-        Largest contact pressure of each pair away from edges, Pa; `max_pressure` is that of all. Empty where
-        the period is 1, and for older tables.
-    misalignment_inserted, center_distance_inserted : (M,), (D,) integer arrays
-        1 at nodes that were inserted to meet a tolerance between those requested, else 0. Empty where none
-        was inserted.
     """
 
     position: FloatArray
+    """Phase of the driving gear in transverse base pitches, increasing in [0, period). Shape (P,)."""
     force: FloatArray
+    """Total normal tooth force F_bn in N, increasing, > 0. Shape (F,)."""
     torque: FloatArray
+    """The same loads as torque on gear 1 in N m. Shape (F,)."""
     misalignment: FloatArray
+    """Tilt of the axes in the plane of action as growth of the gap over the common face width, m; zero at the
+    pitch point in mid-face. In tables without `load_arm` a helix slope, zero at mid-face. Shape (M,).
+    """
     center_distance_change: FloatArray
+    """Deviation from the nominal center distance, m. Shape (D,)."""
     pair: NDArray[np.int64]
+    """Consecutive indices of the tooth pairs, counted anew at every whole pitch: pair j touches at phase
+    `position` - floor(`position`) + j. Shape (N,).
+    """
     static_transmission_error: FloatArray
+    """m along the transverse line of action, positive = the driven gear lags; NaN where the solve failed.
+    Shape (P, F, M, D).
+    """
     tangent_compliance: FloatArray
+    """d STE / d F_bn in m/N, > 0. Shape (P, F, M, D)."""
     no_load_transmission_error: FloatArray
+    """Transmission error at first contact, m. Shape (P, M, D)."""
     load_share: FloatArray
+    """Part of the load on each pair, >= 0, sums to 1. Shape (P, F, M, D, N)."""
     face_centroid: FloatArray
+    """Offset of the load's centroid from mid-face, m. Shape (P, F, M, D)."""
     max_pressure: FloatArray
+    """Largest contact pressure, Pa, away from edges, 0 where these alone carry; of tables without
+    `edge_pressure` that of edges, too. Shape (P, F, M, D).
+    """
     pairs_in_contact: NDArray[np.int16]
     status: NDArray[np.int8]
+    """`pairs_in_contact`, `status`: Number of pairs that carry load; `fe_contact.types.Status` of the solve.
+    (P, F, M, D) integer arrays.
+    """
     error_estimate: FloatArray
+    """Half-width of the error band of the transmission error, m, >= 0; NaN where it was not estimated. Shape
+    (P, F, M, D).
+    """
     residuals: FloatArray
+    """Equilibrium, penetration, tension, complementarity of the contact solution; NaN in base pitches that
+    were not solved but follow from derivatives. Shape (P, F, M, D, 4).
+    """
     facts: PairFacts
     metadata: Metadata
     support_force: FloatArray = field(default_factory=lambda: np.empty(0))
+    """Further loads in N, not among `force`, solved only to carry the force extraction down to lift-off and
+    beyond the highest load; S may be 0. Shape (S,).
+    """
     support_transmission_error: FloatArray = field(default_factory=lambda: np.empty(0))
     support_tangent_compliance: FloatArray = field(default_factory=lambda: np.empty(0))
     support_pairs_in_contact: NDArray[np.int16] = field(default_factory=lambda: np.empty(0, np.int16))
+    """`support_transmission_error`, `support_tangent_compliance`, `support_pairs_in_contact`: As the arrays
+    of the same names without `support`. Shape (P, S, M, D) each.
+    """
     period: int = 1
+    """Whole base pitches after which everything repeats: 1 where all teeth of a gear are alike."""
     curve_error: FloatArray = field(default_factory=lambda: np.empty((0,) * len(CURVE_ERROR)))
+    """Errors of mean, peak-to-peak, any order beside the mesh orders, and 20 harmonics in m, >= 0, by source
+    (`ste.curve.SOURCES`, and `DERIVATIVES` where base pitches were not solved); NaN: not estimated. Empty for
+    tables without, whose errors follow from the bands. Shape (9 or 10, 23, F, M, D).
+    """
     edge_pressure: FloatArray = field(default_factory=lambda: np.empty((0,) * len(GRID)))
+    """Largest pressure of the contacts that reach an edge of a flank, Pa: Hertz's as if the flank went on,
+    where the true one is singular; 0 where none does. Empty for tables without. Shape (P, F, M, D).
+    """
     load_arm: FloatArray = field(default_factory=lambda: np.empty((0,) * len(GRID)))
+    """Arm of the load about the axis of a misalignment, m: over all points of the contact lines the mean of
+    the offset from mid-face less tan(beta_b) times the way from the pitch point along the line of action. On
+    spur gears `face_centroid`. Empty for tables without. Shape (P, F, M, D).
+    """
     load_arm_error: FloatArray = field(default_factory=lambda: np.empty((0,) * len(CURVE_ERROR)))
+    """Errors of the same quantities of it in m, >= 0, by source (`ste.curve.OF_LOAD_ARM`, and as above); NaN:
+    not estimated. Empty for tables without. Shape (3 or 4, 23, F, M, D).
+    """
     pair_pressure: FloatArray = field(default_factory=lambda: np.empty((0,) * (len(GRID) + 1)))
+    """Largest contact pressure of each pair away from edges, Pa; `max_pressure` is that of all. Empty where
+    the period is 1, and for older tables. Shape (P, F, M, D, N).
+    """
     interval_error: FloatArray = field(default_factory=lambda: np.empty((0,) * len(GRID)))
+    """Largest error of the transmission error between each node and the next of an axis, m, >= 0: of loads,
+    misalignments, center distances; 0 after the last node, NaN: not estimated. Empty for older tables. Shape
+    (3, F, M, D).
+    """
     misalignment_inserted: NDArray[np.int8] = field(default_factory=lambda: np.empty(0, np.int8))
     center_distance_inserted: NDArray[np.int8] = field(default_factory=lambda: np.empty(0, np.int8))
+    """`misalignment_inserted`, `center_distance_inserted`: 1 at nodes that were inserted to meet a tolerance
+    between those requested, else 0. Empty where none was inserted. (M,), (D,) integer arrays.
+    """
 
     def __post_init__(self) -> None:
         if np.size(self.support_force) == 0:

@@ -264,54 +264,44 @@ class ForceCubic:
 
 @dataclass(frozen=True, eq=False)
 class ForceTable:
-    """Levels of constant mesh force over position; read-only arrays.
-
-    Attributes
-    ----------
-    position : (P,) array
-        Knots in transverse base pitches, increasing in [0, period).
-    level : (L,) array
-        Transverse mesh force F_bt in N at the levels, increasing, level[0] = 0 (lift-off).
-    misalignment : (M,) array
-        m; length 1 = no such axis.
-    center_distance_change : (D,) array
-        m; length 1 = no such axis.
-    deflection : (M, D, P, L) array
-        Transmission error at level k in m, increasing in k.
-    deflection_slope : (M, D, P, L) array
-        Its derivative in position, m per base pitch.
-    stiffness : (M, D, P, L) array
-        dF_bt / d(deflection) in N/m, limited so that the force is monotone; 0 at lift-off.
-    stiffness_slope : (M, D, P, L) array
-        Its derivative in position, N/m per base pitch.
-    period : int
-        Whole base pitches after which the table repeats.
-    deflection_derivative, stiffness_derivative : (2, 2, 2, M, D, P, L) arrays or None
-        Differentiated once (1) or not (0) in misalignment, center-distance change and position: what the C1
-        interpolant over all axes uses. None without a second knot of misalignment or center distance.
-    load_arm : (M, D, P, L) array or None
-        Arm of the load about the axis of a misalignment at each level, m: from mid-face of the driving gear
-        towards its positive z, less tan(beta_b) times the way along the line of action from the pitch point;
-        at lift-off that of the lowest load.
-    sliding_share, sliding_lever : (M, D, P, L) arrays or None
-        Sums over the pairs of load share times the sign of y, and times |y| (m): y is the place of a pair's
-        contact from the pitch point, > 0 where it recedes.
-    """
+    """Levels of constant mesh force over position; read-only arrays."""
 
     position: FloatArray
+    """Knots in transverse base pitches, increasing in [0, period). Shape (P,)."""
     level: FloatArray
+    """Transverse mesh force F_bt in N at the levels, increasing, level[0] = 0 (lift-off). Shape (L,)."""
     misalignment: FloatArray
+    """m; length 1 = no such axis. Shape (M,)."""
     center_distance_change: FloatArray
+    """m; length 1 = no such axis. Shape (D,)."""
     deflection: FloatArray
+    """Transmission error at level k in m, increasing in k. Shape (M, D, P, L)."""
     deflection_slope: FloatArray
+    """Its derivative in position, m per base pitch. Shape (M, D, P, L)."""
     stiffness: FloatArray
+    """dF_bt / d(deflection) in N/m, limited so that the force is monotone; 0 at lift-off. Shape (M, D, P, L).
+    """
     stiffness_slope: FloatArray
+    """Its derivative in position, N/m per base pitch. Shape (M, D, P, L)."""
     period: int = 1
+    """Whole base pitches after which the table repeats."""
     deflection_derivative: FloatArray | None = None
     stiffness_derivative: FloatArray | None = None
+    """`deflection_derivative`, `stiffness_derivative`: Differentiated once (1) or not (0) in misalignment,
+    center-distance change and position: what the C1 interpolant over all axes uses. None without a second
+    knot of misalignment or center distance. Shape (2, 2, 2, M, D, P, L) each.
+    """
     load_arm: FloatArray | None = None
+    """Arm of the load about the axis of a misalignment at each level, m: from mid-face of the driving gear
+    towards its positive z, less tan(beta_b) times the way along the line of action from the pitch point; at
+    lift-off that of the lowest load. Shape (M, D, P, L).
+    """
     sliding_share: FloatArray | None = None
     sliding_lever: FloatArray | None = None
+    """`sliding_share`, `sliding_lever`: Sums over the pairs of load share times the sign of y, and times |y|
+    (m): y is the place of a pair's contact from the pitch point, > 0 where it recedes. Shape (M, D, P, L)
+    each.
+    """
 
     def __post_init__(self) -> None:
         for entry in fields(self):

@@ -46,24 +46,16 @@ class Validity(IntFlag):
 
 @dataclass(frozen=True, eq=False)
 class ForceSample:
-    """Mesh forces, in the broadcast shape of the query.
-
-    Attributes
-    ----------
-    force : array
-        Transverse mesh force F_bt in N, >= 0.
-    stiffness : array
-        dF/d(deflection) in N/m, >= 0.
-    position_slope : array
-        dF/d(position) at constant deflection, N per base pitch.
-    validity : integer array
-        Sum of `Validity` flags.
-    """
+    """Mesh forces, in the broadcast shape of the query."""
 
     force: FloatArray
+    """Transverse mesh force F_bt in N, >= 0."""
     stiffness: FloatArray
+    """dF/d(deflection) in N/m, >= 0."""
     position_slope: FloatArray
+    """dF/d(position) at constant deflection, N per base pitch."""
     validity: NDArray[np.int8]
+    """Sum of `Validity` flags."""
 
 
 @dataclass(frozen=True)

@@ -18,27 +18,21 @@ _UM = 1e-6
 
 @dataclass(frozen=True)
 class PlaneBias:
-    """Excess of the STE of the gears over that of a plane model, which is exact as far as its errors say.
-
-    Attributes
-    ----------
-    subject : str
-        Plane model and face width, in words.
-    mean, peak_to_peak : float
-        In parts of those in the plane; negative: the plane deflects more. `peak_to_peak` is that of flanks
-        whose ripple no relief hides.
-    bending_ripple : float
-        Peak-to-peak over the mean of unmodified flanks.
-    hidden : float
-        Largest change of peak-to-peak to either side, m, of curves whose ripple reliefs hide; 0 where they
-        hide nothing.
-    """
+    """Excess of the STE of the gears over that of a plane model, which is exact as far as its errors say."""
 
     subject: str
+    """Plane model and face width, in words."""
     mean: float
     peak_to_peak: float
+    """`mean`, `peak_to_peak`: In parts of those in the plane; negative: the plane deflects more.
+    `peak_to_peak` is that of flanks whose ripple no relief hides.
+    """
     bending_ripple: float
+    """Peak-to-peak over the mean of unmodified flanks."""
     hidden: float = 0.0
+    """Largest change of peak-to-peak to either side, m, of curves whose ripple reliefs hide; 0 where they
+    hide nothing.
+    """
 
     def correction(self, mean: FloatArray, peak_to_peak: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return what to add to mean and peak-to-peak (...) in the plane, and its error, each (2, ...) in m.

@@ -22,24 +22,20 @@ _SAME = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class ToothLoads:
-    """Largest loads on each tooth of a gear at one load and alignment, over all its mates.
-
-    Attributes
-    ----------
-    gear : int
-        0: the driving gear, 1: the driven one.
-    phase : (W,) array
-        Where the pair is on its way through mesh, base pitches; 0: at the pitch point in mid-face.
-    force_over_phase : (z, W) array
-        Normal force on each tooth there, N; teeth in the order of meshing, tooth 1 first. NaN: not stored.
-    pressure_over_phase : (z, W) array
-        Largest contact pressure away from edges, Pa; (z, 0) of tables without `pair_pressure`.
-    """
+    """Largest loads on each tooth of a gear at one load and alignment, over all its mates."""
 
     gear: int
+    """0: the driving gear, 1: the driven one."""
     phase: FloatArray
+    """Where the pair is on its way through mesh, base pitches; 0: at the pitch point in mid-face. Shape (W,).
+    """
     force_over_phase: FloatArray
+    """Normal force on each tooth there, N; teeth in the order of meshing, tooth 1 first. NaN: not stored.
+    Shape (z, W).
+    """
     pressure_over_phase: FloatArray
+    """Largest contact pressure away from edges, Pa; (z, 0) of tables without `pair_pressure`. Shape (z, W).
+    """
 
     @property
     def force(self) -> FloatArray:

@@ -44,20 +44,14 @@ FAINT = 1e-3
 
 @dataclass(frozen=True)
 class _RunSound:
-    """A run as it is heard.
-
-    Attributes
-    ----------
-    facts : dict
-        Plain JSON beside the recording's own.
-    cells : dict of str to str
-        What is printed in the columns of these names.
-    """
+    """A run as it is heard."""
 
     name: str
     recording: Recording
     facts: Json = field(default_factory=dict)
+    """Plain JSON beside the recording's own."""
     cells: dict[str, str] = field(default_factory=dict)
+    """What is printed in the columns of these names."""
 
 
 def _bearing_sounds(runs: Mapping[str, RunResult], view: RunView) -> tuple[list[_RunSound], str]:

@@ -244,18 +244,12 @@ def _supervise(processes: ServingProcesses, scheduler: Scheduler, stopped: threa
 
 @dataclass
 class ServingProcesses:
-    """Processes that answer requests.
-
-    Attributes
-    ----------
-    number : int
-        How many there are to be.
-    serve : callable
-        What each does until it is stopped.
-    """
+    """Processes that answer requests."""
 
     number: int
+    """How many there are to be."""
     serve: Work
+    """What each does until it is stopped."""
     _alive: list[BaseProcess] = field(default_factory=list)
     _starts: deque[float] = field(default_factory=deque)
 

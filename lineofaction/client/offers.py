@@ -20,25 +20,17 @@ _SUBJECTS: Callable[[], Any] = partial(import_module, "lineofaction.gearbox.subj
 
 @dataclass(frozen=True)
 class Offer:
-    """A process.
-
-    Attributes
-    ----------
-    name : str
-        On the service.
-    signature : inspect.Signature
-        Of the client's calls.
-    subject : str
-        What is computed: a case, a scene, or either.
-    read : callable
-        The path of the result's file to the result; imports what it needs.
-    """
+    """A process."""
 
     name: str
+    """On the service."""
     description: str
     signature: Signature
+    """Of the client's calls."""
     subject: str
+    """What is computed: a case, a scene, or either."""
     read: Callable[[Path], Any]
+    """The path of the result's file to the result; imports what it needs."""
 
     @property
     def attribute(self) -> str:

@@ -46,24 +46,16 @@ _COPY = "Copy the whole address from the page's address bar."
 
 @dataclass(frozen=True)
 class PageAddress:
-    """What an address says.
-
-    Attributes
-    ----------
-    origin : Origin
-        Of its service.
-    names : mapping
-        The database by its hash and jobs by their identifiers, the newest last.
-    case : Case, optional
-        The design as typed, where it is not that of the result or of a job.
-    views : mapping
-        How they are looked at.
-    """
+    """What an address says."""
 
     origin: Origin
+    """Of its service."""
     names: Mapping[str, str]
+    """The database by its hash and jobs by their identifiers, the newest last."""
     case: schemas.Case | None
+    """The design as typed, where it is not that of the result or of a job."""
     views: Mapping[str, str]
+    """How they are looked at."""
 
     @classmethod
     def of(cls, text: str) -> Self:

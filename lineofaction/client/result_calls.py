@@ -32,42 +32,30 @@ Column = float | Collection[float]
 
 
 class LiveOptions(TypedDict, total=False):
-    """Options of `ste`, in the words of a case file; what is left out is as in the case.
-
-    Attributes
-    ----------
-    misalignment_um, center_distance_change_mm : float
-        Default: 0.
-    pinion, wheel : mapping
-        Flank modifications of a gear (``tip_relief_um`` ...).
-    derivatives : bool
-        Also return the derivatives of each curve by its flanks, the misalignment and the torque.
-    flanks : bool
-        Also return pressure over the driving gear's flank, load over the face, K_Hbeta.
-    passage : bool
-        Also return what a pair of teeth meets on its way through the mesh.
-    tolerance_class : int
-        Also draw pairs within this class of ISO 1328-1:2013, at one torque: `band`. Every answer solves some;
-        repeat the request until `solved` is `of`.
-    preview : bool
-        Answer at every other position and without errors, at a half to a third of the cost.
-    condense : bool
-        Compute the compliance first if the service has none in its cache.
-    caller : str, optional
-        Name of the caller: a later request replaces its waiting one (`Superseded`).
-    """
+    """Options of `ste`, in the words of a case file; what is left out is as in the case."""
 
     misalignment_um: float
     center_distance_change_mm: float
+    """`misalignment_um`, `center_distance_change_mm`: Default: 0."""
     pinion: Mapping[str, Any]
     wheel: Mapping[str, Any]
+    """`pinion`, `wheel`: Flank modifications of a gear (``tip_relief_um`` ...)."""
     derivatives: bool
+    """Also return the derivatives of each curve by its flanks, the misalignment and the torque."""
     flanks: bool
+    """Also return pressure over the driving gear's flank, load over the face, K_Hbeta."""
     passage: bool
+    """Also return what a pair of teeth meets on its way through the mesh."""
     tolerance_class: int
+    """Also draw pairs within this class of ISO 1328-1:2013, at one torque: `band`. Every answer solves some;
+    repeat the request until `solved` is `of`.
+    """
     preview: bool
+    """Answer at every other position and without errors, at a half to a third of the cost."""
     condense: bool
+    """Compute the compliance first if the service has none in its cache."""
     caller: str | None
+    """Name of the caller: a later request replaces its waiting one (`Superseded`)."""
 
 
 class ResultCalls(Surface):

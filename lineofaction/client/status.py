@@ -21,55 +21,41 @@ from lineofaction.gearbox.problems import (
 
 @dataclass(frozen=True)
 class JobState:
-    """State of a job.
-
-    Attributes
-    ----------
-    id, process, status, message, stage : str
-        As in the service's status document.
-    progress : int
-        Per cent of the whole job.
-    stage_progress : int
-        Per cent of the stage.
-    warnings : tuple of dict
-        Implausible inputs: check, field, value, unit, message; empty in lists of jobs.
-    created, started, finished : str
-        RFC 3339, UTC; empty before.
-    tags : tuple of str
-        As given to the job.
-    subject : str
-        What the job is about, in words.
-    differences : tuple of dict
-        The first inputs that differ from those of the caller's job before it of the same process, or from the
-        defaults: field, before, value.
-    remaining_s : float, optional
-        Seconds that a running job still needs, by its pace; None: not known.
-    parent : str
-        The batch that the job is in; empty: none.
-    place, children : int
-        Place in the batch; number of jobs of a batch.
-    """
+    """State of a job."""
 
     id: str
     process: str
     status: str
     message: str
     stage: str
+    """`id`, `process`, `status`, `message`, `stage`: As in the service's status document."""
     progress: int
+    """Per cent of the whole job."""
     stage_progress: int
+    """Per cent of the stage."""
     warnings: tuple[dict[str, Any], ...] = ()
+    """Implausible inputs: check, field, value, unit, message; empty in lists of jobs."""
     created: str = ""
     started: str = ""
     finished: str = ""
+    """`created`, `started`, `finished`: RFC 3339, UTC; empty before."""
     title: str = ""
     tags: tuple[str, ...] = ()
+    """As given to the job."""
     subject: str = ""
+    """What the job is about, in words."""
     differences: tuple[dict[str, Any], ...] = ()
+    """The first inputs that differ from those of the caller's job before it of the same process, or from the
+    defaults: field, before, value.
+    """
     priority: int = 0
     remaining_s: float | None = None
+    """Seconds that a running job still needs, by its pace; None: not known."""
     parent: str = ""
+    """The batch that the job is in; empty: none."""
     place: int = 0
     children: int = 0
+    """`place`, `children`: Place in the batch; number of jobs of a batch."""
 
     @property
     def ended(self) -> bool:
@@ -157,27 +143,18 @@ _GROWTH = 1.1
 
 @dataclass(frozen=True)
 class Pace:
-    """Intervals between looks at a job, and the time limit.
-
-    Attributes
-    ----------
-    interval : float
-        Seconds between the first two looks; the pauses grow by a tenth each.
-    longest : float
-        Seconds of the longest pause (or `interval`, if that is longer).
-    timeout : float
-        Seconds to wait at most.
-    patience : float
-        Seconds for which the service may be away; jobs outlast its restart.
-    answered : float
-        When it answered last, on the monotonic clock: it is not waited for if it never did.
-    """
+    """Intervals between looks at a job, and the time limit."""
 
     interval: float
+    """Seconds between the first two looks; the pauses grow by a tenth each."""
     longest: float
+    """Seconds of the longest pause (or `interval`, if that is longer)."""
     timeout: float
+    """Seconds to wait at most."""
     patience: float
+    """Seconds for which the service may be away; jobs outlast its restart."""
     answered: float = -math.inf
+    """When it answered last, on the monotonic clock: it is not waited for if it never did."""
 
     def longer(self, pause: float) -> float:
         """Return the pause after a pause."""

@@ -254,23 +254,16 @@ P = ParamSpec("P")
 
 @dataclass(frozen=True)
 class Session:
-    """What all operations on one service share.
-
-    Attributes
-    ----------
-    patience : float
-        Seconds for which the service may be away while a job is waited for.
-    progress : callable, optional
-        Called with every state seen of any job that is waited for.
-    terms : mapping
-        What every submission asks beside its inputs: title, tags, as in its body.
-    """
+    """What all operations on one service share."""
 
     exchange: Exchange
     cache: ResultCache
     patience: float
+    """Seconds for which the service may be away while a job is waited for."""
     progress: Watch | None
+    """Called with every state seen of any job that is waited for."""
     terms: Mapping[str, Any] = field(default_factory=dict)
+    """What every submission asks beside its inputs: title, tags, as in its body."""
 
 
 class Surface:

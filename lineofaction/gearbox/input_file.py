@@ -22,19 +22,14 @@ _EVERY = "*"
 
 @dataclass(frozen=True)
 class Override:
-    """A value that takes the place of a file's.
-
-    Attributes
-    ----------
-    path : str
-        Names from the top of the file, ``pair.pinion.teeth``; an entry of a list by ``[0]``, by the ``name``
-        of a part (``loads.brake.torque_n_m``) or ``*`` for all.
-    value : object
-        As TOML has it; None leaves the field out.
-    """
+    """A value that takes the place of a file's."""
 
     path: str
+    """Names from the top of the file, ``pair.pinion.teeth``; an entry of a list by ``[0]``, by the ``name``
+    of a part (``loads.brake.torque_n_m``) or ``*`` for all.
+    """
     value: Any
+    """As TOML has it; None leaves the field out."""
 
     @classmethod
     def of(cls, text: str) -> Override:

@@ -26,27 +26,18 @@ _LONGEST_VALUE = 200
 
 @dataclass(frozen=True)
 class Fault:
-    """One thing wrong with the input.
-
-    Attributes
-    ----------
-    field : str
-        Dotted name as the user wrote it, e.g. ``"pair.pinion.teeth"``.
-    value : object
-        What was given; None if nothing was.
-    bound : str
-        What would be accepted, to be read after "must be".
-    suggestion : str
-        What to try.
-    place : str
-        File and line, for those who wrote one; empty where none is known. It makes no other fault of it.
-    """
+    """One thing wrong with the input."""
 
     field: str
+    """Dotted name as the user wrote it, e.g. ``"pair.pinion.teeth"``."""
     value: object
+    """What was given; None if nothing was."""
     bound: str
+    """What would be accepted, to be read after "must be"."""
     suggestion: str = ""
+    """What to try."""
     place: str = dataclasses.field(default="", compare=False)
+    """File and line, for those who wrote one; empty where none is known. It makes no other fault of it."""
 
     def __str__(self) -> str:
         text = f"{self.field} = {_shown(self.value)}: must be {self.bound}"

@@ -145,22 +145,15 @@ def about(project: Path) -> Path | None:
 
 @dataclass(frozen=True)
 class ResultState:
-    """A result of a folder.
-
-    Attributes
-    ----------
-    name, verb : str
-        Of the file, relative to the folder, and of the verb that makes it.
-    state : "fresh", "stale" or "missing"
-        Stale: a file of the folder that says what is computed is newer.
-    source : Path, optional
-        The case or scene that it is of; None: not known.
-    """
+    """A result of a folder."""
 
     name: str
     verb: str
+    """`name`, `verb`: Of the file, relative to the folder, and of the verb that makes it."""
     state: str
+    """Stale: a file of the folder that says what is computed is newer."""
     source: Path | None = None
+    """The case or scene that it is of; None: not known."""
 
 
 def status_of(project: Path) -> list[ResultState]:

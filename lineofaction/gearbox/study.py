@@ -39,21 +39,14 @@ class _Caller(Protocol[S_contra, C_co]):
 
 @dataclass(frozen=True)
 class Takes(Generic[P, T, F]):
-    """What a call of a study takes, and with its types what comes of it: the result, the figures.
-
-    Attributes
-    ----------
-    subject : "case", "scene" or "case or scene"
-        What is studied.
-    from_file : bool
-        Whether the inputs are a file of the verb and a mapping of the client, rather than options.
-    bare : bool
-        Whether the file of the inputs may be left out; all of them then have defaults.
-    """
+    """What a call of a study takes, and with its types what comes of it: the result, the figures."""
 
     subject: str
+    """What is studied."""
     from_file: bool = False
+    """Whether the inputs are a file of the verb and a mapping of the client, rather than options."""
     bare: bool = False
+    """Whether the file of the inputs may be left out; all of them then have defaults."""
 
 
 class Offered(Generic[P, T, F]):
@@ -78,53 +71,39 @@ class Offered(Generic[P, T, F]):
 
 @dataclass(frozen=True)
 class Study:
-    """A row of the registry.
-
-    Attributes
-    ----------
-    takes : Takes
-        What a call takes.
-    title, action, description : str
-        A noun, what the button of the page says, and an imperative sentence of what is done.
-    example : str
-        Arguments of the verb.
-    group : str
-        Under which the help lists the verb.
-    kind : str
-        Kind of the result, which is the process' output too.
-    stages : tuple of (str, float)
-        Stages of the work, in order, and their shares of the time.
-    version : str
-        Part of the result's content hash: another one, and stored results are computed again.
-    folder : str
-        Name of the files, but for their endings, that the verb writes to a folder; empty: it writes one file.
-    further : tuple of str
-        Endings of files that the verb writes beside those of all studies. CSV can be printed too.
-    several : bool
-        Whether the verb takes several files.
-    housed : bool
-        Whether it is about a housing, which a scene then has by its solid.
-    aliases : tuple of str
-        Other names of the verb's option ``--output``.
-    name : str
-        Of package, process, verb and the client's method: its name among the `Studies`.
-    """
+    """A row of the registry."""
 
     takes: Takes[..., Any, Any]
+    """What a call takes."""
     title: str
     action: str
     description: str
+    """`title`, `action`, `description`: A noun, what the button of the page says, and an imperative sentence
+    of what is done.
+    """
     example: str
+    """Arguments of the verb."""
     group: str
+    """Under which the help lists the verb."""
     kind: str
+    """Kind of the result, which is the process' output too."""
     stages: tuple[tuple[str, float], ...]
+    """Stages of the work, in order, and their shares of the time."""
     version: str = "2"
+    """Part of the result's content hash: another one, and stored results are computed again."""
     folder: str = ""
+    """Name of the files, but for their endings, that the verb writes to a folder; empty: it writes one file.
+    """
     further: tuple[str, ...] = ()
+    """Endings of files that the verb writes beside those of all studies. CSV can be printed too."""
     several: bool = False
+    """Whether the verb takes several files."""
     housed: bool = False
+    """Whether it is about a housing, which a scene then has by its solid."""
     aliases: tuple[str, ...] = ()
+    """Other names of the verb's option ``--output``."""
     name: str = field(default="", init=False)
+    """Of package, process, verb and the client's method: its name among the `Studies`."""
 
     @property
     def argument(self) -> str:

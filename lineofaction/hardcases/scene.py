@@ -24,20 +24,14 @@ _M = TypeVar("_M", bound="Callable[[], Sequence[Measured]]")
 
 @dataclass(frozen=True)
 class Measured:
-    """One figure of a scene, and the bounds that physics gives it; without bounds it only informs.
-
-    Attributes
-    ----------
-    name : str
-        What it is, with its unit unless it is a pure number.
-    most, least : float, optional
-        The figure passes within them, both included.
-    """
+    """One figure of a scene, and the bounds that physics gives it; without bounds it only informs."""
 
     name: str
+    """What it is, with its unit unless it is a pure number."""
     value: float
     most: float | None = None
     least: float | None = None
+    """`most`, `least`: The figure passes within them, both included."""
 
     @property
     def passed(self) -> bool:
@@ -72,27 +66,20 @@ class Measured:
 
 @dataclass(frozen=True)
 class HardScene:
-    """A scene that is known to be hard.
-
-    Attributes
-    ----------
-    name, family : str
-        Its name, and "contact", "table", "dynamics" or "service".
-    hard_because, criterion : str
-        What makes it hard; what must hold, from physics, in words.
-    measure : callable
-        Computes the scene and returns its figures; a function of a module, so that it can be sent to another
-        process.
-    time_limit : float
-        Seconds.
-    """
+    """A scene that is known to be hard."""
 
     name: str
     family: str
+    """`name`, `family`: Its name, and "contact", "table", "dynamics" or "service"."""
     hard_because: str
     criterion: str
+    """`hard_because`, `criterion`: What makes it hard; what must hold, from physics, in words."""
     measure: Callable[[], Sequence[Measured]]
+    """Computes the scene and returns its figures; a function of a module, so that it can be sent to another
+    process.
+    """
     time_limit: float = TIME_LIMIT
+    """Seconds."""
 
     def run(self) -> Outcome:
         """Compute the scene here; its exceptions come through (`run_scenes` catches them)."""
@@ -120,25 +107,17 @@ class Scenes:
 
 @dataclass(frozen=True)
 class Outcome:
-    """The outcome of a scene.
-
-    Attributes
-    ----------
-    figures : tuple of Measured
-        Empty where it did not end.
-    seconds : float
-        Elapsed.
-    ended_by : str
-        What ended it before its time: an exception, a crash, the time limit; empty if nothing did.
-    cpu_seconds : float
-        CPU time, of the processes it started too; 0 where it did not end.
-    """
+    """The outcome of a scene."""
 
     scene: HardScene
     figures: tuple[Measured, ...]
+    """Empty where it did not end."""
     seconds: float
+    """Elapsed."""
     ended_by: str = ""
+    """What ended it before its time: an exception, a crash, the time limit; empty if nothing did."""
     cpu_seconds: float = 0.0
+    """CPU time, of the processes it started too; 0 where it did not end."""
 
     @property
     def passed(self) -> bool:

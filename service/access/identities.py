@@ -138,35 +138,26 @@ ALGORITHMS = ("RS256", "RS384", "RS512", "PS256", "PS384", "PS512", "ES256", "ES
 
 
 class _OidcSettings(BaseSettings):
-    """What tokens are accepted, and what their claims mean.
-
-    Attributes
-    ----------
-    issuer : str or None
-        Claim ``iss`` of its tokens, and where its keys are found; None: no tokens are accepted.
-    audience : str
-        This service, as the claim ``aud`` names it.
-    algorithms : str
-        Of `ALGORITHMS`, separated by commas.
-    keys_url : str or None
-        Where the issuer publishes its keys, if that is on another host; None: as its configuration says.
-    name_claim, project_claim, scopes_claim : str
-        Claims with the caller's name, project and scopes; a path with dots leads into objects. Without a
-        project claim all tokens are of the common project.
-    scope_prefix : str
-        Beginning of our scopes among those of others.
-    """
+    """What tokens are accepted, and what their claims mean."""
 
     model_config = SettingsConfigDict(env_prefix="LOA_OIDC_", frozen=True)
 
     issuer: str | None = None
+    """Claim ``iss`` of its tokens, and where its keys are found; None: no tokens are accepted."""
     audience: str = ""
+    """This service, as the claim ``aud`` names it."""
     algorithms: str = "RS256,ES256"
+    """Of `ALGORITHMS`, separated by commas."""
     keys_url: str | None = None
+    """Where the issuer publishes its keys, if that is on another host; None: as its configuration says."""
     name_claim: str = "sub"
     project_claim: str | None = None
     scopes_claim: str = "scope"
+    """`name_claim`, `project_claim`, `scopes_claim`: Claims with the caller's name, project and scopes; a
+    path with dots leads into objects. Without a project claim all tokens are of the common project.
+    """
     scope_prefix: str = "loa:"
+    """Beginning of our scopes among those of others."""
 
     @property
     def allowed(self) -> list[str]:

@@ -78,40 +78,27 @@ EVERY_SCOPE = tuple(Scope)
 
 @dataclass(frozen=True, kw_only=True)
 class Holder:
-    """A known caller.
-
-    Attributes
-    ----------
-    name : str
-        Stands in the log and beside jobs.
-    project : str
-        Whose jobs and results are seen.
-    expires : str or None
-        The instant from which the caller is refused, RFC 3339, UTC; None: none.
-    requests_per_minute : int or None
-        Beyond it requests are answered with 429; None: no limit.
-    unfinished_jobs : int or None
-        Jobs that may wait or run at the same time; None: no limit but the queue's.
-    highest_priority : int or None
-        That jobs may have, -9 to 9; None: any.
-    max_cost_s : int or None
-        CPU seconds that each job may take; None: no limit.
-    connections : int or None
-        Requests answered at the same time, and bodies under way; None: a share of the server's.
-    streams : int or None
-        Event streams open at the same time; None: no limit but the server's.
-    """
+    """A known caller."""
 
     name: str
+    """Stands in the log and beside jobs."""
     project: str = COMMON
+    """Whose jobs and results are seen."""
     scopes: tuple[Scope, ...] = EVERY_SCOPE
     expires: str | None = None
+    """The instant from which the caller is refused, RFC 3339, UTC; None: none."""
     requests_per_minute: int | None = None
+    """Beyond it requests are answered with 429; None: no limit."""
     unfinished_jobs: int | None = None
+    """Jobs that may wait or run at the same time; None: no limit but the queue's."""
     highest_priority: int | None = None
+    """That jobs may have, -9 to 9; None: any."""
     max_cost_s: int | None = None
+    """CPU seconds that each job may take; None: no limit."""
     connections: int | None = None
+    """Requests answered at the same time, and bodies under way; None: a share of the server's."""
     streams: int | None = None
+    """Event streams open at the same time; None: no limit but the server's."""
 
     @property
     def limits(self) -> dict[str, int | None]:
@@ -146,18 +133,12 @@ LEAST = {"highest_priority": -9}
 
 @dataclass(frozen=True, kw_only=True)
 class AccessKey(Holder):
-    """The record of a key, which names its holder.
-
-    Attributes
-    ----------
-    sha256 : str
-        Of the key, hexadecimal.
-    created : str
-        RFC 3339, UTC.
-    """
+    """The record of a key, which names its holder."""
 
     sha256: str
+    """Of the key, hexadecimal."""
     created: str
+    """RFC 3339, UTC."""
 
 
 def _record_of(entry: dict[str, Any]) -> AccessKey:

@@ -32,35 +32,24 @@ class _Message:
 
 @dataclass(frozen=True)
 class LiveOrder(_Message):
-    """One question for the live worker.
-
-    Attributes
-    ----------
-    entry : str
-        ``"module:function"``, called as ``function(inputs)``; it returns plain JSON.
-    inputs : dict
-        Plain JSON.
-    """
+    """One question for the live worker."""
 
     entry: str
+    """``"module:function"``, called as ``function(inputs)``; it returns plain JSON."""
     inputs: Json
+    """Plain JSON."""
 
 
 @dataclass(frozen=True)
 class AnswerHead(_Message):
-    """The header before the bytes of an answer.
-
-    Attributes
-    ----------
-    kind : str
-        "answer"; "problem": the bytes are problem details; the others have no bytes: "defect": the log says
-        more; "stopped": whoever asked wants it no more; "memory": none was left, and the worker ends.
-    length : int
-        Number of bytes that follow.
-    """
+    """The header before the bytes of an answer."""
 
     kind: str
+    """"answer"; "problem": the bytes are problem details; the others have no bytes: "defect": the log says
+    more; "stopped": whoever asked wants it no more; "memory": none was left, and the worker ends.
+    """
     length: int = 0
+    """Number of bytes that follow."""
 
 
 # An error of another process, reported as that process reported it.

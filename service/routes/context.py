@@ -35,21 +35,14 @@ if TYPE_CHECKING:
 
 
 class JobEvent(NamedTuple):
-    """A state of a job as all its streams send it, made once.
-
-    Attributes
-    ----------
-    id : str
-        When the state changed last, RFC 3339: a browser that reconnects names it (``Last-Event-ID``).
-    text : bytes
-        The server-sent event.
-    last : bool
-        Whether nothing more happens to the job.
-    """
+    """A state of a job as all its streams send it, made once."""
 
     id: str
+    """When the state changed last, RFC 3339: a browser that reconnects names it (``Last-Event-ID``)."""
     text: bytes
+    """The server-sent event."""
     last: bool
+    """Whether nothing more happens to the job."""
 
 
 @dataclass

@@ -28,18 +28,12 @@ _UNNUMBERED = "computation"
 
 @dataclass(frozen=True)
 class _SchemaNumbers:
-    """What a database says of its schema.
-
-    Attributes
-    ----------
-    newest : str or None
-        Number of the last step that was made; None: there are no tables.
-    usable_since : str or None
-        Number of the oldest schema whose program can use the tables.
-    """
+    """What a database says of its schema."""
 
     newest: str | None
+    """Number of the last step that was made; None: there are no tables."""
     usable_since: str | None
+    """Number of the oldest schema whose program can use the tables."""
 
     @property
     def ours(self) -> bool:

@@ -27,22 +27,15 @@ _NAME = re.compile(
 
 @dataclass(frozen=True)
 class ResultName:
-    """The parts of the name of a result's file.
-
-    Attributes
-    ----------
-    kind, key : str
-        As in the index.
-    digest : str
-        Beginning of the SHA-256 of its bytes; empty in names that older versions gave.
-    project : str
-        Whose result it is.
-    """
+    """The parts of the name of a result's file."""
 
     kind: str
     key: str
+    """`kind`, `key`: As in the index."""
     digest: str
+    """Beginning of the SHA-256 of its bytes; empty in names that older versions gave."""
     project: str = COMMON
+    """Whose result it is."""
 
     @classmethod
     def of(cls, file: str) -> ResultName | None:
@@ -84,21 +77,14 @@ class KeptFile:
 
 
 class ResultFiles(Protocol):
-    """A place for files by name. What has a name is whole: nobody sees a file that is being written.
-
-    Attributes
-    ----------
-    address : str
-        The folder, or the URL of the bucket and prefix.
-    folder : Path or None
-        The folder on this machine that is written to; None: they are elsewhere.
-    reads : CacheReads
-        Of the cache on this machine; a folder needs none.
-    """
+    """A place for files by name. What has a name is whole: nobody sees a file that is being written."""
 
     address: str
+    """The folder, or the URL of the bucket and prefix."""
     folder: Path | None
+    """The folder on this machine that is written to; None: they are elsewhere."""
     reads: CacheReads
+    """Of the cache on this machine; a folder needs none."""
 
     def put(self, name: str, file: Path, sha256: str) -> None:
         """Keep the bytes of `file`, durably when this returns; `file` stays."""

@@ -84,26 +84,21 @@ GRACE_S = 3600.0
 
 @dataclass(frozen=True)
 class Verified:
-    """The state of the files of the index.
-
-    Attributes
-    ----------
-    sound : int
-        Files that have their digest.
-    damaged, missing : tuple of str
-        Names of those that had other bytes, and are set aside; of those that are gone.
-    unknown : tuple of str
-        Names of files that the index does not name. Retention never removes them.
-    quarantined, reindexed : int
-        Files on their way out; lines rebuilt from files, whose retention counts from then.
-    """
+    """The state of the files of the index."""
 
     sound: int
+    """Files that have their digest."""
     damaged: tuple[str, ...]
     missing: tuple[str, ...]
+    """`damaged`, `missing`: Names of those that had other bytes, and are set aside; of those that are gone.
+    """
     unknown: tuple[str, ...] = ()
+    """Names of files that the index does not name. Retention never removes them."""
     quarantined: int = 0
     reindexed: int = 0
+    """`quarantined`, `reindexed`: Files on their way out; lines rebuilt from files, whose retention counts
+    from then.
+    """
 
 
 def verify_store(store: ResultStore) -> Verified:
@@ -211,24 +206,18 @@ def days_ago(days: float) -> str:
 
 @dataclass(frozen=True)
 class _Reindexed:
-    """The result of rebuilding the index: its files and lines.
-
-    Attributes
-    ----------
-    known, entered : int
-        Files that the index named already; files that it names now.
-    damaged, doubled : tuple of str
-        Files whose bytes do not agree with their names; files of results that another file holds. Both are
-        left where they are.
-    struck : tuple of str
-        Files that lines named and that are gone.
-    """
+    """The result of rebuilding the index: its files and lines."""
 
     known: int
     entered: int
+    """`known`, `entered`: Files that the index named already; files that it names now."""
     damaged: tuple[str, ...]
     doubled: tuple[str, ...]
+    """`damaged`, `doubled`: Files whose bytes do not agree with their names; files of results that another
+    file holds. Both are left where they are.
+    """
     struck: tuple[str, ...]
+    """Files that lines named and that are gone."""
 
 
 def reindex(store: ResultStore, deployment: Deployment) -> _Reindexed:

@@ -39,18 +39,12 @@ from service.store.files import SET_ASIDE, ResultFiles, WrongContent, digest_of,
 
 
 class Mark(NamedTuple):
-    """The last line of a page; the next one begins behind it, whether the line still exists or not.
-
-    Attributes
-    ----------
-    created : str
-        RFC 3339 in UTC with microseconds.
-    name : str
-        Identifier, which orders lines of one instant.
-    """
+    """The last line of a page; the next one begins behind it, whether the line still exists or not."""
 
     created: str
+    """RFC 3339 in UTC with microseconds."""
     name: str
+    """Identifier, which orders lines of one instant."""
 
 
 def behind(mark: Mark, created: ColumnElement[Any], name: ColumnElement[Any]) -> ColumnElement[bool]:
@@ -81,39 +75,26 @@ Index("result_by_project", results.c.project, results.c.kind, results.c.created)
 
 @dataclass(frozen=True)
 class IndexLine:
-    """One line of the index.
-
-    Attributes
-    ----------
-    key : str
-        Hash of the input: the resource's name.
-    kind : str
-        One of `lineofaction.gearbox.registry`.
-    sha256 : str
-        Digest of the file's bytes, hexadecimal.
-    size : int
-        Bytes.
-    file : str
-        Name of the file in its place.
-    used : str
-        When it was last requested, within an hour.
-    reindexed : str or None
-        When the line was rebuilt from its file: the result is as old as that, or older.
-    project : str
-        Whose result it is.
-    headline : str
-        What a list of jobs shows of it, JSON; empty: nothing.
-    """
+    """One line of the index."""
 
     key: str
+    """Hash of the input: the resource's name."""
     kind: str
+    """One of `lineofaction.gearbox.registry`."""
     sha256: str
+    """Digest of the file's bytes, hexadecimal."""
     size: int
+    """Bytes."""
     file: str
+    """Name of the file in its place."""
     used: str
+    """When it was last requested, within an hour."""
     reindexed: str | None = None
+    """When the line was rebuilt from its file: the result is as old as that, or older."""
     project: str = COMMON
+    """Whose result it is."""
     headline: str = ""
+    """What a list of jobs shows of it, JSON; empty: nothing."""
 
     @property
     def address(self) -> str:
@@ -123,21 +104,15 @@ class IndexLine:
 
 @dataclass(frozen=True)
 class StoredResult:
-    """A result whose bytes were compared with its digest.
-
-    Attributes
-    ----------
-    key, kind, sha256, size
-        As in the index.
-    path : Path
-        The file on this machine.
-    """
+    """A result whose bytes were compared with its digest."""
 
     key: str
     kind: str
     sha256: str
     size: int
+    """`key`, `kind`, `sha256`, `size`: As in the index."""
     path: Path
+    """The file on this machine."""
 
 
 class ResultStore:

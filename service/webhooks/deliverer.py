@@ -115,22 +115,15 @@ logger = structlog.get_logger(__name__)
 
 @dataclass(frozen=True)
 class Outbox:
-    """What calls are made of.
-
-    Attributes
-    ----------
-    origins : frozenset of Origin
-        Who may be called.
-    key : bytes
-        Of the signatures.
-    compose : callable
-        Identifier of a job and the event to the body, JSON.
-    """
+    """What calls are made of."""
 
     calls: Calls
     origins: frozenset[Origin]
+    """Who may be called."""
     key: bytes
+    """Of the signatures."""
     compose: Callable[[str, str], Any]
+    """Identifier of a job and the event to the body, JSON."""
 
     def make_one(self) -> bool:
         """Make a call that is due; False: there is none."""

@@ -80,20 +80,13 @@ CLOSED = [walked for walked in ROUTES if walked.route.scope is not OPEN_TO_ALL]
 
 @dataclass(frozen=True)
 class Two:
-    """A service with the job and the database of one project.
-
-    Attributes
-    ----------
-    http : TestClient
-    job : str
-        Identifier of the owner's job, which has ended.
-    keys : dict
-        Access keys by what their holders are.
-    """
+    """A service with the job and the database of one project."""
 
     http: TestClient
     job: str
+    """Identifier of the owner's job, which has ended."""
     keys: dict[str, str]
+    """Access keys by what their holders are."""
 
     def send(self, who: str, walked: WalkedRoute, job: str = "", key: str = "") -> Response:
         names = {

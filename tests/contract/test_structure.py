@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from collections import Counter
 from pathlib import Path
 
@@ -43,6 +44,26 @@ def test_growth_is_told_by_subject() -> None:
         for file in structure.files_of(house)
     )
     assert growth.lines_of_today().total() == whole
+
+
+def described_twice(file: Path) -> list[str]:
+    """Return classes whose docstring lists a field of theirs: its description stands below the field."""
+    found = []
+    for node in ast.walk(ast.parse(file.read_text("utf-8"))):
+        if not isinstance(node, ast.ClassDef):
+            continue
+        listed = (ast.get_docstring(node) or "").partition("Attributes\n----------\n")[2]
+        entries = [line.split(" : ")[0] for line in listed.split("\n") if " : " in line]
+        names = {name for entry in entries for name in entry.split(", ")}
+        fields = [part.target for part in node.body if isinstance(part, ast.AnnAssign)]
+        if names and names <= {field.id for field in fields if isinstance(field, ast.Name)}:
+            found.append(f"{file.name}: {node.name}")
+    return found
+
+
+def test_the_description_of_a_field_stands_below_it() -> None:
+    files = (file for house in structure.HOUSES for file in structure.files_of(house))
+    assert [name for file in files for name in described_twice(file)] == []
 
 
 def test_tests_import_fewer_and_fewer_private_names() -> None:

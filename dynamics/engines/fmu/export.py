@@ -30,13 +30,7 @@ REAL, INTEGER, BOOLEAN = "Real", "Integer", "Boolean"
 
 @dataclass(frozen=True)
 class _Variable:
-    """A variable by its name in the model description; its value reference is its index among its kind.
-
-    Attributes
-    ----------
-    start : float, int, bool or None
-        None: an output, which follows from the others.
-    """
+    """A variable by its name in the model description; its value reference is its index among its kind."""
 
     name: str
     kind: str
@@ -45,6 +39,7 @@ class _Variable:
     text: str
     unit: str = ""
     start: float | None = None
+    """None: an output, which follows from the others."""
 
 
 def _of_kind(chosen: Sequence[_Variable], kind: str) -> list[_Variable]:

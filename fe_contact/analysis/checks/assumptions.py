@@ -35,28 +35,20 @@ LEAST_BACKLASH = 1e-9
 
 @dataclass(frozen=True)
 class Assumption:
-    """One thing that a run took for granted.
-
-    Attributes
-    ----------
-    effect : str
-        The effect that would not need it; empty if there is none.
-    what : str
-        The assumption.
-    holds : bool or None
-        None: it could not be assessed.
-    change : float
-        Largest change of mean or peak-to-peak that it can make, in parts of the size that the tolerance
-        counts by (`AllowedError.scale`), as far as that is known; NaN else.
-    reason : str
-        What was found.
-    """
+    """One thing that a run took for granted."""
 
     effect: str
+    """The effect that would not need it; empty if there is none."""
     what: str
+    """The assumption."""
     holds: bool | None
+    """None: it could not be assessed."""
     change: float
+    """Largest change of mean or peak-to-peak that it can make, in parts of the size that the tolerance counts
+    by (`AllowedError.scale`), as far as that is known; NaN else.
+    """
     reason: str
+    """What was found."""
 
     def to_json(self) -> Json:
         """Return plain JSON."""

@@ -17,30 +17,22 @@ _DIGITS = 6
 
 @dataclass(frozen=True)
 class LawCheck:
-    """The worst place of a table under a law.
-
-    Attributes
-    ----------
-    law, quantity : str
-        Name of the law, and what it bounds.
-    place : str
-        Position, load, misalignment and center distance.
-    value, bound : float
-        In `unit`; the bound is the nearer one where there are two.
-    unit : str
-        Empty for numbers.
-    ratio : float
-        Part of the room between the bounds that the value takes: above 1 the law is broken, and so it is
-        where this is NaN.
-    """
+    """The worst place of a table under a law."""
 
     law: str
     quantity: str
+    """`law`, `quantity`: Name of the law, and what it bounds."""
     place: str
+    """Position, load, misalignment and center distance."""
     value: float
     bound: float
+    """`value`, `bound`: In `unit`; the bound is the nearer one where there are two."""
     unit: str
+    """Empty for numbers."""
     ratio: float
+    """Part of the room between the bounds that the value takes: above 1 the law is broken, and so it is where
+    this is NaN.
+    """
 
     @property
     def broken(self) -> bool:

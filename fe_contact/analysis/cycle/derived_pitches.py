@@ -86,49 +86,34 @@ def _of_solution(solution: ContactSolution) -> dict[str, NDArray[Any]]:
 
 
 class DerivedErrors(NamedTuple):
-    """What derivatives miss at L loads.
-
-    Attributes
-    ----------
-    band : ndarray, shape (T P, L)
-        Of the transmission error at every position, m; 0 where it was solved.
-    curves, arms : ndarray, shape (23, L)
-        Of the quantities of transmission error and load arm, m.
-    share, pressure : float
-        Of the share of a pair, and of the largest pressure over that of the table: what 99 % of the drawn
-        points keep.
-    """
+    """What derivatives miss at L loads."""
 
     band: FloatArray
+    """Of the transmission error at every position, m; 0 where it was solved. Shape (T P, L)."""
     curves: FloatArray
     arms: FloatArray
+    """`curves`, `arms`: Of the quantities of transmission error and load arm, m. Shape (23, L) each."""
     share: float
     pressure: float
+    """`share`, `pressure`: Of the share of a pair, and of the largest pressure over that of the table: what
+    99 % of the drawn points keep.
+    """
 
 
 @dataclass(frozen=True)
 class DerivedPitches:
-    """The base pitches about which derivatives give all others of an operating point.
-
-    Attributes
-    ----------
-    contact : CycleContact
-        Of the table.
-    pitches : ndarray of int, shape (K,)
-        Those that were solved.
-    state : ndarray of int, shape (T, P, L)
-        Which state counts, of the nominal gears and those of the pitches.
-    at_state : ndarray, shape (1 + K, P, L, 2)
-        Their transmission error and load arm, m.
-    curves : ndarray, shape (T, P, L, 2)
-        Those of all base pitches.
-    """
+    """The base pitches about which derivatives give all others of an operating point."""
 
     contact: CycleContact
+    """Of the table."""
     pitches: IntArray
+    """Those that were solved. Shape (K,)."""
     state: IntArray
+    """Which state counts, of the nominal gears and those of the pitches. Shape (T, P, L)."""
     at_state: FloatArray
+    """Their transmission error and load arm, m. Shape (1 + K, P, L, 2)."""
     curves: FloatArray
+    """Those of all base pitches. Shape (T, P, L, 2)."""
 
     @classmethod
     def of(cls, envelope: Envelope, ste: FloatArray) -> DerivedPitches:
@@ -174,17 +159,10 @@ def _arms(state: SolvedState) -> FloatArray:
 
 @dataclass(frozen=True)
 class DerivedTable:
-    """One operating point over a whole period, by derivatives.
-
-    Attributes
-    ----------
-    kept : tuple of KeptContact
-        Of each set of loads. Pitches that were not solved have no residuals: NaN.
-    derived : DerivedPitches
-    errors : DerivedErrors
-    """
+    """One operating point over a whole period, by derivatives."""
 
     kept: tuple[KeptContact, ...]
+    """Of each set of loads. Pitches that were not solved have no residuals: NaN."""
     derived: DerivedPitches
     errors: DerivedErrors
 
@@ -230,20 +208,13 @@ def derived_table(
 
 @dataclass(frozen=True)
 class DerivedCycle:
-    """What came of derivatives at all operating points of a table.
-
-    Attributes
-    ----------
-    points : OperatingPoints
-    tables : tuple of DerivedTable
-        Of every place; empty where all base pitches are to be solved.
-    reason : str
-        Why they are; else empty.
-    """
+    """What came of derivatives at all operating points of a table."""
 
     points: OperatingPoints
     tables: tuple[DerivedTable, ...]
+    """Of every place; empty where all base pitches are to be solved."""
     reason: str = ""
+    """Why they are; else empty."""
 
     @property
     def places(self) -> OperatingPoints:

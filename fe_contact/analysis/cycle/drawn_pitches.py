@@ -26,18 +26,14 @@ quantities of drawn gears."""
 
 @dataclass(frozen=True)
 class DrawnPitches:
-    """By how much tangents miss C drawn pitches of P positions at L loads.
-
-    Attributes
-    ----------
-    missed : ndarray, shape (C, P, L)
-        Transmission error, or arm of the load, by the tangents of all other states less the solved one, m.
-    position : ndarray, shape (P,)
-        In [0, 1).
-    """
+    """By how much tangents miss C drawn pitches of P positions at L loads."""
 
     missed: FloatArray
+    """Transmission error, or arm of the load, by the tangents of all other states less the solved one, m.
+    Shape (C, P, L).
+    """
     position: FloatArray
+    """In [0, 1). Shape (P,)."""
 
     @property
     def correction(self) -> FloatArray:

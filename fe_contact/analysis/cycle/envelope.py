@@ -45,23 +45,15 @@ def no_rows(_pair: ParallelAxes, c: Candidates) -> FloatArray:
 
 @dataclass(frozen=True)
 class CycleContact:
-    """Contact of one alignment at P positions of a base pitch and L loads, in any of its pitches.
-
-    Attributes
-    ----------
-    point : OperatingPoint
-    position : ndarray, shape (P,)
-        In [0, 1).
-    load : ndarray, shape (L,)
-        N.
-    rows : callable
-        What is followed beside the transmission error.
-    """
+    """Contact of one alignment at P positions of a base pitch and L loads, in any of its pitches."""
 
     point: OperatingPoint
     position: FloatArray
+    """In [0, 1). Shape (P,)."""
     load: FloatArray
+    """N. Shape (L,)."""
     rows: Rows = no_rows
+    """What is followed beside the transmission error."""
 
     @property
     def pitches(self) -> int:
@@ -124,22 +116,17 @@ def keep_nothing(_state: SolvedState) -> Mapping[str, NDArray[Any]]:
 
 @dataclass(frozen=True)
 class LeastTangents:
-    """Least of some tangents in t pitches, P positions and L loads.
-
-    Attributes
-    ----------
-    ste, distance : ndarray, shape (t, P, L)
-        Transmission error by the least one, and how far its state is, m.
-    state : ndarray of int, shape (t, P, L)
-        Which one it is, in the order in which they were taken.
-    sums : ndarray, shape (t, P, L, Q)
-        What is followed, about the same state.
-    """
+    """Least of some tangents in t pitches, P positions and L loads."""
 
     ste: FloatArray
     distance: FloatArray
+    """`ste`, `distance`: Transmission error by the least one, and how far its state is, m. Shape (t, P, L)
+    each.
+    """
     state: IntArray
+    """Which one it is, in the order in which they were taken. Shape (t, P, L)."""
     sums: FloatArray
+    """What is followed, about the same state. Shape (t, P, L, Q)."""
 
     @classmethod
     def of(cls, tangent: Tangent, gaps: ToothGaps, pitches: IntArray) -> LeastTangents:
@@ -173,40 +160,29 @@ class LeastTangents:
 
 @dataclass(frozen=True)
 class Envelope:
-    """Transmission error in T pitches, P positions and L loads from states that were solved.
-
-    Attributes
-    ----------
-    contact : CycleContact
-    keep : callable
-        What is kept of the states.
-    nominal : ndarray, shape (L,)
-        Mean of gears without gaps of teeth, m.
-    pitches : ndarray of int, shape (K,)
-        Of the states after the first, which is that of the nominal gears.
-    exact, exact_sums : ndarray, shapes (K, P, L), (K, P, L, Q)
-        Of them: transmission error, m, and what is followed.
-    kept : dict
-        Arrays (1 + K, P, L, ...) of all states by name.
-    least : LeastTangents
-        In all pitches.
-    drawn : ndarray of int, shape (C,)
-        Pitches that were drawn: the first of the states.
-    without : LeastTangents
-        In those, of all tangents but their own.
-    """
+    """Transmission error in T pitches, P positions and L loads from states that were solved."""
 
     contact: CycleContact
     keep: Keep
+    """What is kept of the states."""
     gaps: ToothGaps
     nominal: FloatArray
+    """Mean of gears without gaps of teeth, m. Shape (L,)."""
     pitches: IntArray
+    """Of the states after the first, which is that of the nominal gears. Shape (K,)."""
     exact: FloatArray
     exact_sums: FloatArray
+    """`exact`, `exact_sums`: Of them: transmission error, m, and what is followed. Ndarray, shapes (K, P, L),
+    (K, P, L, Q).
+    """
     kept: Mapping[str, NDArray[Any]]
+    """Arrays (1 + K, P, L, ...) of all states by name."""
     least: LeastTangents
+    """In all pitches."""
     drawn: IntArray
+    """Pitches that were drawn: the first of the states. Shape (C,)."""
     without: LeastTangents
+    """In those, of all tangents but their own."""
 
     @classmethod
     def of(cls, contact: CycleContact, keep: Keep = keep_nothing) -> Envelope:

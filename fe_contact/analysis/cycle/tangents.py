@@ -25,21 +25,16 @@ from fe_contact.types import BoolArray, FloatArray, IntArray
 
 @dataclass(frozen=True)
 class ToothGaps:
-    """Gaps by every tooth of both gears at P positions of a base pitch; J pairs of M candidates each.
-
-    Attributes
-    ----------
-    pair : ndarray of int, shape (J,)
-        Pair indices; +1 is ahead.
-    period : int
-        Base pitches after which the gears are taken to show the same teeth again.
-    gears : tuple of ndarray, shape (J, P, R, M)
-        Gap by each of the R teeth of the pinion and of the wheel, m; zero where no candidate is.
-    """
+    """Gaps by every tooth of both gears at P positions of a base pitch; J pairs of M candidates each."""
 
     pair: IntArray
+    """Pair indices; +1 is ahead. Shape (J,)."""
     period: int
+    """Base pitches after which the gears are taken to show the same teeth again."""
     gears: tuple[FloatArray, FloatArray]
+    """Gap by each of the R teeth of the pinion and of the wheel, m; zero where no candidate is. Tuple of
+    ndarray, shape (J, P, R, M).
+    """
 
     @classmethod
     def of(cls, pair: ParallelAxes, candidates: Candidates, model: ContactModel) -> ToothGaps:
@@ -71,21 +66,15 @@ def _by_tooth(pair: ParallelAxes, candidates: Candidates, gear: int, model: Cont
 
 @dataclass(frozen=True)
 class LoadSums:
-    """Means of Q quantities over the load about one state, to first order in the gaps of teeth.
-
-    Attributes
-    ----------
-    value : ndarray, shape (P, L, Q)
-        At the state.
-    by_tooth : tuple of ndarray, shape (J, R, P, L, Q)
-        What each tooth of either gear adds as a member of each pair.
-    at_state : ndarray, shape (P, L, Q)
-        What the teeth of the state add together.
-    """
+    """Means of Q quantities over the load about one state, to first order in the gaps of teeth."""
 
     value: FloatArray
+    """At the state. Shape (P, L, Q)."""
     by_tooth: tuple[FloatArray, FloatArray]
+    """What each tooth of either gear adds as a member of each pair. Tuple of ndarray, shape (J, R, P, L, Q).
+    """
     at_state: FloatArray
+    """What the teeth of the state add together. Shape (P, L, Q)."""
 
     def over(self, gaps: ToothGaps, pitches: IntArray, where: BoolArray) -> FloatArray:
         """Return those at points (k, Q) of whole base pitches (t,), `where` (t, P, L) tells."""
@@ -110,27 +99,19 @@ class LoadSums:
 
 @dataclass(frozen=True)
 class Tangent:
-    """Transmission error at P positions and L loads about one state, to first order in the gaps of teeth.
-
-    Attributes
-    ----------
-    value : ndarray, shape (P, L)
-        At the state, m.
-    part : ndarray, shape (J, P, L)
-        Part of each pair in what a gap adds, 1 in sum.
-    by_tooth : tuple of ndarray, shape (J, R, P, L)
-        What each tooth of either gear adds as a member of each pair, m.
-    at_state : ndarray, shape (J, P, L)
-        The same of the teeth of the state, m.
-    sums : LoadSums
-        Of the same state.
-    """
+    """Transmission error at P positions and L loads about one state, to first order in the gaps of teeth."""
 
     value: FloatArray
+    """At the state, m. Shape (P, L)."""
     part: FloatArray
+    """Part of each pair in what a gap adds, 1 in sum. Shape (J, P, L)."""
     by_tooth: tuple[FloatArray, FloatArray]
+    """What each tooth of either gear adds as a member of each pair, m. Tuple of ndarray, shape (J, R, P, L).
+    """
     at_state: FloatArray
+    """The same of the teeth of the state, m. Shape (J, P, L)."""
     sums: LoadSums
+    """Of the same state."""
 
     def moved(self, gaps: ToothGaps, pitches: IntArray) -> FloatArray:
         """Return what the teeth that meet in whole base pitches (t,) add to the state, (J, t, P, L) in m."""

@@ -233,27 +233,18 @@ def _no_way(finest: _Resolution, source: int) -> str:
 
 @dataclass(frozen=True)
 class _Pass:
-    """One run of the table on one discretization.
-
-    Attributes
-    ----------
-    decided : Decided
-        Model and discretization.
-    cost : dict
-        Times by stage and memory, as in a receipt.
-    table : SteDatabase or None
-        None: the pass failed.
-    refinement : Refinement or None
-        What was refined before it; None: the first one.
-    failure : str
-        Why there is no table.
-    """
+    """One run of the table on one discretization."""
 
     decided: Decided
+    """Model and discretization."""
     cost: Json
+    """Times by stage and memory, as in a receipt."""
     table: SteDatabase | None
+    """None: the pass failed."""
     refinement: _Refinement | None = None
+    """What was refined before it; None: the first one."""
     failure: str = ""
+    """Why there is no table."""
 
     @property
     def used(self) -> float:

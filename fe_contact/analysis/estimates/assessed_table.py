@@ -72,14 +72,7 @@ face of 1.2 modules, of which the mesh covers its part."""
 
 @dataclass(frozen=True)
 class _ErrorSources:
-    """Error of STE in m by source; arrays (P, F, M, D).
-
-    Attributes
-    ----------
-    discretization, slices, interpolation, contact, plane, method : ndarray
-        Finite elements, slices of the face, table beside the node, contact, the plane for a finite width, and
-        what the method leaves out.
-    """
+    """Error of STE in m by source; arrays (P, F, M, D)."""
 
     discretization: FloatArray
     slices: FloatArray
@@ -87,6 +80,9 @@ class _ErrorSources:
     contact: FloatArray
     plane: FloatArray
     method: FloatArray
+    """`discretization`, `slices`, `interpolation`, `contact`, `plane`, `method`: Finite elements, slices of
+    the face, table beside the node, contact, the plane for a finite width, and what the method leaves out.
+    """
 
     @property
     def total(self) -> FloatArray:
@@ -371,34 +367,23 @@ def _summary(errors: FloatArray) -> Json:
 
 @dataclass(frozen=True)
 class AssessedTable:
-    """Errors of a table.
-
-    Attributes
-    ----------
-    band : ndarray, shape (P, F, M, D)
-        Of every point, m; NaN where not estimated.
-    curve_error : ndarray, shape (9, 23, F, M, D)
-        Of mean, peak-to-peak and harmonics by source, m; NaN where not estimated.
-    load_arm_error : ndarray, shape (3, 23, F, M, D)
-        The same of the load arm.
-    interval_error : ndarray, shape (3, F, M, D)
-        Of points between the nodes of an axis, at the lower one, m.
-    inserted : SupportLoads, optional
-        Loads with which the table has these errors between its loads.
-    by_source, held_out : dict
-        The largest by source; what was measured between the nodes of each axis.
-    bias : PlaneBias, optional
-        What the plane leaves out of a finite width where it is not corrected; no error holds it.
-    """
+    """Errors of a table."""
 
     band: FloatArray
+    """Of every point, m; NaN where not estimated. Shape (P, F, M, D)."""
     curve_error: FloatArray
+    """Of mean, peak-to-peak and harmonics by source, m; NaN where not estimated. Shape (9, 23, F, M, D)."""
     load_arm_error: FloatArray
+    """The same of the load arm. Shape (3, 23, F, M, D)."""
     interval_error: FloatArray
+    """Of points between the nodes of an axis, at the lower one, m. Shape (3, F, M, D)."""
     inserted: SupportLoads | None
+    """Loads with which the table has these errors between its loads."""
     by_source: Json
     held_out: Json
+    """`by_source`, `held_out`: The largest by source; what was measured between the nodes of each axis."""
     bias: PlaneBias | None
+    """What the plane leaves out of a finite width where it is not corrected; no error holds it."""
 
     def stated(self, table: SteDatabase, metadata: Metadata) -> SteDatabase:
         """Return the table with them, and with the metadata that state them."""

@@ -17,22 +17,15 @@ from fe_contact.types import FloatArray
 
 @dataclass(frozen=True)
 class ExcitationErrors:
-    """Errors (20,) of the amplitudes of the mesh harmonics, >= 0; NaN: not estimated.
-
-    Attributes
-    ----------
-    transmission_error, load_arm : ndarray
-        m; of the transmission error with what the method leaves out.
-    friction : ndarray
-        Of the friction over the largest, the coefficient of friction times the mesh force.
-    beside_mesh : float
-        Of the transmission error in any order beside the mesh orders, m.
-    """
+    """Errors (20,) of the amplitudes of the mesh harmonics, >= 0; NaN: not estimated."""
 
     transmission_error: FloatArray
     load_arm: FloatArray
+    """`transmission_error`, `load_arm`: m; of the transmission error with what the method leaves out."""
     friction: FloatArray
+    """Of the friction over the largest, the coefficient of friction times the mesh force."""
     beside_mesh: float
+    """Of the transmission error in any order beside the mesh orders, m."""
 
 
 def excitation_errors(table: SteDatabase, force: float) -> ExcitationErrors:

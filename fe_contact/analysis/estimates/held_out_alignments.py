@@ -44,24 +44,16 @@ MOST_HALVINGS = 5
 
 @dataclass(frozen=True)
 class AlignmentErrors:
-    """Error between the nodes of an axis of alignments.
-
-    Attributes
-    ----------
-    made : SolvedTable
-        With the alignments that were inserted.
-    error : ndarray, shape (I, F)
-        Largest difference of interpolant and solution in the interval after each node, m.
-    change : ndarray, shape (23, I, F)
-        What it does to mean, peak-to-peak and harmonics, m.
-    limit : str
-        Why intervals that miss the goal got no further node; empty where all meet it.
-    """
+    """Error between the nodes of an axis of alignments."""
 
     made: SolvedTable
+    """With the alignments that were inserted."""
     error: FloatArray
+    """Largest difference of interpolant and solution in the interval after each node, m. Shape (I, F)."""
     change: FloatArray
+    """What it does to mean, peak-to-peak and harmonics, m. Shape (23, I, F)."""
     limit: str
+    """Why intervals that miss the goal got no further node; empty where all meet it."""
 
 
 @dataclass(frozen=True)
@@ -70,17 +62,12 @@ class HeldOutAlignments:
 
     On the other axis of alignments they are solved at the node nearest to zero. A longer period is assessed
     in its first pitch, at some of its positions and loads.
-
-    Attributes
-    ----------
-    axis : str
-        "misalignment" or "center_distance_change".
-    goal_of : callable, optional
-        Nodes are inserted until their intervals meet the goal of the table.
     """
 
     axis: str
+    """"misalignment" or "center_distance_change"."""
     goal_of: GoalOf | None
+    """Nodes are inserted until their intervals meet the goal of the table."""
 
     def errors(self, made: SolvedTable) -> AlignmentErrors:
         """Measure the error of every interval of a table; with a goal insert nodes until it is met."""

@@ -21,29 +21,23 @@ from fe_contact.types import FloatArray, Json
 
 @dataclass(frozen=True)
 class AxisError:
-    """Error of STE between the nodes of one axis.
-
-    Attributes
-    ----------
-    at : ndarray, shape (I,)
-        The middle of every interval: of loads the geometric mean in N, of misalignments or changes of the
-        center distance in m.
-    error : ndarray, shape (I, L) or (I, 1)
-        Largest difference between interpolant and solution in the interval in m, at each load of the table;
-        of the held-out loads themselves for the axis of loads. NaN where a solution did not converge.
-    change : ndarray, shape (23, I, L) or (23, I, 1)
-        What that does to mean, peak-to-peak and harmonics, m.
-    inserted : ndarray, shape (n,)
-        Values beside those requested, with which the table has these errors.
-    limit : str
-        Why intervals that miss a tolerance got no further value; empty where all meet it.
-    """
+    """Error of STE between the nodes of one axis."""
 
     at: FloatArray
+    """The middle of every interval: of loads the geometric mean in N, of misalignments or changes of the
+    center distance in m. Shape (I,).
+    """
     error: FloatArray
+    """Largest difference between interpolant and solution in the interval in m, at each load of the table; of
+    the held-out loads themselves for the axis of loads. NaN where a solution did not converge. Ndarray, shape
+    (I, L) or (I, 1).
+    """
     change: FloatArray
+    """What that does to mean, peak-to-peak and harmonics, m. Ndarray, shape (23, I, L) or (23, I, 1)."""
     inserted: FloatArray
+    """Values beside those requested, with which the table has these errors. Shape (n,)."""
     limit: str = ""
+    """Why intervals that miss a tolerance got no further value; empty where all meet it."""
 
     def to_json(self) -> Json:
         """Return plain JSON; intervals without a solution hold null."""
@@ -54,21 +48,14 @@ class AxisError:
 
 @dataclass(frozen=True)
 class HeldOut:
-    """A table with the nodes that were inserted, and what it misses between all of them.
-
-    Attributes
-    ----------
-    made : SolvedTable
-        With its inserted alignments.
-    axes : dict of str to AxisError
-        By the name of the axis.
-    loads : SupportLoads, optional
-        Solutions at the inserted loads.
-    """
+    """A table with the nodes that were inserted, and what it misses between all of them."""
 
     made: SolvedTable
+    """With its inserted alignments."""
     axes: Mapping[str, AxisError] = field(default_factory=dict)
+    """By the name of the axis."""
     loads: SupportLoads | None = None
+    """Solutions at the inserted loads."""
 
 
 def held_out_axes(made: SolvedTable, goal_of: GoalOf | None = None) -> HeldOut:

@@ -45,46 +45,30 @@ falls in proportion to the interval that holds it."""
 
 @dataclass(frozen=True)
 class LoadErrors:
-    """Error between the requested loads.
-
-    Attributes
-    ----------
-    error : ndarray, shape (F - 1,)
-        Largest difference of interpolant and solution in the interval after each load, m.
-    change : ndarray, shape (23, F - 1)
-        What it does to mean, peak-to-peak and harmonics, m.
-    inserted : SupportLoads, optional
-        Solutions at further loads, with which the table has these errors, in all its base pitches.
-    limit : str
-        Why intervals that miss the goal got no further load; empty where all meet it.
-    """
+    """Error between the requested loads."""
 
     error: FloatArray
+    """Largest difference of interpolant and solution in the interval after each load, m. Shape (F - 1,)."""
     change: FloatArray
+    """What it does to mean, peak-to-peak and harmonics, m. Shape (23, F - 1)."""
     inserted: SupportLoads | None
+    """Solutions at further loads, with which the table has these errors, in all its base pitches."""
     limit: str
+    """Why intervals that miss the goal got no further load; empty where all meet it."""
 
 
 @dataclass(frozen=True)
 class HeldOutLoads:
-    """The first pitch of a table at some positions, held against solutions between its loads.
-
-    Attributes
-    ----------
-    table : SteDatabase
-        One base pitch.
-    rows : ndarray of int, shape (R,)
-        Positions that are solved.
-    places : OperatingPoints
-        Of the table.
-    solved : list of (ContactProblem, ContactSolution)
-        Of every place: held-out loads start from them.
-    """
+    """The first pitch of a table at some positions, held against solutions between its loads."""
 
     table: SteDatabase
+    """One base pitch."""
     rows: IntArray
+    """Positions that are solved. Shape (R,)."""
     places: OperatingPoints
+    """Of the table."""
     solved: Solved
+    """Of every place: held-out loads start from them."""
 
     def errors(self, goal: IntervalGoal | None = None) -> LoadErrors:
         """Measure the error of every interval; with a goal insert loads until it is met or halved enough."""

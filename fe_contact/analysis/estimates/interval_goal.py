@@ -18,18 +18,12 @@ LEAST_SHARE = 0.1
 
 @dataclass(frozen=True)
 class IntervalGoal:
-    """Goal of the intervals of all axes.
-
-    Attributes
-    ----------
-    tolerance : AllowedError
-        Of mean and peak-to-peak STE.
-    used : ndarray, shape (F, M, D)
-        Part of it that the errors at the nodes use.
-    """
+    """Goal of the intervals of all axes."""
 
     tolerance: AllowedError
+    """Of mean and peak-to-peak STE."""
     used: FloatArray
+    """Part of it that the errors at the nodes use. Shape (F, M, D)."""
 
     def shares(self, axis: str) -> FloatArray:
         """Return the part of the tolerance (I,) that interpolation may take in every interval of an axis.

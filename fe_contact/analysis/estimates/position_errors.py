@@ -43,18 +43,12 @@ NEXT_SPACING = 0.25
 
 @dataclass(frozen=True)
 class PositionErrors:
-    """Errors for lack of positions, the largest of the assessed operating points at each load.
-
-    Attributes
-    ----------
-    band : ndarray, shape (T P, F)
-        Largest error beside each position of all base pitches, m.
-    curves : ndarray, shape (23, F)
-        Of mean, peak-to-peak and harmonics, m.
-    """
+    """Errors for lack of positions, the largest of the assessed operating points at each load."""
 
     band: FloatArray
+    """Largest error beside each position of all base pitches, m. Shape (T P, F)."""
     curves: FloatArray
+    """Of mean, peak-to-peak and harmonics, m. Shape (23, F)."""
 
 
 def position_errors(

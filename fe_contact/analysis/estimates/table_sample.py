@@ -23,27 +23,18 @@ Axes = tuple[FloatArray, FloatArray, FloatArray]
 
 @dataclass(frozen=True)
 class TableSample:
-    """Points of a table (P positions of each of T pitches, F, M, D) that are solved again.
-
-    Attributes
-    ----------
-    position : ndarray, shape (P,)
-        Of the table, in the first base pitch.
-    period : int
-        Base pitches T.
-    axes : tuple of ndarray
-        Loads, misalignments, changes of the center distance.
-    rows : ndarray of int, shape (R,)
-        Positions that are solved.
-    nodes : tuple of ndarray of int
-        Loads (f), misalignments (m) and changes of the center distance (d) that are.
-    """
+    """Points of a table (P positions of each of T pitches, F, M, D) that are solved again."""
 
     position: FloatArray
+    """Of the table, in the first base pitch. Shape (P,)."""
     period: int
+    """Base pitches T."""
     axes: Axes
+    """Loads, misalignments, changes of the center distance."""
     rows: IntArray
+    """Positions that are solved. Shape (R,)."""
     nodes: tuple[IntArray, IntArray, IntArray]
+    """Loads (f), misalignments (m) and changes of the center distance (d) that are."""
 
     @classmethod
     def of(cls, position: FloatArray, period: int, axes: Axes) -> TableSample:
@@ -128,30 +119,20 @@ class TableSample:
 
 @dataclass(frozen=True)
 class Nested:
-    """STE and load arm at some points of a table, from the run's own and rougher discretizations.
-
-    Attributes
-    ----------
-    sample : TableSample
-        The points.
-    table : ndarray, shape (2, T R, f, m, d)
-        The table's own, m.
-    plane : ndarray
-        Without the correction for a finite width; `table` if there is none.
-    patched : ndarray
-        Under the wider load patches of the coarse meshes, without that correction.
-    coarse : ndarray
-        Under these on the coarse meshes.
-    sliced : ndarray
-        In half the slices; `table` in the plane.
-    """
+    """STE and load arm at some points of a table, from the run's own and rougher discretizations."""
 
     sample: TableSample
+    """The points."""
     table: FloatArray
+    """The table's own, m. Shape (2, T R, f, m, d)."""
     plane: FloatArray
+    """Without the correction for a finite width; `table` if there is none."""
     patched: FloatArray
+    """Under the wider load patches of the coarse meshes, without that correction."""
     coarse: FloatArray
+    """Under these on the coarse meshes."""
     sliced: FloatArray
+    """In half the slices; `table` in the plane."""
 
     @property
     def parts(self) -> tuple[Nested, Nested]:

@@ -36,26 +36,18 @@ class DeformedPair:
 
     The pinion's center is the origin, the wheel's is on +y, a ring gear's on -y; the pinion drives clockwise
     seen from +z.
-
-    Attributes
-    ----------
-    position : float
-        Base pitches.
-    deflection : float
-        Static transmission error, m.
-    pinion, wheel : DeformedGear
-    wheel_base_radius : float
-        m; negative for a ring gear.
-    wheel_center : (float, float, float)
-        m.
     """
 
     position: float
+    """Base pitches."""
     deflection: float
+    """Static transmission error, m."""
     pinion: DeformedGear
     wheel: DeformedGear
     wheel_base_radius: float
+    """m; negative for a ring gear."""
     wheel_center: tuple[float, float, float]
+    """m."""
 
     @property
     def wheel_lag(self) -> FloatArray:

@@ -44,21 +44,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ContactPattern:
-    """Largest pressure over one flank.
-
-    Attributes
-    ----------
-    roll_length : ndarray, shape (R,)
-        Middles of equal cells along the profile, m.
-    face_position : ndarray, shape (K,)
-        Middles of the slices, as distances from the pinion's mid-face, m.
-    pressure : ndarray, shape (R, K)
-        Largest Hertz pressure in Pa of any pair at any position; 0 where nothing touches.
-    """
+    """Largest pressure over one flank."""
 
     roll_length: FloatArray
+    """Middles of equal cells along the profile, m. Shape (R,)."""
     face_position: FloatArray
+    """Middles of the slices, as distances from the pinion's mid-face, m. Shape (K,)."""
     pressure: FloatArray
+    """Largest Hertz pressure in Pa of any pair at any position; 0 where nothing touches. Shape (R, K)."""
 
 
 def contact_pattern(

@@ -28,31 +28,24 @@ Both = tuple[float, float]
 
 @dataclass(frozen=True)
 class FlankScene:
-    """One load and one alignment of one pair. Roll lengths are of (pinion, wheel), each on its own flank.
-
-    Attributes
-    ----------
-    normal_force, torque : float
-        F_bn in N and the torque on the driving gear in N m.
-    misalignment, center_distance_change : float
-        m.
-    start_of_active_profile, pitch_point, tip : (float, float)
-        Roll lengths where the mating tip meets the flank, at the pitch point and at the own tip, m.
-    path_of_contact : tuple of float
-        Points A, B, C, D, E as roll lengths of the driving gear, m.
-    common_face : (float, float)
-        Ends of the common face, as distances from the pinion's mid-face, m.
-    """
+    """One load and one alignment of one pair. Roll lengths are of (pinion, wheel), each on its own flank."""
 
     normal_force: float
     torque: float
+    """`normal_force`, `torque`: F_bn in N and the torque on the driving gear in N m."""
     misalignment: float
     center_distance_change: float
+    """`misalignment`, `center_distance_change`: m."""
     start_of_active_profile: Both
     pitch_point: Both
     tip: Both
+    """`start_of_active_profile`, `pitch_point`, `tip`: Roll lengths where the mating tip meets the flank, at
+    the pitch point and at the own tip, m.
+    """
     path_of_contact: tuple[float, float, float, float, float]
+    """Points A, B, C, D, E as roll lengths of the driving gear, m."""
     common_face: Both
+    """Ends of the common face, as distances from the pinion's mid-face, m."""
     facts: PairFacts
 
     def to_json(self) -> Json:
@@ -100,90 +93,71 @@ Stretches = TypeVar("Stretches", FloatArray, BoolArray)
 
 @dataclass(frozen=True)
 class FlankErrors:
-    """Errors of figures of flank results over their values, or why there are none.
-
-    Attributes
-    ----------
-    line_load, pressure : float or None
-        Of the largest ones clear of edges. None: not estimated.
-    edge_line_load : float or None
-        Of the largest one at edges, as a mean over a slice.
-    face_load_factor, largest_face_load_factor : float or None
-        Of K_Hbeta over the cycle, and of the largest one at a position.
-    reason : str
-        Why those that are None are not estimated.
-    kink_length : float
-        Strip of the largest pressure where a relief begins in it with a kink, m, else 0: the true pressure is
-        infinite at the kink, the stated one 4/pi times the mean over this length.
-    """
+    """Errors of figures of flank results over their values, or why there are none."""
 
     line_load: float | None = None
+    """`line_load`, `pressure`: Of the largest ones clear of edges. None: not estimated."""
     face_load_factor: float | None = None
     largest_face_load_factor: float | None = None
+    """`face_load_factor`, `largest_face_load_factor`: Of K_Hbeta over the cycle, and of the largest one at a
+    position.
+    """
     pressure: float | None = None
     edge_line_load: float | None = None
+    """Of the largest one at edges, as a mean over a slice."""
     reason: str = "one solution tells no error"
+    """Why those that are None are not estimated."""
     kink_length: float = 0.0
+    """Strip of the largest pressure where a relief begins in it with a kink, m, else 0: the true pressure is
+    infinite at the kink, the stated one 4/pi times the mean over this length.
+    """
 
 
 @dataclass(frozen=True)
 class LoadDistribution:
-    """One load on P positions, N tooth pairs and K stretches of the common face, several a slice.
-
-    Attributes
-    ----------
-    position : ndarray, shape (P,)
-        Base pitches, by the driving gear's angle.
-    pair : ndarray of int, shape (N,)
-        Pair indices; +1 is ahead.
-    face_position : ndarray, shape (K,)
-        Middles of the stretches, as distances from the pinion's mid-face, m.
-    deflection : ndarray, shape (P,)
-        Static transmission error, m.
-    roll_length_1, roll_length_2 : ndarray, shape (P, N, K)
-        Where the flanks touch or come closest, on either gear, m.
-    on_path : ndarray of bool, shape (P, N, K)
-        Whether any part of the stretch lies between A and E, where plain involutes touch.
-    force : ndarray, shape (P, N, K)
-        Normal force of each stretch, N.
-    lever : ndarray, shape (P, N, K)
-        Lever arm of that force about gear 1 over the base radius: 1, and about 1 at a tip edge.
-    pressure : ndarray, shape (P, N, K)
-        Hertz's peak pressure of the line load in Pa; at a tip edge the true pressure is singular.
-    gap : ndarray, shape (P, N, K)
-        Remaining gap between the loaded flanks along their normal, m: 0 in contact, infinite where they
-        cannot touch.
-    slice_width : float
-        Of a stretch along the face, m.
-    base_helix_angle : float
-        beta_b of gear 1, rad.
-    scene : FlankScene
-        The load, the alignment, and the marks on both flanks.
-    at_edge : ndarray of bool, shape (P, N, K)
-        Whether the strip reaches an edge of either flank; nowhere in files older than it.
-    metadata : Metadata
-        Case, effects, cost and versions.
-    errors : FlankErrors
-        Of the largest line load, of K_Hbeta and of the largest pressure.
-    """
+    """One load on P positions, N tooth pairs and K stretches of the common face, several a slice."""
 
     position: FloatArray
+    """Base pitches, by the driving gear's angle. Shape (P,)."""
     pair: IntArray
+    """Pair indices; +1 is ahead. Shape (N,)."""
     face_position: FloatArray
+    """Middles of the stretches, as distances from the pinion's mid-face, m. Shape (K,)."""
     deflection: FloatArray
+    """Static transmission error, m. Shape (P,)."""
     roll_length_1: FloatArray
     roll_length_2: FloatArray
+    """`roll_length_1`, `roll_length_2`: Where the flanks touch or come closest, on either gear, m. Shape (P,
+    N, K) each.
+    """
     on_path: BoolArray
+    """Whether any part of the stretch lies between A and E, where plain involutes touch. Shape (P, N, K)."""
     force: FloatArray
+    """Normal force of each stretch, N. Shape (P, N, K)."""
     lever: FloatArray
+    """Lever arm of that force about gear 1 over the base radius: 1, and about 1 at a tip edge. Shape (P, N,
+    K).
+    """
     pressure: FloatArray
+    """Hertz's peak pressure of the line load in Pa; at a tip edge the true pressure is singular. Shape (P, N,
+    K).
+    """
     gap: FloatArray
+    """Remaining gap between the loaded flanks along their normal, m: 0 in contact, infinite where they cannot
+    touch. Shape (P, N, K).
+    """
     slice_width: float
+    """Of a stretch along the face, m."""
     base_helix_angle: float
+    """beta_b of gear 1, rad."""
     scene: FlankScene
+    """The load, the alignment, and the marks on both flanks."""
     metadata: Metadata = field(default_factory=Metadata)
+    """Case, effects, cost and versions."""
     at_edge: BoolArray | bool = False
+    """Whether the strip reaches an edge of either flank; nowhere in files older than it. Shape (P, N, K)."""
     errors: FlankErrors = field(default_factory=FlankErrors)
+    """Of the largest line load, of K_Hbeta and of the largest pressure."""
 
     @property
     def clear_pressure(self) -> FloatArray:

@@ -45,92 +45,77 @@ ROOTS: tuple[Root, Root] = ("tension", "compression")
 
 @dataclass(frozen=True)
 class RootPeak:
-    """The largest stress of a cycle, and where it is.
-
-    Attributes
-    ----------
-    stress : Estimate
-        Largest principal stress of the tension root, smallest one of the compression root (< 0), Pa, with the
-        error of the root's mesh, of the contact's discretization and of the model.
-    position : float
-        Base pitches.
-    pair : int
-        Whose tooth; position (modulo 1) + pair counts along the passage of one tooth.
-    flank_coordinate : float
-        m; between stations by a parabola.
-    tangent_angle : float
-        Of the surface there with the tooth's center line, rad.
-    face_position : float
-        Distance from the pinion's mid-face, m.
-    """
+    """The largest stress of a cycle, and where it is."""
 
     stress: Estimate
+    """Largest principal stress of the tension root, smallest one of the compression root (< 0), Pa, with the
+    error of the root's mesh, of the contact's discretization and of the model.
+    """
     position: float
+    """Base pitches."""
     pair: int
+    """Whose tooth; position (modulo 1) + pair counts along the passage of one tooth."""
     flank_coordinate: float = field(metadata=in_unit("m"))
+    """m; between stations by a parabola."""
     tangent_angle: float = field(metadata=in_unit("rad"))
+    """Of the surface there with the tooth's center line, rad."""
     face_position: float = field(metadata=in_unit("m"))
+    """Distance from the pinion's mid-face, m."""
 
 
 @dataclass(frozen=True)
 class RootPassage:
-    """The stress in the roots of one tooth on its way through the mesh.
-
-    Attributes
-    ----------
-    position : ndarray, shape (M,)
-        Position of the tooth's own pair in base pitches, increasing: 0 = its pitch point.
-    tension, compression : ndarray, shape (M,)
-        Largest principal stress anywhere in the tension root; smallest one in the compression root, Pa.
-    at_tension_peak, at_compression_peak : ndarray, shape (M,)
-        Stress along the profile at the station nearest to the peak: what fatigue counts, Pa.
-    """
+    """The stress in the roots of one tooth on its way through the mesh."""
 
     position: FloatArray = field(metadata=in_unit("1", "passage"))
+    """Position of the tooth's own pair in base pitches, increasing: 0 = its pitch point. Shape (M,)."""
     tension: FloatArray = field(metadata=in_unit("pa", "passage"))
     compression: FloatArray = field(metadata=in_unit("pa", "passage"))
+    """`tension`, `compression`: Largest principal stress anywhere in the tension root; smallest one in the
+    compression root, Pa. Shape (M,) each.
+    """
     at_tension_peak: FloatArray = field(metadata=in_unit("pa", "passage"))
     at_compression_peak: FloatArray = field(metadata=in_unit("pa", "passage"))
+    """`at_tension_peak`, `at_compression_peak`: Stress along the profile at the station nearest to the peak:
+    what fatigue counts, Pa. Shape (M,) each.
+    """
 
 
 @dataclass(frozen=True)
 class RootStressHistory:
-    """Surface stress of the tooth roots of one gear.
-
-    Attributes
-    ----------
-    position : ndarray, shape (P,)
-        Base pitches, by the driving gear's angle.
-    pair : ndarray of int, shape (N,)
-        Pair index of each tooth: those that touch, and one beyond at either end, which only neighbors load.
-    flank_coordinate : ndarray, shape (p,)
-        Of the stations along the profile, m, from the middle of the tooth space to the form point.
-    tangent_angle : ndarray, shape (p,)
-        Of the surface there with the tooth's center line, rad.
-    face_position : ndarray, shape (q,)
-        Of the stations across, as distance from the pinion's mid-face, m; a single one in the plane.
-    stress : ndarray, shape (P, N, 2, 3, p, q)
-        Pa. Third axis: tension root (beside the loaded flank), compression root. Fourth: along the profile,
-        across it in the surface, shear between the two.
-    near_load : ndarray of bool, shape (P, N, p, q)
-        Stations of the tension root under a load patch of their tooth or within half a patch of it. The
-        surface there is not free, and the patch is wider than the contact: they count for no peak.
-    relative_error : float
-        Of the peaks: by the mesh of the root, by positions, slices and mesh of the contact, and by the model.
-    critical_coordinate : float
-        Where ISO 6336-3 takes the critical section: the tangent has 30 degrees (internal gears: 60) with the
-        tooth's center line, m.
-    """
+    """Surface stress of the tooth roots of one gear."""
 
     position: FloatArray
+    """Base pitches, by the driving gear's angle. Shape (P,)."""
     pair: IntArray
+    """Pair index of each tooth: those that touch, and one beyond at either end, which only neighbors load.
+    Shape (N,).
+    """
     flank_coordinate: FloatArray
+    """Of the stations along the profile, m, from the middle of the tooth space to the form point. Shape (p,).
+    """
     tangent_angle: FloatArray
+    """Of the surface there with the tooth's center line, rad. Shape (p,)."""
     face_position: FloatArray
+    """Of the stations across, as distance from the pinion's mid-face, m; a single one in the plane. Shape
+    (q,).
+    """
     stress: FloatArray
+    """Pa. Third axis: tension root (beside the loaded flank), compression root. Fourth: along the profile,
+    across it in the surface, shear between the two. Shape (P, N, 2, 3, p, q).
+    """
     near_load: BoolArray
+    """Stations of the tension root under a load patch of their tooth or within half a patch of it. The
+    surface there is not free, and the patch is wider than the contact: they count for no peak. Shape (P, N,
+    p, q).
+    """
     relative_error: float
+    """Of the peaks: by the mesh of the root, by positions, slices and mesh of the contact, and by the model.
+    """
     critical_coordinate: float
+    """Where ISO 6336-3 takes the critical section: the tangent has 30 degrees (internal gears: 60) with the
+    tooth's center line, m.
+    """
 
     def at(self, positions: BoolArray) -> RootStressHistory:
         """Return the same at some of the positions (P,)."""
@@ -290,29 +275,20 @@ Histories = tuple[RootStressHistory, RootStressHistory]
 
 @dataclass(frozen=True)
 class RootStress:
-    """Tooth-root stress of both gears at one load and one alignment.
-
-    Attributes
-    ----------
-    pinion, wheel : RootStressHistory
-    torque, normal_force : float
-        On the driving gear, N m; F_bn, N.
-    misalignment, center_distance_change : float
-        m.
-    receipt : dict
-        CPU seconds by stage, memory, the plan, assumptions and what was repeated: plain JSON.
-    warnings : list of dict
-        What is implausible about the case or the stresses.
-    """
+    """Tooth-root stress of both gears at one load and one alignment."""
 
     pinion: RootStressHistory
     wheel: RootStressHistory
     torque: float
     normal_force: float
+    """`torque`, `normal_force`: On the driving gear, N m; F_bn, N."""
     misalignment: float
     center_distance_change: float
+    """`misalignment`, `center_distance_change`: m."""
     receipt: Json
+    """CPU seconds by stage, memory, the plan, assumptions and what was repeated: plain JSON."""
     warnings: list[Json] = field(default_factory=list)
+    """What is implausible about the case or the stresses."""
 
 
 def root_stress(

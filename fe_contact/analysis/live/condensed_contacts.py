@@ -18,27 +18,18 @@ from fe_contact.types import FloatArray, IntArray
 
 @dataclass(frozen=True)
 class CondensedContacts:
-    """One pair at one center distance.
-
-    Attributes
-    ----------
-    own : PairContact
-        As the table had it.
-    plane : PairContact or None
-        Without the correction for a finite width; None if there is none.
-    sliced : PairContact or None
-        In half the slices; None in the plane.
-    coarse : PairContact or None
-        On the coarse meshes; None if their compliance is not at hand.
-    patched : PairContact
-        Without the correction, under the load patches of the coarse meshes.
-    """
+    """One pair at one center distance."""
 
     own: PairContact
+    """As the table had it."""
     plane: PairContact | None
+    """Without the correction for a finite width; None if there is none."""
     sliced: PairContact | None
+    """In half the slices; None in the plane."""
     coarse: PairContact | None
+    """On the coarse meshes; None if their compliance is not at hand."""
     patched: PairContact
+    """Without the correction, under the load patches of the coarse meshes."""
 
     @classmethod
     def of(cls, own: PairContact, coarse: PairContact | None) -> CondensedContacts:

@@ -173,21 +173,14 @@ class _Latest:
 
 @dataclass(frozen=True)
 class CondensedPair:
-    """Gears with their compliance, as a table had them.
-
-    Attributes
-    ----------
-    checked : Checked
-        What the table was asked, its model bound to the bodies it had.
-    contacts : CondensedContacts
-        At the nominal center distance; they keep what was assembled for the positions.
-    neglected : mapping of str to str
-        Effects of the bodies that the tolerance of the table neglected, and why.
-    """
+    """Gears with their compliance, as a table had them."""
 
     checked: Checked
+    """What the table was asked, its model bound to the bodies it had."""
     contacts: CondensedContacts
+    """At the nominal center distance; they keep what was assembled for the positions."""
     neglected: Mapping[str, str] = field(default_factory=dict)
+    """Effects of the bodies that the tolerance of the table neglected, and why."""
     _apart: OrderedDict[float, CondensedContacts] = field(default_factory=OrderedDict, repr=False)
     _latest: _Latest = field(default_factory=_Latest, repr=False)
 

@@ -42,40 +42,31 @@ from model_studies.workers import InProcess, Workers
 
 @dataclass(frozen=True)
 class _ContactBlock:
-    """One block.
-
-    Attributes
-    ----------
-    pair : GearPair or InternalGearPair
-        At the center distance of the line.
-    candidates : Candidates
-        Of plain involutes at the positions of the block.
-    models : tuple of ContactModel
-        Of the misalignments; they share one compliance.
-    pitches : ndarray of int, shape (T,), or None
-        Whole base pitches to put the positions into, as `PairContact.solve` takes them.
-    loads : tuple of ndarray
-        Sets of normal forces in N; each is solved by itself.
-    conditioned : bool
-        Whether condition numbers are wanted.
-    edges : bool
-        Whether the depth of tip edges under the first set of loads is wanted.
-    starts : tuple of ndarray, shape (rows, L, n), optional
-        Forces in N on the candidates that each model starts from; default: each load from the one below it.
-    assembled : ContactProblem, optional
-        Of the candidates, with the compliance between them, where that is known: it need not be assembled.
-    """
+    """One block."""
 
     pair: ParallelAxes
+    """At the center distance of the line."""
     plan: Plan
     candidates: Candidates
+    """Of plain involutes at the positions of the block."""
     models: tuple[ContactModel, ...]
+    """Of the misalignments; they share one compliance."""
     pitches: IntArray | None
+    """Whole base pitches to put the positions into, as `PairContact.solve` takes them. Ndarray of int, shape
+    (T,),.
+    """
     loads: tuple[FloatArray, ...]
+    """Sets of normal forces in N; each is solved by itself."""
     conditioned: bool = False
+    """Whether condition numbers are wanted."""
     edges: bool = False
+    """Whether the depth of tip edges under the first set of loads is wanted."""
     starts: tuple[FloatArray, ...] | None = None
+    """Forces in N on the candidates that each model starts from; default: each load from the one below it.
+    Tuple of ndarray, shape (rows, L, n).
+    """
     assembled: ContactProblem | None = None
+    """Of the candidates, with the compliance between them, where that is known: it need not be assembled."""
 
     def start(self, model: int) -> Start | None:
         """Return what the solution of a model is started from."""

@@ -42,24 +42,18 @@ def problems_in_parts(
 
 @dataclass(frozen=True)
 class KeptContact:
-    """What is kept of the contact of an operating point at P positions in each of T base pitches.
-
-    Attributes
-    ----------
-    problem : ContactProblem
-        Of the first of the base pitches.
-    solution : ContactSolution
-        Of all of them, but for its forces (P, L, n): those in the first.
-    stored : dict
-        Arrays (T P, L, ...) by their names in the table.
-    edge_depth : ndarray, shape (L,)
-        How far tip edges would be inside the mating flanks, m; 0 where they stay clear or were left aside.
-    """
+    """What is kept of the contact of an operating point at P positions in each of T base pitches."""
 
     problem: ContactProblem
+    """Of the first of the base pitches."""
     solution: ContactSolution
+    """Of all of them, but for its forces (P, L, n): those in the first."""
     stored: Mapping[str, NDArray[Any]]
+    """Arrays (T P, L, ...) by their names in the table."""
     edge_depth: FloatArray
+    """How far tip edges would be inside the mating flanks, m; 0 where they stay clear or were left aside.
+    Shape (L,).
+    """
 
     @classmethod
     def of(cls, pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> KeptContact:

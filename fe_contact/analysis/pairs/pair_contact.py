@@ -56,28 +56,21 @@ Bodies = PlaneFlanks | FaceFlanks
 
 @dataclass(frozen=True)
 class PairContact:
-    """A pair whose flank compliances are known; every question about it is cheap.
-
-    Attributes
-    ----------
-    plane, face : pair of compliances or None
-        Of both gears, in the plane or over the face width; exactly one of the two.
-    uncorrected : pair of compliances or None
-        Those in the plane before they were corrected for the finite width, if they were.
-    varied : bool
-        Whether its flanks are to vary: problems then tell how compliance changes along them, sloped or not.
-    touches : dict of bytes to Touch
-        Where its flanks touch under the gaps of the only model it is used with, by the bytes of the
-        positions; where there is none it is found for every problem.
-    """
+    """A pair whose flank compliances are known; every question about it is cheap."""
 
     pair: ParallelAxes
     plan: Plan
     plane: PlaneFlanks | None = None
     face: FaceFlanks | None = None
+    """`plane`, `face`: Of both gears, in the plane or over the face width; exactly one of the two."""
     uncorrected: PlaneFlanks | None = None
+    """Those in the plane before they were corrected for the finite width, if they were."""
     varied: bool = False
+    """Whether its flanks are to vary: problems then tell how compliance changes along them, sloped or not."""
     touches: dict[bytes, Touch] = field(default_factory=dict, repr=False)
+    """Where its flanks touch under the gaps of the only model it is used with, by the bytes of the positions;
+    where there is none it is found for every problem.
+    """
     _problems: dict[tuple[object, ...], ContactProblem] = field(default_factory=dict, repr=False)
 
     @classmethod
@@ -321,24 +314,16 @@ class OperatingPoint:
 
 @dataclass(frozen=True)
 class OperatingPoints:
-    """All operating points of the table, center distance running fastest.
-
-    Attributes
-    ----------
-    shape : (int, int)
-        Numbers of misalignments and center distances.
-    places : tuple of OperatingPoint
-        Those of one center distance share their compliance.
-    nominal : PairContact
-        The pair at its nominal center distance, which may be no operating point of the table.
-    workers : Workers
-        Who solves them.
-    """
+    """All operating points of the table, center distance running fastest."""
 
     shape: tuple[int, int]
+    """Numbers of misalignments and center distances."""
     places: tuple[OperatingPoint, ...]
+    """Those of one center distance share their compliance."""
     nominal: PairContact
+    """The pair at its nominal center distance, which may be no operating point of the table."""
     workers: Workers = InProcess()  # noqa: RUF009 (frozen)
+    """Who solves them."""
 
     @property
     def period(self) -> int:

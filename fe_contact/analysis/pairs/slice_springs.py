@@ -71,19 +71,14 @@ SLICES = 65
 
 @dataclass(frozen=True)
 class SliceLaw:
-    """The law of the slices of a fidelity.
-
-    Attributes
-    ----------
-    line_stiffness : callable
-        Pair and candidates to the transverse stiffness of each per unit face width (P, n), N/m per m.
-    with_gaps : bool
-        Whether gaps between the flanks are seen: modifications, deviations, alignment, corner contact.
-        Without them a slice touches as far as it lies on the path of contact, a part of it included.
-    """
+    """The law of the slices of a fidelity."""
 
     line_stiffness: Callable[[ParallelAxes, Candidates], FloatArray]
+    """Pair and candidates to the transverse stiffness of each per unit face width (P, n), N/m per m."""
     with_gaps: bool
+    """Whether gaps between the flanks are seen: modifications, deviations, alignment, corner contact. Without
+    them a slice touches as far as it lies on the path of contact, a part of it included.
+    """
 
 
 @dataclass(frozen=True)

@@ -84,23 +84,16 @@ def _some(axis: FloatArray, most: int) -> FloatArray:
 
 @dataclass(frozen=True)
 class Decided:
-    """A request with its model and mesh.
-
-    Attributes
-    ----------
-    checked : Checked
-        With the chosen model, and a ledger that says why.
-    wished : Decided, optional
-        What the tolerance needs, where the time does not allow it.
-    behind : Decided, optional
-        What is expected to follow, where a mesh that is expected to miss the tolerance is tried first.
-    """
+    """A request with its model and mesh."""
 
     checked: Checked
+    """With the chosen model, and a ledger that says why."""
     mesh: MeshChoice
     plan: Plan
     wished: Decided | None = None
+    """What the tolerance needs, where the time does not allow it."""
     behind: Decided | None = None
+    """What is expected to follow, where a mesh that is expected to miss the tolerance is tried first."""
 
     @property
     def passes(self) -> tuple[Decided, ...]:

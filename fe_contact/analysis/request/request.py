@@ -35,38 +35,28 @@ from fe_contact.types import FloatArray, Json
 
 @dataclass(frozen=True)
 class Request:
-    """A checked request.
-
-    Attributes
-    ----------
-    load : ndarray
-        Normal forces F_bn in N, increasing.
-    misalignment, center_distance_change : ndarray
-        Table axes, m.
-    pitches : int, optional
-        Base pitches that the table shall cover where teeth differ; None: until all repeats.
-    neglected, turned_on : mapping of str to str
-        Automatic effects that are neglected because the accuracy does not need them, or on because a run
-        without them showed that it does, and why.
-    loads_as : str
-        How the caller gave the load: "torques" or "normal_forces".
-    registry : sequence of Effect
-        The effects that there are.
-    nodes_alone : bool
-        Whether the table is read at its nodes alone: nothing is inserted between them for a tolerance.
-    """
+    """A checked request."""
 
     pair: ParallelAxes
     load: FloatArray
+    """Normal forces F_bn in N, increasing."""
     options: AnalysisOptions
     misalignment: FloatArray
     center_distance_change: FloatArray
+    """`misalignment`, `center_distance_change`: Table axes, m."""
     pitches: int | None = None
+    """Base pitches that the table shall cover where teeth differ; None: until all repeats."""
     neglected: Mapping[str, str] = field(default_factory=dict)
     turned_on: Mapping[str, str] = field(default_factory=dict)
+    """`neglected`, `turned_on`: Automatic effects that are neglected because the accuracy does not need them,
+    or on because a run without them showed that it does, and why.
+    """
     loads_as: str = "torques"
+    """How the caller gave the load: "torques" or "normal_forces"."""
     registry: Sequence[Effect] = field(default_factory=lambda: EFFECTS)
+    """The effects that there are."""
     nodes_alone: bool = False
+    """Whether the table is read at its nodes alone: nothing is inserted between them for a tolerance."""
 
     @classmethod
     def over(cls, pair: ParallelAxes, axes: TableAxes, options: AnalysisOptions) -> Request:

@@ -42,14 +42,12 @@ class Figures(model_studies.Figures):
         m.
     cpu_seconds : float
         Of the contact, measured.
-    harmonics : ndarray, shape (L, 5)
-        Amplitudes of the mesh harmonics, the first one first, m.
-    predicted_cpu_seconds : float
-        Of the whole run with nothing in the cache.
     """
 
     harmonics: FloatArray = field(metadata=in_unit("m", "curve", "harmonic"))
+    """Amplitudes of the mesh harmonics, the first one first, m. Shape (L, 5)."""
     predicted_cpu_seconds: float
+    """Of the whole run with nothing in the cache."""
 
     @property
     def cost(self) -> float:
@@ -85,17 +83,14 @@ class Ablation(model_studies.Ablation[Figures, EffectAblation]):
     ----------
     nominal, effects, left_out
         Of every ablation.
-    torque : ndarray, shape (L,)
-        On the driving gear, N m.
-    normal_force : ndarray, shape (L,)
-        N.
-    misalignment : float
-        At which the figures are, m.
     """
 
     torque: FloatArray = field(metadata=in_unit("n_m", "curve"))
+    """On the driving gear, N m. Shape (L,)."""
     normal_force: FloatArray = field(metadata=in_unit("n", "curve"))
+    """N. Shape (L,)."""
     misalignment: float = field(metadata=in_unit("m"))
+    """At which the figures are, m."""
 
     @staticmethod
     def request(pair: ParallelAxes | Checked, axes: TableAxes | None, options: AnalysisOptions) -> Checked:

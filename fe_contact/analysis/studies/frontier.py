@@ -280,30 +280,27 @@ class FidelityResult(model_studies.FidelityResult):
     ----------
     cpu_seconds : float
         Of the whole run, its error estimate included.
-    mean, peak_to_peak : ndarray, shape (C,)
-        Of each curve (loads, then alignments), m.
-    stated_error : float
-        The error its table states: of mean and peak-to-peak, relative, the worst over the curves. That of the
-        positions is in it, which is the same for all fidelities.
-    stages : dict
-        CPU seconds by stage.
-    peak_memory_bytes : int
-        Of the process by the end of the fidelity.
-    mean_error, peak_to_peak_error : float
-        Relative difference to the reference, the worst over the curves; of the reference what its mesh
-        leaves, by the difference of the next coarser mesh and the second order of convergence (NaN if none
-        was run).
     """
 
     FIGURES = FIGURES
 
     mean: FloatArray = field(metadata=in_unit("m", "curve"))
     peak_to_peak: FloatArray = field(metadata=in_unit("m", "curve"))
+    """`mean`, `peak_to_peak`: Of each curve (loads, then alignments), m. Shape (C,) each."""
     stated_error: float
+    """The error its table states: of mean and peak-to-peak, relative, the worst over the curves. That of the
+    positions is in it, which is the same for all fidelities.
+    """
     stages: dict[str, float]
+    """CPU seconds by stage."""
     peak_memory_bytes: int
+    """Of the process by the end of the fidelity."""
     mean_error: float = NAN
     peak_to_peak_error: float = NAN
+    """`mean_error`, `peak_to_peak_error`: Relative difference to the reference, the worst over the curves; of
+    the reference what its mesh leaves, by the difference of the next coarser mesh and the second order of
+    convergence (NaN if none was run).
+    """
 
 
 def _errors(result: FidelityResult, reference: FidelityResult) -> Errors:
@@ -355,17 +352,14 @@ class Frontier(model_studies.Frontier[FidelityResult]):
     ----------
     results, left_out, knee, chosen
         Of every accuracy study.
-    solves : int
-        Positions x loads x alignments of every table.
-    full_contact : MeasuredFullContact, optional
-        Full finite-element contact of the same case, if it was requested and is possible.
-    known_full_contact : tuple of FullContactLevel
-        Known cost of full finite-element contact for this pair; empty for any other.
     """
 
     solves: int
+    """Positions x loads x alignments of every table."""
     full_contact: MeasuredFullContact | None = None
+    """Full finite-element contact of the same case, if it was requested and is possible."""
     known_full_contact: tuple[FullContactLevel, ...] = ()
+    """Known cost of full finite-element contact for this pair; empty for any other."""
 
     @staticmethod
     def request(pair: ParallelAxes | Checked, axes: TableAxes | None, options: AnalysisOptions) -> Checked:

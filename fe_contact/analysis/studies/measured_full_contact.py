@@ -84,35 +84,28 @@ PLANE, FACE = "plane strain", "three dimensions"
 
 @dataclass(frozen=True)
 class MeasuredFullContact:
-    """The result of the condensed peer on the case itself.
-
-    Attributes
-    ----------
-    tables : tuple of FullContactTable
-        For each misalignment, of equally spaced positions by the driving gear x all loads; points without a
-        solution say why.
-    misalignments : tuple of float
-        m.
-    solved_in : str
-        Plane strain or three dimensions.
-    predicted_cpu_seconds : float
-        Before they ran.
-    mean_error, peak_to_peak_error : float
-        Of the solved positions against the reference there, relative, the worst of all loads and
-        misalignments; NaN where there is nothing to compare.
-    plane_strain_mean, plane_strain_peak_to_peak : float
-        The same of our own plane strain against them: what two independent contact solvers differ by. NaN if
-        that fidelity was not run.
-    """
+    """The result of the condensed peer on the case itself."""
 
     tables: tuple[FullContactTable, ...]
+    """For each misalignment, of equally spaced positions by the driving gear x all loads; points without a
+    solution say why.
+    """
     misalignments: tuple[float, ...]
+    """m."""
     solved_in: str
+    """Plane strain or three dimensions."""
     predicted_cpu_seconds: float
+    """Before they ran."""
     mean_error: float = float("nan")
     peak_to_peak_error: float = float("nan")
+    """`mean_error`, `peak_to_peak_error`: Of the solved positions against the reference there, relative, the
+    worst of all loads and misalignments; NaN where there is nothing to compare.
+    """
     plane_strain_mean: float = float("nan")
     plane_strain_peak_to_peak: float = float("nan")
+    """`plane_strain_mean`, `plane_strain_peak_to_peak`: The same of our own plane strain against them: what
+    two independent contact solvers differ by. NaN if that fidelity was not run.
+    """
 
     @property
     def points(self) -> tuple[FullContactPoint, ...]:

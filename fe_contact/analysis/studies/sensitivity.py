@@ -19,23 +19,17 @@ from model_studies import in_unit
 
 @dataclass(frozen=True)
 class RippleCurve:
-    """Peak-to-peak transmission error over one deviation.
-
-    Attributes
-    ----------
-    deviation : ndarray, shape (N,)
-        Misalignment or change of the center distance in m, increasing; 0 is among them.
-    peak_to_peak, error : ndarray, shape (N,)
-        Peak-to-peak STE and the half-width of its error band, m.
-    carrying : ndarray, shape (N,)
-        Mean number of pairs that carry over the positions: the contact ratio under load. It is known to one
-        position in all.
-    """
+    """Peak-to-peak transmission error over one deviation."""
 
     deviation: FloatArray = field(metadata=in_unit("m", "deviation"))
+    """Misalignment or change of the center distance in m, increasing; 0 is among them. Shape (N,)."""
     peak_to_peak: FloatArray = field(metadata=in_unit("m", "deviation"))
     error: FloatArray = field(metadata=in_unit("m", "deviation"))
+    """`peak_to_peak`, `error`: Peak-to-peak STE and the half-width of its error band, m. Shape (N,) each."""
     carrying: FloatArray = field(metadata=in_unit("1", "deviation"))
+    """Mean number of pairs that carry over the positions: the contact ratio under load. It is known to one
+    position in all. Shape (N,).
+    """
 
     @property
     def relative_change(self) -> FloatArray:

@@ -147,28 +147,23 @@ Both = tuple[FloatArray, FloatArray]
 
 @dataclass(frozen=True)
 class DeflectionBudget:
-    """Parts of the transmission error over one base pitch, (P,) in m; (driving, driven) where there are two.
-
-    Attributes
-    ----------
-    modification, misalignment, corner : ndarray
-        Gaps that the load closes: of the flanks' modifications, of their misalignment, and of tip edges that
-        touch off the line of action.
-    teeth, bodies : (ndarray, ndarray)
-        Bending, shear and compression of the teeth with what they are clamped in; body, web and seat.
-    shafts : ndarray
-        Bending of shafts and bearings.
-    contact : ndarray
-        Hertz: from the contact strip to the middle of either tooth.
-    """
+    """Parts of the transmission error over a base pitch, (P,) in m; (driving, driven) where there are two."""
 
     modification: FloatArray
     misalignment: FloatArray
     corner: FloatArray
+    """`modification`, `misalignment`, `corner`: Gaps that the load closes: of the flanks' modifications, of
+    their misalignment, and of tip edges that touch off the line of action.
+    """
     teeth: Both
     bodies: Both
+    """`teeth`, `bodies`: Bending, shear and compression of the teeth with what they are clamped in; body, web
+    and seat. Shape (ndarray, ndarray) each.
+    """
     shafts: FloatArray
+    """Bending of shafts and bearings."""
     contact: FloatArray
+    """Hertz: from the contact strip to the middle of either tooth."""
 
     @property
     def total(self) -> FloatArray:

@@ -26,26 +26,18 @@ _NOTHING = 5e-5  # um and %, well below what two digits of any change that count
 
 @dataclass(frozen=True)
 class Influence:
-    """Change by leaving an effect out: without it less with it.
-
-    Attributes
-    ----------
-    torque : float
-        On the driving gear, N m.
-    misalignment : float
-        m.
-    mean, peak_to_peak : float
-        Change of the static transmission error, m.
-    whole_mean, whole_peak_to_peak : float
-        The static transmission error with the effect, m.
-    """
+    """Change by leaving an effect out: without it less with it."""
 
     torque: float
+    """On the driving gear, N m."""
     misalignment: float
+    """m."""
     mean: float
     peak_to_peak: float
+    """`mean`, `peak_to_peak`: Change of the static transmission error, m."""
     whole_mean: float
     whole_peak_to_peak: float
+    """`whole_mean`, `whole_peak_to_peak`: The static transmission error with the effect, m."""
 
     @property
     def relative_mean(self) -> float:
@@ -100,23 +92,19 @@ def signed(value: float) -> str:
 
 @dataclass(frozen=True)
 class EstimatedInfluence:
-    """Estimated change by leaving an effect out: without it less with it.
-
-    Attributes
-    ----------
-    mean, peak_to_peak : ndarray, shape (L,)
-        Of the static transmission error, m, at each load and the largest misalignment in size.
-    whole : EstimatedCurve
-        With the effect, at the same places.
-    largest : float
-        Largest change of either in parts of the value with the effect, over all loads and both ends of the
-        misalignments, >= 0.
-    """
+    """Estimated change by leaving an effect out: without it less with it."""
 
     mean: FloatArray
     peak_to_peak: FloatArray
+    """`mean`, `peak_to_peak`: Of the static transmission error, m, at each load and the largest misalignment
+    in size. Shape (L,) each.
+    """
     whole: EstimatedCurve
+    """With the effect, at the same places."""
     largest: float
+    """Largest change of either in parts of the value with the effect, over all loads and both ends of the
+    misalignments, >= 0.
+    """
 
 
 def largest_part(extent: Extent, mean: FloatArray, ripple: FloatArray, allowed: AllowedError) -> float:

@@ -118,22 +118,17 @@ _SAMPLES = 101
 
 @dataclass(frozen=True)
 class _ToothBending:
-    """Compliance of one tooth in the transverse section, by flank coordinate.
-
-    Attributes
-    ----------
-    s : ndarray, shape (n,)
-        Flank coordinates from root to tip, m.
-    tooth, foundation : ndarray, shape (n,)
-        Displacement along the normal per line load of the tooth itself and of what it is clamped in, m/(N/m).
-    depth : ndarray, shape (n,)
-        Distance in m along the normal from the flank to the tooth's center line.
-    """
+    """Compliance of one tooth in the transverse section, by flank coordinate."""
 
     s: FloatArray
+    """Flank coordinates from root to tip, m. Shape (n,)."""
     tooth: FloatArray
     foundation: FloatArray
+    """`tooth`, `foundation`: Displacement along the normal per line load of the tooth itself and of what it
+    is clamped in, m/(N/m). Shape (n,) each.
+    """
     depth: FloatArray
+    """Distance in m along the normal from the flank to the tooth's center line. Shape (n,)."""
 
     def at(self, values: FloatArray, s: FloatArray) -> FloatArray:
         """Interpolate one of the attributes at flank coordinates `s` of any shape."""
@@ -197,21 +192,14 @@ WEB_EXCESS = 2.1
 
 
 class _GearCompliance(NamedTuple):
-    """Normal approach (P, n, n) in m of each slice per N on each other, of one gear.
-
-    Attributes
-    ----------
-    tooth : ndarray
-        Bending, shear and compression of the tooth, and what it is clamped in.
-    contact : ndarray
-        From under the load patch to the tooth's middle.
-    body : ndarray
-        Body, web and seat.
-    """
+    """Normal approach (P, n, n) in m of each slice per N on each other, of one gear."""
 
     tooth: FloatArray
+    """Bending, shear and compression of the tooth, and what it is clamped in."""
     contact: FloatArray
+    """From under the load patch to the tooth's middle."""
     body: FloatArray
+    """Body, web and seat."""
 
 
 def slice_compliance(pair: ParallelAxes, slices: LoadedSlices, model: ContactModel) -> FloatArray:

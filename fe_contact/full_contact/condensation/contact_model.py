@@ -112,28 +112,19 @@ def _element_stiffness(nodes: FloatArray, elasticity: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class _CondensedBody:
-    """One gear seen from the nodes of its strips, per unit face width.
-
-    Attributes
-    ----------
-    nodes : (k,) int array
-        All nodes of its strips.
-    columns : mapping of int to int array
-        By pair index: where in `nodes` those of a strip are.
-    compliance : (2 k, 2 k) array
-        Displacement per nodal force, m per N/m; freedom 2 i + c is component c of node i.
-    stiffness : (2 n, 2 n) sparse array
-        Of all nodes, the held ones too.
-    solve : callable
-        Forces on the freedoms of all nodes (2 n,) to displacements; held nodes stay.
-    """
+    """One gear seen from the nodes of its strips, per unit face width."""
 
     body: PlacedBody
     nodes: IntArray
+    """All nodes of its strips. Shape (k,)."""
     columns: Mapping[int, IntArray]
+    """By pair index: where in `nodes` those of a strip are."""
     compliance: FloatArray
+    """Displacement per nodal force, m per N/m; freedom 2 i + c is component c of node i. Shape (2 k, 2 k)."""
     stiffness: sp.csc_array
+    """Of all nodes, the held ones too. (2 n, 2 n) sparse array."""
     solve: Callable[[FloatArray], FloatArray]
+    """Forces on the freedoms of all nodes (2 n,) to displacements; held nodes stay."""
 
     @property
     def freedoms(self) -> IntArray:

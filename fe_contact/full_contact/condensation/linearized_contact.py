@@ -21,52 +21,36 @@ MOST_ITERATIONS = 100
 
 @dataclass(frozen=True)
 class ContactSystem:
-    """A linear complementarity problem in h hats and the lag.
-
-    Attributes
-    ----------
-    gap : (h,) array
-        Weak gaps without pressure or lag, m^2.
-    compliance : (h, h) array
-        Symmetric positive definite, m^2/Pa.
-    closing : (h,) array
-        -d gap / d lag, m.
-    lever : (h,) array
-        Moment about gear 1's center by unit pressures, m^2.
-    weight : (h,) array
-        Of the hats, m: gap over weight is a length.
-    """
+    """A linear complementarity problem in h hats and the lag."""
 
     gap: FloatArray
+    """Weak gaps without pressure or lag, m^2. Shape (h,)."""
     compliance: FloatArray
+    """Symmetric positive definite, m^2/Pa. Shape (h, h)."""
     closing: FloatArray
+    """-d gap / d lag, m. Shape (h,)."""
     lever: FloatArray
+    """Moment about gear 1's center by unit pressures, m^2. Shape (h,)."""
     weight: FloatArray
+    """Of the hats, m: gap over weight is a length. Shape (h,)."""
 
 
 @dataclass(frozen=True)
 class ActiveSetSolution:
-    """Solution of a `ContactSystem`.
-
-    Attributes
-    ----------
-    pressure : (h,) array
-        Pa.
-    lag : float
-        m.
-    gap : (h,) array
-        Weak gaps, m^2.
-    residual : float
-        Largest breach of the laws: pressures below zero over the largest one, gaps below zero over the lag,
-        and the torque's relative error.
-    """
+    """Solution of a `ContactSystem`."""
 
     pressure: FloatArray
+    """Pa. Shape (h,)."""
     lag: float
+    """m."""
     gap: FloatArray
+    """Weak gaps, m^2. Shape (h,)."""
     status: Status
     iterations: int
     residual: float
+    """Largest breach of the laws: pressures below zero over the largest one, gaps below zero over the lag,
+    and the torque's relative error.
+    """
 
 
 def solve_active_set(
@@ -164,26 +148,20 @@ class Configuration:
 
 @dataclass(frozen=True)
 class LinearizedContact:
-    """Contact with the geometry and the forces of one configuration; h hats.
-
-    Attributes
-    ----------
-    forces, moved : ((u_1, h), (u_2, h)) arrays
-        Forces on the strips of both gears by unit pressures, and what displacements follow.
-    site : (h,) int array
-        Which site a hat belongs to.
-    line : (h,) int array
-        Hats of one number stand along one profile.
-    at_end : (h,) bool array
-        Hats at an end of their strip that is no tip edge: pressure there is cut off.
-    """
+    """Contact with the geometry and the forces of one configuration; h hats."""
 
     system: ContactSystem
     forces: tuple[FloatArray, FloatArray]
     moved: tuple[FloatArray, FloatArray]
+    """`forces`, `moved`: Forces on the strips of both gears by unit pressures, and what displacements follow.
+    ((u_1, h), (u_2, h)) arrays.
+    """
     site: IntArray
+    """Which site a hat belongs to. Shape (h,)."""
     line: IntArray
+    """Hats of one number stand along one profile. Shape (h,)."""
     at_end: BoolArray
+    """Hats at an end of their strip that is no tip edge: pressure there is cut off. Shape (h,)."""
 
 
 class Solution(NamedTuple):

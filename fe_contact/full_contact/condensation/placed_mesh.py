@@ -46,19 +46,17 @@ Size = Callable[[FloatArray], FloatArray]
 
 @dataclass(frozen=True)
 class _GearBoundary:
-    """Closed loops around one gear in its own frame, tooth 0 on +y.
-
-    Attributes
-    ----------
-    toothed, held : Outline
-        The teeth with the plain ring between them; the bore, or the outside of a ring gear's rim.
-    s : mapping of int to (k,) array
-        Flank coordinates of the nodes of the piece ``flank j``, from the tooth space to the tip, m.
-    """
+    """Closed loops around one gear in its own frame, tooth 0 on +y."""
 
     toothed: Outline
     held: Outline
+    """`toothed`, `held`: The teeth with the plain ring between them; the bore, or the outside of a ring
+    gear's rim.
+    """
     s: Mapping[int, FloatArray]
+    """Flank coordinates of the nodes of the piece ``flank j``, from the tooth space to the tip, m. Mapping of
+    int to (k,) array.
+    """
 
 
 def _gear_boundary(
@@ -198,43 +196,29 @@ SECONDS = 120.0
 
 @dataclass(frozen=True)
 class _Strip:
-    """Nodes along the part of a flank that may touch.
-
-    Attributes
-    ----------
-    nodes : (2 e + 1,) int array
-        Corner, mid-side, corner ... towards the tip.
-    s : (2 e + 1,) array
-        Flank coordinates, m.
-    """
+    """Nodes along the part of a flank that may touch."""
 
     nodes: IntArray
+    """Corner, mid-side, corner ... towards the tip. Shape (2 e + 1,)."""
     s: FloatArray
+    """Flank coordinates, m. Shape (2 e + 1,)."""
 
 
 @dataclass(frozen=True)
 class PlacedBody:
-    """One gear's mesh in the frame of the pair: gear 1's center is the origin, the teeth meet on +y.
-
-    Attributes
-    ----------
-    points : (n, 2) array
-        Nodes, m.
-    triangles : (m, 6) int array
-        Six-node triangles, corners counter-clockwise, then the middles of sides 0-1, 1-2, 2-0.
-    held : (b,) int array
-        Nodes of the bore, or of the outside of a ring gear's rim.
-    center : (2,) array
-        m.
-    strips : mapping of int to Strip
-        By pair index.
-    """
+    """One gear's mesh in the frame of the pair: gear 1's center is the origin, the teeth meet on +y."""
 
     points: FloatArray
+    """Nodes, m. Shape (n, 2)."""
     triangles: IntArray
+    """Six-node triangles, corners counter-clockwise, then the middles of sides 0-1, 1-2, 2-0. Shape (m, 6).
+    """
     held: IntArray
+    """Nodes of the bore, or of the outside of a ring gear's rim. Shape (b,)."""
     center: FloatArray
+    """m. Shape (2,)."""
     strips: Mapping[int, _Strip]
+    """By pair index."""
 
 
 def placed_bodies(

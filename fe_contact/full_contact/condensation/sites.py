@@ -27,24 +27,16 @@ COARSEST = 1.25
 
 @dataclass(frozen=True)
 class Resolution:
-    """Element sizes of a resolved contact; everything is refined in proportion.
-
-    Attributes
-    ----------
-    per_half_width : float
-        Quadratic elements in a Hertz half-width, 1.5 to 16.
-    corner : float
-        How many times finer the elements at a tip edge are.
-    layers : int
-        Layers over half the face, 1 to 24; the plane has none.
-    outermost : float
-        Thickness of the layer at the face over that at mid-face, 0.01 to 1: 0.05 resolves the free ends.
-    """
+    """Element sizes of a resolved contact; everything is refined in proportion."""
 
     per_half_width: float = USUAL
+    """Quadratic elements in a Hertz half-width, 1.5 to 16."""
     corner: float = 8.0
+    """How many times finer the elements at a tip edge are."""
     layers: int = 6
+    """Layers over half the face, 1 to 24; the plane has none."""
     outermost: float = 0.25
+    """Thickness of the layer at the face over that at mid-face, 0.01 to 1: 0.05 resolves the free ends."""
 
     def __post_init__(self) -> None:
         within("per_half_width", self.per_half_width, 1.5, 16.0, "6 is usual.")
@@ -119,58 +111,38 @@ NEAR_EDGE, PER_DISTANCE = 2.5, 0.1
 
 @dataclass(frozen=True)
 class SizedStrip:
-    """Strip of one gear's flank.
-
-    Attributes
-    ----------
-    low, high : float
-        Flank coordinates of its ends, m.
-    at, size : (k,) arrays
-        Flank coordinates and the element sizes wanted there, m.
-    """
+    """Strip of one gear's flank."""
 
     low: float
     high: float
+    """`low`, `high`: Flank coordinates of its ends, m."""
     at: FloatArray
     size: FloatArray
+    """`at`, `size`: Flank coordinates and the element sizes wanted there, m. Shape (k,) each."""
 
 
 @dataclass(frozen=True)
 class ContactSite:
-    """One tooth pair that may touch.
-
-    Attributes
-    ----------
-    ahead : int
-        Index of the pair; 0 is the reference pair, +1 is ahead.
-    slave : int
-        0 or 1: the gear whose flank carries the pressure; the other one has the nearer tip edge.
-    strips : (SizedStrip, SizedStrip)
-        On gear 1 and gear 2.
-    """
+    """One tooth pair that may touch."""
 
     ahead: int
+    """Index of the pair; 0 is the reference pair, +1 is ahead."""
     slave: int
+    """0 or 1: the gear whose flank carries the pressure; the other one has the nearer tip edge."""
     strips: tuple[SizedStrip, SizedStrip]
+    """On gear 1 and gear 2. Shape (SizedStrip, SizedStrip)."""
 
 
 @dataclass(frozen=True)
 class Range:
-    """The range of loads that the sites of a position must hold.
-
-    Attributes
-    ----------
-    line_loads : (float, float)
-        Least and largest load of the pair, N/m.
-    lag : float
-        Largest lag of the driven gear, m.
-    longer : float
-        Strips are that many times as long as usual.
-    """
+    """The range of loads that the sites of a position must hold."""
 
     line_loads: tuple[float, float]
+    """Least and largest load of the pair, N/m."""
     lag: float
+    """Largest lag of the driven gear, m."""
     longer: float = 1.0
+    """Strips are that many times as long as usual."""
 
 
 @dataclass(frozen=True)

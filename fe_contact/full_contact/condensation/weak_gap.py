@@ -113,24 +113,17 @@ Velocity = Callable[[FloatArray], FloatArray]
 
 @dataclass(frozen=True)
 class WeakGap:
-    """Weak gap of one pair in one configuration; h hats.
-
-    Attributes
-    ----------
-    gap : (h,) array
-        G_i, m^2.
-    weight : (h,) array
-        Integral of phi_i over what faces the master, m.
-    closing : (h,) array
-        -dG_i by the lag of the driven gear, m.
-    forces : ((2 k_1, h), (2 k_2, h)) arrays
-        Nodal forces on the strips of gear 1 and gear 2 by unit pressures, m.
-    """
+    """Weak gap of one pair in one configuration; h hats."""
 
     gap: FloatArray
+    """G_i, m^2. Shape (h,)."""
     weight: FloatArray
+    """Integral of phi_i over what faces the master, m. Shape (h,)."""
     closing: FloatArray
+    """-dG_i by the lag of the driven gear, m. Shape (h,)."""
     forces: tuple[FloatArray, FloatArray]
+    """Nodal forces on the strips of gear 1 and gear 2 by unit pressures, m. ((2 k_1, h), (2 k_2, h)) arrays.
+    """
 
 
 class _Facing(NamedTuple):

@@ -32,19 +32,13 @@ class Facing(NamedTuple):
 
 @dataclass(frozen=True)
 class FacingFlanks:
-    """A pair of flanks in one section, undeformed.
-
-    Attributes
-    ----------
-    roll : float
-        Roll length of gear 1 where they touch on the line of action, or would beyond its ends, m.
-    face : float
-        From mid-face, m.
-    """
+    """A pair of flanks in one section, undeformed."""
 
     pair: ParallelAxes
     roll: float
+    """Roll length of gear 1 where they touch on the line of action, or would beyond its ends, m."""
     face: float
+    """From mid-face, m."""
 
     @cached_property
     def slave(self) -> int:

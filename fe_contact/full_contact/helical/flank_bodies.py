@@ -42,17 +42,12 @@ BELOW = 0.1
 
 @dataclass(frozen=True)
 class FlankStrip:
-    """Nodes of a flank from its foot to the tip: corner, mid-side, corner ...
-
-    Attributes
-    ----------
-    nodes : (2 e + 1,) int array
-    s : (2 e + 1,) array
-        Flank coordinates, m.
-    """
+    """Nodes of a flank from its foot to the tip: corner, mid-side, corner ..."""
 
     nodes: IntArray
+    """Shape (2 e + 1,)."""
     s: FloatArray
+    """Flank coordinates, m. Shape (2 e + 1,)."""
 
     def shapes(self, s: FloatArray) -> tuple[sp.csr_array, sp.csr_array]:
         """Return the quadratics (q, 2 e + 1) and the linear functions of the corners (q, e + 1) at s (q,)."""
@@ -160,24 +155,19 @@ class FaceBody:
 
     A freedom is a function of a node of a strip along its normal: those of the hats of all its nodes, node by
     node, then those of the bubbles of its corners.
-
-    Attributes
-    ----------
-    starts : mapping of int to int
-        First freedom of a tooth.
-    compliance : (m, m) array
-        m/N.
-    spread : float
-        Elements to either side over which loads are spread on its mesh: a narrow load that slants through
-        its elements it would find too stiff, a wide one it resolves.
     """
 
     meshed: MeshedSection
     layers: Layers
     starts: dict[int, int]
+    """First freedom of a tooth."""
     compliance: FloatArray
+    """m/N. Shape (m, m)."""
     unknowns: int
     spread: float
+    """Elements to either side over which loads are spread on its mesh: a narrow load that slants through its
+    elements it would find too stiff, a wide one it resolves.
+    """
 
     def shapes(self, tooth: int, s: FloatArray, z: FloatArray) -> sp.csr_array:
         """Return the freedoms' functions (q, m) at places of a flank, s and z (q,)."""
@@ -258,20 +248,14 @@ def _normal_loads(
 
 @dataclass(frozen=True)
 class HelicalGear:
-    """One gear condensed over its face, and the sections that say what its mesh lacks.
-
-    Attributes
-    ----------
-    fine : FlankStrip
-        Of a section with a finely meshed tooth.
-    fine_compliance, coarse_compliance : (k, k) array, and such by tooth
-        m per N/m.
-    """
+    """One gear condensed over its face, and the sections that say what its mesh lacks."""
 
     body: FaceBody
     fine: FlankStrip
+    """Of a section with a finely meshed tooth."""
     fine_compliance: FloatArray
     coarse_compliance: dict[int, FloatArray]
+    """`fine_compliance`, `coarse_compliance`: m per N/m. (k, k) array, and such by tooth."""
 
     @property
     def lead(self) -> float:

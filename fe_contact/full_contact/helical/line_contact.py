@@ -106,22 +106,15 @@ class _Pair:
 
 @dataclass(frozen=True)
 class LineContact:
-    """All pairs at one position; its torque is in N m.
-
-    Attributes
-    ----------
-    ahead : (h,) int array
-        Pair index of each hat.
-    face : (h,) array
-        Station along the face of each hat, m.
-    at_side : (h,) bool array
-        Hats at a side of their strip that is no tip edge: pressure there is cut off.
-    """
+    """All pairs at one position; its torque is in N m."""
 
     system: ContactSystem
     ahead: IntArray
+    """Pair index of each hat. Shape (h,)."""
     face: FloatArray
+    """Station along the face of each hat, m. Shape (h,)."""
     at_side: BoolArray
+    """Hats at a side of their strip that is no tip edge: pressure there is cut off. Shape (h,)."""
 
 
 def line_contact(

@@ -30,28 +30,20 @@ from model_studies.stage_clock import StageClock
 
 @dataclass(frozen=True)
 class HelicalMesh:
-    """Sizes of a resolved helical contact; Hertz' half-width sizes elements and nothing else.
-
-    Attributes
-    ----------
-    flank : float
-        Elements on the flanks over the face, modules, 0.05 to 0.4.
-    layers : int
-        Over the face, 2 to 24.
-    across, along : int
-        Hats of pressure across a contact line and along one that runs over the whole face.
-    per_half_width : float
-        Elements of the fine sections in Hertz' half-width.
-    spread : float
-        Elements to either side of a load over which it is spread on the body, 0.5 to 6.
-    """
+    """Sizes of a resolved helical contact; Hertz' half-width sizes elements and nothing else."""
 
     flank: float = 0.15
+    """Elements on the flanks over the face, modules, 0.05 to 0.4."""
     layers: int = 8
+    """Over the face, 2 to 24."""
     across: int = 15
     along: int = 49
+    """`across`, `along`: Hats of pressure across a contact line and along one that runs over the whole face.
+    """
     per_half_width: float = 5.0
+    """Elements of the fine sections in Hertz' half-width."""
     spread: float = 1.5
+    """Elements to either side of a load over which it is spread on the body, 0.5 to 6."""
 
     def __post_init__(self) -> None:
         within("flank", self.flank, 0.05, 0.4, "0.15 is usual.")

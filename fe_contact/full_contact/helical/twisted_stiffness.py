@@ -125,24 +125,16 @@ def _plane_matrices(section: Section, names: set[tuple[str, str]]) -> dict[tuple
 
 @dataclass(frozen=True)
 class Section:
-    """Plane mesh of one gear about its axis, with what turns it.
-
-    Attributes
-    ----------
-    points : (n, 2) array
-        Nodes in the gear's own frame, m.
-    triangles : (e, 6) int array
-        Corners counter-clockwise, then the middles of sides 0-1, 1-2, 2-0.
-    twist : float
-        Turn of the section along z, counter-clockwise, rad/m.
-    base_radius : float
-        m.
-    """
+    """Plane mesh of one gear about its axis, with what turns it."""
 
     points: FloatArray
+    """Nodes in the gear's own frame, m. Shape (n, 2)."""
     triangles: IntArray
+    """Corners counter-clockwise, then the middles of sides 0-1, 1-2, 2-0. Shape (e, 6)."""
     twist: float
+    """Turn of the section along z, counter-clockwise, rad/m."""
     base_radius: float
+    """m."""
 
 
 def twisted_stiffness(section: Section, layers: Layers, material: Material) -> ExtrudedStiffness:

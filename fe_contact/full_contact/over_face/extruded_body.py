@@ -46,21 +46,14 @@ class _Front:
 
 @dataclass(frozen=True)
 class _ColumnMatrix:
-    """Symmetric matrix of columns of unknowns on n nodes, in the order of elimination.
-
-    Attributes
-    ----------
-    lower : (m, m) sparse array
-        Its lower triangle.
-    starts : (n + 1,) int array
-        First unknown of each node.
-    graph : (n, n) sparse array
-        Which nodes share elements.
-    """
+    """Symmetric matrix of columns of unknowns on n nodes, in the order of elimination."""
 
     lower: sp.csc_array
+    """Its lower triangle. (m, m) sparse array."""
     starts: IntArray
+    """First unknown of each node. Shape (n + 1,)."""
     graph: sp.csr_array
+    """Which nodes share elements. (n, n) sparse array."""
 
     def unknowns(self, nodes: IntArray) -> IntArray:
         """Return the unknowns of nodes, node by node."""
@@ -154,29 +147,25 @@ class ExtrudedBody:
 
     Functions are the f hats and bubbles of the layers; a bubble of a mid-side node is the mean of those of
     its neighbors, so that the compliance has the rank of the mesh.
-
-    Attributes
-    ----------
-    nodes : (k,) int array
-        All nodes of its strips.
-    columns : mapping of int to int array
-        By pair index: where in `nodes` those of a strip are.
-    even, odd : (2 k f, 2 k f) arrays
-        Displacement of half the face per force, m/N, where the other half is moved alike or oppositely.
-    held_moment : (2 k f,) array
-        Moment about the center of the reactions at the held circle of half the face by even forces, m.
-    unknowns : int
-        Of both half problems.
     """
 
     body: PlacedBody
     layers: Layers
     nodes: IntArray
+    """All nodes of its strips. Shape (k,)."""
     columns: Mapping[int, IntArray]
+    """By pair index: where in `nodes` those of a strip are."""
     even: FloatArray
     odd: FloatArray
+    """`even`, `odd`: Displacement of half the face per force, m/N, where the other half is moved alike or
+    oppositely. Shape (2 k f, 2 k f) each.
+    """
     held_moment: FloatArray
+    """Moment about the center of the reactions at the held circle of half the face by even forces, m. Shape
+    (2 k f,).
+    """
     unknowns: int
+    """Of both half problems."""
 
     @property
     def arms(self) -> FloatArray:

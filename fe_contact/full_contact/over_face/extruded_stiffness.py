@@ -94,23 +94,18 @@ X, Y, Z = range(3)
 
 @dataclass(frozen=True)
 class ExtrudedStiffness:
-    """Stiffness of all unknowns of half the face.
-
-    Attributes
-    ----------
-    matrix : (m, m) sparse array
-        N/m.
-    node, component, function : (m,) int arrays
-        Node of the plane mesh, direction, and number of the layer function of each unknown.
-    layers : int
-        Functions up to this number are hats, those beyond bubbles.
-    """
+    """Stiffness of all unknowns of half the face."""
 
     matrix: sp.csc_array
+    """N/m. (m, m) sparse array."""
     node: IntArray
     component: IntArray
     function: IntArray
+    """`node`, `component`, `function`: Node of the plane mesh, direction, and number of the layer function of
+    each unknown. Shape (m,) each.
+    """
     layers: int
+    """Functions up to this number are hats, those beyond bubbles."""
 
 
 def extruded_stiffness(

@@ -48,23 +48,18 @@ Section = Callable[[float], tuple[WeakGap, float]]
 
 @dataclass(frozen=True)
 class _FaceGap:
-    """Weak gap of one pair; h = i j hats, i along the profile times j = 2 p - 1 over the face.
-
-    Attributes
-    ----------
-    gap, weight : (h,) arrays
-        m^3 and m^2.
-    closing : (h,) array
-        -dG by the lag of the driven gear, m^2.
-    forces : ((2, 2 k_1 f, h), (2, 2 k_2 f, h)) arrays
-        On the functions of both gears' strips by unit pressures, m^2; in the half of positive and of negative
-        face position, each as seen from mid-face. In the frames of the meshes.
-    """
+    """Weak gap of one pair; h = i j hats, i along the profile times j = 2 p - 1 over the face."""
 
     gap: FloatArray
     weight: FloatArray
+    """`gap`, `weight`: m^3 and m^2. Shape (h,) each."""
     closing: FloatArray
+    """-dG by the lag of the driven gear, m^2. Shape (h,)."""
     forces: tuple[FloatArray, FloatArray]
+    """On the functions of both gears' strips by unit pressures, m^2; in the half of positive and of negative
+    face position, each as seen from mid-face. In the frames of the meshes. ((2, 2 k_1 f, h), (2, 2 k_2 f, h))
+    arrays.
+    """
 
 
 def _face_gap(section: Section, layers: Layers) -> _FaceGap:
@@ -106,19 +101,14 @@ class _FaceGeometry:
 
     Displacements of a gear are those of the functions of its strips, (2, 2 k f) flat: in the half of positive
     and of negative face position, each as seen from mid-face.
-
-    Attributes
-    ----------
-    pair : GearPair
-        Of equal face widths.
-    misalignment : float
-        Growth of the gap over the face in the plane of action, zero at mid-face, m.
     """
 
     pair: ParallelAxes
+    """Of equal face widths."""
     sites: tuple[ContactSite, ...]
     bodies: tuple[ExtrudedBody, ExtrudedBody]
     misalignment: float
+    """Growth of the gap over the face in the plane of action, zero at mid-face, m."""
     thickness: float = 1.0
 
     @property
@@ -267,18 +257,12 @@ _ACROSS = 201
 
 @dataclass(frozen=True)
 class _WholeFace:
-    """A contact for each misalignment.
-
-    Attributes
-    ----------
-    misalignments : tuple of float
-        Growth of the gap over the face in the plane of action, m.
-    outermost : float
-        Thickness of the layer at the face over that at mid-face.
-    """
+    """A contact for each misalignment."""
 
     misalignments: tuple[float, ...]
+    """Growth of the gap over the face in the plane of action, m."""
     outermost: float
+    """Thickness of the layer at the face over that at mid-face."""
 
     @property
     def count(self) -> int:

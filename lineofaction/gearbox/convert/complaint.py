@@ -45,47 +45,33 @@ _SURFACE = "Give a housing by step_file, mesh_file or modes_file, or leave the m
 
 @dataclass(frozen=True)
 class Complaint:
-    """What is heard.
-
-    Attributes
-    ----------
-    shaft : str
-        That orders are of.
-    order : float
-        Per revolution of it.
-    speed, frequency : float or None
-        Of the shaft, rad/s, and what is heard at it, Hz; None: an order at any speed.
-    tolerance : float
-        Relative.
-    passing : tuple of Passing
-        What is within the tolerance, and at least the `NEAREST` harmonics, the nearest first.
-    turns : mapping of str to float
-        Revolutions of every shaft per revolution of `shaft`.
-    drivers : mapping of str to tuple of (str, float)
-        Of every mesh the shaft of its driving gear, and how often it repeats per revolution of `shaft`.
-    levels : mapping of str to tuple of float
-        Forces, N, by which the harmonics of meshes excite at the loads of the scene; empty: not known.
-    bearing : str or None
-        Where it is measured; None: on the bearing that feels it most.
-    torques : mapping of str to float
-        Of every mesh with a table the torque on its driving gear at which it is heard, N m.
-    per_pitch : float
-        Order by which results count, of the order: base pitches of the first mesh, without one revolutions of
-        the leading shaft.
-    """
+    """What is heard."""
 
     shaft: str
+    """That orders are of."""
     order: float
+    """Per revolution of it."""
     speed: float | None = field(metadata=in_unit("rad_per_s"))
     frequency: float | None = field(metadata=in_unit("hz"))
+    """`speed`, `frequency`: Of the shaft, rad/s, and what is heard at it, Hz; None: an order at any speed."""
     tolerance: float
+    """Relative."""
     passing: tuple[Passing, ...]
+    """What is within the tolerance, and at least the `NEAREST` harmonics, the nearest first."""
     turns: Mapping[str, float]
+    """Revolutions of every shaft per revolution of `shaft`."""
     per_pitch: float
+    """Order by which results count, of the order: base pitches of the first mesh, without one revolutions of
+    the leading shaft.
+    """
     drivers: Mapping[str, tuple[str, float]]
+    """Of every mesh the shaft of its driving gear, and how often it repeats per revolution of `shaft`."""
     levels: Mapping[str, tuple[float, ...]]
+    """Forces, N, by which the harmonics of meshes excite at the loads of the scene; empty: not known."""
     bearing: str | None = None
+    """Where it is measured; None: on the bearing that feels it most."""
     torques: Mapping[str, float] = field(default_factory=dict)
+    """Of every mesh with a table the torque on its driving gear at which it is heard, N m."""
 
     @property
     def within(self) -> tuple[Passing, ...]:

@@ -177,27 +177,18 @@ NO_SOLIDS: Mapping[str, ReducedHousing] = {}
 
 @dataclass(frozen=True)
 class TabledScene:
-    """A scene with its tables.
-
-    Attributes
-    ----------
-    inputs : SceneInput
-        As it was written, the cases of its meshes written out.
-    databases : mapping of str to SteDatabase
-        By name of the mesh.
-    scene : Scene
-        What they make, in SI.
-    housings : mapping of str to ReducedHousing
-        By name of the housing: of those that have a solid, or a file of modes on the caller's disk.
-    seconds : float
-        CPU seconds of tables and housings that were made for it.
-    """
+    """A scene with its tables."""
 
     inputs: SceneInput
+    """As it was written, the cases of its meshes written out."""
     databases: Mapping[str, SteDatabase]
+    """By name of the mesh."""
     scene: Scene
+    """What they make, in SI."""
     housings: Mapping[str, ReducedHousing] = field(default_factory=dict)
+    """By name of the housing: of those that have a solid, or a file of modes on the caller's disk."""
     seconds: float = 0.0
+    """CPU seconds of tables and housings that were made for it."""
 
     @property
     def steady(self) -> TabledScene:

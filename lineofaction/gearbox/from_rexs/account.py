@@ -26,21 +26,15 @@ _SEVERAL = re.compile(r"[,\s]+")
 
 @dataclass(frozen=True)
 class Assumption:
-    """A value of an attribute.
-
-    Attributes
-    ----------
-    component : int
-        Id of the component.
-    attribute : str
-        Its name in the newest version of REXS.
-    value : str
-        As XML writes it, in the unit of the file, else in that of REXS; numbers of an array apart by commas.
-    """
+    """A value of an attribute."""
 
     component: int
+    """Id of the component."""
     attribute: str
+    """Its name in the newest version of REXS."""
     value: str
+    """As XML writes it, in the unit of the file, else in that of REXS; numbers of an array apart by commas.
+    """
 
     @classmethod
     def of(cls, text: str) -> Assumption:
@@ -120,32 +114,22 @@ UNUSED = "no analysis uses it"
 
 @dataclass(frozen=True)
 class Line:
-    """What became of a component, an attribute of it, or a value that it lacks.
-
-    Attributes
-    ----------
-    place : str
-        The component, with its load case.
-    component : int
-        Id of the component.
-    kind, name : str
-        Type and name of the component.
-    item : str
-        The attribute; empty for the component itself.
-    words : str
-        Its name here, the formula it follows from, or the reason.
-    line : int or None
-        Of the component in an XML file, from 1.
-    """
+    """What became of a component, an attribute of it, or a value that it lacks."""
 
     place: str
+    """The component, with its load case."""
     component: int
+    """Id of the component."""
     kind: str
     name: str
+    """`kind`, `name`: Type and name of the component."""
     item: str
+    """The attribute; empty for the component itself."""
     fate: Fate
     words: str
+    """Its name here, the formula it follows from, or the reason."""
     line: int | None = None
+    """Of the component in an XML file, from 1."""
 
 
 class Account:

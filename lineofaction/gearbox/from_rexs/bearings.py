@@ -93,21 +93,14 @@ _RATING = "radial_static_load_rating"
 
 @dataclass(frozen=True)
 class BearingGeometry:
-    """A bearing of one row whose geometry is known.
-
-    Attributes
-    ----------
-    row : BallBearing or RollerBearing
-        Its contact angle is not negative: which direction it holds is not in it.
-    rating : float
-        Static load rating C_0, N.
-    line : CatalogLine or None
-        The line in a catalog that the row is estimated from.
-    """
+    """A bearing of one row whose geometry is known."""
 
     row: Row
+    """Its contact angle is not negative: which direction it holds is not in it."""
     rating: float
+    """Static load rating C_0, N."""
     line: CatalogLine | None = None
+    """The line in a catalog that the row is estimated from."""
 
     @staticmethod
     def of(part: Part) -> BearingGeometry | str:
@@ -228,22 +221,15 @@ _ROWS = ("f_u", "f_v", "f_w", "m_v", "m_w")
 
 @dataclass(frozen=True)
 class BearingStiffness:
-    """Stiffness of a bearing along its own axis and across.
-
-    Attributes
-    ----------
-    radial, axial : float
-        N/m.
-    tilt : float
-        N m/rad.
-    matrix : (5, 5) array or None
-        In u, v, w, rotation about v, about w; N, m, rad; instead of the others.
-    """
+    """Stiffness of a bearing along its own axis and across."""
 
     radial: float
     axial: float
+    """`radial`, `axial`: N/m."""
     tilt: float
+    """N m/rad."""
     matrix: FloatArray | None = None
+    """In u, v, w, rotation about v, about w; N, m, rad; instead of the others. Shape (5, 5)."""
 
     @classmethod
     def of(cls, part: Part) -> BearingStiffness:

@@ -312,23 +312,16 @@ NO_STAGE = "relation `stage` needs two gears with teeth, on two shafts that carr
 
 @dataclass(frozen=True)
 class GearStage:
-    """Two gears in mesh.
-
-    Attributes
-    ----------
-    gears, shafts : (Part, Part)
-        Gear 1 and gear 2 of the file, and what carries them.
-    teeth : (int, int)
-        Their numbers of teeth, positive.
-    internal : bool
-        One of them is a ring gear.
-    """
+    """Two gears in mesh."""
 
     stage: Part
     gears: tuple[Part, Part]
     shafts: tuple[Part, Part]
+    """`gears`, `shafts`: Gear 1 and gear 2 of the file, and what carries them. Shape (Part, Part) each."""
     teeth: tuple[int, int]
+    """Their numbers of teeth, positive."""
     internal: bool
+    """One of them is a ring gear."""
 
     @property
     def is_cylindrical(self) -> bool:
@@ -359,24 +352,16 @@ def _gear_stages(unit: GearUnit) -> Iterator[GearStage]:
 
 @dataclass(frozen=True)
 class PlanetarySet:
-    """A planetary stage.
-
-    Attributes
-    ----------
-    stage : Part
-        The component `planetary_stage`.
-    planets : tuple of Part
-        The shafts of its planets.
-    central : tuple of Part
-        The shafts of sun and ring gear.
-    carrier : tuple of Part
-        All that turns as its carrier: shafts, pins, side plates.
-    """
+    """A planetary stage."""
 
     stage: Part
+    """The component `planetary_stage`."""
     planets: tuple[Part, ...]
+    """The shafts of its planets."""
     central: tuple[Part, ...]
+    """The shafts of sun and ring gear."""
     carrier: tuple[Part, ...]
+    """All that turns as its carrier: shafts, pins, side plates."""
 
     @property
     def pins(self) -> tuple[Part, ...]:

@@ -32,34 +32,23 @@ _LONGEST_NAME = 60
 
 @dataclass(frozen=True)
 class StageCase:
-    """The case of a cylindrical stage.
-
-    Attributes
-    ----------
-    stage : int
-        Id of the stage.
-    name : str
-        Name for a file: small letters, digits and underscores, unlike those of the unit's other cases.
-    case : Case
-        Its pinion is the driver, unless the ring gear drives.
-    driver, driven : int
-        Ids of the gears.
-    wheel_drives : bool
-        Whether the case's wheel, a ring gear, drives.
-    center_distance : float
-        m.
-    equal : tuple of int
-        Ids of further stages with the same case: those of the other planets.
-    """
+    """The case of a cylindrical stage."""
 
     stage: int
+    """Id of the stage."""
     name: str
+    """Name for a file: small letters, digits and underscores, unlike those of the unit's other cases."""
     case: Case
+    """Its pinion is the driver, unless the ring gear drives."""
     driver: int
     driven: int
+    """`driver`, `driven`: Ids of the gears."""
     wheel_drives: bool
+    """Whether the case's wheel, a ring gear, drives."""
     center_distance: float
+    """m."""
     equal: tuple[int, ...] = ()
+    """Ids of further stages with the same case: those of the other planets."""
 
     def driving(self, stage: GearStage) -> tuple[Part, Part]:
         """Return driver and driven gear of a stage, which may be that of an equal planet."""

@@ -28,24 +28,16 @@ _RIGID_ROTATION = 1e12
 
 @dataclass(frozen=True)
 class _Rotors:
-    """The rotating bodies of a gear unit.
-
-    Attributes
-    ----------
-    of : mapping of int to int
-        The rotor of a shaft or side plate: the lowest id of the components that turn as one.
-    held : frozenset of int
-        Rotors that a coupling holds on the ground.
-    couplings : tuple of Connection
-        Couplings between two rotors.
-    sets : tuple of PlanetarySet
-        The planetary sets.
-    """
+    """The rotating bodies of a gear unit."""
 
     of: Mapping[int, int]
+    """The rotor of a shaft or side plate: the lowest id of the components that turn as one."""
     held: frozenset[int]
+    """Rotors that a coupling holds on the ground."""
     couplings: tuple[Connection, ...]
+    """Couplings between two rotors."""
     sets: tuple[PlanetarySet, ...]
+    """The planetary sets."""
 
     def carrier_of(self, *shafts: int) -> int | None:
         """Return the carrier's rotor if one of the shafts is a planet's, None otherwise."""
@@ -192,25 +184,17 @@ def _place(shaft: Part, base: Part, offset: FloatArray, words: str, places: dict
 
 @dataclass(frozen=True)
 class Layout:
-    """Where everything is.
-
-    Attributes
-    ----------
-    axes : SceneAxes
-        The frame of the scene.
-    shafts : mapping of int to PlacedShaft
-        The shafts parallel to z, by id.
-    rotors : _Rotors
-        What turns together.
-    stages : tuple of GearStage
-        All stages with two gears.
-    """
+    """Where everything is."""
 
     unit: GearUnit
     axes: SceneAxes
+    """The frame of the scene."""
     shafts: Mapping[int, PlacedShaft]
+    """The shafts parallel to z, by id."""
     rotors: _Rotors
+    """What turns together."""
     stages: tuple[GearStage, ...]
+    """All stages with two gears."""
 
     @classmethod
     def of(cls, unit: GearUnit) -> Layout:
@@ -295,24 +279,16 @@ _MOST_ROTORS = 300
 
 @dataclass(frozen=True)
 class Train:
-    """The rotors of a train and what their ratios are.
-
-    Attributes
-    ----------
-    rotors : tuple of int
-        Their ids, the columns.
-    stages : tuple of GearStage
-        The first rows.
-    rows : (n, m) array
-        Stages, then couplings.
-    held : tuple of int
-        Columns of rotors at rest.
-    """
+    """The rotors of a train and what their ratios are."""
 
     rotors: tuple[int, ...]
+    """Their ids, the columns."""
     stages: tuple[GearStage, ...]
+    """The first rows."""
     rows: FloatArray
+    """Stages, then couplings. Shape (n, m)."""
     held: tuple[int, ...]
+    """Columns of rotors at rest."""
 
     @classmethod
     def of(cls, layout: Layout) -> Train:
@@ -411,21 +387,14 @@ class Train:
 
 @dataclass(frozen=True)
 class Flow:
-    """Torques through a train.
-
-    Attributes
-    ----------
-    on_rotor : (rows, rotors) array
-        Torque of each stage and coupling on each rotor, N m.
-    outside : mapping of int to float
-        Torque on each open rotor from outside, N m.
-    is_shared : bool
-        Statics leaves open how parallel stages share the load.
-    """
+    """Torques through a train."""
 
     on_rotor: FloatArray
+    """Torque of each stage and coupling on each rotor, N m. Shape (rows, rotors)."""
     outside: Mapping[int, float]
+    """Torque on each open rotor from outside, N m."""
     is_shared: bool
+    """Statics leaves open how parallel stages share the load."""
 
 
 def _null_space(matrix: FloatArray) -> FloatArray:

@@ -20,24 +20,16 @@ _HELD_TORQUE = 1e-9
 
 @dataclass(frozen=True)
 class AppliedTorque:
-    """A torque from outside of the scene.
-
-    Attributes
-    ----------
-    part : Part
-        The load, or the gear of a stage that is cut off.
-    rotor : int
-        What it acts on.
-    z : float
-        Where along z, m.
-    torque : float
-        N m about z.
-    """
+    """A torque from outside of the scene."""
 
     part: Part
+    """The load, or the gear of a stage that is cut off."""
     rotor: int
+    """What it acts on."""
     z: float
+    """Where along z, m."""
     torque: float
+    """N m about z."""
 
 
 class SceneMotion:
@@ -152,31 +144,21 @@ class SceneMotion:
 
 @dataclass(frozen=True)
 class LoadCase:
-    """A load case of a scene.
-
-    Attributes
-    ----------
-    number : int
-        Its place in the spectrum of the file, from 1.
-    share : float
-        Of the time, 0 to 1.
-    torque_n_m : float
-        Torque on the shaft of the scene's first drive, positive.
-    speed_rpm : float
-        Speed of that shaft, positive.
-    direction : "drive" or "coast"
-        Whether the flanks that carry are those of the scene.
-    forces : tuple of mapping
-        Tables of the scene's forces that differ under it.
-    """
+    """A load case of a scene."""
 
     name: str
     number: int
+    """Its place in the spectrum of the file, from 1."""
     share: float
+    """Of the time, 0 to 1."""
     torque_n_m: float
+    """Torque on the shaft of the scene's first drive, positive."""
     speed_rpm: float
+    """Speed of that shaft, positive."""
     direction: Literal["drive", "coast"]
+    """Whether the flanks that carry are those of the scene."""
     forces: tuple[Mapping[str, Any], ...] = ()
+    """Tables of the scene's forces that differ under it."""
 
     @classmethod
     def of(cls, flow: PowerFlow, leader: AppliedTorque, forces: tuple[Mapping[str, Any], ...]) -> LoadCase:

@@ -71,24 +71,20 @@ def _aligned(first: Part, second: Part) -> float:
 
 @dataclass(frozen=True)
 class Meshing:
-    """Two gears of a stage.
-
-    Attributes
-    ----------
-    stage, pinion, wheel : Part
-        The stage; gear 1 and gear 2 of the case: the driver and the driven gear, a ring gear always gear 2.
-    wheel_drives : bool
-        Whether the ring gear drives.
-    z : array (3,)
-        The case's axis in the frame of the unit: seen from +z, the torque of the shaft on the pinion acts
-        clockwise and right flanks carry.
-    """
+    """Two gears of a stage."""
 
     stage: Part
     pinion: Part
     wheel: Part
+    """`stage`, `pinion`, `wheel`: The stage; gear 1 and gear 2 of the case: the driver and the driven gear, a
+    ring gear always gear 2.
+    """
     wheel_drives: bool
+    """Whether the ring gear drives."""
     z: FloatArray
+    """The case's axis in the frame of the unit: seen from +z, the torque of the shaft on the pinion acts
+    clockwise and right flanks carry. Array (3,).
+    """
 
     @classmethod
     def of(cls, stage: Part, driver: int | None = None, torques: tuple[float, ...] = ()) -> Meshing:
@@ -178,23 +174,16 @@ _DIRECTIONS = {"positive": 1.0, "negative": -1.0}
 
 @dataclass(frozen=True)
 class LoadedFlank:
-    """The flank that carries, and where its face coordinates lie in the case.
-
-    Attributes
-    ----------
-    side : str
-        ``"right"`` or ``"left"``, seen from the datum face.
-    flank, other : Part or None
-        The flank that carries and its counterpart; None where the file has none.
-    datum : float
-        1 if the datum face is at the end of positive z, -1 if at the other.
-    """
+    """The flank that carries, and where its face coordinates lie in the case."""
 
     gear: Part
     side: str
+    """``"right"`` or ``"left"``, seen from the datum face."""
     flank: Part | None
     other: Part | None
+    """`flank`, `other`: The flank that carries and its counterpart; None where the file has none."""
     datum: float
+    """1 if the datum face is at the end of positive z, -1 if at the other."""
 
     @classmethod
     def of(cls, meshing: Meshing, gear: Part) -> LoadedFlank:

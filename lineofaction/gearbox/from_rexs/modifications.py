@@ -23,21 +23,15 @@ _SAME = 1e-6  # of the flank: places that a writer's rounding sets apart are one
 
 @dataclass(frozen=True)
 class Modification:
-    """A modification of a flank: what it removes, and fields of the case that say the same.
-
-    Attributes
-    ----------
-    fields : mapping
-        Empty where the case has none for it.
-    rolls, faces : tuple of float
-        Where it has kinks: roll lengths, coordinates from the datum face, m.
-    """
+    """A modification of a flank: what it removes, and fields of the case that say the same."""
 
     part: Part
     removed: Removed
     fields: Mapping[str, Any] = field(default_factory=dict)
+    """Empty where the case has none for it."""
     rolls: tuple[float, ...] = ()
     faces: tuple[float, ...] = ()
+    """`rolls`, `faces`: Where it has kinks: roll lengths, coordinates from the datum face, m."""
 
 
 @dataclass(frozen=True)

@@ -86,31 +86,22 @@ _DIGITS = 9
 
 @dataclass(frozen=True)
 class OpenedUnit:
-    """A gear unit as cases and a scene.
-
-    Attributes
-    ----------
-    cases : tuple of StageCase
-        The cylindrical stages; of equal ones the first.
-    scene : SceneInput or None
-        The whole unit; its meshes name the case files ``NAME.toml`` of `cases`. None where the file has not
-        what a scene needs: the account says why.
-    load_cases : tuple of LoadCase
-        Of the scene's driving shaft; one without a spectrum.
-    lines : tuple of Line
-        What became of each component and value.
-    changes : tuple of Change
-        What the upgrade to the newest version of REXS changed.
-    parts : SceneParts
-        The components that the parts of the scene are; none without a scene.
-    """
+    """A gear unit as cases and a scene."""
 
     cases: tuple[StageCase, ...]
+    """The cylindrical stages; of equal ones the first."""
     scene: SceneInput | None
+    """The whole unit; its meshes name the case files ``NAME.toml`` of `cases`. None where the file has not
+    what a scene needs: the account says why.
+    """
     load_cases: tuple[LoadCase, ...]
+    """Of the scene's driving shaft; one without a spectrum."""
     lines: tuple[Line, ...]
+    """What became of each component and value."""
     changes: tuple[Change, ...]
+    """What the upgrade to the newest version of REXS changed."""
     parts: SceneParts = field(default_factory=SceneParts)
+    """The components that the parts of the scene are; none without a scene."""
 
     @property
     def left_out(self) -> tuple[str, ...]:

@@ -24,18 +24,12 @@ _REFERENCE = "reference_component_for_position"
 
 @dataclass(frozen=True)
 class Placement:
-    """A place in the model's own frame.
-
-    Attributes
-    ----------
-    origin : (3,) array
-        m.
-    axes : (3, 3) array
-        Unit vectors u, v, w by rows, a right-handed system.
-    """
+    """A place in the model's own frame."""
 
     origin: FloatArray
+    """m. Shape (3,)."""
     axes: FloatArray
+    """Unit vectors u, v, w by rows, a right-handed system. Shape (3, 3)."""
 
     @property
     def u(self) -> FloatArray:
@@ -184,29 +178,20 @@ _LENGTHS = ("length", "outer_diameter_begin", "outer_diameter_end")
 
 @dataclass(frozen=True)
 class PlacedShaft:
-    """A shaft along the z axis of the scene.
-
-    Attributes
-    ----------
-    place : Placement
-        In the frame of the model; its origin is u = 0.
-    start : (3,) array
-        Of u = 0 in the scene, m.
-    sense : int
-        +1 where u is along z, -1 where it is against it.
-    begin, end : float
-        u of both ends, m.
-    sections : tuple of BeamSection
-        From the left end, the lower z; none where the file has none.
-    """
+    """A shaft along the z axis of the scene."""
 
     part: Part
     place: Placement
+    """In the frame of the model; its origin is u = 0."""
     start: FloatArray
+    """Of u = 0 in the scene, m. Shape (3,)."""
     sense: int
+    """+1 where u is along z, -1 where it is against it."""
     begin: float
     end: float
+    """`begin`, `end`: u of both ends, m."""
     sections: tuple[BeamSection, ...] = ()
+    """From the left end, the lower z; none where the file has none."""
 
     @classmethod
     def of(cls, part: Part, place: Placement, axes: SceneAxes) -> PlacedShaft:

@@ -33,32 +33,23 @@ LARGEST = 1e9
 
 @dataclass(frozen=True)
 class OperatingPoint:
-    """What a load case states.
-
-    Attributes
-    ----------
-    number : int
-        Its place in the spectrum, from 1.
-    share : float
-        Of the time, 0 to 1.
-    speeds : mapping of int to float
-        rad/s about u, by shaft.
-    torques : mapping of int to float or None
-        N m about u from outside, by external load; None where it follows from the others.
-    powers : mapping of int to float
-        W into the unit, by external load whose torque is not stated.
-    forces : mapping of int to tuple of six floats
-        Force along and moment about u, v, w of its shaft, N and N m, by external load that states any; the
-        moment about u is 0.
-    """
+    """What a load case states."""
 
     name: str
     number: int
+    """Its place in the spectrum, from 1."""
     share: float
+    """Of the time, 0 to 1."""
     speeds: Mapping[int, float]
+    """rad/s about u, by shaft."""
     torques: Mapping[int, float | None]
+    """N m about u from outside, by external load; None where it follows from the others."""
     powers: Mapping[int, float]
+    """W into the unit, by external load whose torque is not stated."""
     forces: Mapping[int, tuple[float, ...]]
+    """Force along and moment about u, v, w of its shaft, N and N m, by external load that states any; the
+    moment about u is 0.
+    """
 
     @staticmethod
     def all_of(unit: GearUnit) -> tuple[OperatingPoint, ...]:
@@ -162,34 +153,25 @@ SHARED = "statics leaves open how parallel stages share the load: equally among 
 
 @dataclass(frozen=True)
 class PowerFlow:
-    """Speeds and torques about z at an operating point.
-
-    Attributes
-    ----------
-    speeds : (rotors,) array
-        rad/s.
-    loads : mapping of int to float
-        Torque from outside by external load, N m; by shaft where the train's open end has no load that states
-        or leaves open its torque.
-    flow : Flow
-        Torques of the stages on the rotors.
-    remarks : tuple of str
-        What was assumed.
-    joined : frozenset of int
-        The rotors that the train joins to a speed that is known.
-    replaced : tuple of int
-        The loads whose stated torques do not balance the first; theirs follow from it.
-    """
+    """Speeds and torques about z at an operating point."""
 
     point: OperatingPoint
     layout: Layout
     train: Train
     speeds: FloatArray
+    """rad/s. Shape (rotors,)."""
     loads: Mapping[int, float]
+    """Torque from outside by external load, N m; by shaft where the train's open end has no load that states
+    or leaves open its torque.
+    """
     flow: Flow
+    """Torques of the stages on the rotors."""
     remarks: tuple[str, ...]
+    """What was assumed."""
     joined: frozenset[int]
+    """The rotors that the train joins to a speed that is known."""
     replaced: tuple[int, ...] = ()
+    """The loads whose stated torques do not balance the first; theirs follow from it."""
 
     def moves(self, stage: GearStage) -> bool:
         """Return whether the train joins a stage to a speed that is known."""

@@ -25,57 +25,39 @@ from lineofaction.gearbox.units import MM
 
 @dataclass(frozen=True)
 class ShaftPart:
-    """A shaft.
-
-    Attributes
-    ----------
-    turn : (3, 3) array
-        Takes components along u, v, w to x, y, z.
-    sense : int
-        +1 where u is along z, -1 where it is against it.
-    zero : float
-        Position of u = 0 from the left end of the scene's shaft, m.
-    """
+    """A shaft."""
 
     component: int
     turn: FloatArray
+    """Takes components along u, v, w to x, y, z. Shape (3, 3)."""
     sense: int
+    """+1 where u is along z, -1 where it is against it."""
     zero: float
+    """Position of u = 0 from the left end of the scene's shaft, m."""
 
 
 @dataclass(frozen=True)
 class BearingPart:
-    """A bearing, or a coupling, on the ground.
-
-    Attributes
-    ----------
-    turn : (3, 3) array
-        Takes components along its u, v, w to x, y, z.
-    shaft_inside : bool
-        Whether the shaft is on the inner side.
-    """
+    """A bearing, or a coupling, on the ground."""
 
     component: int
     turn: FloatArray
+    """Takes components along its u, v, w to x, y, z. Shape (3, 3)."""
     shaft_inside: bool
+    """Whether the shaft is on the inner side."""
 
 
 @dataclass(frozen=True)
 class _MeshPart:
-    """A stage.
-
-    Attributes
-    ----------
-    case : str
-        Name of its case.
-    sense : int
-        +1 where the face positions of the case count along u of the shaft of the stage's gear 1, -1 against
-        it; the opposite where a load case turns the train the other way.
-    """
+    """A stage."""
 
     component: int
     case: str
+    """Name of its case."""
     sense: int
+    """+1 where the face positions of the case count along u of the shaft of the stage's gear 1, -1 against
+    it; the opposite where a load case turns the train the other way.
+    """
 
 
 @dataclass(frozen=True)
@@ -139,28 +121,19 @@ ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class _SceneForce:
-    """A force and moment on a shaft of the scene, fixed in space.
-
-    Attributes
-    ----------
-    name, shaft : str
-        Its own and its shaft's name in the scene.
-    position_mm : float
-        Where it acts, from the left end of that shaft.
-    load : int
-        The external load that it is.
-    turn : (3, 3) array
-        Takes components along u, v, w of the load's shaft to x, y, z.
-    lever : float
-        Along z from where it acts in the scene to the load's place, m; 0 but beyond the end of its shaft.
-    """
+    """A force and moment on a shaft of the scene, fixed in space."""
 
     name: str
     shaft: str
+    """`name`, `shaft`: Its own and its shaft's name in the scene."""
     position_mm: float
+    """Where it acts, from the left end of that shaft."""
     load: int
+    """The external load that it is."""
     turn: FloatArray
+    """Takes components along u, v, w of the load's shaft to x, y, z. Shape (3, 3)."""
     lever: float
+    """Along z from where it acts in the scene to the load's place, m; 0 but beyond the end of its shaft."""
 
     def stated(self, point: OperatingPoint) -> dict[str, Any]:
         """Return what an entry of a load case's forces says at an operating point.
@@ -248,24 +221,16 @@ PERIODS = 10
 
 @dataclass(frozen=True)
 class SceneTable:
-    """A scene as its file says it.
-
-    Attributes
-    ----------
-    table : dict
-        Tables of a scene file; meshes name their case files.
-    leader : AppliedTorque or None
-        What drives it first.
-    forces : tuple of _SceneForce
-        The external loads that its forces are.
-    parts : SceneParts
-        The components that its parts are.
-    """
+    """A scene as its file says it."""
 
     table: dict[str, Any]
+    """Tables of a scene file; meshes name their case files."""
     leader: AppliedTorque | None
+    """What drives it first."""
     forces: tuple[_SceneForce, ...]
+    """The external loads that its forces are."""
     parts: SceneParts
+    """The components that its parts are."""
 
     @staticmethod
     def of(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[StageCase]) -> SceneTable:

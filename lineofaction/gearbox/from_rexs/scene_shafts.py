@@ -119,21 +119,14 @@ STUB = 1e-3
 
 @dataclass(frozen=True)
 class SceneShaft:
-    """A shaft of the scene.
-
-    Attributes
-    ----------
-    name : str
-        Its name there.
-    rotor : int
-        The rotor that it is, or belongs to.
-    table : dict
-        Its table in a scene file.
-    """
+    """A shaft of the scene."""
 
     name: str
+    """Its name there."""
     rotor: int
+    """The rotor that it is, or belongs to."""
     table: dict[str, Any]
+    """Its table in a scene file."""
 
     @property
     def begin(self) -> float:
@@ -151,21 +144,14 @@ class SceneShaft:
 
 @dataclass(frozen=True)
 class SceneShafts:
-    """All shafts of the scene.
-
-    Attributes
-    ----------
-    by_rotor : mapping of int to SceneShaft
-        The shaft of each rotor.
-    stubs : dict of int to SceneShaft
-        By gear: the stub on which a gear of a set stands whose shaft also meshes outside of the set.
-    stages : tuple of GearStage
-        The stages that the scene has: of equal planets those of the first.
-    """
+    """All shafts of the scene."""
 
     by_rotor: dict[int, SceneShaft]
+    """The shaft of each rotor."""
     stages: tuple[GearStage, ...]
+    """The stages that the scene has: of equal planets those of the first."""
     stubs: dict[int, SceneShaft] = field(default_factory=dict)
+    """By gear: the stub on which a gear of a set stands whose shaft also meshes outside of the set."""
 
     @classmethod
     def of(cls, layout: Layout, stages: Sequence[GearStage], names: Names) -> SceneShafts:

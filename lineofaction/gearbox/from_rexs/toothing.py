@@ -20,26 +20,19 @@ _SHIFT = "addendum_modification_coefficient"
 
 @dataclass(frozen=True)
 class ToothingData:
-    """Numbers of a gear's toothing; lengths in m, angles in rad, all numbers but angles and shift positive.
-
-    Attributes
-    ----------
-    sign : int
-        1 of an external gear, -1 of a ring gear.
-    helix_angle : float
-        > 0: right hand.
-    profile_shift_coefficient : float or None
-        None where the file gives none.
-    """
+    """Numbers of a gear's toothing; lengths in m, angles in rad, all but angles and shift positive."""
 
     loaded: LoadedFlank
     sign: int
+    """1 of an external gear, -1 of a ring gear."""
     teeth: int
     normal_module: float
     pressure_angle: float
     helix_angle: float
+    """> 0: right hand."""
     face_width: float
     profile_shift_coefficient: float | None
+    """None where the file gives none."""
 
     @classmethod
     def of(cls, loaded: LoadedFlank) -> ToothingData:
@@ -121,24 +114,17 @@ def _say_difference(loaded: LoadedFlank, item: str, value: float) -> None:
 
 @dataclass(frozen=True)
 class ToothedPair:
-    """What the file says of a stage's two gears; the second may be a ring gear.
-
-    Attributes
-    ----------
-    center_distance : float
-        m.
-    axial_offset : float
-        Of the wheel's mid-face from the pinion's towards +z, m.
-    torques : tuple of float
-        On the driving gear, N m; of one sign.
-    """
+    """What the file says of a stage's two gears; the second may be a ring gear."""
 
     meshing: Meshing
     pinion: ToothingData
     wheel: ToothingData
     center_distance: float
+    """m."""
     axial_offset: float
+    """Of the wheel's mid-face from the pinion's towards +z, m."""
     torques: tuple[float, ...]
+    """On the driving gear, N m; of one sign."""
 
     @property
     def stage(self) -> Part:
@@ -244,27 +230,19 @@ _TOOLS = ("rack_shaped_tool", "cutter_wheel_tool", "profile_tool")
 
 @dataclass(frozen=True)
 class ToothDepth:
-    """Tip and root of a gear in fields of the case: diameters in m, coefficients in normal modules.
-
-    Attributes
-    ----------
-    tip_stated : bool
-        Whether the tip diameter is the file's.
-    thickness_allowance : float
-        Normal tooth thickness removed at the reference circle, m.
-    tooth_thinning : str
-        What removes it: the cutter, or grinding of the flanks.
-    cutter : mapping
-        Fields of the pinion cutter of a ring gear; none where the file has none.
-    """
+    """Tip and root of a gear in fields of the case: diameters in m, coefficients in normal modules."""
 
     tip_diameter: float
     tip_stated: bool
+    """Whether the tip diameter is the file's."""
     dedendum_coefficient: float
     root_radius_coefficient: float
     thickness_allowance: float
+    """Normal tooth thickness removed at the reference circle, m."""
     tooth_thinning: str
+    """What removes it: the cutter, or grinding of the flanks."""
     cutter: Mapping[str, int | float] = field(default_factory=dict)
+    """Fields of the pinion cutter of a ring gear; none where the file has none."""
 
     @classmethod
     def of(cls, gear: ToothingData, shift: float, tip_alteration: float) -> ToothDepth:

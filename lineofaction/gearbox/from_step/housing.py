@@ -42,28 +42,21 @@ class Stand:
 
 @dataclass(frozen=True)
 class StepHousing:
-    """A housing as a scene has it, and what it was found by.
-
-    Attributes
-    ----------
-    fields : mapping
-        Of `[[housings]]`, but for its name and its file.
-    seated : Seated
-        Bores by bearing.
-    left_out, replaced : tuple of str
-        Bearings in no bore; housings of the scene whose bearings are in this one, which it replaces.
-    stand : Stand
-    mass, wall : float
-        kg; mean thickness of the walls 2 V/S, m.
-    """
+    """A housing as a scene has it, and what it was found by."""
 
     fields: Mapping[str, Any]
+    """Of `[[housings]]`, but for its name and its file."""
     seated: Seated
+    """Bores by bearing."""
     left_out: tuple[str, ...]
     replaced: tuple[str, ...]
+    """`left_out`, `replaced`: Bearings in no bore; housings of the scene whose bearings are in this one,
+    which it replaces.
+    """
     stand: Stand
     mass: float
     wall: float
+    """`mass`, `wall`: kg; mean thickness of the walls 2 V/S, m."""
 
 
 def step_housing(

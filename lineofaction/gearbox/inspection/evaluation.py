@@ -20,24 +20,16 @@ _PER_CUTOFF = 2
 
 @dataclass(frozen=True)
 class Split:
-    """A trace split into a line and what is left; m.
-
-    Attributes
-    ----------
-    place : ndarray
-        Stations, even over the length of the trace.
-    slope : float
-        Rise of the mean line from the first station to the last.
-    rest : ndarray
-        Filtered trace less its mean line, at the stations.
-    cutoff : float
-        Wavelength of which the filter keeps half the amplitude.
-    """
+    """A trace split into a line and what is left; m."""
 
     place: FloatArray
+    """Stations, even over the length of the trace."""
     slope: float
+    """Rise of the mean line from the first station to the last."""
     rest: FloatArray
+    """Filtered trace less its mean line, at the stations."""
     cutoff: float
+    """Wavelength of which the filter keeps half the amplitude."""
 
     @property
     def form(self) -> float:

@@ -51,21 +51,14 @@ class Chart:
 
 @dataclass(frozen=True)
 class MeasuredGear:
-    """Deviations of a gear as a case has them, and what became of every line of the sheet.
-
-    Attributes
-    ----------
-    fields : mapping
-        Fields of the gear's table in the case.
-    account : mapping
-        Number of lines by what became of them.
-    splits : mapping
-        Evaluated traces by tooth of the sheet and trace.
-    """
+    """Deviations of a gear as a case has them, and what became of every line of the sheet."""
 
     fields: Mapping[str, Any]
+    """Fields of the gear's table in the case."""
     account: Mapping[str, int]
+    """Number of lines by what became of them."""
     splits: Mapping[tuple[int, str], Split]
+    """Evaluated traces by tooth of the sheet and trace."""
 
     @property
     def left_out(self) -> list[str]:

@@ -28,27 +28,19 @@ MOST_POINTS = 200_000
 
 @dataclass(frozen=True)
 class Point:
-    """A point of a trace in SI; `roll` and `face` are None where the trace has no such place.
-
-    Attributes
-    ----------
-    line : int
-        Its line in the file, from 1.
-    tooth : int
-        From 1, clockwise as the datum face is seen.
-    roll, face : float, optional
-        Roll length, and distance from mid-face, m.
-    deviation : float
-        m; of profile, helix and topography > 0 in excess, of pitches > 0 clockwise.
-    """
+    """A point of a trace in SI; `roll` and `face` are None where the trace has no such place."""
 
     line: int
+    """Its line in the file, from 1."""
     tooth: int
+    """From 1, clockwise as the datum face is seen."""
     flank: Flank
     trace: str
     roll: float | None
     face: float | None
+    """`roll`, `face`: Roll length, and distance from mid-face, m."""
     deviation: float
+    """m; of profile, helix and topography > 0 in excess, of pitches > 0 clockwise."""
 
 
 @dataclass(frozen=True)

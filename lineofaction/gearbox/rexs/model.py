@@ -16,32 +16,23 @@ Extra = tuple[tuple[str, str], ...]
 
 @dataclass(frozen=True)
 class Attribute:
-    """A value of a component.
-
-    Attributes
-    ----------
-    id : str
-        Name in REXS, e.g. ``"normal_module"``; own ones begin with ``custom_``.
-    kind : str
-        Type of the value as the JSON form writes it: ``floating_point``, ``integer``, ``boolean``, ``enum``,
-        ``string``, ``reference_component``, ``file_reference``; with ``_array`` or ``_matrix``;
-        ``array_of_integer_arrays``.
-    value : Value
-        In `unit`; None where the file gives none, or a blank text.
-    unit : str or None
-        As written; None where the file says none.
-    code : str or None
-        ``float32``, ``float64`` or ``int32`` of an array that the file codes in base64.
-    origin : str or None
-        Where the value comes from (since 1.5), e.g. ``"calculated"``.
-    """
+    """A value of a component."""
 
     id: str
+    """Name in REXS, e.g. ``"normal_module"``; own ones begin with ``custom_``."""
     kind: str
+    """Type of the value as the JSON form writes it: ``floating_point``, ``integer``, ``boolean``, ``enum``,
+    ``string``, ``reference_component``, ``file_reference``; with ``_array`` or ``_matrix``;
+    ``array_of_integer_arrays``.
+    """
     value: Value
+    """In `unit`; None where the file gives none, or a blank text."""
     unit: str | None = None
+    """As written; None where the file says none."""
     code: str | None = None
+    """``float32``, ``float64`` or ``int32`` of an array that the file codes in base64."""
     origin: str | None = None
+    """Where the value comes from (since 1.5), e.g. ``"calculated"``."""
     extra: Extra = ()
 
 
@@ -111,20 +102,14 @@ class LoadSpectrum:
 
 @dataclass(frozen=True)
 class Model:
-    """A gear unit.
-
-    Attributes
-    ----------
-    version : str
-        Of REXS, as written: ``"1.4"``, ``"2.0.0"``.
-    application, application_version, date : str
-        The writing program and the time of writing.
-    """
+    """A gear unit."""
 
     version: str
+    """Of REXS, as written: ``"1.4"``, ``"2.0.0"``."""
     application: str
     application_version: str
     date: str
+    """`application`, `application_version`, `date`: The writing program and the time of writing."""
     relations: tuple[Relation, ...] = ()
     components: tuple[Component, ...] = ()
     spectra: tuple[LoadSpectrum, ...] = ()

@@ -17,27 +17,18 @@ _SHORT = {"2.0": "2.0.0"}
 
 @dataclass(frozen=True)
 class Change:
-    """What a version changed of a model.
-
-    Attributes
-    ----------
-    version : str
-        The version that changed it.
-    place : str
-        The component, and its load case.
-    item : str
-        Name of the attribute, or type of the component, before.
-    kept : bool
-        Whether it stays as it was, since the newer version has nothing that says the same.
-    words : str
-        What became of it, or why it is kept.
-    """
+    """What a version changed of a model."""
 
     version: str
+    """The version that changed it."""
     place: str
+    """The component, and its load case."""
     item: str
+    """Name of the attribute, or type of the component, before."""
     kept: bool
+    """Whether it stays as it was, since the newer version has nothing that says the same."""
     words: str
+    """What became of it, or why it is kept."""
 
 
 _Step = dict[str, Any]

@@ -19,20 +19,13 @@ _SHOWN = 40
 
 @dataclass(frozen=True)
 class CsvRows:
-    """The lines of a file.
-
-    Attributes
-    ----------
-    heading : list of str
-    held : list of (int, str)
-        The others that are neither blank nor comments, which start with #, after their number from 1.
-    lines : int
-        All of them.
-    """
+    """The lines of a file."""
 
     heading: list[str]
     held: list[tuple[int, str]]
+    """The others that are neither blank nor comments, which start with #, after their number from 1."""
     lines: int
+    """All of them."""
 
     @property
     def silent(self) -> int:

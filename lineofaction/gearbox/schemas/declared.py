@@ -22,22 +22,15 @@ Model = TypeVar("Model", bound=BoundaryModel)
 
 @dataclass(frozen=True)
 class Figure:
-    """A declared number or name as the boundary has it.
-
-    Attributes
-    ----------
-    name : str
-        The field of the library.
-    default : object
-        In SI; `MISSING` where one has to be given, None where it may be left out.
-    marked : bool
-        Whether its schema says kind and direction.
-    """
+    """A declared number or name as the boundary has it."""
 
     name: str
+    """The field of the library."""
     what: Declared
     default: Any
+    """In SI; `MISSING` where one has to be given, None where it may be left out."""
     marked: bool = True
+    """Whether its schema says kind and direction."""
 
     @property
     def field(self) -> str:

@@ -39,24 +39,16 @@ class Part(BaseModel):
 
 
 class Figures(Part):
-    """Figures of a result, and what is known of its file.
-
-    Attributes
-    ----------
-    hash : str
-        Content hash of the input, the name of the result.
-    sha256 : str
-        Digest of the file.
-    size : int
-        Bytes of the file.
-    warnings : list of dict
-        What is implausible: check, field, value, unit, message.
-    """
+    """Figures of a result, and what is known of its file."""
 
     hash: str
+    """Content hash of the input, the name of the result."""
     sha256: str
+    """Digest of the file."""
     size: int
+    """Bytes of the file."""
     warnings: list[Json] = Field(default_factory=list)
+    """What is implausible: check, field, value, unit, message."""
 
     def __getitem__(self, name: str) -> Any:
         """Return a member of the document by its name there, as version 0.2 had it."""

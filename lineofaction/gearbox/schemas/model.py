@@ -210,19 +210,13 @@ def _with(name: str, *names: str) -> Json:
 
 @dataclass(frozen=True)
 class Spelling:
-    """Beside the type of a field: how the option is spelled that it has.
-
-    Attributes
-    ----------
-    value : str, optional
-        What the option stands for if it takes none.
-    file : bool
-        Whether the option takes the file of a result, which the field names by its content hash.
-    """
+    """Beside the type of a field: how the option is spelled that it has."""
 
     option: str
     value: str | None = None
+    """What the option stands for if it takes none."""
     file: bool = False
+    """Whether the option takes the file of a result, which the field names by its content hash."""
 
 
 def spelling_of(field: FieldInfo) -> Spelling | None:

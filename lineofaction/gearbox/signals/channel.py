@@ -18,34 +18,26 @@ UNIFORM = 0.01
 
 @dataclass(frozen=True)
 class Channel:
-    """A series of a file.
-
-    Attributes
-    ----------
-    name, unit : str
-        Printable, as the file has them; the unit is empty where the file states none.
-    abscissa, values : (n,) arrays
-        Values may be complex.
-    over : str
-        What the abscissa is: ``"time"`` (s), ``"order"``, ``"frequency"`` (Hz) of a frequency response, or
-        empty for anything else.
-    label : str
-        Name of the abscissa in the file.
-    direction : str
-        ``"x"``, ``"y"``, ``"z"`` where the file says along which the sensor measures; else empty.
-    nodes : tuple of int
-        Of a frequency response: response node and direction, reference node and direction, 1 to 3 for x, y,
-        z and below 0 against them; else empty.
-    """
+    """A series of a file."""
 
     name: str
     unit: str
+    """`name`, `unit`: Printable, as the file has them; the unit is empty where the file states none."""
     abscissa: FloatArray
     values: NDArray[Any]
+    """`abscissa`, `values`: Values may be complex. Shape (n,) each."""
     over: str = "time"
+    """What the abscissa is: ``"time"`` (s), ``"order"``, ``"frequency"`` (Hz) of a frequency response, or
+    empty for anything else.
+    """
     label: str = ""
+    """Name of the abscissa in the file."""
     direction: str = ""
+    """``"x"``, ``"y"``, ``"z"`` where the file says along which the sensor measures; else empty."""
     nodes: tuple[int, ...] = ()
+    """Of a frequency response: response node and direction, reference node and direction, 1 to 3 for x, y, z
+    and below 0 against them; else empty.
+    """
 
     def series(self, field: str) -> tuple[FloatArray, FloatArray]:
         """Return times (n,) and values (n,) as the file has them.

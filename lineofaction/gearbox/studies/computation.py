@@ -36,25 +36,19 @@ Result = TypeVar("Result")
 
 @dataclass(frozen=True)
 class ResultFile:
-    """The netCDF file of a result.
-
-    Attributes
-    ----------
-    attribute : str
-        By which such a file is known.
-    values : tuple of str
-        That it has in such files.
-    write, read : callable
-        Result and path to the file, and back; `read` raises the libraries' errors or ValueError.
-    result : type
-        What `read` returns, as an annotation: the client's types are written from it.
-    """
+    """The netCDF file of a result."""
 
     attribute: str
+    """By which such a file is known."""
     values: tuple[str, ...]
+    """That it has in such files."""
     write: Callable[[Any, Path], object]
     read: Callable[[Path], Any]
+    """`write`, `read`: Result and path to the file, and back; `read` raises the libraries' errors or
+    ValueError.
+    """
     result: Any
+    """What `read` returns, as an annotation: the client's types are written from it."""
 
     def holds(self, attributes: Mapping[str, object]) -> bool:
         """Whether a file with these attributes is one."""
@@ -80,30 +74,20 @@ def record_file(*kinds: tuple[str, type]) -> ResultFile:
 
 @dataclass(frozen=True)
 class Means:
-    """The means that a study works with.
-
-    Attributes
-    ----------
-    home : Path
-        Folder of the caches.
-    report : callable
-        Called as report(stage, fraction).
-    workers : Workers
-        Who does the tasks.
-    cancel : callable, optional
-        Says whether to end with the best so far.
-    folder : Path, optional
-        Where to put the runs that a study keeps in full; None: nowhere.
-    run : RunResult, optional
-        Whose bearing forces a study takes in place of the linear response.
-    """
+    """The means that a study works with."""
 
     home: Path
+    """Folder of the caches."""
     report: Callable[[str, float], None]
+    """Called as report(stage, fraction)."""
     workers: Workers = field(default_factory=InProcess)
+    """Who does the tasks."""
     cancel: Callable[[], bool] | None = None
+    """Says whether to end with the best so far."""
     folder: Path | None = None
+    """Where to put the runs that a study keeps in full; None: nowhere."""
     run: RunResult | None = None
+    """Whose bearing forces a study takes in place of the linear response."""
 
     @property
     def analysis(self) -> Run:
@@ -117,32 +101,22 @@ class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):
     What is studied is `Written` in its units, and for `compute` a `Subject`: a case as it is
     (`CheckedCase`), a scene with the tables of its meshes (`TabledScene`), or only with its housings
     (`HousedScene`).
-
-    Attributes
-    ----------
-    inputs : type
-        Model of what is varied.
-    answer : type
-        Model of the figures of a result.
-    file : ResultFile
-        How a result is written and read back.
-    tables : bool
-        Whether a scene comes with the tables of its meshes.
-    interruptible : bool
-        Whether it ends with the best so far when `Means.cancel` says so.
-    resumed : bool
-        Whether tasks that were done are kept for an attempt after one that died.
-    writers : mapping
-        Further files of the verb, by their ending: called with result, what was studied, and file.
     """
 
     inputs: type[Inputs]
+    """Model of what is varied."""
     answer: type[Answer]
+    """Model of the figures of a result."""
     file: ResultFile
+    """How a result is written and read back."""
     tables: ClassVar[bool] = True
+    """Whether a scene comes with the tables of its meshes."""
     interruptible: ClassVar[bool] = False
+    """Whether it ends with the best so far when `Means.cancel` says so."""
     resumed: ClassVar[bool] = False
+    """Whether tasks that were done are kept for an attempt after one that died."""
     writers: ClassVar[Mapping[str, Callable[[Any, Any, Path], object]]] = {}
+    """Further files of the verb, by their ending: called with result, what was studied, and file."""
 
     def narrowed(self, subject: Written, _inputs: Inputs) -> Written:
         """Return what of the subject the inputs choose: it is checked, hashed and computed."""

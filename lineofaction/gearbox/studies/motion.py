@@ -16,32 +16,21 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class UnitMotion:
-    """Complex amplitudes of the motion of a unit about where it stands: their real part at phase 0.
-
-    Attributes
-    ----------
-    shafts : tuple of str
-    shaft : (P,) int array
-        Index of the shaft of each point of an axis.
-    position : (P,) array
-        Along it, m, increasing within a shaft.
-    motion : (P, 6) complex array
-        x, y, z (m), tilt_x, tilt_y, rotation (rad).
-    oscillates : bool
-        Whether the phase runs; a deflection rests.
-    surface : SurfaceShape or None
-        Of a housing, m.
-    is_velocity : bool
-        Whether the surface's motion is its velocity, m/s, which has levels; else a shape without a size.
-    """
+    """Complex amplitudes of the motion of a unit about where it stands: their real part at phase 0."""
 
     shafts: tuple[str, ...]
     shaft: IntArray
+    """Index of the shaft of each point of an axis. Shape (P,)."""
     position: FloatArray
+    """Along it, m, increasing within a shaft. Shape (P,)."""
     motion: ComplexArray
+    """x, y, z (m), tilt_x, tilt_y, rotation (rad). Shape (P, 6)."""
     oscillates: bool
+    """Whether the phase runs; a deflection rests."""
     surface: SurfaceShape | None = None
+    """Of a housing, m."""
     is_velocity: bool = False
+    """Whether the surface's motion is its velocity, m/s, which has levels; else a shape without a size."""
 
     @staticmethod
     def of_surface(surface: SurfaceShape, *, is_velocity: bool) -> UnitMotion:

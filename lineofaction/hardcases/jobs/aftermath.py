@@ -139,21 +139,14 @@ LONG = _case_of("3d", "fine", tuple(float(torque) for torque in range(10, 40)), 
 
 @dataclass(frozen=True)
 class Aftermath:
-    """The end of a disturbed job, and what it left behind.
-
-    Attributes
-    ----------
-    job : Job
-        Ended.
-    errors : ndarray or None
-        Its transmission errors, if it has succeeded all the same, or at last.
-    figures : tuple of Measured
-        What every such job must leave behind.
-    """
+    """The end of a disturbed job, and what it left behind."""
 
     job: Job
+    """Ended."""
     errors: FloatArray | None
+    """Its transmission errors, if it has succeeded all the same, or at last."""
     figures: tuple[Measured, ...]
+    """What every such job must leave behind."""
 
     def ended_as(self, status: str, attempts: int) -> bool:
         """Whether the job ended in this status at this attempt."""

@@ -22,26 +22,17 @@ _SIGMAS = 2.0
 
 @dataclass(frozen=True)
 class LevelDifference:
-    """The levels of one order in two signals.
-
-    Attributes
-    ----------
-    order : int
-    levels : (float, float)
-        dB re one unit rms, mean power over the shared speeds.
-    errors : (float, float)
-        dB, two standard deviations.
-    largest : float
-        The largest difference at one speed, dB; NaN of an order that is not seen.
-    is_seen : bool
-        Whether the order stands out of the noise in both.
-    """
+    """The levels of one order in two signals."""
 
     order: int
     levels: tuple[float, float]
+    """dB re one unit rms, mean power over the shared speeds."""
     errors: tuple[float, float]
+    """dB, two standard deviations."""
     largest: float
+    """The largest difference at one speed, dB; NaN of an order that is not seen."""
     is_seen: bool
+    """Whether the order stands out of the noise in both."""
 
     @property
     def value(self) -> float:

@@ -53,32 +53,24 @@ _DASHES: tuple[Dash, ...] = ("solid", "dash")
 
 @dataclass(frozen=True)
 class Measurement:
-    """What a caller says of a recording that its file does not.
-
-    Attributes
-    ----------
-    channel, unit : str
-        The channel that is compared; empty: the only one of the quantity; its unit: that of the file.
-    full_scale : float
-        What one of the file's numbers is in the unit, as the full scale of a WAV file.
-    tacho, tacho_unit : str
-        The channel of the speed, or of the pulses of a tacho.
-    pulses_per_turn : float
-        Of a tacho; 0: the channel is a speed.
-    rpm : float
-        The one speed of a recording without a tacho; 0: there is a channel.
-    ratio : float
-        Speed of the driving gear over that of the shaft whose speed or pulses were recorded.
-    """
+    """What a caller says of a recording that its file does not."""
 
     channel: str = ""
     unit: str = ""
+    """`channel`, `unit`: The channel that is compared; empty: the only one of the quantity; its unit: that of
+    the file.
+    """
     full_scale: float = 1.0
+    """What one of the file's numbers is in the unit, as the full scale of a WAV file."""
     tacho: str = ""
     tacho_unit: str = ""
+    """`tacho`, `tacho_unit`: The channel of the speed, or of the pulses of a tacho."""
     pulses_per_turn: float = 0.0
+    """Of a tacho; 0: the channel is a speed."""
     rpm: float = 0.0
+    """The one speed of a recording without a tacho; 0: there is a channel."""
     ratio: float = 1.0
+    """Speed of the driving gear over that of the shaft whose speed or pulses were recorded."""
 
 
 @dataclass(frozen=True)

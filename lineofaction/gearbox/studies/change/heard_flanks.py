@@ -74,21 +74,15 @@ class FlankLevels(NamedTuple):
 
 @dataclass(frozen=True)
 class HeardLoad:
-    """A load case: its transfer functions, the form of what is heard, and the lines of its harmonics.
-
-    Attributes
-    ----------
-    others : OtherFlanks
-        Of the mesh, about the flanks about which the transfer functions are.
-    lines : (K, H) array
-        1 where a harmonic of the common period belongs to a line.
-    """
+    """A load case: its transfer functions, the form of what is heard, and the lines of its harmonics."""
 
     load: LoadCase
     others: OtherFlanks = field(repr=False)
+    """Of the mesh, about the flanks about which the transfer functions are."""
     transfer: FlankTransfer
     form: QuantityForm
     lines: FloatArray
+    """1 where a harmonic of the common period belongs to a line. Shape (K, H)."""
 
     def with_table(self, table: SteDatabase) -> OtherFlanks:
         """Return the scene at rest with the flanks of a table."""
@@ -137,18 +131,12 @@ class HeardLoad:
 
 @dataclass(frozen=True)
 class HeardFlanks:
-    """A scene in which flanks of one mesh are heard.
-
-    Attributes
-    ----------
-    known : SteDatabase
-        Table of the mesh in the scene: at its forces, misalignment and center distance flanks are solved.
-    bodies : CondensedPair
-        Of the mesh: both designs are flanks on them.
-    """
+    """A scene in which flanks of one mesh are heard."""
 
     known: SteDatabase = field(repr=False)
+    """Table of the mesh in the scene: at its forces, misalignment and center distance flanks are solved."""
     bodies: CondensedPair
+    """Of the mesh: both designs are flanks on them."""
     worst_speed: bool
     load_cases: tuple[HeardLoad, ...] = ()
 

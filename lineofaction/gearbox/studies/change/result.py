@@ -23,22 +23,18 @@ AUDIBLE = 0.5
 
 @dataclass(frozen=True)
 class DesignLevels:
-    """Levels of a design under L load cases in K lines: as designed, and of N pairs, dB.
-
-    Attributes
-    ----------
-    nominal : (L, K) array
-    pairs : (N, L, K) array
-    parting : (L,) array
-        Largest share of the static mesh force by which flanks part at a speed, 0: they do not.
-    error : (2, L, K) array
-        How far levels may be below and above what the table of the nominal design says; NaN: not known.
-    """
+    """Levels of a design under L load cases in K lines: as designed, and of N pairs, dB."""
 
     nominal: FloatArray = field(metadata=in_unit("dB", "load_case", "line"))
+    """Shape (L, K)."""
     pairs: FloatArray = field(metadata=in_unit("dB", "pair", "load_case", "line"))
+    """Shape (N, L, K)."""
     parting: FloatArray = field(metadata=in_unit("1", "load_case"))
+    """Largest share of the static mesh force by which flanks part at a speed, 0: they do not. Shape (L,)."""
     error: FloatArray = field(metadata=in_unit("dB", "side", "load_case", "line"))
+    """How far levels may be below and above what the table of the nominal design says; NaN: not known. Shape
+    (2, L, K).
+    """
 
     def quantiles(self) -> FloatArray:
         """Return the band (3, L, K) in which 90 % of the pairs lie, and its median, dB; with the errors."""
@@ -57,41 +53,29 @@ def _banded(levels: FloatArray, below: FloatArray, above: FloatArray) -> FloatAr
 
 @dataclass(frozen=True)
 class FlankChange:
-    """Levels of N pairs with the flanks before and after a change, pair by pair with the same deviations.
-
-    Attributes
-    ----------
-    mesh, quantity, unit, over_speeds : str
-        What is compared, in words; the unit with its reference.
-    lines : tuple of str
-        `ALL` orders of the mesh together, then each.
-    torque : (L,) array
-        On the driving gear of the mesh, N m.
-    speed : (S,) array
-        Of the leading shaft, rad/s.
-    names : tuple of str
-        The deviations: "misalignment" and ``gear.quantity``.
-    deviation : (N, d) array
-        m.
-    requirement : float or None
-        Highest level of all orders of the mesh that `HIGH` of the pairs may have, dB.
-    cost : dict
-        CPU seconds by stage.
-    """
+    """Levels of N pairs with the flanks before and after a change, pair by pair with the same deviations."""
 
     mesh: str
     quantity: str
     unit: str
     over_speeds: str
+    """`mesh`, `quantity`, `unit`, `over_speeds`: What is compared, in words; the unit with its reference."""
     lines: tuple[str, ...]
+    """`ALL` orders of the mesh together, then each."""
     torque: FloatArray = field(metadata=in_unit("n_m", "load_case"))
+    """On the driving gear of the mesh, N m. Shape (L,)."""
     speed: FloatArray = field(metadata=in_unit("rad s-1", "speed"))
+    """Of the leading shaft, rad/s. Shape (S,)."""
     names: tuple[str, ...]
+    """The deviations: "misalignment" and ``gear.quantity``."""
     deviation: FloatArray = field(metadata=in_unit("m", "pair", "deviating"))
+    """m. Shape (N, d)."""
     before: DesignLevels
     after: DesignLevels
     requirement: float | None
+    """Highest level of all orders of the mesh that `HIGH` of the pairs may have, dB."""
     cost: Json
+    """CPU seconds by stage."""
 
     @property
     def nominal_change(self) -> FloatArray:

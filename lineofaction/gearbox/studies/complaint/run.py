@@ -74,19 +74,13 @@ class OrderForce:
 
 @dataclass(frozen=True)
 class AnsweredComplaint:
-    """The answer.
-
-    Attributes
-    ----------
-    forces : tuple of OrderForce
-        Of all that passes within the tolerance, in its sequence.
-    modes : tuple of NearMode
-        The most amplified first; empty without a speed, and of a case.
-    """
+    """The answer."""
 
     complaint: Complaint
     forces: tuple[OrderForce, ...]
+    """Of all that passes within the tolerance, in its sequence."""
     modes: tuple[NearMode, ...]
+    """The most amplified first; empty without a speed, and of a case."""
     facts: Json
 
 

@@ -37,20 +37,14 @@ ALIKE = 1e-6
 
 @dataclass(frozen=True)
 class MeshContact:
-    """The contact of a mesh on gears whose compliance is in memory.
-
-    Attributes
-    ----------
-    torques : (F,) array
-        On the case's pinion, N m: those of the load cases and one on either side.
-    tables : dict
-        By misalignment, m: those that are there so far.
-    """
+    """The contact of a mesh on gears whose compliance is in memory."""
 
     pair: ParallelAxes
     bodies: CondensedPair
     torques: FloatArray
+    """On the case's pinion, N m: those of the load cases and one on either side. Shape (F,)."""
     tables: dict[float, SteDatabase] = field(default_factory=dict, repr=False)
+    """By misalignment, m: those that are there so far."""
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Leave behind the tables, which tasks have no need of."""
@@ -103,19 +97,13 @@ class MeshContact:
 
 @dataclass
 class DividedTables:
-    """Lets workers compute the tables at the knots of all contacts, a table each.
-
-    Attributes
-    ----------
-    contacts : mapping
-        By the names of meshes; copies share one.
-    seconds : float
-        CPU seconds of a table: predicted, then those of the last pass.
-    """
+    """Lets workers compute the tables at the knots of all contacts, a table each."""
 
     contacts: Mapping[str, MeshContact]
+    """By the names of meshes; copies share one."""
     workers: Workers
     seconds: float
+    """CPU seconds of a table: predicted, then those of the last pass."""
 
     def complete(self, knots: Mapping[str, Sequence[float]]) -> None:
         """Compute those at misalignments by mesh, m, that are not there."""

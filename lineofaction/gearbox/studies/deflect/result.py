@@ -18,82 +18,63 @@ HARMONICS = 5
 
 @dataclass(frozen=True)
 class MeshFlanks:
-    """A mesh on its flanks under a load case, at the alignment that was found.
-
-    Attributes
-    ----------
-    torque : float
-        On the pinion, N m.
-    mean, peak_to_peak : float
-        Static transmission error, m.
-    harmonics : (5,) array
-        Amplitudes, m.
-    mean_error, peak_to_peak_error, harmonics_error
-        Estimated errors of these, m; NaN: not estimated.
-    face_load_factor : float
-        K_Hbeta over the cycle; NaN in the plane.
-    load_arm_difference : float
-        Arm of the load on the flanks less that of the table by which the shafts were deflected, m; NaN in the
-        plane.
-    largest_pressure : float
-        Pa.
-    face_position, face_load : (41,) arrays
-        Along the face from the pinion's mid-face, m; mean load over the cycle there, N/m.
-    roll_length : (40,) array
-        Of the pinion, m.
-    pattern : (40, 41) array
-        Contact pattern: largest pressure over the cycle, Pa.
-    """
+    """A mesh on its flanks under a load case, at the alignment that was found."""
 
     mesh: str
     case: str
     torque: float = field(metadata=in_unit("n_m"))
+    """On the pinion, N m."""
     mean: float = field(metadata=in_unit("m"))
+    """`mean`, `peak_to_peak`: Static transmission error, m."""
     mean_error: float = field(metadata=in_unit("m"))
+    """`mean_error`, `peak_to_peak_error`, `harmonics_error`: Estimated errors of these, m; NaN: not
+    estimated.
+    """
     peak_to_peak: float = field(metadata=in_unit("m"))
     peak_to_peak_error: float = field(metadata=in_unit("m"))
     harmonics: FloatArray = field(metadata=in_unit("m", "harmonic"))
+    """Amplitudes, m. Shape (5,)."""
     harmonics_error: FloatArray = field(metadata=in_unit("m", "harmonic"))
     face_load_factor: float
+    """K_Hbeta over the cycle; NaN in the plane."""
     load_arm_difference: float = field(metadata=in_unit("m"))
+    """Arm of the load on the flanks less that of the table by which the shafts were deflected, m; NaN in the
+    plane.
+    """
     largest_pressure: float = field(metadata=in_unit("pa"))
+    """Pa."""
     face_position: FloatArray = field(metadata=in_unit("m", "along_face"))
     face_load: FloatArray = field(metadata=in_unit("n_per_m", "along_face"))
+    """`face_position`, `face_load`: Along the face from the pinion's mid-face, m; mean load over the cycle
+    there, N/m. Shape (41,) each.
+    """
     roll_length: FloatArray = field(metadata=in_unit("m", "along_profile"))
+    """Of the pinion, m. Shape (40,)."""
     pattern: FloatArray = field(metadata=in_unit("pa", "along_profile", "along_face"))
+    """Contact pattern: largest pressure over the cycle, Pa. Shape (40, 41)."""
 
 
 @dataclass(frozen=True)
 class Outline:
-    """The gearbox to scale, m: s shafts, c pieces of them, g gears, b bearings.
-
-    Attributes
-    ----------
-    origin : (s, 3) array
-        Left ends of the axes.
-    length : (s,) array
-    piece_shaft : (c,) int array
-        Index of the shaft of each piece.
-    piece : (c, 4) array
-        Its start along the shaft, its length, its diameters at the left and the right end.
-    gear_shaft, bearing_shaft : int arrays
-    gear : (g, 3) array
-        Position of mid-face along the shaft, face width, operating pitch diameter.
-    bearing : (b,) array
-        Position along the shaft.
-    """
+    """The gearbox to scale, m: s shafts, c pieces of them, g gears, b bearings."""
 
     shafts: tuple[str, ...]
     gears: tuple[str, ...]
     bearings: tuple[str, ...]
     origin: FloatArray = field(metadata=in_unit("m", "shaft", "axis"))
+    """Left ends of the axes. Shape (s, 3)."""
     length: FloatArray = field(metadata=in_unit("m", "shaft"))
+    """Shape (s,)."""
     piece_shaft: IntArray = field(metadata={"dimensions": ("piece",)})
+    """Index of the shaft of each piece. Shape (c,)."""
     piece: FloatArray = field(metadata=in_unit("m", "piece", "measure"))
+    """Its start along the shaft, its length, its diameters at the left and the right end. Shape (c, 4)."""
     gear_shaft: IntArray = field(metadata={"dimensions": ("gear",)})
     gear: FloatArray = field(metadata=in_unit("m", "gear", "size"))
+    """Position of mid-face along the shaft, face width, operating pitch diameter. Shape (g, 3)."""
     bearing_shaft: IntArray = field(metadata={"dimensions": ("bearing",)})
     bearing: FloatArray = field(metadata=in_unit("m", "bearing"))
+    """Position along the shaft. Shape (b,)."""
 
     @staticmethod
     def of(scene: Scene) -> Outline:
@@ -119,36 +100,25 @@ class Outline:
 
 @dataclass(frozen=True)
 class GearboxDeflection:
-    """The deflection of a gearbox and what it makes of its meshes.
-
-    Attributes
-    ----------
-    flanks : tuple of MeshFlanks
-        By load case, then by mesh; meshes in closed form have none.
-    passes : int
-        Of tables and deflections until they agreed.
-    change : float
-        Of the misalignments by the last pass, relative.
-    cases : dict
-        The cases of the meshes as they were written, by mesh.
-    seconds : float
-        CPU time, with that of the tables and housings that were made for it.
-    scene : dict
-        The scene as it was written, without the cases; empty in files of versions that did not keep it.
-    facts : dict
-        The bodies that its `unit` is drawn as; empty in files of versions that did not keep it.
-    """
+    """The deflection of a gearbox and what it makes of its meshes."""
 
     deflection: Deflection
     flanks: tuple[MeshFlanks, ...]
+    """By load case, then by mesh; meshes in closed form have none."""
     passes: int
+    """Of tables and deflections until they agreed."""
     change: float
+    """Of the misalignments by the last pass, relative."""
     agreed: bool
     outline: Outline
     cases: Json
+    """The cases of the meshes as they were written, by mesh."""
     seconds: float
+    """CPU time, with that of the tables and housings that were made for it."""
     scene: Json = field(default_factory=dict)
+    """The scene as it was written, without the cases; empty in files of versions that did not keep it."""
     facts: Json = field(default_factory=dict)
+    """The bodies that its `unit` is drawn as; empty in files of versions that did not keep it."""
 
 
 RIGID_DIAMETER = 0.08

@@ -46,28 +46,19 @@ EXCEEDED = 5.0
 
 @dataclass(frozen=True)
 class SoundFigures:
-    """Figures of a sound pressure.
-
-    Attributes
-    ----------
-    level, weighted_level : float
-        Of the rms over the whole run, dB and dB(A) re 20 uPa.
-    steady : bool
-        Whether the speed is constant.
-    loudness : float or None
-        sone, in the free field; of a changing sound that exceeded for 5 % of the time. None: not computed.
-    sharpness : float or None
-        acum, of the mean spectrum.
-    tones : tuple of (float, float)
-        Hz and tone-to-noise ratio in dB of the prominent tones of a steady sound.
-    """
+    """Figures of a sound pressure."""
 
     level: float
     weighted_level: float
+    """`level`, `weighted_level`: Of the rms over the whole run, dB and dB(A) re 20 uPa."""
     steady: bool
+    """Whether the speed is constant."""
     loudness: float | None = None
+    """sone, in the free field; of a changing sound that exceeded for 5 % of the time. None: not computed."""
     sharpness: float | None = None
+    """acum, of the mean spectrum."""
     tones: tuple[tuple[float, float], ...] = ()
+    """Hz and tone-to-noise ratio in dB of the prominent tones of a steady sound."""
 
 
 def _sound_figures(recording: Recording, run: RunResult) -> SoundFigures:
@@ -180,26 +171,18 @@ class Receiver:
 
 @dataclass(frozen=True)
 class HeardRun:
-    """A run through the housings of a scene.
-
-    Attributes
-    ----------
-    run : str
-        Its name, or its content hash.
-    figures : SoundFigures or None
-        Of a sound pressure.
-    other_housings : tuple of str
-        Housings that the scene of the run did not have so.
-    time, speed : (n,) arrays
-        s; of the driving gear of the first mesh, rad/s.
-    """
+    """A run through the housings of a scene."""
 
     run: str
+    """Its name, or its content hash."""
     recording: Recording
     figures: SoundFigures | None
+    """Of a sound pressure."""
     other_housings: tuple[str, ...]
+    """Housings that the scene of the run did not have so."""
     time: FloatArray
     speed: FloatArray
+    """`time`, `speed`: s; of the driving gear of the first mesh, rad/s. Shape (n,) each."""
 
     @property
     def remarks(self) -> tuple[str, ...]:

@@ -46,19 +46,13 @@ class Powers(NamedTuple):
 
 @dataclass(frozen=True)
 class HeardAt:
-    """A load case of the scene, and what other flanks excite there.
-
-    Attributes
-    ----------
-    counted : (H,) array
-        1 where a harmonic of the common period counts.
-    share : float
-        Of the duration; those of all load cases add up to 1.
-    """
+    """A load case of the scene, and what other flanks excite there."""
 
     case: HeardLoad
     counted: FloatArray
+    """1 where a harmonic of the common period counts. Shape (H,)."""
     share: float
+    """Of the duration; those of all load cases add up to 1."""
 
     def power(self, table: SteDatabase) -> FloatArray:
         """Return what is heard of a table at each speed (S,)."""
@@ -112,18 +106,12 @@ class HeardObjective:
 
 @dataclass(frozen=True)
 class HeardMerit:
-    """Amplitude of designs a step away over that of the start: convex in the step, as powers are quadratic.
-
-    Attributes
-    ----------
-    powers : Powers
-        R rows, of which the largest counts, over the power of the start.
-    limits : tuple of Rows
-        Of each limit: by how much it is exceeded.
-    """
+    """Amplitude of designs a step away over that of the start: convex in the step, powers are quadratic."""
 
     powers: Powers
+    """R rows, of which the largest counts, over the power of the start."""
     limits: tuple[Rows, ...]
+    """Of each limit: by how much it is exceeded."""
     penalty: float
 
     def least(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, float]:

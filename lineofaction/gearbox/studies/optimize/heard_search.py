@@ -75,21 +75,17 @@ WALK, FINISH, LINEARIZED = 20, 8, 2.5
 
 @dataclass(frozen=True)
 class Heard:
-    """What a search and its confirmation work on.
-
-    Attributes
-    ----------
-    sample : HeardProblem or None
-        The same problem over pairs within tolerances; None where the standard has none for these gears.
-    torque, misalignment : (L,) arrays
-        Of the load cases on the driving gear, N m, and of the mesh, m.
-    """
+    """What a search and its confirmation work on."""
 
     problem: HeardProblem
     sample: HeardProblem | None
+    """The same problem over pairs within tolerances; None where the standard has none for these gears."""
     bodies: CondensedPair
     torque: FloatArray
     misalignment: FloatArray
+    """`torque`, `misalignment`: Of the load cases on the driving gear, N m, and of the mesh, m. Shape (L,)
+    each.
+    """
 
 
 def heard_optimum(

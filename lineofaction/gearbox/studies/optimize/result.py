@@ -25,97 +25,79 @@ MORE = 0.01
 
 @dataclass(frozen=True)
 class HeardDesign:
-    """A design under L load cases in K lines.
-
-    Attributes
-    ----------
-    values : dict of str to float
-        ``gear.quantity`` to m.
-    objective : Estimate
-        dB.
-    level, level_error : (L, K) arrays
-        dB; the error is that of the discretization of the contact.
-    peak_to_peak, peak_to_peak_error : (L,) arrays
-        Of the transmission error without scatter, m.
-    pressure : (L,) array
-        Largest Hertzian pressure at any node of the scatter, Pa.
-    face_load_factor, edge_load_share : (L,) arrays
-    parting : (L,) array
-        Largest share of the static mesh force by which flanks part at a speed, 0: they do not.
-    violation : float
-        Of the limits, in parts of them.
-    root_stress, root_stress_error : (L,) arrays
-        Largest in the tension roots at any node of the scatter, Pa; NaN without a limit of it.
-    pressure_error, face_load_factor_error : (L,) arrays
-        Of the discretization; NaN: not estimated.
-    """
+    """A design under L load cases in K lines."""
 
     values: dict[str, float]
+    """``gear.quantity`` to m."""
     objective: Estimate
+    """dB."""
     level: FloatArray = field(metadata=in_unit("dB", "load_case", "line"))
     level_error: FloatArray = field(metadata=in_unit("dB", "load_case", "line"))
+    """`level`, `level_error`: dB; the error is that of the discretization of the contact. Shape (L, K) each.
+    """
     peak_to_peak: FloatArray = field(metadata=in_unit("m", "load_case"))
     peak_to_peak_error: FloatArray = field(metadata=in_unit("m", "load_case"))
+    """`peak_to_peak`, `peak_to_peak_error`: Of the transmission error without scatter, m. Shape (L,) each."""
     pressure: FloatArray = field(metadata=in_unit("pa", "load_case"))
+    """Largest Hertzian pressure at any node of the scatter, Pa. Shape (L,)."""
     face_load_factor: FloatArray
     edge_load_share: FloatArray
+    """`face_load_factor`, `edge_load_share`: Shape (L,) each."""
     parting: FloatArray
+    """Largest share of the static mesh force by which flanks part at a speed, 0: they do not. Shape (L,)."""
     violation: float
+    """Of the limits, in parts of them."""
     root_stress: FloatArray = field(
         default_factory=lambda: np.full(1, np.nan), metadata=in_unit("pa", "load_case")
     )
     root_stress_error: FloatArray = field(
         default_factory=lambda: np.full(1, np.nan), metadata=in_unit("pa", "load_case")
     )
+    """`root_stress`, `root_stress_error`: Largest in the tension roots at any node of the scatter, Pa; NaN
+    without a limit of it. Shape (L,) each.
+    """
     pressure_error: FloatArray = field(
         default_factory=lambda: np.full(1, np.nan), metadata=in_unit("pa", "load_case")
     )
     face_load_factor_error: FloatArray = field(default_factory=lambda: np.full(1, np.nan))
+    """`pressure_error`, `face_load_factor_error`: Of the discretization; NaN: not estimated. Shape (L,) each.
+    """
 
 
 @dataclass(frozen=True)
 class HeardOptimization:
-    """The start and the optimum of a search by what is heard.
-
-    Attributes
-    ----------
-    mesh, quantity, unit, over_speeds, over_loads : str
-        What is minimized, in words; the unit with its reference.
-    lines : tuple of str
-        `ALL` orders that count together, then the orders of the mesh.
-    load_case : tuple of str
-    torque, misalignment : (L,) arrays
-        On the driving gear of the mesh, N m, and of the mesh, m.
-    speed : (S,) array
-        Of the leading shaft, rad/s.
-    tolerance_class : int
-    pairs : (2, N) array
-        Levels of start and optimum with the same deviations within that class, dB; none where it has none.
-    case : dict
-        Of the mesh, as a case file has it.
-    cost : dict
-        Evaluations, and CPU seconds by stage.
-    """
+    """The start and the optimum of a search by what is heard."""
 
     mesh: str
     quantity: str
     unit: str
     over_speeds: str
     over_loads: str
+    """`mesh`, `quantity`, `unit`, `over_speeds`, `over_loads`: What is minimized, in words; the unit with its
+    reference.
+    """
     lines: tuple[str, ...]
+    """`ALL` orders that count together, then the orders of the mesh."""
     variables: tuple[DesignVariable, ...]
     load_case: tuple[str, ...]
     torque: FloatArray = field(metadata=in_unit("n_m", "load_case"))
     misalignment: FloatArray = field(metadata=in_unit("m", "load_case"))
+    """`torque`, `misalignment`: On the driving gear of the mesh, N m, and of the mesh, m. Shape (L,) each."""
     speed: FloatArray = field(metadata=in_unit("rad s-1", "speed"))
+    """Of the leading shaft, rad/s. Shape (S,)."""
     start: HeardDesign
     optimum: HeardDesign
     runs: tuple[SearchRun, ...]
     best_run: int
     tolerance_class: int
     pairs: FloatArray = field(metadata=in_unit("dB", "design", "pair"))
+    """Levels of start and optimum with the same deviations within that class, dB; none where it has none.
+    Shape (2, N).
+    """
     case: Json
+    """Of the mesh, as a case file has it."""
     cost: Json
+    """Evaluations, and CPU seconds by stage."""
 
     @property
     def gain(self) -> Estimate:

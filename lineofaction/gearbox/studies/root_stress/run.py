@@ -42,26 +42,19 @@ class _GearRoots:
 
 @dataclass(frozen=True)
 class Roots:
-    """Tooth-root stress of both gears at one load and one alignment, in SI units.
-
-    Attributes
-    ----------
-    torque, normal_force : float
-        On the driving gear, N m; F_bn, N.
-    misalignment, center_distance_change : float
-        m.
-    warnings : list of dict
-        In the fields and units of the case.
-    """
+    """Tooth-root stress of both gears at one load and one alignment, in SI units."""
 
     pinion: _GearRoots
     wheel: _GearRoots
     torque: float = field(metadata=in_unit("n_m"))
     normal_force: float = field(metadata=in_unit("n"))
+    """`torque`, `normal_force`: On the driving gear, N m; F_bn, N."""
     misalignment: float = field(metadata=in_unit("m"))
     center_distance_change: float = field(metadata=in_unit("m"))
+    """`misalignment`, `center_distance_change`: m."""
     receipt: Json
     warnings: list[Json]
+    """In the fields and units of the case."""
 
 
 class _RootStressStudy(PointStudy[RootStressFigures, Roots]):

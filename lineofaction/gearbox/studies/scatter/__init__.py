@@ -105,41 +105,34 @@ class ScatterFigures(Figures):
         ]
 
     class AboveFigures(Part):
-        """Pairs above a limit by torque; what decides and what cures them at the torque with most of them.
-
-        Attributes
-        ----------
-        name, order, gear, turns
-            The order as it is named; its mesh order, and turns of a gear beside it.
-        names
-            The deviations that decide.
-        share, low, high
-            Part of all pairs, and its bounds.
-        missed_um, beyond
-            By how much the model misses the amplitude of pairs analyzed whole, and the part of them that it
-            puts on the other side of the limit.
-        first_order, total
-            Sobol' indices of the level in dB, by deviation.
-        cured
-            Share if the tolerance of one deviation is a class finer.
-        """
+        """Pairs above a limit by torque; what decides and what cures them at the torque with most of them."""
 
         name: Annotated[str, Source("limit.name")]
         order: Annotated[int, Source("limit.order")]
         gear: Annotated[str, Source("limit.gear")]
         turns: Annotated[int, Source("limit.turns")]
+        """`name`, `order`, `gear`, `turns`: The order as it is named; its mesh order, and turns of a gear
+        beside it.
+        """
         names: list[str]
+        """The deviations that decide."""
         limit_um: Annotated[float, Source("limit.amplitude")]
         nominal_um: list[float]
         share: list[float]
         low: list[float]
         high: list[float]
+        """`share`, `low`, `high`: Part of all pairs, and its bounds."""
         missed_um: list[float]
         beyond: list[float]
+        """`missed_um`, `beyond`: By how much the model misses the amplitude of pairs analyzed whole, and the
+        part of them that it puts on the other side of the limit.
+        """
         at_torque: Annotated[int, Source("load")]
         first_order: list[float]
         total: list[float]
+        """`first_order`, `total`: Sobol' indices of the level in dB, by deviation."""
         cured: list[float]
+        """Share if the tolerance of one deviation is a class finer."""
 
     torque_n_m: list[float]
     samples: Annotated[int, Source(lambda study: len(study.peak_to_peak))]

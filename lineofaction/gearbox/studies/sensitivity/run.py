@@ -30,20 +30,14 @@ SCHEMA = "lineofaction sensitivity study"
 
 @dataclass(frozen=True)
 class PairStudy:
-    """The study of one pair.
-
-    Attributes
-    ----------
-    normal_force, center_distance : float
-        N; m.
-    curves : tuple of Sensitivity
-        Without and with corner contact.
-    """
+    """The study of one pair."""
 
     name: str
     normal_force: float = field(metadata=in_unit("n"))
     center_distance: float = field(metadata=in_unit("m"))
+    """`normal_force`, `center_distance`: N; m."""
     curves: tuple[Sensitivity, ...]
+    """Without and with corner contact."""
 
 
 Studies = tuple[PairStudy, ...]

@@ -186,13 +186,7 @@ class Inputs(BoundaryModel):
 
 
 class StudyFigures(Figures):
-    """Factors, statistics of all responses, worst and failed points.
-
-    Attributes
-    ----------
-    runs : dict
-        Content hashes of the runs that are kept in full, by point.
-    """
+    """Factors, statistics of all responses, worst and failed points."""
 
     class FactorFigures(Part):
         """What was varied, and how."""
@@ -255,3 +249,4 @@ class StudyFigures(Figures):
     neglected: Any
     design: Json
     runs: dict[str, str]
+    """Content hashes of the runs that are kept in full, by point."""

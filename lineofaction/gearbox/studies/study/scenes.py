@@ -133,24 +133,16 @@ def with_value(table: Json, place: Place, value: float) -> None:
 
 @dataclass(frozen=True)
 class VariedScene:
-    """A scene whose numbers are replaced; `dynamics.study.run_study.Scenes`.
-
-    Attributes
-    ----------
-    written : str
-        The scene as JSON, its cases written out.
-    databases : mapping of str to SteDatabase
-        By name of the mesh.
-    places : mapping
-        Of every factor, where it stands in the scene.
-    home : str
-        Folder of the caches.
-    """
+    """A scene whose numbers are replaced; `dynamics.study.run_study.Scenes`."""
 
     written: str
+    """The scene as JSON, its cases written out."""
     databases: Mapping[str, SteDatabase]
+    """By name of the mesh."""
     places: Mapping[str, tuple[Place, ...]]
+    """Of every factor, where it stands in the scene."""
     home: str
+    """Folder of the caches."""
 
     def scene(self, values: Mapping[str, float]) -> Scene:
         """Return the scene at values of the factors; raises `LeftOut` where there is none."""

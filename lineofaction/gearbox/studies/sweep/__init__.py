@@ -45,13 +45,7 @@ class Inputs(BoundaryModel):
 
 
 class SweepFigures(Figures):
-    """Points of the map: each has the paths of the axes and the figures with their errors.
-
-    Attributes
-    ----------
-    least : dict
-        By figure: the point where it is least, and the number of points that are as low within the errors.
-    """
+    """Points of the map: each has the paths of the axes and the figures with their errors."""
 
     class AxisFigures(Part):
         """One axis of the map."""
@@ -65,5 +59,6 @@ class SweepFigures(Figures):
     shown: list[str]
     points: list[dict[str, float]]
     least: dict[str, dict[str, float]]
+    """By figure: the point where it is least, and the number of points that are as low within the errors."""
     failed: list[dict[str, float | str]]
     cost: Annotated[Json, Source("sweep.cost")]

@@ -48,22 +48,15 @@ _SKEW_UM, _DISTANCE = 30.0, 0.002  # usual misalignment; part of the center dist
 
 @dataclass(frozen=True)
 class _Swept:
-    """Something of a case that can be swept.
-
-    Attributes
-    ----------
-    name : str
-        Of a `SweepAxis`.
-    path : str
-        As in the case file; ``*`` stands for both gears.
-    what : Figure or None
-        The declaration of a figure of the flanks.
-    """
+    """Something of a case that can be swept."""
 
     name: str
+    """Of a `SweepAxis`."""
     path: str
+    """As in the case file; ``*`` stands for both gears."""
     words: str
     what: Figure | None = None
+    """The declaration of a figure of the flanks."""
 
     @property
     def unit(self) -> str:
@@ -167,22 +160,15 @@ def _evenly(first: float, last: float) -> list[float]:
 
 @dataclass(frozen=True)
 class _Shown:
-    """A quantity at the boundary.
-
-    Attributes
-    ----------
-    words, unit : str
-        As drawn.
-    one : float
-        The SI value of one unit.
-    field : str
-        In JSON and CSV, with ``{}`` where ``_error`` stands in the name of the error.
-    """
+    """A quantity at the boundary."""
 
     words: str
     unit: str
+    """`words`, `unit`: As drawn."""
     one: float
+    """The SI value of one unit."""
     field: str
+    """In JSON and CSV, with ``{}`` where ``_error`` stands in the name of the error."""
 
     @property
     def label(self) -> str:

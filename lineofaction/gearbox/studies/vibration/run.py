@@ -43,19 +43,13 @@ _ADVICE = "Give a housing by step_file, mesh_file or modes_file: see docs/how-to
 
 @dataclass(frozen=True)
 class HousingVibrationResult:
-    """The analysis, and a mode to draw in place of the operating deflection.
-
-    Attributes
-    ----------
-    natural_frequency : (m,) array
-        Of the housing with its seats free, Hz; those kept.
-    mode : int
-        From 1; 0: none is drawn.
-    """
+    """The analysis, and a mode to draw in place of the operating deflection."""
 
     analysis: VibrationAnalysis
     natural_frequency: FloatArray
+    """Of the housing with its seats free, Hz; those kept. Shape (m,)."""
     mode: int = 0
+    """From 1; 0: none is drawn."""
     mode_shape: SurfaceShape | None = None
 
     @property

@@ -36,21 +36,14 @@ HERTZ = np.array([50.0, 400.0, 2000.0, 4000.0])
 
 @dataclass(frozen=True)
 class HousingPower:
-    """Mean powers by harmonics, (...,) each, W.
-
-    Attributes
-    ----------
-    input : array
-        Of the bearings, at the seats.
-    own : array
-        Lost by the damping of the housing's modes.
-    mounts : array
-        Lost in the dampers of the mounts: structure-borne power. Fixed feet take none.
-    """
+    """Mean powers by harmonics, (...,) each, W."""
 
     input: FloatArray
+    """Of the bearings, at the seats."""
     own: FloatArray
+    """Lost by the damping of the housing's modes."""
     mounts: FloatArray
+    """Lost in the dampers of the mounts: structure-borne power. Fixed feet take none."""
 
     @property
     def residual(self) -> float:
