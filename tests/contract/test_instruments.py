@@ -1,0 +1,109 @@
+"""An instrument can be deleted: only rows name it from outside, and the tree without it works."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from collections.abc import Set as AbstractSet
+from pathlib import Path
+
+import instruments
+import pytest
+import structure
+
+ROOT = Path(__file__).parents[2]
+NAMES = sorted(instruments.instruments())
+WORK = f"""
+import importlib, pkgutil, sys
+from importlib.util import find_spec
+for house in filter(find_spec, {structure.HOUSES!r}):
+    package = importlib.import_module(house)
+    for module in pkgutil.walk_packages(package.__path__, house + "."):
+        if not module.name.endswith("__main__"):
+            importlib.import_module(module.name)
+from lineofaction.gearbox.registry import Studies
+from lineofaction.report.presentation import presentation_of
+from service.app import create_app
+from service.settings import Settings
+studies = [study for study in vars(Studies).values() if hasattr(study, "takes")]
+for study in studies:
+    study.inputs, study.run, study.answer, presentation_of(study)
+create_app(Settings(data_directory=sys.argv[1]))
+print(*(study.name for study in studies))
+"""
+
+
+def inside(name: str) -> AbstractSet[str]:
+    """Return the modules that go with an instrument."""
+    gone = instruments.with_dependents([name])
+    return {module for one in gone for module in instruments.modules().within(instruments.instruments()[one])}
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("name", NAMES)
+def test_only_rows_name_an_instrument_from_outside(name: str) -> None:
+    modules, importers = inside(name), instruments.modules().importers()
+    assert modules
+    outside = {(one, module) for module in modules for one in importers.get(module, ())}
+    assert not [
+        (one, module)
+        for one, module in outside
+        if instruments.is_product(one) and one not in modules and not instruments.is_row(one)
+    ]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_what_an_instrument_alone_uses_goes_with_it(name: str) -> None:
+    modules, importers = inside(name), instruments.modules().importers()
+    used = {
+        module: {one for one in importers.get(module, ()) if not instruments.is_row(one)}
+        for module in instruments.modules().files
+        if instruments.is_product(module) and not module.endswith("__init__")
+    }
+    alone = {module for module, users in used.items() if users and users <= modules}
+    assert alone <= modules
+
+
+def test_paths_exist_and_belong_to_one_instrument() -> None:
+    paths = [path for one in instruments.instruments().values() for path in one.paths]
+    assert len(paths) == len(set(paths))
+    assert [path for path in paths if not (ROOT / path).exists()] == []
+
+
+def copy_of_tree(folder: Path) -> Path:
+    """Copy the houses and what stands on them, as far as it is under version control or new."""
+    for name in ("tests", "benchmarks", "examples", "scripts", *structure.HOUSES):
+        top = name.partition(".")[0]
+        shutil.copytree(
+            ROOT / top, folder / top, ignore=shutil.ignore_patterns("__pycache__"), dirs_exist_ok=True
+        )
+    shutil.copy(ROOT / "pyproject.toml", folder)
+    return folder
+
+
+def works_without(name: str, folder: Path) -> None:
+    tree = copy_of_tree(folder)
+    gone = instruments.retire([name], tree)
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", WORK, str(folder / "data")],
+        cwd=tree, capture_output=True, text=True, check=False, timeout=300,
+        env={"PATH": "/usr/bin:/bin", "PYTHONPATH": str(tree), "HOME": str(folder)},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr[-2000:]
+    studies = done.stdout.split()
+    assert len(studies) > 10
+    assert not {study.replace("-", "_") for study in studies} & set(gone)
+
+
+@pytest.mark.law
+def test_the_tree_without_an_instrument_works(tmp_path: Path) -> None:
+    """The one whose number the files of the tree draw: another with every change."""
+    drawn = sum(file.stat().st_size for house in structure.HOUSES for file in structure.files_of(house))
+    works_without(NAMES[drawn % len(NAMES)], tmp_path)
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("name", NAMES)
+def test_the_tree_without_any_instrument_works(name: str, tmp_path: Path) -> None:
+    works_without(name, tmp_path)
