@@ -9,7 +9,17 @@ from typing import Annotated, Any
 import typer
 
 from host import keep_to_one_thread
-from lineofaction.cli.verbs import of_files, of_imports, of_services
+from lineofaction.cli.verbs import (
+    of_exports,
+    of_files,
+    of_hard_cases,
+    of_housings,
+    of_imports,
+    of_inspections,
+    of_listening,
+    of_pages,
+    of_services,
+)
 from lineofaction.cli.verbs.of_studies import StudyGroup
 
 _EPILOG = (
@@ -18,6 +28,19 @@ _EPILOG = (
     "4 no service answers; "
     "5 a defect (a log is named); 130 interrupted."
 )
+
+FAMILIES = (
+    of_files,
+    of_exports,
+    of_listening,
+    of_hard_cases,
+    of_pages,
+    of_imports,
+    of_inspections,
+    of_housings,
+    of_services,
+)
+"""Modules of verbs, in the order of the help."""
 
 app = typer.Typer(
     name="loa",
@@ -30,7 +53,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for family in (of_files, of_imports, of_services):
+for family in FAMILIES:
     for verb in family.verbs.registered_commands:  # the whole sentence, which the list would cut off
         verb.short_help = (verb.callback.__doc__ or "").partition("\n")[0]
     app.add_typer(family.verbs)

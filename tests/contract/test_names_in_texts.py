@@ -14,7 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from lineofaction.cli.verbs import Later, of_files, of_imports, of_services
+from lineofaction.cli.commands import FAMILIES
+from lineofaction.cli.verbs import Later
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("bounds", "dynamics", "fe_contact", "host", "lineofaction", "model_studies", "service")
@@ -104,7 +105,7 @@ def test_a_name_that_is_gone_is_found(text: str) -> None:
 
 def test_modules_that_verbs_load_later_are_those_that_the_types_name() -> None:
     """A verb of `loa` would end with a traceback; the checker of types reads the imports beside the texts."""
-    for family in (of_files, of_imports, of_services):
+    for family in FAMILIES:
         tree = ast.parse(Path(str(family.__file__)).read_bytes())
         imports = [node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
         typed = {

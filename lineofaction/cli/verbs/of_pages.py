@@ -1,0 +1,187 @@
+"""Arguments, help and examples of the verbs that write pages."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from lineofaction.cli.guard import computing, grouped
+from lineofaction.cli.options import AsJson, to_file
+from lineofaction.cli.verbs import Later
+from lineofaction.gearbox.input_file import number_list
+
+if TYPE_CHECKING:
+    from lineofaction.cli import pages
+    from lineofaction.report.comparison import recorded as recordings
+    from lineofaction.report.run import view as views
+else:
+    pages = Later("cli.pages")
+    views = Later("report.run.view")
+    recordings = Later("report.comparison.recorded")
+
+verbs = typer.Typer()
+
+
+@dataclass(frozen=True)
+class _ViewOptions:
+    """What of a run is shown."""
+
+    quantity: Annotated[
+        str,
+        typer.Option(
+            help="Quantity of a run to show: force, moment, acceleration, mesh_force, elastic_force, "
+            "transmission_error.",
+            show_default="force",
+        ),
+    ] = ""
+    bearing: Annotated[str, typer.Option(help="Bearing of a run to show.", show_default="the loudest")] = ""
+    mesh: Annotated[
+        str,
+        typer.Option(
+            help="Mesh of a run whose orders are shown, or of a scene, whose flanks are compared.",
+            show_default="the first, the only one",
+        ),
+    ] = ""
+    orders: Annotated[
+        str,
+        typer.Option(help="Mesh orders over speed, as 1,2,4 or 1:8:1.", show_default="the five largest"),
+    ] = ""
+    window: Annotated[
+        str, typer.Option(help="Window of the spectra of a run: hann, flat_top, rectangular.")
+    ] = "hann"
+    scale: Annotated[str, typer.Option(help="Amplitudes of a run: rms or peak.")] = "rms"
+    direction: Annotated[
+        str,
+        typer.Option(
+            help="Direction of a quantity of bearings: x, y, z, or principal, in which it varies most.",
+            show_default="orders of all three in power",
+        ),
+    ] = ""
+
+    @property
+    def view(self) -> views.RunView:
+        """The view that the options name."""
+        cuts = tuple(number_list("--orders", self.orders)) if self.orders else ()
+        return views.RunView(**{**asdict(self), "orders": cuts})
+
+
+@verbs.command("report", rich_help_panel="results", epilog="Example: loa report ste.nc run.nc -o report.html")
+@computing
+@grouped
+def _report(
+    *,
+    files: Annotated[
+        list[Path],
+        typer.Argument(
+            help="Result files, netCDF or JSON: STE database, flank results, studies, run; one of each kind. "
+            "Of a folder all that are in it."
+        ),
+    ],
+    output: Annotated[
+        Path | None, to_file("Page to write, .html or .pdf; default: report.html, here or in the folder.")
+    ] = None,
+    images: Annotated[Path | None, typer.Option(help="Folder to write the plots to as PNG.")] = None,
+    about: Annotated[
+        Path | None,
+        typer.Option(help="File with a table [report]: the title block.", show_default="of the folder"),
+    ] = None,
+    still: Annotated[
+        bool, typer.Option("--still", help="Pictures in place of plots to work with: a fifth of the bytes.")
+    ] = False,
+    flank: Annotated[
+        bool,
+        typer.Option("--flank", help="Compute the flank results at the load of the page."),
+    ] = False,
+    view: _ViewOptions,
+    json: AsJson = False,
+) -> None:
+    """Write one page or PDF with the plots of a database, flank results, studies or a run."""
+    options = pages.ReportOptions(images, about, still)
+    pages.run_report(files, output, options, view.view, flank=flank, as_json=json)
+
+
+@dataclass(frozen=True)
+class _RecordingOptions:
+    """What the file of a recording does not say."""
+
+    channel: Annotated[
+        str, typer.Option(help="Of a recording: the channel that is compared.", show_default="the only one")
+    ] = ""
+    unit: Annotated[
+        str,
+        typer.Option(help="Of a recording: unit of that channel, as m/s² or g.", show_default="the file's"),
+    ] = ""
+    full_scale: Annotated[
+        float, typer.Option(help="Of a recording: what 1 in the file is in the unit; of WAV: the full scale.")
+    ] = 1.0
+    tacho: Annotated[
+        str, typer.Option(help="Of a recording: channel of the speed or tacho.", show_default="the only one")
+    ] = ""
+    tacho_unit: Annotated[
+        str, typer.Option(help="Of a recording: unit of the speed, as rpm.", show_default="the file's")
+    ] = ""
+    pulses_per_turn: Annotated[
+        float, typer.Option(help="Of a recording: the tacho is so many pulses a turn; 0: a speed.")
+    ] = 0.0
+    rpm: Annotated[
+        float, typer.Option(help="Of a recording without a tacho: its one speed, rpm; 0: there is a tacho.")
+    ] = 0.0
+    ratio: Annotated[
+        float, typer.Option(help="Of a recording: speed of the driving gear over that of the recorded shaft.")
+    ] = 1.0
+
+
+@verbs.command(
+    "compare",
+    rich_help_panel="design",
+    epilog="Example: loa compare before.nc after.nc measured.csv -o comparison.html",
+)
+@computing
+@grouped
+def _compare(
+    *,
+    files: Annotated[
+        list[Path],
+        typer.Argument(
+            help="Two STE databases, two runs, or one of them and a measurement (CSV, UFF; beside a run "
+            "also WAV, MAT, HDF5, MDF4); two folders: the "
+            "databases and runs that both have by name; with --scene the case files of the flanks before and "
+            "after, or after alone: before are the scene's."
+        ),
+    ],
+    output: Annotated[Path, to_file("Page to write.")] = Path("comparison.html"),
+    torque: Annotated[
+        float | None,
+        typer.Option(help="Torque of the ripples shown, N m.", show_default="the middle one"),
+    ] = None,
+    scene: Annotated[
+        Path | None, typer.Option(help="Scene file in which two flanks are heard: what a change brings.")
+    ] = None,
+    tolerances: Annotated[
+        Path | None, typer.Option(help="Of the flanks: file with the options of loa scatter (TOML).")
+    ] = None,
+    load_cases: Annotated[
+        Path | None, typer.Option(help="Of the scene: file with [[load_cases]] (TOML), as of loa deflect.")
+    ] = None,
+    speed_rpm: Annotated[
+        str | None, typer.Option(help="Of the scene: speeds in rpm, FIRST:LAST:STEP or a list.")
+    ] = None,
+    requirement_db: Annotated[
+        float | None, typer.Option(help="Highest level of all orders that 95 % of the pairs may have.")
+    ] = None,
+    view: _ViewOptions,
+    recorded: _RecordingOptions,
+    json: AsJson = False,
+) -> None:
+    """Compare two tables, two runs, two flanks in a scene, or one with a measurement: differences."""
+    if scene is not None:
+        question = pages.FlankQuestion(
+            scene, view.mesh or None, tolerances, load_cases, speed_rpm, requirement_db
+        )
+        pages.run_compare_flanks(files, question, output, as_json=json)
+        return
+    measurement = recordings.Measurement(**asdict(recorded))
+    pages.run_compare(files, output, view.view, (torque, measurement), as_json=json)
