@@ -1,4 +1,4 @@
-"""One version, which moves with every entry among the changes; manifests: tests/unit/scripts."""
+"""One version, after the newest release while changes wait for the next; manifests: tests/unit/scripts."""
 
 from __future__ import annotations
 
@@ -17,31 +17,31 @@ ROOT = Path(__file__).resolve().parents[2]
 PROJECT: str = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["version"]
 
 
-def changes(text: str) -> tuple[int, Version]:
+def changes(text: str) -> tuple[bool, Version]:
+    """Return whether changes are not released, and the newest release."""
     unreleased, newest, _ = re.split(r"^## (\d\S*).*$", text, maxsplit=1, flags=re.MULTILINE)
-    return len(re.findall(r"^- ", unreleased, re.MULTILINE)), Version(newest)
+    return "\n- " in unreleased, Version(newest)
 
 
-def agrees(stated: Version, count: int, newest: Version) -> bool:
-    """Whether a version is that of a tree with so many changes after a release."""
-    if count == 0:
+def agrees(stated: Version, waiting: bool, newest: Version) -> bool:
+    """Whether a version is that of a tree whose changes wait for the release after the newest, or of a release."""
+    if not waiting:
         return stated == newest
-    return stated.dev == count and Version(stated.base_version) > newest
+    return stated.is_devrelease and Version(stated.base_version) > newest
 
 
-def test_the_version_counts_what_is_not_released() -> None:
-    count, newest = changes((ROOT / "CHANGELOG.md").read_text("utf-8"))
-    wanted = f"the development version after {newest} with {count} changes: BASE.dev{count}"
-    assert agrees(Version(PROJECT), count, newest), f"{PROJECT} is not {wanted}"
+def test_the_version_is_that_of_the_next_release_or_of_this_one() -> None:
+    waiting, newest = changes((ROOT / "CHANGELOG.md").read_text("utf-8"))
+    assert agrees(Version(PROJECT), waiting, newest), f"{PROJECT} after {newest}"
 
 
 @pytest.mark.parametrize(
-    ("stated", "count", "good"),
-    [("0.2.0", 0, True), ("0.2.0", 1, False), ("0.3.0.dev1", 1, True), ("0.3.0.dev1", 2, False),
-     ("0.2.0.dev1", 1, False), ("0.3.0", 0, False)],
+    ("stated", "waiting", "good"),
+    [("0.2.0", False, True), ("0.2.0", True, False), ("0.3.0.dev1", True, True), ("0.3.0", True, False),
+     ("0.2.0.dev1", True, False), ("0.3.0", False, False)],
 )  # fmt: skip
-def test_a_version_that_stands_still_is_found(stated: str, count: int, good: bool) -> None:
-    text = "## Unreleased\n\n" + "- **A change**\n" * count + "\n## 0.2.0 - 2026-11-22\n\n- an older one\n"
+def test_a_version_that_stands_still_is_found(stated: str, waiting: bool, good: bool) -> None:
+    text = "## Unreleased\n\n" + "- **A change**\n" * waiting + "\n## 0.2.0 - 2026-11-22\n\n- an older one\n"
     assert agrees(Version(stated), *changes(text)) is good
 
 
