@@ -24,7 +24,7 @@ def changes(text: str) -> tuple[bool, Version]:
 
 
 def agrees(stated: Version, waiting: bool, newest: Version) -> bool:
-    """Whether a version is that of a tree whose changes wait for the release after the newest, or of a release."""
+    """Whether a version is that of the release after the newest, or of the newest where nothing waits."""
     if not waiting:
         return stated == newest
     return stated.is_devrelease and Version(stated.base_version) > newest
