@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -37,3 +38,43 @@ class Estimate:
 
     def __float__(self) -> float:
         return self.value
+
+    def __str__(self) -> str:
+        """Return the number with its error, in µm and MPa where the unit is m or Pa."""
+        return self._written({"m": "um", "Pa": "MPa"}.get(self.unit, self.unit))
+
+    def __format__(self, unit: str) -> str:
+        """Return the number with its error in a unit (``f"{ripple:um}"``), to two digits of the error.
+
+        Raises `ValueError`: the unit is none of those of the number.
+        """
+        if not unit:
+            return str(self)
+        if unit != self.unit and unit not in _UNITS.get(self.unit, {}):
+            known = ", ".join((self.unit, *_UNITS.get(self.unit, {})))
+            raise ValueError(f"a number in {self.unit or '1'} is not written in {unit}; units: {known}")
+        return self._written(unit)
+
+    def _written(self, unit: str) -> str:
+        one = _UNITS.get(self.unit, {}).get(unit, 1.0)
+        value, error, name = self.value / one, self.error / one, unit.replace("um", "µm")
+        if not math.isfinite(error):
+            return f"{value:.4g} {name}, no error stated".replace("  ", " ")
+        places = _decimals(error)
+        return f"{value:.{places}f} ± {error:.{places}f} {name}".rstrip()
+
+
+_UNITS = {
+    "m": {"mm": 1e-3, "um": 1e-6, "µm": 1e-6, "nm": 1e-9},
+    "Pa": {"MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6},
+    "N": {"kN": 1e3},
+    "N/m": {"N/mm": 1e3, "N/um": 1e6},
+}
+"""Sizes of the units in which a number of an SI unit can be written."""
+
+
+def _decimals(error: float) -> int:
+    """Return the decimals that leave two digits of an error."""
+    if error == 0.0:
+        return 6
+    return max(1 - int(f"{error:.1e}".partition("e")[2]), 0)

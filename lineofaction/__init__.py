@@ -48,8 +48,9 @@ if TYPE_CHECKING:
     from lineofaction.gearbox.registry import *  # noqa: F403 (its __all__)
     from lineofaction.gearbox.schemas import Case
     from lineofaction.gearbox.schemas.scene import SceneInput as Scene
-    from lineofaction.gearbox.workbench import InputWarning, analyze, open_unit, read, simulate
+    from lineofaction.gearbox.workbench import InputWarning, analyze, open_unit, simulate
     from lineofaction.report.document import facts, write
+    from lineofaction.report.readers import read
 
 _HOME = {
     "AsyncClient": ("lineofaction.client", "AsyncLineOfActionClient"),
@@ -73,6 +74,7 @@ _HOME = {
     "Outputs": ("dynamics.scene", "Outputs"),
     "PitchDeviation": ("fe_contact", "PitchDeviation"),
     "PlanetarySet": ("dynamics.scene", "PlanetarySet"),
+    "read": ("lineofaction.report.readers", "read"),
     "RingGear": ("fe_contact", "RingGear"),
     "RollingBearing": ("dynamics.bearings.rolling_bearing", "RollingBearing"),
     "RunOut": ("fe_contact", "RunOut"),

@@ -13,12 +13,14 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
+from bounds.brief import Row, brief
 from fe_contact.errors import SolveError
 from fe_contact.ste import extraction, netcdf
 from fe_contact.ste.curve import Curve, curve, default_value, operating_point
 from fe_contact.ste.curve_quantities import Spectrum
 from fe_contact.ste.fields import GRID, SteFields
 from fe_contact.ste.force_table import ForceTable, LevelGrid
+from fe_contact.ste.headlines import headlines
 from fe_contact.ste.mesh_force import ForceSample, MeshForce
 from fe_contact.ste.tooth_loads import ToothLoads, tooth_loads
 from fe_contact.types import BoolArray, Estimate, FloatArray, IntArray
@@ -192,6 +194,7 @@ class _StoredPoint(TypedDict, total=False):
     center_distance_change: float | None
 
 
+@brief
 class SteDatabase(SteFields):
     """Static transmission error over position, load, misalignment and center distance.
 
@@ -284,6 +287,10 @@ class SteDatabase(SteFields):
         load = point.get("torque"), point.get("force")
         at = operating_point(table, *load, point.get("misalignment"), point.get("center_distance_change"))
         return tooth_loads(table, at)
+
+    def headlines(self) -> tuple[str, list[Row]]:
+        """Return what a Python prompt shows: title, and rows of loads, figures, effects and cost."""
+        return headlines(self)
 
     def force_table(self, *, allow_failed: bool = False) -> ForceTable:
         """Return the table of plain arrays for dynamics; raises as `extraction.force_table`."""

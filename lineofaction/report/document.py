@@ -148,6 +148,12 @@ def read_result(file: Path) -> SteDatabase | RunResult:
     return result
 
 
+def read_file(file: Path) -> Any:
+    """Read a table, a run or the result of a study; raises `BadInput`: the file is none, or is damaged."""
+    study, kind = _kind(file)
+    return _read(file, kind) if study is None else read_stored(study, file)
+
+
 def read_run(file: Path, field: str) -> RunResult:
     """Read a run, which `field` names; raises `BadInput`: the file is none, or is damaged."""
     result = read_result(file)

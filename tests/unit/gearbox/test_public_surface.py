@@ -57,6 +57,22 @@ def test_a_case_is_read_with_values_over_it_and_refused_by_field() -> None:
         loa.read(EXAMPLES / "palermo_spur_20_20.toml", {"pair.pinion.teeth": 2})
 
 
+def test_every_file_is_read_by_one_function(tmp_path: Path) -> None:
+    result = loa.modes(EXAMPLES / "jeffcott_scene.toml")
+    loa.write(result, tmp_path / "modes.nc")
+    again = loa.read(tmp_path / "modes.nc")
+    assert type(again) is type(result)
+    assert again.frequency.tolist() == result.frequency.tolist()
+    assert isinstance(loa.read(EXAMPLES / "two_stage" / "two_stage.rexs"), loa.Unit)
+    assert isinstance(loa.read(EXAMPLES / "jeffcott_scene.toml"), loa.Scene)
+    (tmp_path / "damaged.nc").write_bytes((tmp_path / "modes.nc").read_bytes()[:400])
+    for name in ("damaged.nc", "missing.nc", "missing.toml"):
+        with pytest.raises(loa.BadInput, match=name):
+            loa.read(tmp_path / name)
+    with pytest.raises(loa.BadInput, match="overrides"):
+        loa.read(tmp_path / "modes.nc", {"duration": 1})
+
+
 def test_modes_of_a_scene_equal_those_of_dynamics(tmp_path: Path) -> None:
     """The function converts, checks and computes as the parts do one by one."""
     from dynamics.assembly.assemble import assemble  # noqa: PLC0415

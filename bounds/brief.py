@@ -1,0 +1,130 @@
+"""Records in a dozen lines, as a Python prompt and a notebook show them.
+
+`brief` gives a dataclass such a `repr`, and its HTML for notebooks. Its lines are those that the record
+states itself (`Headlined`), or its fields: numbers as they are, arrays by shape and range, records by type.
+"""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from enum import Enum
+from itertools import islice
+from typing import Any, Protocol, TypeVar, runtime_checkable
+
+import numpy as np
+
+from bounds.unit import engineering
+
+MOST_LINES = 12
+"""Lines of a record, its title among them."""
+WIDTH = 100
+"""Characters of a line, at most."""
+LISTED = 6
+"""Numbers or words of a sequence that are listed; longer ones are counted."""
+
+Record = TypeVar("Record")
+Row = tuple[str, str]
+
+
+@runtime_checkable
+class Headlined(Protocol):
+    """A record that says itself what stands first."""
+
+    def headlines(self) -> tuple[str, list[Row]]:
+        """Return the title, and rows of name and text that take the place of the fields."""
+
+
+def brief(kind: type[Record]) -> type[Record]:
+    """Give a dataclass the short text and HTML of its content; a decorator."""
+    kind.__repr__ = text_of  # type: ignore[method-assign]
+    kind._repr_html_ = html_of  # type: ignore[attr-defined]
+    return kind
+
+
+def text_of(record: object) -> str:
+    """Return a record as text of at most `MOST_LINES` lines."""
+    title, rows = _content(record)
+    width = max((len(name) for name, _ in rows), default=0)
+    lines = [title, *(f"  {name:<{width}}  {text}".rstrip() for name, text in rows)]
+    return "\n".join(line if len(line) <= WIDTH else f"{line[: WIDTH - 1]}…" for line in lines)
+
+
+def html_of(record: object) -> str:
+    """Return a record as an HTML table with the same rows."""
+    title, rows = _content(record)
+    cells = "".join(
+        f'<tr><td style="text-align:left">{html.escape(name)}</td>'
+        f'<td style="text-align:left">{html.escape(text)}</td></tr>'
+        for name, text in rows
+    )
+    return f"<table><caption>{html.escape(title)}</caption>{cells}</table>"
+
+
+def _content(record: object) -> tuple[str, list[Row]]:
+    if isinstance(record, Headlined):
+        title, rows = record.headlines()
+    else:
+        title, rows = type(record).__name__, list(_field_rows(record))
+    rows = [(name, " ".join(text.split())) for name, text in rows]
+    most = MOST_LINES - 1
+    if len(rows) > most:
+        names = ", ".join(name for name, _ in rows[most - 1 :])
+        rows = [*rows[: most - 1], ("and", f"{len(rows) - most + 1} more: {names}")]
+    return title, rows
+
+
+def _field_rows(record: object) -> Iterator[Row]:
+    for field in fields(record):  # type: ignore[arg-type]
+        value = getattr(record, field.name)
+        if field.repr and value is not None:
+            yield field.name, described_value(value)
+
+
+def described_value(value: object) -> str:
+    """Return a value of a record in a few words."""
+    for kinds, words in _WORDS:
+        if isinstance(value, kinds):
+            return words(value)
+    stated = is_dataclass(value) and type(value).__str__ is not object.__str__
+    return str(value) if stated else type(value).__name__
+
+
+def _array(array: np.ndarray[Any, Any]) -> str:
+    """Return few numbers as they are, others by shape and range."""
+    if array.dtype.kind in "biuf" and array.ndim == 1 and array.size <= LISTED:
+        return ", ".join(described_value(value) for value in array.tolist()) or "none"
+    shape = " x ".join(map(str, array.shape))
+    if array.dtype.kind == "b":
+        return f"{shape}, {np.count_nonzero(array)} true"
+    if array.dtype.kind not in "iuf" or not np.isfinite(array).any():
+        return f"{shape} {array.dtype.name}"
+    low, high = (engineering(float(limit(array)), 4) for limit in (np.nanmin, np.nanmax))
+    return f"{shape}, {low} to {high}" if low != high else f"{shape}, all {low}"
+
+
+def _sequence(values: list[object]) -> str:
+    plain = all(isinstance(value, str | int | float) for value in values)
+    if values and not plain:
+        kinds = {type(value).__name__ for value in values}
+        return f"{len(values)} {' or '.join(sorted(kinds)[:2])}"
+    return _listed([described_value(value) for value in values[: LISTED + 1]], len(values))
+
+
+def _listed(words: list[str], count: int) -> str:
+    if count <= LISTED:
+        return ", ".join(words) or "none"
+    return f"{count}: {', '.join(words[:LISTED])}, ..."
+
+
+_WORDS: tuple[tuple[tuple[type, ...], Callable[[Any], str]], ...] = (
+    ((np.ndarray,), _array),
+    ((Enum,), lambda value: value.name.lower()),
+    ((str,), lambda value: next(iter(value.splitlines()), "")),
+    ((bool, int, np.bool_, np.integer), str),
+    ((float, np.floating), lambda value: engineering(float(value), 6)),
+    ((Mapping,), lambda value: _listed([str(name) for name in islice(value, LISTED + 1)], len(value))),
+    ((tuple, list, set, frozenset), lambda value: _sequence(list(value))),
+)
+"""Words of values by their kinds; the first that fits counts (an enumeration of numbers is one of names)."""

@@ -1,0 +1,95 @@
+"""An STE database in a dozen lines: gear pair, loads, figures with their errors, effects, cost."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from bounds import engineering
+from bounds.brief import Row
+from fe_contact.errors import FeContactError
+from fe_contact.types import FloatArray
+
+if TYPE_CHECKING:
+    from fe_contact.ste.database import SteDatabase
+
+MOST_LOADS = 4
+"""Loads whose figures are listed: spread over those of the table."""
+LONGEST_PERIOD = 32
+"""Base pitches up to which the figures of all listed loads are computed; of longer tables one load's are."""
+
+
+def headlines(table: SteDatabase) -> tuple[str, list[Row]]:
+    """Return the title of a database and its rows."""
+    facts = table.facts
+    ring = " (ring)" if facts.internal else ""
+    helix = (
+        f", base helix angle {math.degrees(facts.base_helix_angle):.3g}°" if facts.base_helix_angle else ""
+    )
+    title = (
+        f"SteDatabase {facts.teeth[0]}/{facts.teeth[1]}{ring}, "
+        f"center distance {1e3 * facts.center_distance:.6g} mm{helix}"
+    )
+    rows = [("loads", f"{_numbers(table.torque)} N m"), ("positions", _positions(table))]
+    rows += [
+        (name, f"{_numbers(1e6 * axis)} µm")
+        for name, axis in (
+            ("misalignment", table.misalignment),
+            ("center distance change", table.center_distance_change),
+        )
+        if axis.size > 1 or axis.any()
+    ]
+    return title, [*rows, *_figures(table), *_making(table)]
+
+
+def _numbers(values: FloatArray) -> str:
+    listed = [engineering(float(value), 4) for value in values]
+    return ", ".join(listed) if len(listed) <= 8 else f"{listed[0]} to {listed[-1]} ({len(listed)})"
+
+
+def _positions(table: SteDatabase) -> str:
+    pitches = "a base pitch" if table.period == 1 else f"over {table.period} base pitches"
+    failed = f", {table.n_failed} points failed" if table.n_failed else ""
+    return f"{table.position.size} {pitches}{failed}"
+
+
+def _figures(table: SteDatabase) -> list[Row]:
+    """Return mean, peak-to-peak and first harmonic at some of the loads, aligned or nearest to it."""
+    most = MOST_LOADS if table.period <= LONGEST_PERIOD else 1
+    chosen = np.unique(
+        np.linspace(0, table.torque.size - 1, min(most, table.torque.size)).round().astype(int)
+    )
+    rows = []
+    for torque in table.torque[chosen]:
+        name = f"at {engineering(float(torque), 4)} N m"
+        try:
+            curve = table.curve(torque=float(torque), allow_failed=True, **_alignment(table))
+        except FeContactError as error:
+            rows.append((name, str(error)))
+            continue
+        rows.append((name, f"mean {curve.mean}, p-p {curve.peak_to_peak}, order 1 {curve.harmonics[0]}"))
+    return rows
+
+
+def _alignment(table: SteDatabase) -> dict[str, float]:
+    """Return the stored alignment that is nearest to none."""
+    axes = (("misalignment", table.misalignment), ("center_distance_change", table.center_distance_change))
+    return {name: float(axis[np.abs(axis).argmin()]) for name, axis in axes}
+
+
+def _making(table: SteDatabase) -> list[Row]:
+    made = table.metadata
+    rows: list[Row] = []
+    ledger: list[Any] = made.effect_ledger if isinstance(made.effect_ledger, list) else []
+    effects = [str(entry.get("name", "")).replace("_", " ") for entry in ledger if entry.get("on")]
+    if any(effects):
+        rows.append(("effects on", ", ".join(effects)))
+    version = made.software_versions.get("lineofaction", "")
+    seconds = made.receipt.get("cpu_seconds")
+    cost = f"{engineering(seconds, 3)} CPU s" if seconds is not None else ""
+    origin = [cost, f"lineofaction {version}" if version else "", f"content {made.content_hash[:6]}"]
+    if made.content_hash or cost:
+        rows.append(("made", "; ".join(filter(None, origin))))
+    return rows
