@@ -14,9 +14,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bounds import Quantity, Text
+from bounds.brief import Row, brief
 from dynamics.errors import InputError, ResultError
 from dynamics.results.array_file import stored
 from dynamics.results.energy_audit import EnergyAudit
+from dynamics.results.headlines import headlines
 from dynamics.types import FloatArray, Json, RunStatus
 from model_studies.array_file import Stored
 from model_studies.netcdf import DAMAGE, UnreadableFile, describe, make_dimension, read_dataset
@@ -47,6 +49,7 @@ MESH, FREEDOM = ("mesh", "time"), ("freedom", "time")
 BEARING = ("bearing", "direction", "time")
 
 
+@brief
 @dataclass(frozen=True)
 class RunResult:
     """Time series on a uniform grid of T samples; m meshes, s shafts, b bearings, n freedoms.
@@ -168,6 +171,10 @@ class RunResult:
     """Of the driving flank: what its table gives at the position and deflection of each sample, the static
     part of the mesh force. m = 0 if not requested. Shape (m, T).
     """
+
+    def headlines(self) -> tuple[str, list[Row]]:
+        """Return what a Python prompt shows: title, and rows of parts, forces and cost."""
+        return headlines(self)
 
     @property
     def sample_rate(self) -> float:

@@ -10,6 +10,7 @@ import pytest
 from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, with_gear
 from planetary_scenes import planetary_scene, published_set
 
+from bounds.brief import MOST_LINES, WIDTH
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError, ResultError
 from dynamics.loads import TimeLaw
@@ -50,6 +51,14 @@ def test_bearings_carry_the_mesh_and_what_accelerates_the_shaft():
             assert np.ptp(mass * acceleration) > 100.0
             assert np.abs(ground[axis, 1:-1] - balance).max() < 0.5  # N of 2660
         np.testing.assert_array_equal(ground[2], 0.0)
+
+
+def test_the_text_of_a_run_says_its_parts_and_forces_in_a_dozen_lines(result):
+    lines = repr(result).split("\n")
+    assert lines[0] == f"RunResult, 0.2 s in {result.time.size} samples, completed"
+    assert len(lines) <= MOST_LINES and max(map(len, lines)) <= WIDTH
+    assert "2 shaft, 1 mesh, 4 bearing, 1 drive" in lines[1]
+    assert f"{result.mesh_force.max():.4g} N" in lines[2]
 
 
 def test_two_equal_bushings_share_equally(result):
