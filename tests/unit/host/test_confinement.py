@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import platform
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -10,31 +12,18 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
+from escapes import BY_32_BITS, FILES, PRELUDE, PROCESSES, SYSTEM
 
 from host import child_environment, missing_protections
 
 pytestmark = pytest.mark.skipif(bool(missing_protections()), reason="this system does not confine processes")
 
-TRIES: dict[str, str] = {
-    "a file": "open({canary!r}).read()",
-    "a link in its folder": "open('link').read()",
-    "a hard way up": "open('../canary').read()",
-    "its environment": "open('/proc/self/environ').read()",
-    "another's environment": "open(f'/proc/{{os.getppid()}}/environ').read()",
-    "a list of files": "os.listdir({outside!r})",
-    "a file elsewhere": "open({outside!r} + '/made', 'w')",
-    "a program": "os.execv('/bin/sh', ['sh', '-c', 'cat ' + {canary!r}])",
-    "a connection": "socket.create_connection(('127.0.0.1', 9), timeout=1.0)",
-    "a datagram": "socket.socket(socket.AF_INET, socket.SOCK_DGRAM)",
-    "a socket of the system": "socket.socket(socket.AF_UNIX)",
-    "a signal": "os.kill(os.getppid(), 0)",
-}
-"""What a reader may be led to, by an expression that does it."""
 CHILD = """
-import json, os, socket, sys
+import json, sys
 from pathlib import Path
 from host import Limits, confine
-tries, limits = json.load(sys.stdin)
+tries, limits, prelude = json.load(sys.stdin)
+exec(prelude)
 confine(Path.cwd(), Limits(**limits))
 def outcome(text):
     try:
@@ -67,10 +56,12 @@ def confined(tmp_path: Path) -> Run:
     own = tmp_path / "own"
     own.mkdir()
     (own / "link").symlink_to(tmp_path / "canary")
+    (own / "own").touch()
 
     def run(tries: dict[str, str], **limits: int) -> Ended:
         places = {"canary": str(tmp_path / "canary"), "outside": str(tmp_path)}
-        request = json.dumps([{name: text.format(**places) for name, text in tries.items()}, limits])
+        expressions = {name: text.format(**places) for name, text in tries.items()}
+        request = json.dumps([expressions, limits, PRELUDE])
         environment = child_environment()
         with subprocess.Popen((sys.executable, "-c", CHILD), cwd=own, env=environment, **PIPES) as child:
             answer, complaint = child.communicate(request)
@@ -84,8 +75,33 @@ def outcomes(ended: Ended) -> dict[str, Any]:
     return dict(json.loads(ended.stdout))
 
 
-def test_nothing_outside_is_reached(confined: Run) -> None:
-    assert set(outcomes(confined(TRIES)).values()) == {"PermissionError"}
+@pytest.mark.parametrize("escapes", [FILES, PROCESSES, SYSTEM], ids=["files", "processes", "system"])
+def test_every_escape_is_refused(confined: Run, escapes: dict[str, str], tmp_path: Path) -> None:
+    refusals = outcomes(confined(escapes))
+    assert {name: outcome for name, outcome in refusals.items() if outcome != "PermissionError"} == {}
+    assert len(refusals) == len(escapes)
+    assert sorted(path.name for path in (tmp_path / "own").iterdir()) == ["link", "own"]
+
+
+def test_there_are_forty_escapes() -> None:
+    assert len(FILES) + len(PROCESSES) + len(SYSTEM) >= 40
+
+
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="a table of that processor")
+def test_calls_of_32_bits_are_refused(confined: Run) -> None:
+    ended = confined({"call": BY_32_BITS})
+    assert ended.returncode == -signal.SIGSEGV or outcomes(ended) == {"call": "PermissionError"}
+
+
+def test_a_process_with_other_threads_is_not_confined() -> None:
+    """They would keep what the thread gives up that confines itself."""
+    wait = "threading.Thread(target=threading.Event().wait, daemon=True).start()"
+    code = f"import threading, pathlib, host; {wait}; host.confine(pathlib.Path.cwd())"
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=child_environment(), capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 1
+    assert "1 other threads of this process would not be confined" in done.stderr
 
 
 def test_its_own_folder_and_python_stay(confined: Run) -> None:
@@ -94,7 +110,8 @@ def test_its_own_folder_and_python_stay(confined: Run) -> None:
         "reads": "open('made').read()",
         "imports": "__import__('scipy.linalg')",
         "imports ours": "__import__('lineofaction.gearbox.from_rexs.opened')",
-        "pipes": "socket.socketpair()",
+        "reads its limits": "resource.prlimit(0, resource.RLIMIT_STACK)",
+        "removes": "os.unlink('made')",
     }
     assert set(outcomes(confined(own)).values()) == {"done"}
 
