@@ -132,6 +132,8 @@ class Settings(BaseSettings):
         Whether the network between this machine and the scheduler is trusted with jobs in plain text.
     scheduler : str or None
         Address of a Dask scheduler whose workers do the jobs; None: children of this machine do.
+    require_confinement : bool
+        Whether it starts only where the system has every protection for readers of callers' files.
     keys_file : Path or None
         The file of access keys; None: ``keys.json`` in the data directory.
     webhook_origins : str
@@ -163,6 +165,7 @@ class Settings(BaseSettings):
     attempts: int = Field(2, ge=1, le=10)
     scheduler_unencrypted: bool = False
     scheduler: str | None = None
+    require_confinement: bool = False
     keys_file: Annotated[Path, AfterValidator(absolute)] | None = None
     webhook_origins: str = ""
     webhook_secret: SecretStr | None = Field(None, validate_default=True)
