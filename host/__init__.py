@@ -20,6 +20,7 @@ from host.confinement import (
     limit_file_size,
     limit_memory,
     missing_protections,
+    prepare_confinement,
 )
 from host.directories import default_cache_directory
 from host.extras import MissingExtra, Unavailable, missing_extra, require
@@ -114,6 +115,7 @@ __all__ = [
     "never_wait_at",
     "peak_memory",
     "physical_memory",
+    "prepare_confinement",
     "processes_in",
     "reap",
     "require",

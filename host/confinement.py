@@ -13,14 +13,14 @@ import os
 import signal
 import stat
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cache
 from itertools import islice
 from pathlib import Path
 
 from host.extras import Unavailable
-from host.sessions import memory_figure
 from host.system_calls import NO_NEW_PRIVILEGES, filters_calls, keep_to_reading
 
 # Limits on what processes may take: POSIX systems alone have them, elsewhere each raises `Unavailable`.
@@ -104,8 +104,10 @@ def confine(folder: Path, limits: Limits = READING) -> None:
     """
     missing = missing_protections()
     if LIMITS not in missing:
-        _refuse_threads()
-        _limit(limits)
+        threads, addresses = _threads_and_addresses()
+        if threads > 1:
+            raise OSError(errno.EBUSY, f"{threads - 1} other threads of this process would not be confined")
+        _limit(limits, addresses)
         _checked(ctypes.CDLL(None, use_errno=True).prctl(_SIGNAL_AT_END_OF_PARENT, signal.SIGKILL))
     if FILES not in missing:
         _restrict(_readable(), folder)
@@ -115,19 +117,25 @@ def confine(folder: Path, limits: Limits = READING) -> None:
 
 _SIGNAL_AT_END_OF_PARENT = 1
 _LIBRARIES_MB = 1024
-"""Addresses that programs take which are loaded later, beside memory: 10 MB by scipy, 250 MB by gmsh."""
+"""Addresses of libraries that are loaded later, beside memory: of scipy 130 MB, of gmsh 100 MB."""
 _STACK_MB = 64
-"""As much as gmsh may need, which asks for more than it gets: recursions along its meshes."""
+"""gmsh asks for a stack without limit, and does not get it."""
 
 
-def _refuse_threads() -> None:
-    tasks = Path("/proc/self/task")
-    threads = len(list(tasks.iterdir())) if tasks.is_dir() else 1
-    if threads > 1:
-        raise OSError(errno.EBUSY, f"{threads - 1} other threads of this process would not be confined")
+def prepare_confinement() -> None:
+    """Find out once, in a process whose forks are confined, what is the same for all of them."""
+    _readable()
 
 
-def _limit(limits: Limits) -> None:
+def _threads_and_addresses() -> tuple[int, int]:
+    """Return the number of threads of this process and the bytes of its addresses; 1 and 0 without /proc."""
+    with suppress(OSError):
+        fields = Path("/proc/self/stat").read_bytes().rpartition(b")")[2].split()
+        return int(fields[17]), int(fields[20])
+    return 1, 0
+
+
+def _limit(limits: Limits, addresses: int) -> None:
     if sys.platform == "win32":
         raise Unavailable("Limits of processes")
     import resource  # noqa: PLC0415 (POSIX alone)
@@ -142,8 +150,9 @@ def _limit(limits: Limits) -> None:
     }
     if limits.memory_mb is not None:
         limit_memory(limits.memory_mb * _MB)
-        addresses = (memory_figure("VmSize") or 0) + (limits.memory_mb + _LIBRARIES_MB) * _MB
-        most[resource.RLIMIT_AS] = (addresses, addresses)
+    if limits.memory_mb is not None and addresses:
+        most_addresses = addresses + (limits.memory_mb + _LIBRARIES_MB) * _MB
+        most[resource.RLIMIT_AS] = (most_addresses, most_addresses)
     for kind, values in most.items():
         _, hard = resource.getrlimit(kind)
         soft, last = values if hard == resource.RLIM_INFINITY else (min(value, hard) for value in values)
@@ -170,20 +179,22 @@ def excess(pid: int, folder: Path, limits: Limits) -> str:
     return ""
 
 
-def _readable() -> Iterator[Path]:
-    """Yield where Python and its modules are.
+@cache
+def _readable() -> tuple[Path, ...]:
+    """Return where Python and its modules are.
 
     Of a folder of modules outside Python's own, which may be anybody's, that is the packages and modules.
     """
     own = [Path(folder).resolve() for folder in (sys.prefix, sys.base_prefix, *_SYSTEM)]
-    yield from own
+    places = list(own)
     for entry in filter(None, (str(_ROOT), *sys.path)):
         folder = Path(entry).resolve()
         if folder.is_file() or any(folder.is_relative_to(part) for part in own):
-            yield folder
+            places.append(folder)
         elif folder.is_dir():
-            yield from (path.parent for path in folder.glob("*/__init__.py"))
-            yield from folder.glob("*.py")
+            places += [path.parent for path in folder.glob("*/__init__.py")]
+            places += folder.glob("*.py")
+    return tuple(dict.fromkeys(places))
 
 
 # Landlock, by which a process of Linux gives up files, connections and signals for good, as any user.

@@ -14,7 +14,7 @@ import traceback
 from pathlib import Path
 from typing import BinaryIO
 
-from host import READING, confine, end_after, lower_priority
+from host import READING, confine, end_after, lower_priority, prepare_confinement
 from lineofaction.gearbox.problems import TooLarge
 from service.live.child import problem, worked, written_plainly
 from service.live.order import AnswerHead, LiveOrder
@@ -24,6 +24,10 @@ LONGEST_S = 30
 """Time after which it ends, whatever it waits for."""
 MOST_ANSWER_BYTES = 100_000_000
 _NICENESS = 5
+
+
+warm_up = prepare_confinement
+"""What a process does from which children are forked."""
 
 
 def work(descriptor: int) -> None:

@@ -31,6 +31,7 @@ WORK = "service.reading.child"
 MODULES = (
     "lineofaction.gearbox.convert.errors",
     "lineofaction.gearbox.from_rexs.opened",
+    "service.reading.child",
     "service.reading.texts",
     "scipy.optimize",
 )

@@ -13,8 +13,9 @@ from typing import Any, NamedTuple
 
 import pytest
 from escapes import BY_32_BITS, FILES, PRELUDE, PROCESSES, SYSTEM
+from running_service import lives, until
 
-from host import child_environment, missing_protections
+from host import ChildFailed, Limits, ask_child, child_environment, missing_protections
 
 pytestmark = pytest.mark.skipif(bool(missing_protections()), reason="this system does not confine processes")
 
@@ -120,6 +121,52 @@ def test_memory_and_sizes_of_files_end(confined: Run) -> None:
     tries = {"memory": "bytearray(200_000_000)", "file": "open('large', 'wb').write(bytes(2_000_000))"}
     ended = outcomes(confined(tries, memory_mb=150, file_bytes=1_000_000))
     assert ended == {"memory": "MemoryError", "file": "OSError"}
+
+
+STARTER = """
+import subprocess, sys, time
+child = subprocess.Popen([sys.executable, "-c", sys.argv[1]])
+print(child.pid, flush=True)
+time.sleep(60.0)
+"""
+SLEEPER = """
+import pathlib, signal, time, host
+signal.signal(signal.SIGALRM, signal.SIG_IGN)
+host.confine(pathlib.Path.cwd())
+open("confined", "w").close()
+time.sleep(1000.0)
+"""
+
+
+def test_it_ends_with_whoever_started_it(tmp_path: Path) -> None:
+    command = (sys.executable, "-c", STARTER, SLEEPER)
+    with subprocess.Popen(command, cwd=tmp_path, env=child_environment(), **PIPES) as starter:
+        pid = int(starter.stdout.readline())
+        until((tmp_path / "confined").exists)
+        assert lives(pid)
+        starter.kill()
+    until(lambda: not lives(pid))
+
+
+WRITES = {
+    "bytes": ("open('a', 'wb').write(bytes(100_000)); os.unlink('a')", "more than 1 MB written"),
+    "files": ("k += 1; open(str(k), 'w').close()", "more than 8 files written"),
+}
+ENDLESS = """
+import os, pathlib, host
+host.confine(pathlib.Path.cwd())
+k = 0
+while True:
+    {}
+"""
+
+
+@pytest.mark.parametrize(("statement", "cause"), WRITES.values(), ids=WRITES)
+def test_whoever_asks_ends_it_beyond_what_it_may_write(tmp_path: Path, statement: str, cause: str) -> None:
+    """Each file is within its limit; of those that it removes none is left to be counted."""
+    limits = Limits(written_bytes=1_000_000, files=8)
+    with pytest.raises(ChildFailed, match=cause):
+        ask_child({}, 60.0, (sys.executable, "-c", ENDLESS.format(statement)), tmp_path, limits)
 
 
 @pytest.mark.law
