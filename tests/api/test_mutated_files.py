@@ -119,6 +119,5 @@ def test_spoiled_files_are_refused_or_read(
         answer = answered(http, mutated(content, number), ask)
         fates[form, answer.status_code] += 1
         assert answer.status_code < 500, (form, number, answer.text)
-        assert len(answer.text) < 2000 or answer.status_code == 200
     assert {status for _, status in fates} <= {200, 413, 422}, fates
     assert left(place) == []
