@@ -11,7 +11,17 @@ from __future__ import annotations
 import sys
 from importlib.util import find_spec
 
-from host.confinement import READING, Limits, confine, limit_file_size, limit_memory, missing_protections
+from host.confinement import (
+    LOOK_S,
+    READING,
+    Limits,
+    confine,
+    excess,
+    limit_file_size,
+    limit_memory,
+    missing_protections,
+    prepare_confinement,
+)
 from host.directories import default_cache_directory
 from host.extras import MissingExtra, Unavailable, missing_extra, require
 from host.json_child import (
@@ -66,6 +76,7 @@ else:
     )
 
 __all__ = [
+    "LOOK_S",
     "ONE_THREAD",
     "READING",
     "ChildFailed",
@@ -83,6 +94,7 @@ __all__ = [
     "default_cache_directory",
     "end_after",
     "ending_signal",
+    "excess",
     "family_cpu_seconds",
     "handlers_kept",
     "has_exited",
@@ -103,6 +115,7 @@ __all__ = [
     "never_wait_at",
     "peak_memory",
     "physical_memory",
+    "prepare_confinement",
     "processes_in",
     "reap",
     "require",

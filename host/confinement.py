@@ -1,8 +1,8 @@
 """What a process that reads foreign bytes gives up before it reads them.
 
 Whatever a file makes its reader do, a confined process opens no file but those of Python and of its own
-folder, makes no connection, and ends at its limits of memory, CPU time and size of files. What the system
-lacks is missing by name: `missing_protections`.
+folder, calls the system for what reading needs and nothing else (`host.system_calls`), and ends at its limits
+of memory, CPU time and size of files. What the system lacks is missing by name: `missing_protections`.
 """
 
 from __future__ import annotations
@@ -10,15 +10,18 @@ from __future__ import annotations
 import ctypes
 import errno
 import os
-import platform
+import signal
 import stat
-import struct
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import cache
+from itertools import islice
 from pathlib import Path
 
 from host.extras import Unavailable
+from host.system_calls import NO_NEW_PRIVILEGES, filters_calls, keep_to_reading
 
 # Limits on what processes may take: POSIX systems alone have them, elsewhere each raises `Unavailable`.
 
@@ -46,7 +49,7 @@ def limit_file_size(pid: int, size: int) -> None:
     resource.prlimit(pid, resource.RLIMIT_FSIZE, (size, size))
 
 
-FILES, NETWORK, LIMITS = "files (Landlock)", "network (seccomp)", "memory and CPU time"
+FILES, CALLS, LIMITS = "files (Landlock)", "system calls (seccomp)", "memory and CPU time"
 _ROOT = Path(__file__).resolve().parents[1]
 _SYSTEM = ("/usr", "/lib", "/lib64", "/etc/ld.so.cache", "/etc/localtime", "/dev/null", "/dev/urandom")
 _MB = 1 << 20
@@ -62,6 +65,11 @@ class Limits:
     """At their end the system kills it."""
     file_bytes: int = 256_000_000
     """Size of a file that it writes."""
+    written_bytes: int = 400_000_000
+    files: int = 100
+    """`written_bytes`, `files`: All bytes that it writes, its answer among them, and files in its folder:
+    whoever started it looks (`excess`).
+    """
     open_files: int = 64
 
 
@@ -73,7 +81,7 @@ def missing_protections() -> tuple[str, ...]:
     """Return the protections that this system lacks, by name."""
     present = {
         FILES: _landlock() > 0,
-        NETWORK: _filters_calls(),
+        CALLS: filters_calls(),
         LIMITS: sys.platform == "linux",
     }
     return tuple(name for name, has in present.items() if not has)
@@ -82,51 +90,103 @@ def missing_protections() -> tuple[str, ...]:
 def confine(folder: Path, limits: Limits = READING) -> None:
     """Give up all that reading does not need; before other threads exist, and for good.
 
-    `folder`: where the process reads its input and writes; everything beneath it is its own. Raises
-    `OSError`: the system has a protection and refuses it.
+    `folder`: where the process reads its input and writes; it makes files in it, no folders, links or pipes.
+    The process ends with the thread that started it. Raises `OSError`: the system has a protection and
+    refuses it, or there are other threads, which would keep what this one gives up.
     """
     missing = missing_protections()
     if LIMITS not in missing:
-        _limit(limits)
+        threads, addresses = _threads_and_addresses()
+        if threads > 1:
+            raise OSError(errno.EBUSY, f"{threads - 1} other threads of this process would not be confined")
+        _limit(limits, addresses)
+        _checked(ctypes.CDLL(None, use_errno=True).prctl(_SIGNAL_AT_END_OF_PARENT, signal.SIGKILL))
     if FILES not in missing:
         _restrict(_readable(), folder)
-    if NETWORK not in missing:
-        _refuse_sockets()
+    if CALLS not in missing:
+        keep_to_reading()
 
 
-def _limit(limits: Limits) -> None:
+_SIGNAL_AT_END_OF_PARENT = 1
+_LIBRARIES_MB = 1024
+"""Addresses of libraries that are loaded later, beside memory: of scipy 130 MB, of gmsh 100 MB."""
+_STACK_MB = 64
+"""gmsh asks for a stack without limit, and does not get it."""
+
+
+def prepare_confinement() -> None:
+    """Find out once, in a process whose forks are confined, what is the same for all of them."""
+    _readable()
+
+
+def _threads_and_addresses() -> tuple[int, int]:
+    """Return the number of threads of this process and the bytes of its addresses; 1 and 0 without /proc."""
+    with suppress(OSError):
+        fields = Path("/proc/self/stat").read_bytes().rpartition(b")")[2].split()
+        return int(fields[17]), int(fields[20])
+    return 1, 0
+
+
+def _limit(limits: Limits, addresses: int) -> None:
     if sys.platform == "win32":
         raise Unavailable("Limits of processes")
     import resource  # noqa: PLC0415 (POSIX alone)
 
-    if limits.memory_mb is not None:
-        limit_memory(limits.memory_mb * _MB)
     most = {
         resource.RLIMIT_CPU: (limits.cpu_seconds, limits.cpu_seconds + 1),  # the first says why
         resource.RLIMIT_FSIZE: (limits.file_bytes, limits.file_bytes),
         resource.RLIMIT_NOFILE: (limits.open_files, limits.open_files),
+        resource.RLIMIT_NPROC: (0, 0),
+        resource.RLIMIT_STACK: (_STACK_MB * _MB, _STACK_MB * _MB),
         resource.RLIMIT_CORE: (0, 0),
     }
+    if limits.memory_mb is not None:
+        limit_memory(limits.memory_mb * _MB)
+    if limits.memory_mb is not None and addresses:
+        most_addresses = addresses + (limits.memory_mb + _LIBRARIES_MB) * _MB
+        most[resource.RLIMIT_AS] = (most_addresses, most_addresses)
     for kind, values in most.items():
         _, hard = resource.getrlimit(kind)
         soft, last = values if hard == resource.RLIM_INFINITY else (min(value, hard) for value in values)
         resource.setrlimit(kind, (soft, last))
 
 
-def _readable() -> Iterator[Path]:
-    """Yield where Python and its modules are.
+LOOK_S = 0.05
+"""How often whoever started a confined process looks at what it has written."""
+
+
+def excess(pid: int, folder: Path, limits: Limits) -> str:
+    """Return what a confined process writes beyond its limits, "" if nothing; for whoever started it.
+
+    Systems have no limit on all that a process writes, or on files in a folder: at a gigabyte a second it
+    writes 50 MB more before it is seen. Files that it has removed count.
+    """
+    with suppress(OSError, ValueError):
+        for line in Path(f"/proc/{pid}/io").read_text(encoding="ascii").splitlines():
+            if line.startswith("wchar:") and int(line.split()[1]) > limits.written_bytes:
+                return f"more than {limits.written_bytes / 1e6:g} MB written"
+    with suppress(OSError):
+        if len(list(islice(folder.rglob("*"), limits.files + 1))) > limits.files:
+            return f"more than {limits.files} files written"
+    return ""
+
+
+@cache
+def _readable() -> tuple[Path, ...]:
+    """Return where Python and its modules are.
 
     Of a folder of modules outside Python's own, which may be anybody's, that is the packages and modules.
     """
     own = [Path(folder).resolve() for folder in (sys.prefix, sys.base_prefix, *_SYSTEM)]
-    yield from own
+    places = list(own)
     for entry in filter(None, (str(_ROOT), *sys.path)):
         folder = Path(entry).resolve()
         if folder.is_file() or any(folder.is_relative_to(part) for part in own):
-            yield folder
+            places.append(folder)
         elif folder.is_dir():
-            yield from (path.parent for path in folder.glob("*/__init__.py"))
-            yield from folder.glob("*.py")
+            places += [path.parent for path in folder.glob("*/__init__.py")]
+            places += folder.glob("*.py")
+    return tuple(dict.fromkeys(places))
 
 
 # Landlock, by which a process of Linux gives up files, connections and signals for good, as any user.
@@ -136,9 +196,10 @@ _CREATE, _ADD, _RESTRICT = 444, 445, 446
 """Numbers of the system calls, on every processor."""
 _VERSION = 1
 _PATH_BENEATH = 1
-_NO_NEW_PRIVILEGES = 38
-_READ_FILE, _READ_FOLDER = 1 << 2, 1 << 3
-_OF_FILES = (1 << 1) | _READ_FILE | (1 << 14)  # write, read, truncate
+_WRITE_FILE, _READ_FILE, _READ_FOLDER, _REMOVE_FILE, _MAKE_FILE = (1 << bit for bit in (1, 2, 3, 5, 8))
+_TRUNCATE = 1 << 14
+_OF_FILES = _WRITE_FILE | _READ_FILE | _TRUNCATE
+_OF_FOLDER = _OF_FILES | _READ_FOLDER | _REMOVE_FILE | _MAKE_FILE
 _RIGHTS = {1: (1 << 13) - 1, 2: 1 << 13, 3: 1 << 14, 5: 1 << 15}
 """Rights to files by the version that brought them."""
 _BIND_AND_CONNECT = 0b11
@@ -171,8 +232,8 @@ def _restrict(readable: Iterable[Path], folder: Path) -> None:
     try:
         for path in readable:
             _allow(descriptor, path, handled[0] & (_READ_FILE | _READ_FOLDER))
-        _allow(descriptor, folder, handled[0] & ~1)  # all but to execute
-        _checked(ctypes.CDLL(None, use_errno=True).prctl(_NO_NEW_PRIVILEGES, 1, 0, 0, 0))
+        _allow(descriptor, folder, handled[0] & _OF_FOLDER)
+        _checked(ctypes.CDLL(None, use_errno=True).prctl(NO_NEW_PRIVILEGES, 1, 0, 0, 0))
         _checked(_call(_RESTRICT, descriptor, 0))
     finally:
         os.close(descriptor)
@@ -210,64 +271,3 @@ def _checked(outcome: int) -> int:
     if outcome < 0:
         raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()))
     return outcome
-
-
-# A filter of system calls (seccomp) by which a process of Linux gives up sockets for good.
-
-
-_SET_SECCOMP, _FILTER = 22, 2
-_ACTION_AVAILABLE = 2
-_ALLOW, _REFUSE = 0x7FFF_0000, 0x0005_0000 | errno.EPERM
-_LOAD, _IF_EQUAL, _IF_AT_LEAST, _RETURN = 0x20, 0x15, 0x35, 0x06
-_NUMBER, _ARCHITECTURE = 0, 4
-"""Offsets of the number of a call and of its architecture."""
-_IO_URING_SETUP = 425
-_OTHER_TABLE = 0x4000_0000
-"""Numbers from here on name the same calls a second time (x32)."""
-_PROCESSORS = {"x86_64": (0xC000_003E, 41, 317), "aarch64": (0xC000_00B7, 198, 277)}
-"""Architecture, numbers of ``socket`` and ``seccomp``."""
-
-
-class _Program(ctypes.Structure):
-    """A filter: the number of its instructions, and where they are."""
-
-    _fields_ = (("length", ctypes.c_ushort), ("instructions", ctypes.c_char_p))
-
-
-def _filters_calls() -> bool:
-    """Whether the system filters calls on this processor."""
-    if sys.platform != "linux" or platform.machine() not in _PROCESSORS:
-        return False
-    action = ctypes.c_uint32(_REFUSE & 0xFFFF_0000)
-    seccomp = _PROCESSORS[platform.machine()][2]
-    return bool(ctypes.CDLL(None).syscall(seccomp, _ACTION_AVAILABLE, 0, ctypes.byref(action)) == 0)
-
-
-def _refuse_sockets() -> None:
-    """Let this thread, and what it starts, make no socket of any family.
-
-    Raises `OSError`: the system refuses.
-    """
-    instructions = _instructions(*_PROCESSORS[platform.machine()][:2])
-    program = _Program(len(instructions) // 8, instructions)
-    library = ctypes.CDLL(None, use_errno=True)
-    for arguments in ((_NO_NEW_PRIVILEGES, 1, 0, 0, 0), (_SET_SECCOMP, _FILTER, ctypes.byref(program), 0, 0)):
-        _checked(library.prctl(*arguments))
-
-
-def _instructions(architecture: int, socket: int) -> bytes:
-    """Return the filter: calls of another architecture or table are refused like those for sockets.
-
-    A jump counts the instructions that follow it; the last is the refusal.
-    """
-    steps = [
-        (_LOAD, 0, 0, _ARCHITECTURE),
-        (_IF_EQUAL, 0, 5, architecture),
-        (_LOAD, 0, 0, _NUMBER),
-        (_IF_AT_LEAST, 3, 0, _OTHER_TABLE),
-        (_IF_EQUAL, 2, 0, socket),
-        (_IF_EQUAL, 1, 0, _IO_URING_SETUP),
-        (_RETURN, 0, 0, _ALLOW),
-        (_RETURN, 0, 0, _REFUSE),
-    ]
-    return b"".join(struct.pack("HBBI", *step) for step in steps)

@@ -6,11 +6,14 @@ import json
 import os
 import subprocess
 import sys
+import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
+from host.confinement import LOOK_S, Limits, excess
 from host.directories import ENVIRONMENT
 from host.sessions import ending_signal
 
@@ -87,7 +90,11 @@ class ChildOutOfMemory(ChildFailed):
 
 
 def ask_child(
-    request: dict[str, Any], seconds: float, command: Sequence[str], folder: Path | None = None
+    request: dict[str, Any],
+    seconds: float,
+    command: Sequence[str],
+    folder: Path | None = None,
+    limits: Limits | None = None,
 ) -> dict[str, Any]:
     """Run a child on one request and return its answer.
 
@@ -103,42 +110,77 @@ def ask_child(
         Program and arguments. It finds Python modules where this process does.
     folder : Path, optional
         Where it works; default: where this process does.
+    limits : Limits, optional
+        Those of a child that confines itself and writes into `folder` alone: it is ended beyond them.
     """
-    answer = _ask(json.dumps(request | {"seconds": seconds}), seconds, command, folder)
+    end = time.monotonic() + seconds
+    answer = _ask(json.dumps(request | {"seconds": seconds}), _Watch(seconds, end, folder, limits), command)
     if "error" in answer:
         _refuse_no_memory(answer["error"])
         raise ChildFailed(answer["error"])
     return answer
 
 
-def _ask(request: str, seconds: float, command: Sequence[str], folder: Path | None) -> dict[str, Any]:
+@dataclass(frozen=True)
+class _Watch:
+    """How long a child may take, until which instant, where it works and what it may write there."""
+
+    seconds: float
+    end: float
+    folder: Path | None
+    limits: Limits | None
+
+    def check(self, child: int) -> None:
+        """Raise `ChildFailed` if a child takes more."""
+        if time.monotonic() >= self.end:
+            raise ChildFailed(f"no answer within {self.seconds:g} s")
+        if self.folder is not None and self.limits is not None:
+            cause = excess(child, self.folder, self.limits)
+            if cause:
+                raise ChildFailed(cause)
+
+    @property
+    def pause(self) -> float:
+        """Time until the next look, s."""
+        left = max(self.end - time.monotonic(), 0.0)
+        return left if self.limits is None else min(left, LOOK_S)
+
+
+def _ask(request: str, watch: _Watch, command: Sequence[str]) -> dict[str, Any]:
     # The child may find a module only where this process does, e.g. in a path added at run time.
     environment = child_environment(PYTHONPATH=os.pathsep.join(filter(None, sys.path)))
+    pipes: Any = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE) | {"text": True}
     try:
-        child = subprocess.run(
-            command,
-            input=request,
-            capture_output=True,
-            text=True,
-            timeout=seconds,
-            env=environment,
-            cwd=folder,
-            check=False,
-        )
-    except subprocess.TimeoutExpired as error:
-        raise ChildFailed(f"no answer within {seconds:g} s") from error
+        child = subprocess.Popen(command, env=environment, cwd=watch.folder, **pipes)
     except OSError as error:
         raise ChildFailed("cannot be started", error.strerror or "") from error
-    _refuse_no_memory(_last_line(child.stderr) if child.returncode else "")
+    with child:
+        try:
+            output, complaint = _communicated(child, request, watch)
+        except BaseException:
+            child.kill()
+            raise
+    _refuse_no_memory(_last_line(complaint) if child.returncode else "")
     if child.returncode != 0:
         signal = ending_signal(child.returncode)
         cause = f"killed by {signal}" if signal else f"ended with exit code {child.returncode}"
-        raise ChildFailed(cause, _last_line(child.stderr))
+        raise ChildFailed(cause, _last_line(complaint))
     try:
-        answer = json.loads(child.stdout)
+        answer = json.loads(output)
     except json.JSONDecodeError as error:
         raise ChildFailed("unusable answer") from error
     return answer if isinstance(answer, dict) else {}
+
+
+def _communicated(child: subprocess.Popen[str], request: str, watch: _Watch) -> tuple[str, str]:
+    """Return what a child prints on both its outputs, once it has ended."""
+    unsent: str | None = request
+    while True:
+        try:
+            return child.communicate(unsent, timeout=watch.pause)
+        except subprocess.TimeoutExpired:
+            unsent = None  # the rest of it is sent by the next call
+            watch.check(child.pid)
 
 
 def _refuse_no_memory(complaint: str) -> None:

@@ -18,7 +18,7 @@ from service.live.live_worker import live_pool
 from service.management.figures import Metrics, process_registry
 from service.queue.scheduler import job_machinery
 from service.queue.watcher import Watcher
-from service.reading.reader import reading_pool
+from service.reading.reader import reading_pool, require_confinement
 from service.routes import cases, documents, drafts, events, health, jobs, processes, queries, results
 from service.routes.access import Access, Admission
 from service.routes.context import Context
@@ -40,9 +40,11 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
     `registry`: the processes it offers; default: analyze and simulate. Raises `BadInput`: another service
     works in the data directory, or it cannot be written; the files of results are those of another database;
     the address is not loopback and there are no access keys, or their file cannot be used; the process may
-    open too few files.
+    open too few files; confinement is required and the system lacks a part of it.
     """
     warnings.filterwarnings("ignore", message="implausible")  # said in the fields of the caller
+    if settings.require_confinement:
+        require_confinement()
     identities, bearable = open_identities(settings), capacity(settings.workers if works else 0)
     lock = DirectoryLock(settings.data_directory) if works else None
     if lock is not None:

@@ -140,6 +140,8 @@ class Settings(BaseSettings):
     """Whether the network between this machine and the scheduler is trusted with jobs in plain text."""
     scheduler: str | None = None
     """Address of a Dask scheduler whose workers do the jobs; None: children of this machine do."""
+    require_confinement: bool = False
+    """Whether it starts only where the system has every protection for readers of callers' files."""
     keys_file: Annotated[Path, AfterValidator(absolute)] | None = None
     """The file of access keys; None: ``keys.json`` in the data directory."""
     webhook_origins: str = ""

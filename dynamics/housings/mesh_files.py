@@ -114,7 +114,8 @@ def _content(file: Path) -> _Content:
         copy.write_bytes(mesh_text(content).read().encode() if title in TEXTS else content)
         request = {"file": copy.name, "format": title.lower()}
         try:
-            answer = ask_child(request, _MESH_SECONDS, (sys.executable, "-P", str(_MESH_WORKER)), copy.parent)
+            command = (sys.executable, "-P", str(_MESH_WORKER))
+            answer = ask_child(request, _MESH_SECONDS, command, copy.parent, READING)
         except ChildFailed as error:
             limits = f"{READING.memory_mb} MB of memory and {READING.cpu_seconds} s of CPU time"
             bound = f"a mesh that is read within {limits} (the reader: {error.cause})"

@@ -15,6 +15,7 @@ import numpy as np
 from dynamics.checks import one_of, positive
 from dynamics.errors import InputError, SolveError
 from dynamics.housings.mesh_files import read_mesh
+from dynamics.housings.step_worker import limits
 from dynamics.housings.tetrahedral_mesh import COVERED, Bore, Plane, TetrahedralMesh
 from dynamics.solid_housing import STEP_SUFFIXES
 from dynamics.types import FloatArray
@@ -113,7 +114,8 @@ def _by_gmsh(
         copy = shutil.copyfile(file, Path(folder) / f"housing{file.suffix.lower()}")
         run = command or (sys.executable, "-P", str(STEP_WORKER))
         try:
-            answer = ask_child(request | {"step": copy.name}, seconds, run, copy.parent)
+            most = limits(seconds)
+            answer = ask_child(request | {"step": copy.name}, seconds, run, copy.parent, most)
         except ChildOutOfMemory as error:
             raise SolveError(f"mesher: {error}. Use a larger element_size.") from error
         except ChildFailed as error:

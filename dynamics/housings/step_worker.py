@@ -37,6 +37,11 @@ WORST = 0.05
 again: Delaunay's method leaves slivers in the walls of castings."""
 
 
+def limits(seconds: float) -> Limits:
+    """Return what a process may take that meshes within so many seconds: memory as whoever started it."""
+    return Limits(memory_mb=None, cpu_seconds=int(seconds) + 1)
+
+
 def _start_gmsh() -> Any:
     """Import and start gmsh: one thread, silent, no user files, signal handlers left as they were."""
     import gmsh  # noqa: PLC0415
@@ -192,7 +197,7 @@ def _main() -> None:
     os.dup2(2, 1)  # whatever gmsh prints must not mix with the answer
     request = json.load(sys.stdin)
     end_after(int(request["seconds"]) + 1)  # ends this process even when its parent is gone
-    confine(Path.cwd(), Limits(memory_mb=None, cpu_seconds=int(request["seconds"]) + 1))
+    confine(Path.cwd(), limits(request["seconds"]))
     try:
         answer = step_answer(request)
     except MemoryError:

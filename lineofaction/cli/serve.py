@@ -39,6 +39,7 @@ from service.folders import DirectoryLock
 from service.management.figures import process_registry
 from service.management.server import ManagementServer, Vitals
 from service.queue.scheduler import Machinery, Scheduler, job_machinery
+from service.reading.reader import require_confinement
 from service.routes.warm_up import HEAVY
 from service.settings import Settings, load_settings
 from service.store.deployment import Deployment, WriteCheck
@@ -127,6 +128,8 @@ def run_serve(**options: object) -> None:
     keep_private()
     log_to_standard_error()
     open_identities(settings)  # refused before a socket is opened
+    if settings.require_confinement:
+        require_confinement()
     with _listener(settings) as listener:
         if settings.processes > 1:
             capacity(settings.workers)  # refused before a process is started

@@ -17,7 +17,6 @@ import sys
 import threading
 import traceback
 from collections.abc import Callable
-from pathlib import Path
 from typing import TypeAlias
 
 from pydantic_core import to_json
@@ -115,14 +114,14 @@ def written_plainly(answer: Json) -> bytes:
 
 
 def worked(
-    order: LiveOrder, *further: Path, note: Note = traceback.print_exc, write: Write = written
+    order: LiveOrder, *further: object, note: Note = traceback.print_exc, write: Write = written
 ) -> tuple[AnswerHead, bytes]:
     """Do the work; the text of an exception leaves only if it was raised on purpose.
 
     Parameters
     ----------
     order : LiveOrder
-    *further : Path
+    *further : object
         What the work is called with behind its inputs.
     note : callable
         Writes the exception being handled, a defect, into the log.

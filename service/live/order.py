@@ -45,8 +45,9 @@ class AnswerHead(_Message):
     """The header before the bytes of an answer."""
 
     kind: str
-    """"answer"; "problem": the bytes are problem details; the others have no bytes: "defect": the log says
-    more; "stopped": whoever asked wants it no more; "memory": none was left, and the worker ends.
+    """"answer"; "problem": the bytes are problem details; "reading", before the answer: the bytes are the
+    field of the file that is read next; the others have no bytes: "defect": the log says more; "stopped":
+    whoever asked wants it no more; "memory": none was left, and the worker ends.
     """
     length: int = 0
     """Number of bytes that follow."""

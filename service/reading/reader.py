@@ -17,28 +17,28 @@ from pathlib import Path
 
 import structlog
 
-from host import READING, Ended, ending_signal, kill_group, missing_protections
-from lineofaction.gearbox.problems import LiveUnavailable, ServiceError, TooLarge, Unexpected
+from host import LOOK_S, READING, Ended, ending_signal, excess, kill_group, missing_protections
+from lineofaction.gearbox.problems import BadInput, LiveUnavailable, ServiceError, Unexpected
 from service.folders import own_folder, remove_left
 from service.live.order import AnswerHead, LiveOrder, propagated
 from service.live.question_pool import QuestionPool
 from service.live.turns import Limits, Question
-from service.reading.child import LONGEST_S, MOST_ANSWER_BYTES
+from service.reading.child import LONGEST_S
+from service.reading.course import MOST_BYTES, Course, refusal
 from service.worker.forks import ChildProcess, Ends, Forks
 
 WORK = "service.reading.child"
 MODULES = (
     "lineofaction.gearbox.convert.errors",
     "lineofaction.gearbox.from_rexs.opened",
+    "service.reading.child",
     "service.reading.texts",
     "scipy.optimize",
 )
 _WARM_WITHIN_S = 30.0
 _PATIENCE_S = 2.0
 """The child ends itself first, and so says why."""
-_LONGEST_HEAD = 1_000
 _PIECE = 1 << 16
-_MORE = "Split the files, or leave out what they do not need."
 
 logger = structlog.get_logger(__name__)
 
@@ -67,8 +67,8 @@ class _Children:
     def read(self, order: LiveOrder) -> bytes:
         """Return the JSON answer of a child that reads what the order holds.
 
-        Raises `ServiceError` as the child found it; `TooLarge`: reading takes more than a reader may;
-        `LiveUnavailable`.
+        Raises `ServiceError` as the child found it; `BadInput`: a file ends its reader, or takes more than a
+        reader may; `LiveUnavailable`: what ended the reader is no file.
         """
         with own_folder(self._home) as folder:
             child, pipes = self._started(folder)
@@ -76,13 +76,14 @@ class _Children:
                 # a child that died before it has read the order shows by its answer
                 with suppress(BrokenPipeError), os.fdopen(pipes.orders, "wb") as stream:
                     stream.write(order.line())
-                answer = _heard(pipes.answers, time.monotonic() + LONGEST_S + _PATIENCE_S)
+                course = _followed(pipes.answers, child.pid, folder)
             finally:
                 os.close(pipes.answers)
                 ended = self._end(child)
+        answer = course.answer
         if answer is None:
-            raise self._cause(ended)
-        return self._unpacked(answer, order)
+            raise self._cause(ended, course, order)
+        return self._unpacked(*answer, course, order)
 
     def stop(self) -> None:
         """End all children, whose callers are told so."""
@@ -123,21 +124,22 @@ class _Children:
             self._children.discard(child.pid)
             return child.reap()
 
-    def _cause(self, ended: Ended) -> ServiceError:
+    def _cause(self, ended: Ended, course: Course, order: LiveOrder) -> ServiceError:
         if self._stopping:
             return LiveUnavailable("The service stops.")
         signal = ending_signal(ended.code)
-        logger.warning("reader gone", code=ended.code, signal=signal)
-        if signal in ("SIGXCPU", "SIGALRM"):
-            return TooLarge(f"Reading the files takes more than {READING.cpu_seconds} s of CPU time. {_MORE}")
-        return LiveUnavailable("The reader of files ended. Repeat the request.")
+        logger.warning("reader gone", code=ended.code, signal=signal, field=course.field)
+        bound = course.bound_of_end(ended)
+        if not bound:
+            return LiveUnavailable("The reader of files ended. Repeat the request.")
+        return refusal(order.inputs, course.field or "", bound)
 
-    def _unpacked(self, answer: tuple[AnswerHead, bytes], order: LiveOrder) -> bytes:
-        head, body = answer
+    def _unpacked(self, head: AnswerHead, body: bytes, course: Course, order: LiveOrder) -> bytes:
         if head.kind == "problem":
             raise propagated(body)
         if head.kind == "memory":
-            raise TooLarge(f"Reading the files takes more than {READING.memory_mb} MB of memory. {_MORE}")
+            bound = f"read within {READING.memory_mb} MB of memory"
+            raise refusal(order.inputs, course.field or "", bound)
         if head.kind != "answer":
             reference = uuid.uuid4().hex[:12]
             logger.error("reading failed", entry=order.entry, reference=reference, log=self._log.name)
@@ -145,25 +147,31 @@ class _Children:
         return body
 
 
-def _heard(descriptor: int, end: float) -> tuple[AnswerHead, bytes] | None:
-    """Return head and body of the answer before the instant `end`; None if there is none, or half of one."""
-    pieces: list[bytes] = []
-    length = 0
-    while length <= MOST_ANSWER_BYTES + _LONGEST_HEAD:
-        ready, _, _ = select.select([descriptor], [], [], max(end - time.monotonic(), 0.0))
-        if not ready:
-            return None
-        piece = os.read(descriptor, _PIECE)
-        if not piece:
-            break
-        pieces.append(piece)
-        length += len(piece)
-    line, _, body = b"".join(pieces).partition(b"\n")
-    try:
-        head = AnswerHead.from_line(line)
-    except (ValueError, TypeError):
-        return None
-    return (head, body) if len(body) == head.length else None
+def _followed(descriptor: int, pid: int, folder: Path) -> Course:
+    """Return what a child sends, until it ends, or takes more time or writes more than it may."""
+    end = time.monotonic() + LONGEST_S + _PATIENCE_S
+    look, pieces, length = time.monotonic() + LOOK_S, [b""], 0
+    while length <= MOST_BYTES:
+        ready, _, _ = select.select([descriptor], [], [], max(look - time.monotonic(), 0.0))
+        if ready:
+            pieces.append(os.read(descriptor, _PIECE))
+            length += len(pieces[-1])
+            if not pieces[-1]:
+                break
+        if time.monotonic() >= look:
+            look = time.monotonic() + LOOK_S
+            overrun = _overrun(pid, folder, end)
+            if overrun:
+                return Course.of(b"".join(pieces), overrun)
+    return Course.of(b"".join(pieces))
+
+
+def _overrun(pid: int, folder: Path, end: float) -> str:
+    """Return what a child should have stayed within, "" if it does."""
+    if time.monotonic() > end:
+        return f"read within {LONGEST_S} s"
+    cause = excess(pid, folder, READING)
+    return f"read without {cause}" if cause else ""
 
 
 class Reader:
@@ -192,11 +200,20 @@ AT_ONCE = 4
 LIMITS = Limits(held=2, in_all=20)
 
 
+def require_confinement() -> None:
+    """Raise `BadInput` where the system lacks a protection that confines the readers of files."""
+    if missing := missing_protections():
+        bound = f"left out on this system, which lacks protections of readers: {', '.join(missing)}"
+        advice = "Use Linux 5.13 or later with Landlock (boot parameter lsm) and seccomp, on x86-64 or ARM64."
+        raise BadInput.of("require_confinement", True, bound, advice)
+
+
 def reading_pool(data_directory: Path) -> QuestionPool:
     """Return the pool that has files of callers read.
 
-    Works of its orders are called as ``function(inputs, folder)``. `data_directory`: where folders of readers
-    and their logs are; folders that were left there are removed.
+    Works of its orders are called as ``function(inputs, folder, announce)``, and call `announce` with the
+    field of each file before they read it. `data_directory`: where folders of readers and their logs are;
+    folders that were left there are removed.
     """
     home = data_directory / "reading"
     remove_left(home)

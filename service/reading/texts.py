@@ -26,39 +26,41 @@ from lineofaction.gearbox.schemas.toml import toml_table
 # The files that a caller sends together with a text: written into a folder, found there by their names.
 
 
-def _sent_files(files: Sequence[FileContentInput], folder: Path) -> Find:
-    """Write files into folders of their own; what is returned finds them by their own names, and no others.
+def _sent_files(files: Sequence[FileContentInput], folder: Path, announce: Announce) -> Find:
+    """Write files into a folder; what is returned finds them by their own names, and no others.
 
     Raises `BadInput`: two files have one name, a name is none, a content is damaged, or together they are too
     large.
     """
     places: dict[str, Path] = {}
+    fields: dict[str, str] = {}
     left = LARGEST
     for index, file in enumerate(files):
         name = own_name(file.name)
         if name in places:
             raise BadInput.of(f"files[{index}].name", name, "sent once", "Rename one of the files.")
-        places[name] = _written(file, folder / str(index), f"files[{index}]", left)
+        fields[name] = f"files[{index}]"
+        places[name] = _written(file, folder, fields[name], left)
         left -= places[name].stat().st_size
 
     def find(name: str, field: str) -> Path:
         if own_name(name) not in places:
             known = f"one of {', '.join(places)}" if places else "a file sent with the text"
             raise BadInput.of(field, name, known, "Send it together with the text that names it.")
+        announce(fields[own_name(name)])
         return places[own_name(name)]
 
     return find
 
 
 def _written(file: FileContentInput, folder: Path, field: str, most: int) -> Path:
-    """Write a file of at most so many bytes into a new folder, and return where it is."""
+    """Write a file of at most so many bytes into a folder, and return where it is."""
     try:
         content = file.unpacked(most)
     except ValueError as error:
         raise BadInput.of(f"{field}.content", file.name, str(error)) from None
     place = folder / own_name(file.name)
     try:
-        folder.mkdir()
         place.write_bytes(content)
     except (OSError, ValueError):
         raise BadInput.of(f"{field}.name", file.name, "a name that a file can have") from None
@@ -66,17 +68,19 @@ def _written(file: FileContentInput, folder: Path, field: str, most: int) -> Pat
 
 
 Json = dict[str, Any]
+Announce = Callable[[str], None]
+"""Says which field of the inputs is read next."""
 
 
-def case_of_toml(inputs: Json, folder: Path) -> Json:
+def case_of_toml(inputs: Json, folder: Path, announce: Announce) -> Json:
     """Return the case in ``{"toml": ..., "files": [...]}`` with all defaults; raises `BadInput`.
 
     The files are written into a folder.
     """
-    return {"case": case_as_filed(validated(Case, _table(inputs, folder, _written_out)))}
+    return {"case": case_as_filed(validated(Case, _table(inputs, folder, announce, _written_out)))}
 
 
-def case_as_made(inputs: Json, _folder: Path) -> Json:
+def case_as_made(inputs: Json, _folder: Path, _announce: Announce) -> Json:
     """Return the case in ``{"inputs": {"case": ...}, ...}`` with gears as made; raises `BadInput`."""
     case, sheet = validated(Case, inputs["inputs"]["case"]), inputs["measured"]
     if sheet is None:
@@ -87,7 +91,7 @@ def case_as_made(inputs: Json, _folder: Path) -> Json:
     return {"case": case_as_filed(made), "left_out": found.left_out}
 
 
-def scene_of_toml(inputs: Json, folder: Path) -> Json:
+def scene_of_toml(inputs: Json, folder: Path, announce: Announce) -> Json:
     """Return the scene in ``{"toml": ..., "files": [...]}`` as it was written, without defaults.
 
     The names of case files that are not among the files stay: a scene read elsewhere may have them.
@@ -96,13 +100,14 @@ def scene_of_toml(inputs: Json, folder: Path) -> Json:
     something else.
     """
     names = {own_name(file["name"]) for file in inputs["files"]}
-    table = _table(inputs, folder, lambda table, find: _with_cases(table, find, names))
+    table = _table(inputs, folder, announce, lambda table, find: _with_cases(table, find, names))
     scene = validated(SceneInput, table)
     return {"scene": scene.model_dump(mode="json", exclude_unset=True)}
 
 
-def _table(inputs: Json, folder: Path, with_files: Callable[[Json, Find], Json]) -> Json:
-    find = _sent_files([validated(FileContentInput, file) for file in inputs["files"]], folder)
+def _table(inputs: Json, folder: Path, announce: Announce, with_files: Callable[[Json, Find], Json]) -> Json:
+    files = [validated(FileContentInput, file) for file in inputs["files"]]
+    find = _sent_files(files, folder, announce)
     return with_files(toml_table(inputs["toml"], "toml"), find)
 
 

@@ -55,7 +55,7 @@ class _StartedChild:
 def start_child(ends: Ends, work: str = WORK) -> _StartedChild:
     """Start a child that runs a module; OSError: the system does not."""
     process = subprocess.Popen(
-        [sys.executable, "-m", work, str(ends.channel)],
+        [sys.executable, "-P", "-m", work, str(ends.channel)],
         stdin=ends.orders,
         stdout=ends.log,
         stderr=ends.log,

@@ -6,7 +6,7 @@ import base64
 import binascii
 import csv
 import io
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, astuple, dataclass, field, fields
 from pathlib import Path
 from typing import Any
@@ -281,7 +281,7 @@ def _rounded(value: Any) -> Any:
 Json = dict[str, Any]
 
 
-def unit_of_rexs(inputs: Json, _folder: Path) -> Json:
+def unit_of_rexs(inputs: Json, _folder: Path, _announce: Callable[[str], None]) -> Json:
     """Return a gear unit as JSON; its scene has the cases of its meshes written out.
 
     Raises `BadInput`: no base64, no REXS, no assumption, or as `OpenedUnit.of`.

@@ -116,7 +116,7 @@ def _channels(path: Path, form: tuple[str, str], field: str, names: Sequence[str
         shutil.copyfile(path, copy)
         request = {"file": copy.name, "format": reader, "channels": list(names)}
         try:
-            answer = ask_child(request, SECONDS, (sys.executable, "-P", str(_WORKER)), copy.parent)
+            answer = ask_child(request, SECONDS, (sys.executable, "-P", str(_WORKER)), copy.parent, READING)
         except ChildFailed as error:
             limits = f"{READING.memory_mb} MB of memory and {READING.cpu_seconds} s of CPU time"
             bound = f"{noun} that is read within {limits} (the reader: {error.cause})"

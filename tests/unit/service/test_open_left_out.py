@@ -246,7 +246,9 @@ def test_a_scene_without_a_mark_has_the_address_it_had() -> None:
 def test_over_http_and_in_python_the_statement_comes_first(tmp_path: Path) -> None:
     file = tmp_path / "unit.rexs"
     file.write_text(HAND, encoding="utf-8")
-    unit = unit_of_rexs({"rexs_base64": b64encode(file.read_bytes()).decode(), "assume": []}, tmp_path)
+    unit = unit_of_rexs(
+        {"rexs_base64": b64encode(file.read_bytes()).decode(), "assume": []}, tmp_path, lambda _field: None
+    )
     assert next(iter(unit)) == "left_out" == next(iter(UnitBody.model_fields))
     assert unit["left_out"] == unit["scene"]["left_out"] and "line 326" in unit["left_out"][0]
     assert validated(SceneInput, unit["scene"]).left_out == tuple(unit["left_out"])

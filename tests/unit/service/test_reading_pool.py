@@ -17,21 +17,26 @@ from running_service import PATIENCE_S, lives, until
 from service_fakes import REGISTRY
 from structlog.testing import capture_logs
 
+from host import Ended
+from lineofaction.cli.serve import run_serve
 from lineofaction.gearbox.problems import (
+    BadInput,
     LiveUnavailable,
     QueueFull,
     ServiceError,
-    TooLarge,
     TooManyHeld,
     Unexpected,
 )
 from service.app import create_app
 from service.folders import own_folder, remove_left
-from service.live.order import LiveOrder
+from service.live.order import AnswerHead, LiveOrder
 from service.live.question_pool import QuestionPool
 from service.live.turns import Asker
+from service.reading.course import Course
 from service.reading.reader import AT_ONCE, LIMITS, reading_pool
-from service.settings import Settings
+from service.settings import Settings, load_settings
+
+READING_BEGUN = AnswerHead("reading").line()
 
 
 def order(name: str, **inputs: Any) -> LiveOrder:
@@ -64,9 +69,12 @@ def test_each_question_has_a_process_and_a_folder_that_are_gone_after_it(pool: Q
     ("name", "error", "text"),
     [
         ("refuse", ServiceError, "at most 4"),
-        ("hog", TooLarge, "more than 512 MB of memory"),
+        ("hog", BadInput, "within 512 MB of memory"),
         ("swell", ServiceError, "100000000 bytes"),
-        ("die", LiveUnavailable, "ended"),
+        ("die", BadInput, r"ended its reader \(SIGSEGV\)"),
+        ("leave", BadInput, r"ended its reader \(exit code 3\)"),
+        ("fill", BadInput, "without more than 400 MB written"),
+        ("scatter", BadInput, "without more than 100 files written"),
         ("defect", Unexpected, "unexpected failure"),
     ],
 )
@@ -77,6 +85,55 @@ def test_a_question_that_fails_says_why_and_leaves_nothing(
         pool.ask(order(name, word="canary")).result(timeout=PATIENCE_S)
     assert not left(pool)
     assert "canary" not in "".join(file.read_text() for file in (tmp_path / "log").iterdir())
+
+
+FILES = [{"name": f"{letter}.step", "content": letter} for letter in "abc"]
+HOUSINGS = [{"step_file": file} for file in FILES]
+
+
+@pytest.mark.parametrize(
+    ("inputs", "announced", "field", "value"),
+    [
+        ({"housings": HOUSINGS}, ["housings[0].step_file"], "housings[0].step_file", "a.step"),
+        ({"housings": HOUSINGS}, ["housings[0].step_file", "housings[1].step_file"],
+         "housings[1].step_file", "b.step"),
+        ({"toml": "[pair]", "files": FILES}, [], "toml", "[pair]"),
+        ({"toml": "[pair]", "files": FILES}, ["files[2]"], "files[2]", "c.step"),
+        ({"rexs_base64": "A" * 100}, ["/etc/passwd"], "rexs_base64", "A" * 20),
+        ({"measured": {"csv": "tooth,"}}, [], "measured.csv", "tooth,"),
+    ],
+)  # fmt: skip
+def test_a_file_that_ends_its_reader_is_named(
+    pool: QuestionPool, inputs: dict[str, Any], announced: list[str], field: str, value: str
+) -> None:
+    """Not by what the reader says it reads, unless that was sent."""
+    with pytest.raises(BadInput) as refused:
+        pool.ask(order("die_at", fields=announced, **inputs)).result(timeout=PATIENCE_S)
+    (fault,) = refused.value.faults
+    assert (refused.value.status, fault.field, fault.value) == (422, field, value)
+    assert fault.bound.endswith("(SIGSEGV)") and fault.suggestion
+
+
+@pytest.mark.parametrize(
+    ("sent", "code", "cpu_seconds", "bound"),
+    [
+        (READING_BEGUN, -signal.SIGABRT, 0.1, "SIGABRT"),
+        (READING_BEGUN, -signal.SIGXCPU, 10.0, "10 s of CPU time"),
+        (READING_BEGUN, -signal.SIGKILL, 11.0, "10 s of CPU time"),
+        (READING_BEGUN, -signal.SIGALRM, 0.0, "30 s"),
+        (READING_BEGUN + b'{"kind": "answer", "length": 9}\n{', 0, 0.0, "exit code 0"),
+        (READING_BEGUN + b"\xff\n", 0, 0.0, "exit code 0"),
+        (READING_BEGUN, -signal.SIGKILL, 1.0, ""),
+        (b"", -signal.SIGSEGV, 0.1, ""),
+        (b"", 1, 0.1, ""),
+    ],
+)
+def test_ends_that_are_not_the_files_fault_may_be_repeated(
+    sent: bytes, code: int, cpu_seconds: float, bound: str
+) -> None:
+    """A kill from outside, and an end before the order was read."""
+    found = Course.of(sent).bound_of_end(Ended(code, cpu_seconds, 0))
+    assert bound in found and bool(bound) == bool(found)
 
 
 def test_cpu_time_ends_a_question_and_nobody_else_waits_for_it(
@@ -96,7 +153,7 @@ def test_cpu_time_ends_a_question_and_nobody_else_waits_for_it(
 
 @pytest.mark.nightly
 def test_ten_seconds_of_cpu_time_are_the_limit(pool: QuestionPool) -> None:
-    with pytest.raises(TooLarge, match="more than 10 s of CPU time"):
+    with pytest.raises(BadInput, match="read within 10 s of CPU time"):
         pool.ask(order("loop")).result(timeout=3 * PATIENCE_S)
     assert not left(pool)
 
@@ -151,3 +208,20 @@ def test_a_system_that_confines_nothing_says_so(tmp_path: Path, monkeypatch: pyt
         ready = http.get("/ready", headers={"Host": "localhost"})
     assert ready.json()["missing_protections"] == ["files (Landlock)"]
     assert [entry["missing"] for entry in log if "confine" in entry["event"]] == [("files (Landlock)",)]
+
+
+def test_a_service_that_requires_confinement_does_not_start_without(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("LOA_REQUIRE_CONFINEMENT", "true")
+    settings = load_settings(data_directory=tmp_path)
+    create_app(settings, REGISTRY)
+    monkeypatch.setattr("host.confinement.filters_calls", lambda: False)
+    monkeypatch.setattr("host.confinement._landlock", lambda: 0)
+    with pytest.raises(BadInput) as refused:
+        run_serve(data_directory=tmp_path / "other")
+    (fault,) = refused.value.faults
+    assert fault.field == "require_confinement"
+    assert "files (Landlock), system calls (seccomp)" in fault.bound
+    with pytest.raises(BadInput, match="lacks protections"):
+        create_app(settings, REGISTRY)

@@ -23,7 +23,8 @@ def channels(file: Path, names: Sequence[str]) -> Iterator[RawChannel]:
         warnings.simplefilter("ignore")
         from asammdf import MDF  # noqa: PLC0415 (an extra)
 
-        with MDF(file) as content:
+        # by its name it would be mapped as shared memory and unpacked by threads, which a reader lacks
+        with file.open("rb") as stream, MDF(stream) as content:
             if not str(content.version).startswith("4"):
                 raise UnusableFile("an MDF file of version 4", "Convert it to MDF4.")
             yield from _channels(content, names)
