@@ -1,26 +1,39 @@
 """The 20/20 spur pair against full finite-element contact of two independent codes.
 
 Rows marked "mirrored" come from exchanging the gears of a computed row, which puts the given torque on the
-driven gear; in corner contact the two torques differ by up to 1 %. They are compared like the others, so part
-of their deviation is that.
+driven gear. In corner contact the two torques differ by up to 1 %: there only computed rows count.
+
+The gears of the reference have five teeth and a plain ring of root radius in place of the other fifteen, which
+makes them 0.1 to 0.16 % softer than whole gears. The error of the method is that on bodies of the reference; of
+tables, which are of whole gears, no more is asked than that they lie below by so much.
 """
 
 from __future__ import annotations
 
 import csv
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair, SteDatabase, analyze
+from fe_contact.analysis.pairs.pair_contact import pair_contact
+from fe_contact.analysis.request.request_check import check_request
+from fe_contact.options import AnalysisOptions, TableAxes
+from fe_contact.planning.plan import make_plan
 
 REFERENCE = Path(__file__).parents[2] / "reference" / "spur_20_20_full_contact.csv"
 SOURCE = "CalculiX 2.20 and a mortar code, resolved meshes, plane strain, uncertainty 0.1 % (0.3 % at 10 N m)"
 RATED = (50.0, 100.0, 200.0, 400.0)
 # between the ends of the line of action and the outermost handover of the largest load, base pitches
 DOUBLE_CONTACT, SINGLE_CONTACT = 0.2235, 0.15
+
+
+REAL_TEETH = 5
+SOFTER = (0.0007, 0.0020)
+"""Least and largest part of the STE by which bodies of the reference are softer than whole gears."""
 
 
 @dataclass(frozen=True)
@@ -31,25 +44,35 @@ class Reference:
 
     @property
     def on_line_of_action(self) -> np.ndarray:
-        phase = np.abs(self.position)
-        return (phase > DOUBLE_CONTACT) | (phase < SINGLE_CONTACT)
+        return on_line_of_action(self.position)
+
+
+def on_line_of_action(position: np.ndarray) -> np.ndarray:
+    return (np.abs(position) > DOUBLE_CONTACT) | (np.abs(position) < SINGLE_CONTACT)
 
 
 def reference(torque: float) -> Reference:
     with REFERENCE.open(encoding="utf-8") as file:
         rows = [row for row in csv.DictReader(file) if float(row["torque_n_m"]) == torque]
+    position = np.array([float(row["position_driver"]) for row in rows])
+    computed = np.array([row["origin"] == "computed" for row in rows])
     columns = ("share_pair_minus1", "share_pair_0", "share_pair_plus1")
+    valid = computed | on_line_of_action(position)
     return Reference(
-        np.array([float(row["position_driver"]) for row in rows]),
-        1e-6 * np.array([float(row["ste_um"]) for row in rows]),
-        np.array([[float(row[name]) for name in columns] for row in rows]),
+        position[valid],
+        1e-6 * np.array([float(row["ste_um"]) for row in rows])[valid],
+        np.array([[float(row[name]) for name in columns] for row in rows])[valid],
     )
+
+
+def spur_pair() -> GearPair:
+    gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+    return GearPair(gear, gear, 80e-3)
 
 
 @pytest.fixture(scope="module")
 def database() -> SteDatabase:
-    gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
-    return analyze(GearPair(gear, gear, 80e-3), torques=[10, 50, 100, 200, 400], model="plane_strain")
+    return analyze(spur_pair(), torques=[10, 50, 100, 200, 400], model="plane_strain")
 
 
 def deviation(database: SteDatabase, torque: float) -> tuple[Reference, np.ndarray]:
@@ -57,16 +80,58 @@ def deviation(database: SteDatabase, torque: float) -> tuple[Reference, np.ndarr
     return rows, database.curve(torque=torque, at=rows.position).ste / rows.ste - 1.0
 
 
+@cache
+def off_the_reference(torque: float) -> tuple[Reference, np.ndarray]:
+    """Return rows, and how far STE solved at their positions on bodies of the reference is off, in parts."""
+    pair, rows = spur_pair(), reference(torque)
+    asked = check_request(pair, TableAxes(torques=[max(RATED)]), AnalysisOptions(model="plane_strain"))
+    plan = make_plan(pair, asked.request.load, asked.request.options, asked.model)
+    first, second = (replace(recipe, real_teeth=REAL_TEETH) for recipe in plan.discretization.recipes)
+    plan = replace(plan, discretization=replace(plan.discretization, recipes=(first, second)))
+    load = np.array([torque / pair.pinion.base_radius])
+    solution = pair_contact(pair, plan, None).solve(asked.model, rows.position, load)[1]
+    return rows, solution.deflection[:, 0] / rows.ste - 1.0
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("torque", RATED)
+def test_every_position_on_bodies_of_the_reference(torque, record_figure):
+    rows, error = off_the_reference(torque)
+    for name, place in (("the line of action", rows.on_line_of_action), ("corners", ~rows.on_line_of_action)):
+        worst = float(np.abs(error[place]).max())
+        record_figure(
+            f"STE with five real teeth, {name}, worst, {torque:g} N m", 100 * worst, "0.2 %", "%", SOURCE
+        )
+        assert worst < 0.002
+
+
+@pytest.mark.law
+def test_no_sign_is_left_on_bodies_of_the_reference(record_figure):
+    error = np.concatenate([off_the_reference(torque)[1] for torque in RATED])
+    median = float(np.median(error))
+    record_figure("STE with five real teeth, median", 100 * median, "within 0.03 %", "%", SOURCE)
+    assert abs(median) < 3e-4
+
+
 @pytest.mark.parametrize("torque", RATED)
 def test_every_position_on_the_line_of_action_and_in_corner_contact(database, torque, record_figure):
     rows, error = deviation(database, torque)
     worst = float(np.abs(error[rows.on_line_of_action]).max())
     name = f"STE on the line of action, worst, {torque:g} N m"
-    record_figure(name, 100 * worst, "at most 1 %", "%", SOURCE)
-    assert worst < 0.003  # target 1 %; three times the reference's own uncertainty
+    record_figure(name, 100 * worst, "at most 0.3 %", "%", SOURCE)
+    assert worst < 0.003
     worst = float(np.abs(error[~rows.on_line_of_action]).max())
-    record_figure(f"STE in corner contact, worst, {torque:g} N m", 100 * worst, "at most 1 %", "%", SOURCE)
-    assert worst < 0.01
+    record_figure(f"STE in corner contact, worst, {torque:g} N m", 100 * worst, "at most 0.5 %", "%", SOURCE)
+    assert worst < 0.005
+
+
+@pytest.mark.parametrize("torque", RATED)
+def test_whole_gears_are_stiffer_than_bodies_of_the_reference(database, torque, record_figure):
+    rows, error = deviation(database, torque)
+    place = rows.on_line_of_action
+    softer = float(np.mean((off_the_reference(torque)[1] - error)[place]))
+    record_figure(f"STE, five teeth over all, {torque:g} N m", 100 * softer, "0.07 to 0.20 %", "%", SOURCE)
+    assert SOFTER[0] < softer < SOFTER[1]
 
 
 @pytest.mark.parametrize("torque", RATED)
