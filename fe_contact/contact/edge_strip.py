@@ -138,7 +138,7 @@ def _corner(edge: FloatArray, i: int, force: float) -> tuple[float, float]:
         return 0.0, 0.0  # all of it is in the law
     scaled = max(softness * force, _SHORTEST * radius)
     half, rigid, reached, far = math.sqrt(scaled * radius), 0.25 * scaled, 0.0, offset
-    if half > offset:
+    if half >= offset:
         half = far = edge_place(offset, radius, softness, force)[1]
         rigid = (0.75 * half * half - offset * half) / radius
         if offset > 0.0:

@@ -88,6 +88,16 @@ def test_nothing_jumps_as_a_strip_comes_to_its_edge():
         assert getattr(after, name) == pytest.approx(getattr(before, name), rel=1e-6, abs=1e-12)
 
 
+def test_a_strip_that_ends_at_the_edge_to_the_last_bit_is_as_those_beside_it():
+    """It had half of what the corner yields too much, 0.25 in place of -0.25."""
+    # half the strip is the root of softness, force and radius: 1, as is the offset
+    edge = np.array([(1.0, 1.0, 1.0, 1.0, 1.0, 0.5, 1.0, 1.0)])
+    reaching, beside = (edge_motion(edge, 0, force, 0.0) for force in (1.0 + 1e-9, 1.0 - 1e-9))
+    at = edge_motion(edge, 0, 1.0, 0.0)
+    assert at.corner == pytest.approx(0.5 * (reaching.corner + beside.corner), abs=1e-8)
+    assert at.softness == pytest.approx(0.0, abs=1e-8)
+
+
 def test_a_short_strip_beside_the_edge_knows_no_corner_and_rolls_as_anywhere():
     edge, tilt = table(3e-4, missing=1.0), 2e-3
     edge[0, EdgeStrips._fields.index("length")] = edge[0, EdgeStrips._fields.index("patch")] = 3e-4
