@@ -66,21 +66,31 @@ def test_a_rigid_mass_moves_by_newton(scene: Path, answer: Any) -> None:
     np.testing.assert_allclose(level[inside], vibration_level(1e-3 * velocity[inside]))
 
 
-def test_figures_are_those_of_the_library(scene: Path, answer: Any) -> None:
-    inputs = {"speed_rpm": [900.0, 1200.0, 1500.0], "orders": 4}
+def test_figures_are_those_of_the_library(tmp_path: Path) -> None:
+    """Two bearings, whose shares differ by order and speed."""
+    both = HOUSING.replace("seat_nodes = [", 'seat_nodes = [{bearing = "right", node = 2}, ')
+    scene = measured_scene(tmp_path, both, ((1, 1), (1, -2), (2, 1), (2, -2)))
     with pytest.warns(InputWarning, match="housing gearcase is measured"):
-        response = loa_response(scene, **inputs)
-    mobility = measured_mobility(scene.with_name("gearcase.uff"), {1: "left"}, {11: "lid", 12: "foot"})
+        response = loa_response(scene, speed_rpm=[900.0, 1200.0, 1500.0], orders=4)
+    seats = {2: "right", 1: "left"}
+    mobility = measured_mobility(tmp_path / "gearcase.uff", seats, {11: "lid", 12: "foot"})
     found = measured_vibration(response, mobility)
-    velocity = np.array([answer["points"][name]["velocity_mm_per_s"] for name in found.point], dtype=float)
-    np.testing.assert_allclose(np.swapaxes(velocity, 1, 2), 1e3 * found.rms, rtol=1e-12)
-    shown = answer["contributions"]
-    at = answer["speed_rpm"].index(shown["speed_rpm"]), answer["order"].index(shown["order"])
-    assert np.nanmax(velocity) == velocity[:, at[1], at[0]].max()
-    share = bearing_shares(response, mobility)[(..., *at)]
-    assert [part["points"]["lid"] for part in shown["bearings"]] == pytest.approx(share[:, 0].tolist())
-    part = np.array(answer["measured"]["omitted_part"]).T
-    np.testing.assert_allclose(part, found.omitted_force, rtol=1e-12)
+    for options in ((), ("--at-rpm", 1000, "--at-order", 2)):
+        answer = printed("vibration", scene, *SPEEDS, *options)
+        velocity = np.array(
+            [answer["points"][name]["velocity_mm_per_s"] for name in found.point], dtype=float
+        )
+        np.testing.assert_allclose(np.swapaxes(velocity, 1, 2), 1e3 * found.rms, rtol=1e-12)
+        shown = answer["contributions"]
+        at = answer["speed_rpm"].index(shown["speed_rpm"]), answer["order"].index(shown["order"])
+        assert options or np.nanmax(velocity) == velocity[:, at[1], at[0]].max()
+        assert not options or at == (0, 1)
+        share = dict(zip(mobility.bearings, bearing_shares(response, mobility)[(..., *at)], strict=True))
+        for part in shown["bearings"]:
+            assert list(part["points"].values()) == pytest.approx(share[part["name"]].tolist())
+            assert 0.01 < abs(part["points"]["lid"]) != 1.0
+        lost = np.array(answer["measured"]["omitted_part"]).T
+        np.testing.assert_allclose(lost, found.omitted_force, rtol=1e-12)
 
 
 def test_what_is_absent_has_a_sentence(scene: Path, answer: Any, tmp_path: Path) -> None:
