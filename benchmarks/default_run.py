@@ -52,7 +52,8 @@ def _ratios(name: str, scene: Scene) -> list[Figure]:
     }
     for run in (*runs.values(), *runs.values()):  # compiles, and makes the code of the structure
         run()
-    taken = {label: min(_seconds(run) for _ in range(TURNS)) for label, run in runs.items()}
+    turns = [{label: _seconds(run) for label, run in runs.items()} for _ in range(TURNS)]
+    taken = {label: min(turn[label] for turn in turns) for label in runs}
     return [
         Figure(name, "bare", taken["bare"], "CPU s"),
         Figure(name, "default over bare", taken["default"] / taken["bare"], "-", LIMIT[name]),

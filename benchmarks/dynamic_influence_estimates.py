@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import tempfile
 from collections.abc import Mapping, Sequence
@@ -27,7 +28,7 @@ from benchmarks.influence_estimates import PAGE
 from benchmarks.marked_section import replace_section
 from dynamics.ablation import EffectAblation, RunFigures, ablate
 from dynamics.influence import decide_effects
-from dynamics.influence.level_change import BearingForces
+from dynamics.influence.level_change import BearingForces, decibels
 from dynamics.scene import Scene
 from dynamics.types import FloatArray
 
@@ -135,8 +136,16 @@ def assess(name: str, entry: EffectAblation, off_at: tuple[float, ...] = ()) -> 
     pairs = [_largest(e, m) for e, m in zip(estimated, measured, strict=True)]
     own = tuple(e for e, _ in pairs), tuple(m for _, m in pairs), off_at
     stated = entry.level if estimate is None else estimate.level
-    levels = stated.decibels, entry.level_change.decibels
+    levels = stated.decibels, _level_at(entry, stated.order)
     return AssessedLevel(name, entry.name, *own, stated.quantity, levels)
+
+
+def _level_at(entry: EffectAblation, order: float) -> float:
+    """Return the measured change at an order, dB: of two alike changes the estimate may name the other."""
+    whole, without = (figures.lines for figures in (entry.with_effect, entry.without_effect))
+    if order not in whole or order not in without:
+        return entry.level_change.decibels
+    return decibels(math.sqrt(whole[order]), math.sqrt(without[order]))
 
 
 def _largest(estimated: FloatArray, measured: FloatArray) -> tuple[float, float]:

@@ -43,7 +43,7 @@ EFFECTS: tuple[Effect, ...] = (
 
 LEFT_OUT: dict[str, str] = {
     "friction of bearings": "bearings turn without loss",
-    "point of application along the path of contact": "the mesh force acts at the operating pitch point",
+    "point of application of friction along the face": "friction acts at mid-face, at each pair of teeth",
     "flexible members of planetary sets": "sun, ring, carrier and planets are rigid on their shafts",
     "temperature fields": "each part has one steady temperature and expands freely; base pitches stay",
     "damping that turns with a flexible shaft": "material damping acts as on a shaft at rest",

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import scipy
@@ -193,14 +194,63 @@ def whirl_branches(
     mass), all assigned together; equal likeness is decided by the nearness of the frequencies.
     """
     swept: list[_WhirlModes] = []
-    branches: list[list[int]] = []
     for index, value in enumerate(speed):
-        modes = modes_at(system, linear, float(value))
-        swept.append(modes)
-        fresh = list(range(modes.frequency.size))
-        branches.append(_continued(linear, swept[-2], branches[-1], modes) if index else fresh)
+        swept.append(modes_at(system, linear, float(value)))
         if progress is not None:
             progress((index + 1) / speed.size)
+    return _followed(system, linear, speed, swept)
+
+
+INTERVALS, FINEST = 8, 32
+"""Equal parts of a range of speeds over which modes are followed, and into how many it is divided at most."""
+ALIKE = 0.9
+"""Likeness of a mode and the one that continues it from which on nothing between them need be looked at."""
+
+
+def branches_up_to(system: System, linear: LinearSystem, highest: float) -> WhirlBranches:
+    """Return the branches from rest up to a speed, rad/s, at as many speeds as following them takes.
+
+    An eighth of the range is halved, down to 1/32, unless each mode at its end is like the one that it
+    continues.
+    """
+    grid = np.linspace(0.0, highest, FINEST + 1)
+    ends = range(0, FINEST + 1, FINEST // INTERVALS)
+    swept = {index: modes_at(system, linear, float(grid[index])) for index in ends}
+    parts = list(pairwise(ends))
+    while parts:
+        low, high = parts.pop()
+        if high - low == 1 or _clear(linear, swept[low], swept[high]):
+            continue
+        middle = (low + high) // 2
+        swept[middle] = modes_at(system, linear, float(grid[middle]))
+        parts += [(low, middle), (middle, high)]
+    chosen = sorted(swept)
+    return _followed(system, linear, grid[chosen], [swept[index] for index in chosen])
+
+
+def _clear(linear: LinearSystem, before: _WhirlModes, modes: _WhirlModes) -> bool:
+    """Whether every mode continues in one like it; repeated ones, as of two planes, count together."""
+    if before.frequency.size != modes.frequency.size:
+        return False
+    alike, rows, columns = _assigned(linear, before, modes)
+    first, second = (_repeated(each.frequency) for each in (before, modes))
+    together = np.maximum(first @ alike, alike @ second)
+    return bool(np.min(together[rows, columns], initial=1.0) >= ALIKE)
+
+
+def _repeated(frequency: FloatArray) -> FloatArray:
+    """Return which modes are the same but for their shapes, (a, a): 1 or 0."""
+    return np.asarray(np.abs(frequency[:, None] - frequency) <= SAME * frequency, dtype=float)
+
+
+def _followed(
+    system: System, linear: LinearSystem, speed: FloatArray, swept: Sequence[_WhirlModes]
+) -> WhirlBranches:
+    """Return the branches of the modes `swept` at the speeds (S,)."""
+    branches: list[list[int]] = []
+    for index, modes in enumerate(swept):
+        fresh = list(range(modes.frequency.size))
+        branches.append(_continued(linear, swept[index - 1], branches[-1], modes) if index else fresh)
     count = 1 + max((int(np.max(branch, initial=-1)) for branch in branches), default=-1)
     n, p = linear.scale.size, len(linear.spring)
     frequency, ratio, whirl = (np.full((speed.size, count), np.nan) for _ in range(3))
@@ -222,13 +272,20 @@ def likeness(linear: LinearSystem, first: ComplexArray, second: ComplexArray) ->
     return np.asarray(product / (size[0][:, None] * size[1]))
 
 
-def _continued(linear: LinearSystem, before: _WhirlModes, branch: list[int], modes: _WhirlModes) -> list[int]:
-    """Return the branch of each mode: that of its predecessor, or a new one."""
+def _assigned(
+    linear: LinearSystem, before: _WhirlModes, modes: _WhirlModes
+) -> tuple[FloatArray, IntArray, IntArray]:
+    """Return the likeness of modes (a, b), and which of the first continues in which of the second."""
     apart = np.abs(before.frequency[:, None] - modes.frequency)
     apart = apart / (before.frequency[:, None] + modes.frequency)
-    rows, columns = scipy.optimize.linear_sum_assignment(
-        TIE * apart - likeness(linear, before.shape, modes.shape)
-    )
+    alike = likeness(linear, before.shape, modes.shape)
+    rows, columns = scipy.optimize.linear_sum_assignment(TIE * apart - alike)
+    return alike, rows, columns
+
+
+def _continued(linear: LinearSystem, before: _WhirlModes, branch: list[int], modes: _WhirlModes) -> list[int]:
+    """Return the branch of each mode: that of its predecessor, or a new one."""
+    _, rows, columns = _assigned(linear, before, modes)
     known = dict(zip(columns.tolist(), (branch[row] for row in rows), strict=True))
     fresh = max(branch, default=-1)
     numbers = []

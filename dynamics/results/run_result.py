@@ -149,7 +149,7 @@ class RunResult:
     how", with their shares); empty if they were not found. Where gyroscopic terms are on also `over_speed`:
     whirl modes (a lists of S values each: `frequency` in Hz, `damping_ratio`, `whirl` from -1, backward, to
     1, forward) at S speeds of `shaft` (`speed`, rad/s; `mesh_frequency` of every mesh, Hz) from rest to the
-    largest of the run, `freedom` and `moves` at the last.
+    largest of the run, closer where modes change their shapes, `freedom` and `moves` at the last.
     """
     warnings: list[Json] = field(default_factory=list)
     """Implausible values of the scene; empty if there are none."""

@@ -31,7 +31,7 @@ from dynamics.integrators.method_choice import MethodChoice
 from dynamics.integrators.workspace import Count
 from dynamics.kernels.local_state import LocalState
 from dynamics.linearize import natural_modes
-from dynamics.linearize.campbell import whirl_branches
+from dynamics.linearize.campbell import branches_up_to
 from dynamics.linearize.linear_system import LinearSystem, freedom_parts, linearize
 from dynamics.linearize.operating_speeds import leading_law, mesh_frequencies
 from dynamics.mechanism.additions import SPEED_DEPENDENCE
@@ -210,7 +210,6 @@ def _mesh(system: System, index: int) -> Json:
     }
 
 
-WHIRL_SPEEDS = 33
 LEAST_SHARE = 0.05  # of a part in the kinetic energy of a mode
 
 
@@ -236,9 +235,8 @@ def _modes_of_run(system: System) -> Json:
 def _over_speed(system: System, linear: LinearSystem) -> Json:
     """Return the whirl modes up to the largest speeds of the run, those that oscillate at all of them."""
     law = leading_law(system)
-    extreme = system.scene.references[law].speed.extreme
-    speed = np.linspace(0.0, abs(extreme), WHIRL_SPEEDS)
-    branches = whirl_branches(system, linear, speed)
+    branches = branches_up_to(system, linear, abs(system.scene.references[law].speed.extreme))
+    speed = branches.speed
     whole = np.all(np.isfinite(branches.frequency), axis=0)
     most = np.argmax(branches.kinetic_energy[-1], axis=1)
     return {

@@ -12,7 +12,6 @@ References
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
 
 import numpy as np
 
@@ -28,7 +27,8 @@ BLOCK = 1024
 """Frequencies whose mobilities are interpolated at a time."""
 
 
-class Direction(NamedTuple):
+@dataclass(frozen=True)
+class Direction:
     """A bearing or a point, and the axis along which it is pushed or measured: 0, 1, 2 for x, y, z."""
 
     name: str
@@ -250,8 +250,8 @@ def _velocity(housing: MeasuredMobility, response: BearingHarmonics, force: Comp
         part = slice(first, first + BLOCK)
         moved[:, part] = np.einsum("nqe,en->qn", housing.at(hertz[part]), loads[:, part])
     velocity = np.full((len(housing.points), 3, *shape), np.nan, dtype=complex)
-    for row, (name, axis) in zip(moved, housing.response, strict=True):
-        velocity[housing.points.index(name), axis] = row.reshape(shape)
+    for row, point in zip(moved, housing.response, strict=True):
+        velocity[housing.points.index(point.name), point.axis] = row.reshape(shape)
     return velocity
 
 

@@ -128,6 +128,10 @@ def tabled_scene(
         meshes[i] = with_case(mesh, f"meshes[{i}]", folder)
         facts[mesh.name] = _facts(i, meshes[i], table_of, cases, warn, kept_table)
     warn(scene_warnings(scene, check_scene(scene, facts)))
+    if any(part.is_measured for part in scene.housings):
+        from lineofaction.gearbox.convert.measured_housings import read_responses  # noqa: PLC0415 (start-up)
+
+        read_responses(scene)
     housings = housings_in(scene, home, folder, progress)
     databases = {mesh.name: table_of(i, meshes[i]) for i, mesh in scene.with_database}
     built = dynamic_scene(scene, databases, housings)

@@ -21,6 +21,7 @@ from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.answers import draft_line, headline_json
 from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
 from lineofaction.gearbox.convert.housings import HousedScene, reduced_in
+from lineofaction.gearbox.convert.measured_housings import read_responses
 from lineofaction.gearbox.convert.plausibility import scene_warnings
 from lineofaction.gearbox.convert.scene import TabledScene, dynamic_scene
 from lineofaction.gearbox.level_quantity import with_quantity
@@ -192,8 +193,9 @@ def ordered_scene(order: WorkOrder, progress: Progress) -> _OrderedScene:
 
 
 def housed_scene(order: WorkOrder, progress: Progress) -> HousedScene:
-    """Reduce the housings of the scene of an order."""
+    """Reduce the housings of the scene of an order, and read those that were measured."""
     inputs = SceneInput.model_validate_json(json.dumps(order.inputs["scene"]))
+    read_responses(inputs)
     return HousedScene(inputs, reduced_in(inputs, order.data_directory, progress))
 
 

@@ -132,6 +132,17 @@ def test_fields_and_parts_of_the_schema_are_added(visit: Visit) -> None:
     assert scene_in(page)["rolling_bearings"][0]["ball"]["count"] == 8
 
 
+def test_the_angles_of_gears_of_a_shaft_are_a_field_of_it(visit: Visit) -> None:
+    """One for each gear on the shaft, in degrees."""
+    page = visit.page
+    page.get_by_role("button", name="Copy wheel").press("Enter")
+    until(lambda: len(scene_in(page)["gears"]) == 3)
+    page.get_by_label("Further field of shafts", exact=True).select_option("tooth_angles_deg")
+    typed(page, "Tooth angles, °, output", "0, 4.5")
+    until(lambda: scene_in(page)["shafts"][1].get("tooth_angles_deg") == [0.0, 4.5])
+    assert "tooth_angles_deg" not in scene_in(page)["shafts"][0]
+
+
 def test_what_is_computed_is_what_the_table_shows(visit: Visit) -> None:
     page = visit.page
     cell(page, "Duration, s, Run").fill("0.25")

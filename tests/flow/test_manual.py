@@ -27,7 +27,7 @@ def folder() -> Iterator[Path]:
 
 # Ten seconds and more, but for the tutorials and for pages whose files others read.
 LONG = {
-    *("complaint", "deflect", "from-rexs-to-dba", "hear-a-gearbox", "planetary-stage"),
+    *("complaint", "deflect", "from-rexs-to-dba", "hear-a-gearbox", "measured-housing", "planetary-stage"),
     *("quiet-flanks-by-search", "ripple-map", "service-for-the-team", "tolerance-study", "tolerances"),
     *("vibration", "whine-at-1400-hz"),
 }

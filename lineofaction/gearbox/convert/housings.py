@@ -1,8 +1,13 @@
-"""Housings of a scene file in the terms of dynamics: by their matrices, or reduced from their solids."""
+"""Housings of a scene file in the terms of dynamics: by their matrices, or reduced from their solids.
+
+Measured ones are not among them: they do not act back on the shafts.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,8 +21,11 @@ from dynamics.solid_housing import MESH_SUFFIXES, STEP_SUFFIXES, check_mesh_cont
 from lineofaction.gearbox.convert.declared import in_si
 from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.bearings import BushingInput, RollingBearingInput
+from lineofaction.gearbox.schemas.files import FileContentInput
 from lineofaction.gearbox.schemas.housings import HousingInput
 from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.signals import UNIVERSAL
 from model_studies.progress import Progress, silent
 
 if TYPE_CHECKING:
@@ -36,14 +44,7 @@ def solid_file(housing: HousingInput) -> tuple[str, str, bytes]:
     field, suffixes = ("step_file", STEP_SUFFIXES) if housing.step_file else ("mesh_file", MESH_SUFFIXES)
     content = housing.step_file or housing.mesh_file
     assert content is not None  # the schema comes first
-    suffix = Path(content.name).suffix.lower()
-    if suffix not in suffixes:
-        raise BadInput.of(f"{field}.name", content.name, f"a name that ends in {', '.join(suffixes)}")
-    try:
-        data = content.unpacked()
-    except ValueError as error:
-        length = f"{len(content.content)} characters"
-        raise BadInput.of(f"{field}.content", length, str(error), "The client packs files.") from None
+    suffix, data = _unpacked(field, content, suffixes)
     if field == "step_file" and not data.lstrip().startswith(STEP_BEGINS):
         bound = f"a STEP file, which begins with {STEP_BEGINS.decode()}"
         raise BadInput.of(field, content.name, bound, "Export the solid as STEP (AP 214, AP 242).")
@@ -53,6 +54,26 @@ def solid_file(housing: HousingInput) -> tuple[str, str, bytes]:
         except InputError as error:
             raise BadInput.of(field, content.name, str(error.bound), str(error.suggestion)) from None
     return field, suffix, data
+
+
+def response_content(housing: HousingInput) -> tuple[str, bytes]:
+    """Return how the name of the file of a measured housing ends, and what is in it.
+
+    Raises `BadInput`: another kind of file, or damaged content.
+    """
+    assert housing.frf_file is not None  # the schema comes first
+    return _unpacked("frf_file", housing.frf_file, UNIVERSAL)
+
+
+def _unpacked(field: str, file: FileContentInput, suffixes: Sequence[str]) -> tuple[str, bytes]:
+    suffix = Path(file.name).suffix.lower()
+    if suffix not in suffixes:
+        raise BadInput.of(f"{field}.name", file.name, f"a name that ends in {', '.join(suffixes)}")
+    try:
+        return suffix, file.unpacked()
+    except ValueError as error:
+        length = f"{len(file.content)} characters"
+        raise BadInput.of(f"{field}.content", length, str(error), "The client packs files.") from None
 
 
 FOLDER = "housings"
@@ -97,10 +118,49 @@ def housings_in(
     return reduced | {name: ReducedHousing.from_netcdf(folder / file) for name, file in files.items()}
 
 
+def check_measured(scene: SceneInput) -> None:
+    """Refuse measured housings that cannot be, before their files are read.
+
+    Raises `BadInput`: a file is of another kind or damaged, or a seat is that of a shaft in a turning frame.
+    """
+    shafts = {shaft.name: shaft for shaft in scene.shafts}
+    bearings: tuple[BushingInput | RollingBearingInput, ...] = (*scene.bushings, *scene.rolling_bearings)
+    shaft_of = {part.name: part.shaft for part in bearings}
+    for index, housing in enumerate(scene.housings):
+        if not housing.is_measured:
+            continue
+        try:
+            response_content(housing)
+        except BadInput as error:
+            raise error.within(f"housings[{index}]") from None
+        for number, seat in enumerate(housing.seat_nodes):
+            if shafts[shaft_of[seat.bearing]].frame is not None:
+                field = f"housings[{index}].seat_nodes[{number}].bearing"
+                bound = "a bearing of a shaft described in the fixed frame"
+                raise BadInput.of(field, seat.bearing, bound, "A planetary set's frame turns.")
+
+
+@contextmanager
+def numbered_as_written(housings: Sequence[HousingInput]) -> Iterator[None]:
+    """Give housings in errors of dynamics, which has no measured ones, their numbers in the file."""
+    numbers = [index for index, part in enumerate(housings) if not part.is_measured]
+    try:
+        yield
+    except InputError as error:
+        field = _NUMBERED.sub(lambda match: f"housings[{numbers[int(match[1])]}]", error.field)
+        raise InputError(field, error.value, error.bound, error.suggestion) from None
+
+
+_NUMBERED = re.compile(r"^housings\[(\d+)\]")
+
+
 @identity_cached
 def housings_of(pairs: tuple[tuple[HousingInput, ReducedHousing | None], ...]) -> tuple[Housing, ...]:
-    """Return housings, reduced those that are given by their solids; scenes that have the same share them."""
-    return tuple(_housing_of(index, *pair) for index, pair in enumerate(pairs))
+    """Return housings, reduced those that are given by their solids; scenes that have the same share them.
+
+    Measured ones are left out.
+    """
+    return tuple(_housing_of(index, *pair) for index, pair in enumerate(pairs) if not pair[0].is_measured)
 
 
 def _housing_of(index: int, housing: HousingInput, reduced: ReducedHousing | None) -> Housing:

@@ -1,17 +1,27 @@
-"""Measured frequency responses of a housing, by bearings and points, from the nodes of a universal file."""
+"""Measured frequency responses of a housing, by bearings and points, from the nodes of a universal file.
+
+The file is one on disk, or the content that a scene has of it; a confined process reads it.
+"""
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
 from dynamics.errors import InputError
 from dynamics.types import ComplexArray, FloatArray
 from dynamics.vibration import Direction, MeasuredMobility
+from lineofaction.gearbox.convert.housings import response_content
+from lineofaction.gearbox.convert.placement import Placement
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.housings import HousingInput
+from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.signals import Channel, read_frequency_responses
 
 SAME_LINES = 2e-5
@@ -19,6 +29,46 @@ SAME_LINES = 2e-5
 _RATES = {"m/N": 1, "m/(N s)": 0, "m/(N s²)": -1}
 """Derivatives in time from a response to a mobility."""
 _LISTED = 12  # nodes in a message
+_KEPT = 8
+"""Housings whose mobilities stay in memory: the check of a scene and its study read the file once."""
+_PLAIN = re.compile(r"\w[\w .+-]{0,99}")
+"""Names that a copy of a file may have on any system."""
+
+
+def read_responses(scene: SceneInput) -> None:
+    """Read the files of the measured housings of a scene, so that their faults come before its tables.
+
+    Raises `BadInput` as `housing_mobility`.
+    """
+    for index, part in enumerate(scene.housings):
+        if part.is_measured:
+            try:
+                housing_mobility(part)
+            except BadInput as error:
+                raise error.within(f"housings[{index}]") from None
+
+
+@lru_cache(maxsize=_KEPT)
+def housing_mobility(housing: HousingInput) -> MeasuredMobility:
+    """Return the mobilities of a measured housing of a scene, along the axes of its file.
+
+    Raises `BadInput` as `measured_mobility`, by the fields of the housing.
+    """
+    suffix, content = response_content(housing)
+    assert housing.frf_file is not None  # the schema comes first
+    name = housing.frf_file.name
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / (name if _PLAIN.fullmatch(name) else f"responses{suffix}")
+        file.write_bytes(content)
+        channels = read_frequency_responses(file, "frf_file")
+    where = "frf_file", file.name
+    seats = {part.node: part.bearing for part in housing.seat_nodes}
+    points = {part.node: part.name for part in housing.point_nodes}
+    for field, kind, nodes in (("seat_nodes", "reference", seats), ("point_nodes", "response", points)):
+        numbers = {node: f"{field}[{index}].node" for index, node in enumerate(nodes)}
+        _check_nodes(channels, where, kind, numbers)
+    axes = Placement.of(housing.own_x_axis, housing.own_z_axis, (0.0, 0.0, 0.0)).axes
+    return _mobility_of(channels, where, seats, points, axes)
 
 
 def measured_mobility(
@@ -44,7 +94,22 @@ def measured_mobility(
         What names the file, for errors.
     """
     file = Path(file)
-    functions = _chosen(read_frequency_responses(file, field), (field, file.name), seats, points)
+    channels, where = read_frequency_responses(file, field), (field, file.name)
+    _check_nodes(channels, where, "response", dict.fromkeys(points, field))
+    _check_nodes(channels, where, "reference", dict.fromkeys(seats, field))
+    return _mobility_of(channels, where, seats, points, axes)
+
+
+def _mobility_of(
+    channels: Sequence[Channel],
+    where: tuple[str, str],
+    seats: Mapping[int, str],
+    points: Mapping[int, str],
+    axes: FloatArray | None,
+) -> MeasuredMobility:
+    """Return the mobilities that the functions of a file hold; `where` are its field and its name."""
+    field, name = where
+    functions = _chosen(channels, where, seats, points)
     response = tuple(dict.fromkeys(ends[0] for ends in functions))
     excitation = tuple(dict.fromkeys(ends[1] for ends in functions))
     first = next(iter(functions.values()))[0]
@@ -54,15 +119,34 @@ def measured_mobility(
         for e, seat in enumerate(excitation):
             if (point, seat) not in functions:
                 bound = f"a function of {point} per {seat}, as of the other directions"
-                raise BadInput.of(field, file.name, bound, "Measure or export all pairs.")
+                raise BadInput.of(field, name, bound, "Measure or export all pairs.")
             rows[:, q, e] = _mobility(*functions[point, seat], lines, field)
     moving = lines > 0.0
     try:
-        own = {} if axes is None else {"axes": axes}
-        return MeasuredMobility(lines[moving], response, excitation, rows[moving], **own)
+        turned = {} if axes is None else {"axes": axes}
+        return MeasuredMobility(lines[moving], response, excitation, rows[moving], **turned)
     except InputError as error:
-        value = f"{file.name}: {error.field}"
+        value = f"{name}: {error.field}"
         raise BadInput.of(field, value, str(error.bound), str(error.suggestion)) from None
+
+
+_PLACES = {"response": 0, "reference": 2}
+"""Where the nodes of a function have those of a kind."""
+
+
+def _check_nodes(
+    channels: Sequence[Channel], where: tuple[str, str], kind: str, nodes: Mapping[int, str]
+) -> None:
+    """Refuse a file without functions, or a node that none of them has, by the field that `nodes` give it."""
+    field, name = where
+    if not channels:
+        advice = "Export functions of type 4, one for each pair of seat and point."
+        raise BadInput.of(field, name, "a file with frequency responses; it has none", advice)
+    present = sorted({channel.nodes[_PLACES[kind]] for channel in channels})
+    if (node := next((number for number in nodes if number not in present), None)) is not None:
+        listed = ", ".join(map(str, present[:_LISTED]))
+        more = f" and {len(present) - _LISTED} more" if len(present) > _LISTED else ""
+        raise BadInput.of(nodes[node], node, f"a {kind} node of {name}: {listed}{more}")
 
 
 def _chosen(
@@ -70,15 +154,6 @@ def _chosen(
 ) -> dict[tuple[Direction, Direction], tuple[Channel, float]]:
     """Return the functions from seats to points, and 1 or -1 for their sense, by point and seat."""
     field, name = where
-    if not channels:
-        advice = "Export functions of type 4, one for each pair of seat and point."
-        raise BadInput.of(field, name, "a file with frequency responses; it has none", advice)
-    for kind, known, at in (("response", points, 0), ("reference", seats, 2)):
-        present = sorted({channel.nodes[at] for channel in channels})
-        if (node := next((number for number in known if number not in present), None)) is not None:
-            listed = ", ".join(map(str, present[:_LISTED]))
-            more = f" and {len(present) - _LISTED} more" if len(present) > _LISTED else ""
-            raise BadInput.of(field, node, f"a {kind} node of {name}: {listed}{more}")
     functions: dict[tuple[Direction, Direction], tuple[Channel, float]] = {}
     for channel in channels:
         point, towards, seat, pushed = channel.nodes

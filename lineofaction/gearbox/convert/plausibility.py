@@ -52,10 +52,28 @@ def scene_warnings(
     with named(""):
         findings = [finding.to_json() for finding in scene_findings(scene)]
     of_file = [finding for finding in findings if _in_file(inputs, finding["field"])]
-    warnings = left_out_warnings(inputs.left_out) + _in_own_terms(of_file, scene_field)
+    warnings = left_out_warnings(inputs.left_out) + measured_warnings(inputs)
+    warnings += _in_own_terms(of_file, scene_field)
     for index, mesh in enumerate(inputs.meshes):
         warnings += [within(warning, f"meshes[{index}]") for warning in tables.get(mesh.name, ())]
     return unique(warnings)
+
+
+def measured_warnings(inputs: SceneInput) -> list[Json]:
+    """Return which housings of a scene no shaft feels, because they were measured."""
+    nothing = {"value": None, "unit": "", "low": None, "high": None, "reason": "", "source": "", "whole": ""}
+    return [
+        {
+            "check": "measured_housing",
+            "field": f"housings[{index}].frf_file",
+            **nothing,
+            "message": f"housing {part.name} is measured: it moves under the forces of bearings "
+            "(loa vibration) and does not act back on the shafts: "
+            "seats have the stiffness that their bearings state",
+        }
+        for index, part in enumerate(inputs.housings)
+        if part.is_measured
+    ]
 
 
 def _in_file(inputs: SceneInput, field: str) -> bool:

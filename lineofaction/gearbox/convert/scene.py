@@ -22,7 +22,13 @@ from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.complaint import complaint_of
 from lineofaction.gearbox.convert.declared import in_si
 from lineofaction.gearbox.convert.errors import named
-from lineofaction.gearbox.convert.housings import ANY_STIFFNESS, housings_of, placeholder
+from lineofaction.gearbox.convert.housings import (
+    ANY_STIFFNESS,
+    check_measured,
+    housings_of,
+    numbered_as_written,
+    placeholder,
+)
 from lineofaction.gearbox.convert.scene_parts import GearTeeth, meshes_of, parts_of
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.meshes import MeshInput, PeriodicInput, StiffnessMeshInput
@@ -234,7 +240,8 @@ def check_scene(
     system exists or moves, or nothing of it passes where it is complained of.
     """
     tables = tables or dict.fromkeys(facts, straight_table(ANY_STIFFNESS, ANY_TEETH))
-    housings = [placeholder(i, part) for i, part in enumerate(scene.housings)]
+    check_measured(scene)
+    housings = [placeholder(i, part) for i, part in enumerate(scene.housings) if not part.is_measured]
     moving = _moving(scene, facts, tables, housings)
     if scene.complaint is not None:
         complaint_of(scene, moving)
@@ -278,7 +285,7 @@ def _assembled(
 ) -> Scene:
     teeth = _teeth_of(scene, facts)
     _check_center_distances(scene, facts)
-    with named(""):
+    with named(""), numbered_as_written(scene.housings):
         return Scene(
             **in_si(Scene, scene, scene.run, scene.accuracy),
             level_tolerance=scene.accuracy.level_tolerance_db or None,

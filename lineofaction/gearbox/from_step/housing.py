@@ -89,7 +89,8 @@ def step_housing(
         "seats": [_seat(name, held) for name in held.bores],
     }
     left_out = tuple(name for name in bearings if name not in held.bores)
-    replaced = tuple(part.name for part in scene.housings if held.bores.keys() & {*part.bushings})
+    modeled = (part for part in scene.housings if not part.is_measured)
+    replaced = tuple(part.name for part in modeled if held.bores.keys() & {*part.bushings})
     mass = MATERIALS[material].density * solid.volume
     return StepHousing(fields, held, left_out, replaced, stand, mass, 2.0 * solid.volume / solid.surface)
 

@@ -1,4 +1,4 @@
-"""Files that a case or scene names, read and written out in it: solids, matrices, flanks as CSV."""
+"""Files that a case or scene names, read and written out in it: solids, responses, matrices, flanks."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.csv_rows import Nodes, csv_rows, number_in, whole_grid
 from lineofaction.gearbox.schemas.load_signals import with_load_signals
 from lineofaction.gearbox.schemas.model import BoundaryModel
+from lineofaction.gearbox.signals import UNIVERSAL
 from lineofaction.gearbox.units import MM, as_typed
 
 Find: TypeAlias = Callable[[str, str], Path]
@@ -85,7 +86,9 @@ class FileContentInput(BoundaryModel):
 
 ROWS = "stiffness_matrix"
 MATRIX_FILE, MODES_FILE = "stiffness_file", "modes_file"
-STEP_FILE, MESH_FILE = "step_file", "mesh_file"
+STEP_FILE, MESH_FILE, RESPONSE_FILE = "step_file", "mesh_file", "frf_file"
+_CONTENT_SUFFIXES = {STEP_FILE: STEP_SUFFIXES, MESH_FILE: MESH_SUFFIXES, RESPONSE_FILE: UNIVERSAL}
+"""How the files end whose content goes along with the scene, by the fields that name them."""
 _BY_CLIENT = "Run the scene by loa or the Python client: they read the file and send its matrices."
 Table = dict[str, Any]
 Content: TypeAlias = tuple[Table, Table]
@@ -165,9 +168,10 @@ def _modes(file: Path, field: str) -> Content:
     return derived | {"seat_positions_mm": places}, present
 
 
-def _solid(file: Path, field: str) -> Content:
+def _whole(file: Path, field: str) -> Content:
+    """Return a file whose content goes along: a solid, or measured responses."""
     name = field.rpartition(".")[2]
-    suffixes = STEP_SUFFIXES if name == STEP_FILE else MESH_SUFFIXES
+    suffixes = _CONTENT_SUFFIXES[name]
     if file.suffix.lower() not in suffixes:
         raise BadInput.of(field, file.name, f"a file that ends in {', '.join(suffixes)}")
     if not file.is_file():
@@ -183,7 +187,8 @@ def _solid(file: Path, field: str) -> Content:
 def side_files(scene: Table) -> tuple[Table, list[FileContentInput]]:
     """Return the table of a scene that names files, and these: `written_out` the other way round.
 
-    Solids of housings and their stiffness matrices become files; a housing with other matrices keeps them.
+    Solids and measured responses of housings and their stiffness matrices become files; a housing with other
+    matrices keeps them.
     """
     files: dict[str, FileContentInput] = {}
 
@@ -196,7 +201,7 @@ def side_files(scene: Table) -> tuple[Table, list[FileContentInput]]:
                 name = f"{stem}_{number}{ending}"
             files[name] = content.model_copy(update={"name": name})
             names[field] = name
-        inside = [field for field in (STEP_FILE, MESH_FILE, ROWS) if names and field in housing]
+        inside = [field for field in (*_CONTENT_SUFFIXES, ROWS) if names and field in housing]
         return {key: value for key, value in housing.items() if key not in inside} | names
 
     housings = [named(housing) for housing in scene.get("housings", ())]
@@ -205,7 +210,7 @@ def side_files(scene: Table) -> tuple[Table, list[FileContentInput]]:
 
 def _contents(housing: Table) -> Iterator[tuple[str, str, str, FileContentInput]]:
     """Yield the fields that name the files of a housing, how the names begin and end, and their content."""
-    for field in (STEP_FILE, MESH_FILE):
+    for field in _CONTENT_SUFFIXES:
         if isinstance(content := housing.get(field), dict):
             path = Path(own_name(content["name"]))
             yield field, path.stem, path.suffix, FileContentInput(**content)
@@ -219,8 +224,7 @@ def _contents(housing: Table) -> Iterator[tuple[str, str, str, FileContentInput]
 READERS: dict[str, Callable[[Path, str], Content]] = {
     MATRIX_FILE: _matrices,
     MODES_FILE: _modes,
-    STEP_FILE: _solid,
-    MESH_FILE: _solid,
+    **dict.fromkeys(_CONTENT_SUFFIXES, _whole),
 }
 """What reads the files that a housing names, by the field that names them."""
 SENT = READERS.keys() - {MODES_FILE}

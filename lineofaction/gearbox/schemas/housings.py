@@ -1,4 +1,4 @@
-"""Housings of a scene: matrices over their bearings, or the file of their solid."""
+"""Housings of a scene: matrices over their bearings, the file of their solid, or measured responses."""
 
 from __future__ import annotations
 
@@ -29,6 +29,7 @@ from lineofaction.gearbox.schemas.model import (
 
 _THREE = Field(min_length=3, max_length=3)
 Direction = Annotated[Listed[Annotated[float, Field(ge=-1.0, le=1.0)]], _THREE]
+Node = Annotated[int, Field(ge=0, le=2**31 - 1)]
 Rates = Annotated[Listed[Annotated[float, Field(ge=0.0, le=1e15)]], _THREE]
 
 
@@ -73,6 +74,20 @@ class HousingSeatInput(BoundaryModel):
     bore_diameter_mm: float
     bore_length_mm: float
     ring: str
+
+
+class SeatNodeInput(BoundaryModel):
+    """A reference node of measured responses: where and along what the seat of a bearing was pushed."""
+
+    bearing: Name = Field(description="The bushing or rolling bearing in the seat", examples=["input left"])
+    node: Node = Field(description="Its reference node in the file", examples=[1])
+
+
+class PointNodeInput(BoundaryModel):
+    """A response node of measured responses: where the motion was measured."""
+
+    name: Name = Field(description="Name of the point", examples=["cover"])
+    node: Node = Field(description="Its response node in the file", examples=[11])
 
 
 class HousingFootInput(BoundaryModel):
@@ -140,6 +155,8 @@ PERPENDICULAR = 1e-6
 """Cosine of the angle between axes."""
 SOURCES = ("step_file", "mesh_file")
 """Fields that name the file of a solid."""
+RESPONSES = "frf_file"
+"""The field that names the file of measured responses."""
 
 
 def _left_out(value: object) -> bool:
@@ -187,12 +204,24 @@ class _MatrixHousing(BoundaryModel):
 _MATRICES = ("stiffness_matrix", "damping_matrix", "mass_matrix", "seat_positions_mm", "modal_coordinates")
 _SOLID = ("material", "seats", "feet")
 _SETTINGS = (figure.field for figure in figures(ReductionSettings))
-_OF_SOLID = (*_SOLID, "points", "modal_damping", "mesh_unit", "origin_mm", "x_axis", "z_axis", *_SETTINGS)
+_AXES = ("x_axis", "z_axis")
+_OF_SOLID = (*_SOLID, "points", "modal_damping", "mesh_unit", "origin_mm", *_SETTINGS)
+_NODES = ("seat_nodes", "point_nodes")
+_BY_MATRICES, _BY_SOLID = "stiffness_matrix", "step_file or mesh_file"
+_FOREIGN = {
+    _BY_MATRICES: {_BY_SOLID: (*_OF_SOLID, *_AXES), RESPONSES: _NODES},
+    _BY_SOLID: {_BY_MATRICES: _MATRICES, RESPONSES: _NODES},
+    RESPONSES: {_BY_MATRICES: _MATRICES, _BY_SOLID: _OF_SOLID},
+}
+"""By what a housing is given by: the fields that belong to other kinds, by these."""
 
 
 @with_fields(declared_in(ReductionSettings))
 class HousingInput(_MatrixHousing):
-    """An elastic housing that several bearings share: by matrices, or by its solid, which is reduced."""
+    """An elastic housing that several bearings share: by matrices, or by its solid, which is reduced.
+
+    Or one that was measured, from the seats of bearings to points: it vibrates and does not act back.
+    """
 
     class HousingPointInput(BoundaryModel):
         """A named point of a housing whose motion is of interest."""
@@ -202,7 +231,9 @@ class HousingInput(_MatrixHousing):
             description="Where it is, x, y, z in the scene, mm", examples=[[40.0, 120.0, 50.0]]
         )
 
-    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of("stiffness_matrix", *SOURCES)))
+    model_config = ConfigDict(
+        json_schema_extra=stated(exactly_one_of("stiffness_matrix", *SOURCES, RESPONSES))
+    )
 
     modes: int
     element_size_mm: float | None
@@ -262,6 +293,25 @@ class HousingInput(_MatrixHousing):
     points: Listed[HousingPointInput] = Field(
         default=(), max_length=1000, description="Points of interest of the solid", exclude_if=_left_out
     )
+    frf_file: FileContentInput | None = Field(
+        default=None,
+        description="Universal file (dataset 58) of measured frequency responses from bearing seats to "
+        "points; a scene file has the name of the file",
+        examples=[{"name": "gearcase.uff", "content": "eJwDAAAAAAE="}],
+        exclude_if=_left_out,
+    )
+    seat_nodes: Listed[SeatNodeInput] = Field(
+        default=(),
+        max_length=1000,
+        description="Bearings by the reference nodes of frf_file",
+        exclude_if=_left_out,
+    )
+    point_nodes: Listed[PointNodeInput] = Field(
+        default=(),
+        max_length=1000,
+        description="Points by the response nodes of frf_file",
+        exclude_if=_left_out,
+    )
     origin_mm: Point | None = Field(
         default=None,
         description="Where the origin of the file is in the scene, x, y, z in mm; left out: at its origin",
@@ -287,6 +337,11 @@ class HousingInput(_MatrixHousing):
         return any(getattr(self, name) is not None for name in SOURCES)
 
     @property
+    def is_measured(self) -> bool:
+        """Whether it is given by measured responses, which move it and no shaft."""
+        return self.frf_file is not None
+
+    @property
     def has_surface(self) -> bool:
         """Whether its file may have a surface: matrices alone do not say what the air touches."""
         return self.is_solid or self.modes_file is not None
@@ -305,28 +360,64 @@ class HousingInput(_MatrixHousing):
     @classmethod
     def _bearings_of_seats(cls, data: Any) -> Any:
         """Fill in the bearings of the seats, so that the echo says them."""
-        seats = data.get("seats") if isinstance(data, dict) and not data.get("bushings") else None
-        if not isinstance(seats, list | tuple) or not seats:
+        if not isinstance(data, dict) or data.get("bushings"):
             return data
-        names = [seat.get("bearing") for seat in seats if isinstance(seat, dict)]
-        return data | {"bushings": names} if all(isinstance(name, str) for name in names) else data
+        seats, nodes = data.get("seats"), data.get("seat_nodes")
+        listed = seats or nodes
+        if not isinstance(listed, list | tuple) or not listed:
+            return data
+        names = [_bearing(seat) for seat in listed]
+        if None in names:
+            return data
+        return data | {"bushings": names if seats else list(dict.fromkeys(names))}
 
     @model_validator(mode="after")
     def _one_source(self) -> Self:
-        """Refuse what is missing from one kind of housing, and what belongs to the other."""
-        sources = [name for name in ("stiffness_matrix", *SOURCES) if getattr(self, name) is not None]
+        """Refuse what is missing from one kind of housing, and what belongs to another."""
+        every = ("stiffness_matrix", *SOURCES, RESPONSES)
+        sources = [name for name in every if getattr(self, name) is not None]
         if len(sources) != 1:
-            bound = "given, or step_file, mesh_file, stiffness_file or modes_file instead, one of them"
+            bound = (
+                "given, or step_file, mesh_file, stiffness_file, modes_file or frf_file instead, one of them"
+            )
             refuse("stiffness_matrix", sources or None, bound, "See docs/case-file.md.")
-        for name in _MATRICES if self.is_solid else _OF_SOLID:
-            if name in self.model_fields_set and getattr(self, name) not in (None, ()):
-                kind = "stiffness_matrix" if self.is_solid else "step_file or mesh_file"
-                refuse(name, "given", f"left out, or given with {kind}")
+        for kind, fields in _FOREIGN[self._kind].items():
+            for name in fields:
+                if name in self.model_fields_set and getattr(self, name) not in (None, ()):
+                    refuse(name, "given", f"left out, or given with {kind}")
         if self.is_solid:
             self._check_solid()
+        elif self.is_measured:
+            self._check_measured()
         elif not self.bushings:
             refuse("bushings", [], "a list of at least 1", "The bearings in the order of the matrix.")
         return self
+
+    @property
+    def _kind(self) -> str:
+        if self.is_measured:
+            return RESPONSES
+        return _BY_SOLID if self.is_solid else _BY_MATRICES
+
+    def _check_measured(self) -> None:
+        advice = {
+            "seat_nodes": 'For example [{bearing = "input left", node = 1}].',
+            "point_nodes": 'For example [{name = "cover", node = 11}].',
+        }
+        for name in _NODES:
+            nodes = [part.node for part in getattr(self, name)]
+            if not nodes:
+                refuse(name, None, "given with frf_file", advice[name])
+            repeated = next((i for i, node in enumerate(nodes) if node in nodes[:i]), None)
+            if repeated is not None:
+                refuse(f"{name}[{repeated}].node", nodes[repeated], "a node that no other one of them has")
+        if self.bushings != tuple(dict.fromkeys(part.bearing for part in self.seat_nodes)):
+            bound = "left out with seat_nodes"
+            refuse("bushings", list(self.bushings), bound, "The nodes of seats name their bearings.")
+        if self.damping_ratio != type(self).model_fields["damping_ratio"].default:
+            bound = "left out with frf_file"
+            refuse("damping_ratio", self.damping_ratio, bound, "The responses hold the damping.")
+        self._check_axes()
 
     def _check_solid(self) -> None:
         advice = {
@@ -348,15 +439,24 @@ class HousingInput(_MatrixHousing):
             refuse("mesh_unit", self.mesh_unit, bound, 'Unit of its coordinates: "mm" or "m".')
         if self.mesh_file is not None and self.element_size_mm is not None:
             refuse("element_size_mm", self.element_size_mm, "left out with mesh_file")
-        for axis in ("x_axis", "z_axis"):
+        self._check_axes()
+        for kind in ("feet", "points"):
+            names = [part.name for part in getattr(self, kind)]
+            repeated = next((i for i, name in enumerate(names) if name in names[:i]), None)
+            if repeated is not None:
+                refuse(f"{kind}[{repeated}].name", names[repeated], "a name that no other one of them has")
+
+    def _check_axes(self) -> None:
+        for axis in _AXES:
             if getattr(self, axis) is not None and not any(getattr(self, axis)):
                 refuse(axis, list(getattr(self, axis)), "a direction: not all zero")
         across = sum(x * z for x, z in zip(self.own_x_axis, self.own_z_axis, strict=True))
         if abs(across) > PERPENDICULAR * math.hypot(*self.own_x_axis) * math.hypot(*self.own_z_axis):
             bound = f"perpendicular to z_axis, {list(self.own_z_axis)}"
             refuse("x_axis", list(self.own_x_axis), bound, "Give both where the file is turned.")
-        for kind in ("feet", "points"):
-            names = [part.name for part in getattr(self, kind)]
-            repeated = next((i for i, name in enumerate(names) if name in names[:i]), None)
-            if repeated is not None:
-                refuse(f"{kind}[{repeated}].name", names[repeated], "a name that no other one of them has")
+
+
+def _bearing(seat: Any) -> str | None:
+    """Return the bearing of a table of seats, before it is validated; None without a name."""
+    name = seat.get("bearing") if isinstance(seat, dict) else getattr(seat, "bearing", None)
+    return name if isinstance(name, str) else None

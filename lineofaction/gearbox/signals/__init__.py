@@ -3,6 +3,7 @@
 from lineofaction.gearbox.signals.channel import Channel
 from lineofaction.gearbox.signals.recording import (
     ENDINGS,
+    UNIVERSAL,
     Recording,
     begins_with_time,
     read_frequency_responses,
@@ -11,6 +12,7 @@ from lineofaction.gearbox.signals.recording import (
 
 __all__ = [
     "ENDINGS",
+    "UNIVERSAL",
     "Channel",
     "Recording",
     "begins_with_time",

@@ -32,6 +32,8 @@ FORMATS = {
 }
 """Reader and noun of a format, by the ending of the file."""
 ENDINGS = tuple(FORMATS)
+UNIVERSAL = tuple(ending for ending, (reader, _) in FORMATS.items() if reader == "universal")
+"""Endings of universal files."""
 _EXTRAS = {"universal": ("pyuff", "uff"), "frequency_responses": ("pyuff", "uff"), "mdf": ("asammdf", "mdf")}
 """Module and extra of the readers that a base install lacks."""
 _WORKER = Path(__file__).with_name("worker.py")
@@ -87,9 +89,8 @@ def read_frequency_responses(path: Path, field: str) -> tuple[Channel, ...]:
 
     Raises `BadInput` as `read_recording`, and where one does not state its unit.
     """
-    endings = tuple(ending for ending, (reader, _) in FORMATS.items() if reader == "universal")
-    if path.suffix.lower() not in endings:
-        raise BadInput.of(field, path.name, f"a file that ends in {', '.join(endings)}")
+    if path.suffix.lower() not in UNIVERSAL:
+        raise BadInput.of(field, path.name, f"a file that ends in {', '.join(UNIVERSAL)}")
     return _channels(path, ("frequency_responses", "a universal file"), field, ())
 
 

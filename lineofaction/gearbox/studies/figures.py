@@ -158,7 +158,7 @@ def _figure(kind: Any, value: Any, convert: Callable[[Any], Any]) -> Any:
     if isinstance(kind, type) and issubclass(kind, Part):
         *sources, own = value if isinstance(value, tuple) and not hasattr(value, "_fields") else (value, {})
         return figures_of(kind, *sources, **own)
-    if isinstance(value, np.ndarray) and not _holds_none(kind):
+    if isinstance(value, np.ndarray) and (not _holds_none(kind) or _is_finite(value)):
         return convert(value).tolist()
     if get_origin(kind) in (list, tuple):
         return [_figure(parts[0], entry, convert) for entry in value]
@@ -173,6 +173,11 @@ def _present(kind: Any) -> tuple[Any, bool]:
         return kind, False
     parts = [part for part in get_args(kind) if part is not NoneType]
     return (parts[0] if len(parts) == 1 else Any), NoneType in get_args(kind)
+
+
+def _is_finite(values: np.ndarray) -> bool:
+    """Whether an array is of finite numbers, none of which is None in a document."""
+    return values.dtype.kind in "fiu" and bool(np.all(np.isfinite(values)))
 
 
 @cache

@@ -2,38 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
 from bounds.types import FloatArray, IntArray
 from dynamics.vibration import VibrationAnalysis, vibration_level
-from dynamics.vibration.vibration_analysis import Shares
-from lineofaction.gearbox.studies.vibration.run import MM_PER_S, HousingVibrationResult
+from lineofaction.gearbox.studies.vibration.measured import MeasuredHousingVibration
+from lineofaction.gearbox.studies.vibration.run import MM_PER_S, HousingVibrationResult, Result
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
     Axis,
-    Bars,
     Figure,
     Line,
     Panel,
     Reference,
     Table,
     category_lines,
-    largest,
     number,
 )
 from lineofaction.report.drawing.marks import order_words, shown_orders
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.surface_view import shape_figure
 from lineofaction.report.housing.forces import force_words, row_axis
+from lineofaction.report.housing.measured_vibration import (
+    measured_figure,
+    measured_page,
+    measured_series,
+    measured_text,
+)
+from lineofaction.report.housing.shares import share_panel, share_rows, speed_words
 from lineofaction.report.presentation import Presentation, dynamics_page, model_text
 from lineofaction.report.response.excitations import excitation_figures, excitation_table
 
-SHOWN = 12
-"""Modes in the table of contributions."""
+Shown = TypeVar("Shown")
 _LARGEST_HEAD = (
     "velocity of", "order", "speed, rpm", "frequency, Hz", "nearest mode, Hz", "rms, mm/s",
     "level, dB re 1 nm/s", "within valid modes",
@@ -69,23 +74,10 @@ def _contribution_table(result: HousingVibrationResult) -> Table:
     analysis = result.analysis
     head = ["part", "frequency, Hz", *(f"{point}, %" for point in analysis.vibration.point)]
     with_surface = analysis.deflection is not None
-    rows = [*_rows(analysis.bearings, with_surface), *_rows(analysis.modes, with_surface)]
+    rows = [*share_rows(analysis.bearings, with_surface), *share_rows(analysis.modes, with_surface)]
     if with_surface:
         head.append("outer hull, %")
     return Table(f"Contributions to the mean square velocity at {_where(analysis)}", tuple(head), tuple(rows))
-
-
-def _rows(shares: Shares, with_surface: bool) -> list[tuple[str, ...]]:
-    every = np.vstack([shares.point, shares.surface]) if with_surface else shares.point
-    most = largest(np.max(np.abs(every), axis=0), SHOWN)
-    return [
-        (
-            shares.name[p],
-            number(shares.frequency[p], 5) if np.isfinite(shares.frequency[p]) else "",
-            *(f"{100.0 * float(value):.1f}" for value in every[:, p]),
-        )
-        for p in most
-    ]
 
 
 def _series(result: HousingVibrationResult) -> Table:
@@ -108,7 +100,7 @@ def _series(result: HousingVibrationResult) -> Table:
     return Table("Velocities by speed and order", tuple(head), rows)
 
 
-SHOWN_ORDERS, SHOWN_POINTS, SHOWN_SEATS, SHOWN_MODES = 6, 3, 4, 8
+SHOWN_ORDERS, SHOWN_POINTS, SHOWN_SEATS = 6, 3, 4
 
 
 def _velocity_figure(result: HousingVibrationResult) -> Figure:
@@ -206,25 +198,9 @@ def _contribution_figure(result: HousingVibrationResult) -> Figure:
             f"Most comes from {shares.name[int(np.argmax(part))]}, {number(100.0 * float(part.max()), 3)} %."
             for shares, part in both
         ),
-        content=tuple(_share_panel(*each) for each in both),
+        content=tuple(share_panel(*each) for each in both),
         table=_contribution_table(result),
     )
-
-
-def _share_panel(shares: Shares, part: FloatArray) -> Panel:
-    most = largest(np.abs(part), SHOWN_MODES)
-    values = [100.0 * float(part[p]) for p in most]
-    names = [_name(shares, p) for p in most]
-    if len(most) < part.size:
-        names.append("others")
-        values.append(100.0 - sum(values))
-    bars = Bars("contribution", np.arange(float(len(names))), np.array(values), 0.0, 0.6, palette.BLUE)
-    return Panel(Axis.of_names(names), Axis("contribution, %"), bars=(bars,))
-
-
-def _name(shares: Shares, index: int) -> str:
-    hertz = float(shares.frequency[index])
-    return f"{number(hertz, 4)} Hz" if np.isfinite(hertz) else shares.name[index]
 
 
 def _shape_figure(result: HousingVibrationResult) -> Figure | None:
@@ -270,10 +246,10 @@ def _headlines(result: HousingVibrationResult) -> tuple[Headline, ...]:
         rms = vibration.rms[(slice(None), *at)]
         fastest = int(np.argmax(rms))
         name = f"velocity of {vibration.point[fastest]}"
-        first = Headline(name, _speed(float(rms[fastest])), _where(analysis))
+        first = Headline(name, speed_words(float(rms[fastest])), _where(analysis))
     else:
         rms_of_hull = float(vibration.mean_square_velocity[at]) ** 0.5
-        first = Headline("velocity of the outer hull", _speed(rms_of_hull))
+        first = Headline("velocity of the outer hull", speed_words(rms_of_hull))
     most = []
     for what, shares in (("bearing", analysis.bearings), ("mode", analysis.modes)):
         part = shares.surface if surface else shares.point[0]
@@ -282,10 +258,6 @@ def _headlines(result: HousingVibrationResult) -> tuple[Headline, ...]:
         share = f"{hertz}{number(100.0 * float(part[p]), 3)} % of the mean square"
         most.append(Headline(f"{what} that contributes most", shares.name[p], share))
     return (first, *most)
-
-
-def _speed(rms: float) -> str:
-    return f"{number(rms / MM_PER_S, 3)} mm/s rms"
 
 
 def _text(result: HousingVibrationResult) -> Iterator[Table | str]:
@@ -303,6 +275,24 @@ def _text(result: HousingVibrationResult) -> Iterator[Table | str]:
     yield from model_text(analysis.facts)
 
 
+def _first_figure(result: HousingVibrationResult) -> Figure:
+    return _shape_figure(result) or _velocity_figure(result)
+
+
+def _by_kind(
+    modeled: Callable[[HousingVibrationResult], Shown], measured: Callable[[MeasuredHousingVibration], Shown]
+) -> Callable[[Result], Shown]:
+    """Return what shows a result by the kind of its housing."""
+
+    def shown(result: Result) -> Shown:
+        return measured(result) if isinstance(result, MeasuredHousingVibration) else modeled(result)
+
+    return shown
+
+
 PAGE = Presentation(
-    lambda result: _shape_figure(result) or _velocity_figure(result), _page, _text, series=_series
+    _by_kind(_first_figure, measured_figure),
+    _by_kind(_page, measured_page),
+    _by_kind(_text, measured_text),
+    series=_by_kind(_series, measured_series),
 )

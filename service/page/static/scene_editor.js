@@ -402,6 +402,6 @@ const RESPONSES = [
 const NONE = "No scene yet: write that of the pair, open a file or a gear unit, or type it as TOML.";
 const HELP = "Shafts, gears, bearings, meshes, drives and loads as in a scene file. A mesh carries its pair written out "
   + "([meshes.case]), names a result of this service (database_hash) or a file: choose the files of cases, flanks "
-  + "and housings (STEP, mesh) together with the scene. "
+  + "and housings (STEP, mesh, measured responses as UFF) together with the scene. "
   + "Speeds are those of the first driven shaft. A sound is that of the last run over time that was shown here, through "
   + "the housing of the scene, in the scene's frame.";

@@ -160,6 +160,13 @@ function branch(title, items) {
   return made;
 }
 
+/** What a housing is given by. @param {any} housing */
+function housingWords(housing) {
+  if (isSolid(housing)) return "housing";
+  if (!housing.frf_file) return "housing by matrices, which have no surface to draw";
+  return `housing by measured responses (${housing.frf_file.name}), which have no surface to draw`;
+}
+
 /** The parts of a scene: shafts with what sits on them, and housings. @param {any} scene @param {(name: string, fact: string) => HTMLElement} part */
 function branches(scene, part) {
   const bearings = [...(scene.rolling_bearings ?? []), ...(scene.bushings ?? [])];
@@ -175,7 +182,7 @@ function branches(scene, part) {
     row.append(make("ul", {}, ...items));
     return [row];
   });
-  const housings = (scene.housings ?? []).map((housing) => part(housing.name, `${housing.name}: housing${isSolid(housing) ? "" : " by matrices, which have no surface to draw"}.`));
+  const housings = (scene.housings ?? []).map((housing) => part(housing.name, `${housing.name}: ${housingWords(housing)}.`));
   return [branch("Shafts", shafts), ...(housings.length ? [branch("Housing", housings)] : [])];
 }
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene
 
@@ -12,6 +15,7 @@ from benchmarks.dynamic_influence_estimates import STUDY, AssessedLevel, assess,
 from dynamics.ablation import ablate
 from dynamics.assembly.assemble import assemble
 from dynamics.effects import EFFECTS
+from dynamics.influence.level_change import LevelChange
 from dynamics.meshes.standard_sliding import StandardTeeth
 from dynamics.meshes.stiffness_table import straight_table
 
@@ -47,6 +51,20 @@ def test_an_ablation_is_assessed_beside_its_estimate() -> None:
     assert all(one.right) and one.level_right
     assert one.decibels == (made.effects[0].level.decibels, made.effects[0].level_change.decibels)
     assert one.measured[2] == pytest.approx(-1.0)
+
+
+def test_levels_are_compared_at_the_order_of_the_estimate() -> None:
+    """Amplitudes of orders 1 and 2 change by 9 and 8: the run names order 1, the estimate the other."""
+    (entry,) = ablate(gear_pair_scene(duration=0.06), only=["lateral"]).effects
+    order, estimate = np.array([1.0, 2.0]), entry.estimate
+    assert estimate is not None
+    told = replace(
+        entry,
+        with_effect=replace(entry.with_effect, line_order=order, line_square=np.array([100.0, 1.0])),
+        without_effect=replace(entry.without_effect, line_order=order, line_square=np.array([1.0, 81.0])),
+        estimate=replace(estimate, level=LevelChange("bearing forces", "dB", 2.0, 19.0, 0.8)),
+    )
+    assert assess("pair", told).decibels == (19.0, pytest.approx(20.0 * math.log10(9.0)))
 
 
 def test_every_effect_can_be_on_in_some_scene(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -59,6 +59,15 @@ def test_the_moment_of_the_load_is_what_a_misalignment_works_on(hand: int) -> No
     assert of_moment(table.load_arm) == pytest.approx(by_tilt, abs=2e-3)
     off = np.abs(of_moment(table.face_centroid) - by_tilt).max()
     assert off > 0.01 if hand else np.array_equal(table.load_arm, table.face_centroid)
+    np.testing.assert_allclose(table.load_arm, arm_of_pairs(table), rtol=0.0, atol=1e-12)
+
+
+def arm_of_pairs(table: SteDatabase) -> np.ndarray:
+    """Return the arm by shares of pairs and where they touch: z_c / cos^2 beta_b - tan beta_b sum c_j y_j."""
+    twist = math.tan(table.facts.base_helix_angle) * np.sign(table.facts.helix_hand or 1)
+    way = (table.position[:, None] % 1.0 + table.pair) * table.facts.base_pitch
+    along = np.einsum("pfmdn,pn->pfmd", table.load_share, way)
+    return np.asarray(table.face_centroid * (1.0 + twist**2) - twist * along)
 
 
 def test_a_tilted_pair_has_the_ripple_of_gears_that_were_rotated_in_space(monkeypatch) -> None:

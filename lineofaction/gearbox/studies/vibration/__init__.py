@@ -20,7 +20,10 @@ class Inputs(OverSpeedsOrRun):
     """Speeds at which a housing's vibration is looked for, and where its parts are."""
 
     housing: str | None = Field(
-        default=None, max_length=255, description="Name of the housing; default: the first with a surface"
+        default=None,
+        max_length=255,
+        description="Name of the housing; default: the first with a surface or points, then the first "
+        "that was measured",
     )
     at_rpm: float | None = Field(
         default=None,
@@ -50,15 +53,16 @@ class VibrationFigures(Figures):
         """Velocity of a point, root mean square, by order, then by speed; x, y, z in the scene's frame.
 
         `left_out_mm_per_s` is the part of the overall velocity in orders of long tables that are not listed,
-        `overall_error_mm_per_s` what it may be off for them.
+        `overall_error_mm_per_s` what it may be off for them. Of a measured housing x, y, z are those of its
+        file; null: outside the measured band, along an axis that nobody measured, or not known.
         """
 
-        velocity_mm_per_s: list[list[float]]
-        velocity_xyz_mm_per_s: list[list[list[float]]]
-        overall_mm_per_s: list[float]
-        left_out_mm_per_s: list[float]
-        overall_error_mm_per_s: list[float]
-        level_db: list[list[float]]
+        velocity_mm_per_s: list[list[float | None]]
+        velocity_xyz_mm_per_s: list[list[list[float | None]]]
+        overall_mm_per_s: list[float | None]
+        left_out_mm_per_s: list[float | None]
+        overall_error_mm_per_s: list[float | None]
+        level_db: list[list[float | None]]
 
     class Contributions(Part):
         """Contributions at one speed and order."""
@@ -68,7 +72,7 @@ class VibrationFigures(Figures):
 
             name: str
             frequency_hz: float | None
-            points: dict[str, float]
+            points: dict[str, float | None]
             surface: float | None
 
         speed_rpm: float
@@ -76,6 +80,19 @@ class VibrationFigures(Figures):
         frequency_hz: float
         bearings: list[Contribution]
         modes: list[Contribution]
+
+    class Measurement(Part):
+        """A measured housing: its file, first line, axes of points, and forces that no function carries.
+
+        `omitted_part` is their part of the sum of the squared forces, by order, then by speed.
+        """
+
+        file: str
+        lowest_frequency_hz: float
+        axes: dict[str, str]
+        omitted_forces: list[str]
+        omitted_part: list[list[float]]
+        omits_moments: bool
 
     leading_shaft: str
     housing: str
@@ -93,3 +110,5 @@ class VibrationFigures(Figures):
     cpu_seconds: Seconds
     reduction_cost: ReductionCosts
     effect_ledger: Ledger
+    measured: Measurement | None = None
+    left_out: list[str] = Field(default_factory=list)

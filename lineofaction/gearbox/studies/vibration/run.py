@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
+from typing import TypeAlias
 
 import numpy as np
 
@@ -27,6 +28,7 @@ from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.level_quantity import velocity_of
 from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.housings import HousingInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
 from lineofaction.gearbox.studies.cost import StudyCost
@@ -35,10 +37,16 @@ from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.housings import bearing_forces, predicted_forces
 from lineofaction.gearbox.studies.motion import OfferedMotion, UnitMotion
 from lineofaction.gearbox.studies.vibration import Inputs, VibrationFigures
+from lineofaction.gearbox.studies.vibration.measured import (
+    MeasuredHousingVibration,
+    chosen_measurement,
+    measured_figures,
+    measured_result,
+)
 from lineofaction.gearbox.units import RPM
 
 MM_PER_S = 1e-3
-_ADVICE = "Give a housing by step_file, mesh_file or modes_file: see docs/how-to/vibration.md."
+_ADVICE = "Give a housing by step_file, mesh_file, modes_file or frf_file: see docs/how-to/vibration.md."
 
 
 @dataclass(frozen=True)
@@ -63,10 +71,13 @@ class HousingVibrationResult:
         return self.mode_shape or self.analysis.deflection
 
 
-def _write_shape(result: HousingVibrationResult, _scene: SceneInput, file: Path) -> None:
+Result: TypeAlias = HousingVibrationResult | MeasuredHousingVibration
+
+
+def _write_shape(result: Result, _scene: SceneInput, file: Path) -> None:
     """Write the shape that is drawn for ParaView: in phase, out of phase, and the size of both."""
-    shape = result.shape
-    if shape is None:
+    shape = None if isinstance(result, MeasuredHousingVibration) else result.shape
+    if isinstance(result, MeasuredHousingVibration) or shape is None:
         raise BadInput.of("output", str(file), "another ending than .vtu", "The housing has no surface.")
     name = f"mode_{result.mode}" if result.mode else "velocity"
     fields = {
@@ -77,24 +88,30 @@ def _write_shape(result: HousingVibrationResult, _scene: SceneInput, file: Path)
     write_surface(file, shape.points, shape.triangles, fields)
 
 
-class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, HousingVibrationResult]):
+class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, Result]):
     inputs, answer = Inputs, VibrationFigures
-    file = record_file(("housing vibration", HousingVibrationResult))
+    file = record_file(
+        ("housing vibration", HousingVibrationResult),
+        ("measured housing vibration", MeasuredHousingVibration),
+    )
     writers = MappingProxyType({".vtu": _write_shape})
 
     def check(self, scene: SceneInput, _inputs: Inputs) -> None:
-        """Refuse a scene of whose housings none has a solid or a file of modes."""
-        if not any(part.has_surface for part in scene.housings):
+        """Refuse a scene of whose housings none has a solid, a file of modes or measured responses."""
+        if not any(map(_vibrates, scene.housings)):
             value = f"{len(scene.housings)} by their matrices" if scene.housings else "none"
             raise BadInput.of("housings", value, "one with mass, a surface or points", _ADVICE)
 
     def predicted(self, scene: SceneInput, inputs: Inputs, _cache: Path | None) -> StudyCost | None:
         """Return what the forces on bearings take, with which the motion of the housing is a product."""
-        seen = any(part.has_surface for part in scene.housings)
+        seen = any(map(_vibrates, scene.housings))
         return predicted_forces(scene, inputs) if seen else None
 
-    def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> HousingVibrationResult:
+    def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> Result:
         tabled = subject.steady
+        measurement = chosen_measurement(tabled, inputs.housing)
+        if measurement is not None:
+            return measured_result(tabled, measurement, inputs, means)
         name, housing = _chosen(tabled, inputs.housing)
         with boundary_errors():
             quantity = velocity_of(tabled.scene, name, housing)
@@ -117,8 +134,10 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, HousingVibrationResul
         analysis = with_facts_of_scene(analysis, tabled)
         return HousingVibrationResult(analysis, housing.frequency, inputs.mode or 0, mode)
 
-    def motions(self, result: HousingVibrationResult) -> list[OfferedMotion]:
+    def motions(self, result: Result) -> list[OfferedMotion]:
         """Return the surface's velocity where it was looked at, and the mode that is drawn."""
+        if isinstance(result, MeasuredHousingVibration):
+            return []
         analysis, offered = result.analysis, []
         if (shape := analysis.deflection) is not None:
             vibration, at = analysis.vibration, (analysis.at_speed, analysis.at_order)
@@ -135,7 +154,9 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, HousingVibrationResul
             )
         return offered
 
-    def figures(self, result: HousingVibrationResult) -> Json:
+    def figures(self, result: Result) -> Json:
+        if isinstance(result, MeasuredHousingVibration):
+            return measured_figures(result)
         analysis, vibration = result.analysis, result.analysis.vibration
         return figures_of(
             VibrationFigures,
@@ -157,10 +178,16 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, HousingVibrationResul
         )
 
 
+def _vibrates(housing: HousingInput) -> bool:
+    """Whether something of a housing may be looked at: matrices alone do not say what moves."""
+    return housing.has_surface or housing.is_measured
+
+
 def _chosen(tabled: TabledScene, name: str | None) -> tuple[str, ReducedHousing]:
     """Return the housing of a name, or the first with a surface or points."""
     if name is not None and name not in tabled.housings:
-        raise BadInput.of("housing", name, f"one of {', '.join(tabled.housings) or 'none'}", _ADVICE)
+        known = ", ".join(part.name for part in tabled.inputs.housings if _vibrates(part))
+        raise BadInput.of("housing", name, f"one of {known or 'none'}", _ADVICE)
     for own, housing in tabled.housings.items():
         if own == name or (name is None and (housing.surface is not None or housing.points)):
             return own, housing

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from flexible_scenes import flexible_pair
-from geared_scenes import gear_pair_scene, spring_table
+from geared_scenes import gear_pair_scene, spring_table, with_gear
 from planetary_scenes import driven_scene, published_set
 
 from dynamics.assembly.assemble import System, assemble
@@ -23,7 +23,17 @@ from dynamics.linearize import (
     natural_modes,
     whirl_modes,
 )
-from dynamics.linearize.campbell import _continued, _whirl, _WhirlModes, likeness, modes_at
+from dynamics.linearize.campbell import (
+    FINEST,
+    INTERVALS,
+    _continued,
+    _whirl,
+    _WhirlModes,
+    branches_up_to,
+    likeness,
+    modes_at,
+    whirl_branches,
+)
 from dynamics.linearize.flank_cycles import averaged, flank_cycles, resting
 from dynamics.linearize.linear_system import LinearSystem
 from dynamics.loads import TimeLaw
@@ -272,3 +282,36 @@ def test_of_shapes_that_are_equally_alike_the_nearest_frequency_goes_on(frequenc
         for each, shape in (((100.0, 200.0), along), (frequency, round_about))
     )
     assert _continued(linear, before, [4, 7], after) == [4 if each < 150.0 else 7 for each in frequency]
+
+
+def unlike_shafts():
+    """An elastic pair whose shafts bend unlike, at 24 000 rpm."""
+    return with_gear(flexible_pair(speed=TimeLaw.constant(2500.0)), 0, position=0.09)
+
+
+@pytest.mark.law
+@pytest.mark.parametrize(("scene", "most"), [(disc_scene(), FINEST), (unlike_shafts(), 2 * INTERVALS)])
+def test_fewer_speeds_tell_the_same_branches(scene, most) -> None:
+    """Those of 33 speeds: the same modes at speeds of both, between them within 0.2 % of straight lines."""
+    system = assemble(scene)
+    linear, highest = linearize(system), float(system.scene.references[0].speed.extreme)
+    every = whirl_branches(system, linear, np.linspace(0.0, highest, FINEST + 1))
+    found = branches_up_to(system, linear, highest)
+    assert INTERVALS < found.speed.size <= most
+    assert found.speed[[0, -1]].tolist() == [0.0, highest]
+    rows = np.searchsorted(every.speed, found.speed)
+    np.testing.assert_array_equal(every.speed[rows], found.speed)
+    np.testing.assert_allclose(found.frequency, every.frequency[rows], rtol=1e-9)
+    apart = np.abs(np.diff(np.sort(found.frequency, axis=1), axis=1)) > 1e-6 * found.frequency[:, :1]
+    if np.all(apart[1:]):  # repeated modes, as of equal shafts, change their places
+        np.testing.assert_array_equal(found.whirl[1:], every.whirl[rows[1:]])
+    for branch, exact in zip(found.frequency.T, every.frequency.T, strict=True):
+        np.testing.assert_allclose(np.interp(every.speed, found.speed, branch), exact, rtol=2e-3)
+
+
+def test_a_mode_that_changes_its_shape_is_looked_at_between(monkeypatch) -> None:
+    """Held to more likeness than there is, every part is halved to the finest."""
+    system = assemble(disc_scene())
+    linear = linearize(system)
+    monkeypatch.setattr(campbell, "ALIKE", 1.1)
+    assert branches_up_to(system, linear, 300.0).speed.size == FINEST + 1

@@ -1,0 +1,240 @@
+"""Vibration of a housing of which frequency responses were measured, under the bearing forces of a scene."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from bounds import engineering
+from bounds.types import BoolArray, FloatArray, Json
+from dynamics.vibration import (
+    Direction,
+    MeasuredMobility,
+    MeasuredVibration,
+    bearing_shares,
+    measured_vibration,
+    vibration_level,
+)
+from host import cpu_seconds
+from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.measured_housings import housing_mobility
+from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.housings import HousingInput
+from lineofaction.gearbox.studies.computation import Means
+from lineofaction.gearbox.studies.excitations import order_names, with_facts_of_scene
+from lineofaction.gearbox.studies.figures import figures_of
+from lineofaction.gearbox.studies.housings import bearing_forces
+from lineofaction.gearbox.studies.vibration import Inputs, VibrationFigures
+from lineofaction.gearbox.units import RPM
+
+_NO_SHAPE = "Responses from seats to points hold no shapes of modes; a housing by its solid has them."
+
+
+@dataclass(frozen=True)
+class MeasuredHousingVibration:
+    """Vibration of a measured housing over speed, and through which bearings at one speed and order."""
+
+    housing: str
+    file: str
+    """Name of the file of the responses."""
+    lowest_frequency: float
+    highest_frequency: float
+    """`lowest_frequency`, `highest_frequency`: First and last line of the measurement, Hz."""
+    response: tuple[Direction, ...]
+    """Points and the axes of the file along which their motion was measured."""
+    vibration: MeasuredVibration
+    at_speed: int
+    at_order: int
+    """`at_speed`, `at_order`: Indices of the speed and the order looked at."""
+    bearing: tuple[str, ...]
+    """e bearings whose seats were pushed."""
+    share: FloatArray
+    """What each contributes there to the mean square velocity of each point; NaN of one at rest. Shape (e,
+    k).
+    """
+    facts: Json = field(default_factory=dict)
+    """Plain JSON, of the response."""
+
+    @property
+    def axes(self) -> dict[str, str]:
+        """Return the measured axes of each point, as ``xz``."""
+        return {
+            name: "".join("xyz"[part.axis] for part in self.response if part.name == name)
+            for name in self.vibration.point
+        }
+
+    @property
+    def orders_beyond(self) -> FloatArray:
+        """Return the orders that leave the measured band at one speed or more."""
+        return np.asarray(self.vibration.order[~np.all(self.vibration.covered, axis=0)])
+
+    @property
+    def left_out(self) -> list[str]:
+        """Return sentences on what the responses replace, and on what they cannot say."""
+        vibration = self.vibration
+        band = f"{engineering(self.lowest_frequency, 5)} to {engineering(self.highest_frequency, 5)} Hz"
+        sentences = [
+            f"{self.file} moves the points of {self.housing} in place of modes. The housing does not act "
+            "back: the forces are those of the scene, with the stiffness that its bearings and other "
+            "housings have.",
+            "There are no modes, no surface, no deflection shape and no sound: the file holds functions "
+            "from seats to points.",
+        ]
+        if outside := int(np.sum(~vibration.covered)):
+            sentences.append(
+                f"{outside} of {vibration.covered.size} pairs of speed and order lie outside the measured "
+                f"band, {band}: they have no velocity and are not in the overall value."
+            )
+        sentences += [
+            f"{name} was measured along {', '.join(axes)} of the file: its velocity holds no other direction."
+            for name, axes in self.axes.items()
+            if len(axes) < 3
+        ]
+        if vibration.omitted:
+            most = engineering(100.0 * float(np.max(vibration.omitted_force)), 3)
+            forces = ", ".join(map(str, vibration.omitted))
+            sentences.append(
+                f"Forces without a measured function do not move the points: {forces}, up to {most} % of "
+                "the sum of the squared forces."
+            )
+        if vibration.moments:
+            sentences.append("The moments of the bearings on their seats do not move the points.")
+        if vibration.floor:
+            sentences.append("Orders of long tables that are not listed do not move the points.")
+        return sentences
+
+
+def chosen_measurement(subject: TabledScene, name: str | None) -> HousingInput | None:
+    """Return the measured housing of a name; without a name the first, if no other has a surface or points.
+
+    None: another kind of housing is looked at.
+    """
+    measured = [part for part in subject.inputs.housings if part.is_measured]
+    if name is not None:
+        return next((part for part in measured if part.name == name), None)
+    modeled = any(body.surface is not None or body.points for body in subject.housings.values())
+    return None if modeled or not measured else measured[0]
+
+
+def measured_result(
+    subject: TabledScene, housing: HousingInput, inputs: Inputs, means: Means
+) -> MeasuredHousingVibration:
+    """Return the vibration of a measured housing; effects are sized by the quantity of the scene.
+
+    Raises `BadInput`: a mode is asked for, or nothing that is asked for lies inside the measured band.
+    """
+    if inputs.mode is not None:
+        raise BadInput.of("mode", inputs.mode, "left out of a measured housing", _NO_SHAPE)
+    assert housing.frf_file is not None  # the caller has chosen a measured one
+    mobility = housing_mobility(housing)
+    response = bearing_forces(subject, inputs, means)
+    began = cpu_seconds()
+    covered = mobility.covers(response.frequency)
+    _require_band(covered, mobility, "run" if means.run is not None else "speed_rpm")
+    with boundary_errors():
+        vibration = measured_vibration(response, mobility)
+        at = _place(vibration, mobility, inputs)
+        shares = bearing_shares(response, mobility)[(..., *at)]
+    facts = response.facts
+    seconds = {**facts["seconds"], "vibration": cpu_seconds() - began}
+    result = MeasuredHousingVibration(
+        housing.name,
+        housing.frf_file.name,
+        float(mobility.frequency[0]),
+        float(mobility.frequency[-1]),
+        mobility.response,
+        vibration,
+        *at,
+        mobility.bearings,
+        shares,
+        {**facts, "seconds": seconds},
+    )
+    return with_facts_of_scene(result, subject)
+
+
+def _require_band(covered: BoolArray, mobility: MeasuredMobility, field: str, value: object = None) -> None:
+    """Refuse what lies outside the measured band as a whole; raises `BadInput`."""
+    if np.any(covered):
+        return
+    ends = (engineering(float(mobility.frequency[end]), 5) for end in (0, -1))
+    bound = f"such that an order lies inside the measured band, {next(ends)} to {next(ends)} Hz"
+    raise BadInput.of(field, value, bound, "Choose other speeds or more orders.")
+
+
+def _place(vibration: MeasuredVibration, mobility: MeasuredMobility, inputs: Inputs) -> tuple[int, int]:
+    """Return the indices of the speed and order to look at: the nearest, or where a point moves fastest."""
+    near = np.ones(vibration.frequency.shape, dtype=bool)
+    if inputs.at_rpm is not None:
+        row = np.argmin(np.abs(vibration.speed - inputs.at_rpm * RPM))
+        near &= (np.arange(vibration.speed.size) == row)[:, None]
+        _require_band(near & vibration.covered, mobility, "at_rpm", inputs.at_rpm)
+    if inputs.at_order is not None:
+        near &= np.arange(vibration.order.size) == np.argmin(np.abs(vibration.order - inputs.at_order))
+        _require_band(near & vibration.covered, mobility, "at_order", inputs.at_order)
+    near &= vibration.covered
+    size = np.where(near, vibration.rms.max(axis=0), -1.0)
+    row, column = np.unravel_index(int(np.argmax(size)), size.shape)
+    return int(row), int(column)
+
+
+def measured_figures(result: MeasuredHousingVibration) -> Json:
+    """Return the figures of a measured housing; None stands for what lies outside the measured band."""
+    vibration, at = result.vibration, (result.at_speed, result.at_order)
+    shares = [
+        {
+            "name": name,
+            "frequency": None,
+            "points": dict(zip(vibration.point, result.share[number], strict=True)),
+            "surface": None,
+        }
+        for number, name in enumerate(result.bearing)
+    ]
+    return figures_of(
+        VibrationFigures,
+        result,
+        vibration,
+        result.facts,
+        order_name=order_names(vibration.order, result.facts),
+        natural_frequency=np.empty(0),
+        highest_valid_frequency=result.highest_frequency,
+        points={name: _point(vibration, k) for k, name in enumerate(vibration.point)},
+        surface=None,
+        contributions={
+            "speed": vibration.speed[at[0]],
+            "order": vibration.order[at[1]],
+            "frequency": vibration.frequency[at],
+            "bearings": shares,
+            "modes": [],
+        },
+        measured=_measurement(result),
+    )
+
+
+def _measurement(result: MeasuredHousingVibration) -> Json:
+    vibration = result.vibration
+    return {
+        "file": result.file,
+        "lowest_frequency": result.lowest_frequency,
+        "axes": result.axes,
+        "omitted_forces": [str(part) for part in vibration.omitted],
+        "omitted_part": vibration.omitted_force.T,
+        "omits_moments": vibration.moments,
+    }
+
+
+def _point(vibration: MeasuredVibration, point: int) -> Json:
+    """Return the velocities of a point as root mean squares; NaN where and along what nobody measured."""
+    rms = vibration.rms[point]
+    xyz = np.abs(vibration.velocity[point]) / np.sqrt(2.0)
+    unlisted = np.full(vibration.speed.size, np.nan if vibration.floor else 0.0)
+    level = np.where(vibration.covered, vibration_level(np.nan_to_num(rms)), np.nan)
+    return {
+        "velocity": rms.T,
+        "velocity_xyz": np.swapaxes(xyz, 1, 2),
+        "overall": vibration.overall[point],
+        "left_out": unlisted,
+        "overall_error": unlisted,
+        "level": level.T,
+    }

@@ -1,0 +1,178 @@
+"""Vibration of a measured housing as people see it: velocities, shares of bearings, what is absent."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from bounds.types import FloatArray
+from dynamics.vibration import vibration_level
+from dynamics.vibration.vibration_analysis import Shares
+from lineofaction.gearbox.studies.vibration.measured import MeasuredHousingVibration
+from lineofaction.gearbox.studies.vibration.run import MM_PER_S
+from lineofaction.gearbox.units import RPM
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table, number
+from lineofaction.report.drawing.marks import order_words, shown_orders
+from lineofaction.report.drawing.page import Headline, Page, Part, Section
+from lineofaction.report.housing.forces import force_words, row_axis
+from lineofaction.report.housing.shares import share_panel, share_rows, speed_words
+from lineofaction.report.presentation import dynamics_page, model_text
+from lineofaction.report.response.excitations import excitation_figures, excitation_table
+
+SHOWN_ORDERS, SHOWN_POINTS = 6, 3
+_LARGEST_HEAD = (
+    "velocity of", "order", "speed, rpm", "frequency, Hz", "rms, mm/s", "level, dB re 1 nm/s",
+    "measured along",
+)  # fmt: skip
+_LEFT_OUT = "What the measured responses replace and leave out"
+
+
+def measured_figure(result: MeasuredHousingVibration) -> Figure:
+    """Draw the velocities of the points by their largest orders; nothing outside the measured band."""
+    vibration = result.vibration
+    largest = np.nanmax(vibration.rms, axis=(1, 2))
+    most = np.argsort(-largest, kind="stable")[:SHOWN_POINTS]
+    band = f"{number(result.lowest_frequency, 4)} to {number(result.highest_frequency, 4)} Hz"
+    return Figure(
+        key="housing_velocity",
+        title=f"Vibration of {result.housing} by order, by measured responses",
+        caption="Root mean square velocity of points under the forces of the bearings, the measured "
+        f"directions together. Nothing is drawn outside the measured band, {band}.",
+        alternative=f"Shown in detail: {_where(result)}.",
+        content=tuple(_panel(result, vibration.point[k], vibration.rms[k] / MM_PER_S) for k in most),
+        table=_largest_table(result),
+    )
+
+
+def _panel(result: MeasuredHousingVibration, name: str, rms: FloatArray) -> Panel:
+    """Draw one velocity (S, H) in mm/s by its largest orders."""
+    vibration = result.vibration
+    x, along = row_axis(vibration.speed, result.facts)
+    sizes = np.nan_to_num(rms).max(axis=0)
+    lines = tuple(
+        Line(
+            f"order {order_words(vibration.order[h], result.facts)}",
+            along,
+            rms[:, h],
+            palette.category(k),
+            width=1.4,
+        )
+        for k, h in enumerate(shown_orders(vibration.order, sizes, SHOWN_ORDERS, result.facts))
+    )
+    return Panel(x, Axis("rms velocity, mm/s"), lines, title=name)
+
+
+def _where(result: MeasuredHousingVibration) -> str:
+    vibration, s, h = result.vibration, result.at_speed, result.at_order
+    speed, hertz = number(float(vibration.speed[s]) / RPM, 4), number(vibration.frequency[s, h], 4)
+    return f"order {order_words(vibration.order[h], result.facts)} at {speed} rpm, {hertz} Hz"
+
+
+def _largest_table(result: MeasuredHousingVibration) -> Table:
+    """List the largest velocity of every point inside the measured band."""
+    vibration, axes = result.vibration, result.axes
+    rows = []
+    for name, rms in zip(vibration.point, vibration.rms, strict=True):
+        s, h = map(int, np.unravel_index(int(np.nanargmax(rms)), rms.shape))
+        rows.append(
+            (
+                name,
+                order_words(vibration.order[h], result.facts),
+                number(float(vibration.speed[s]) / RPM, 5),
+                number(float(vibration.frequency[s, h]), 5),
+                number(float(rms[s, h]) / MM_PER_S, 4),
+                number(float(vibration_level(rms[s, h])), 4),
+                ", ".join(axes[name]),
+            )
+        )
+    return Table("Largest velocity of every point", _LARGEST_HEAD, tuple(rows))
+
+
+def _shares(result: MeasuredHousingVibration) -> Shares:
+    nothing = np.full(len(result.bearing), np.nan)
+    return Shares(result.bearing, nothing, result.share.T, nothing)
+
+
+def _contribution_table(result: MeasuredHousingVibration) -> Table:
+    head = ("part", "frequency, Hz", *(f"{point}, %" for point in result.vibration.point))
+    caption = f"Contributions to the mean square velocity at {_where(result)}"
+    return Table(caption, head, tuple(share_rows(_shares(result), with_surface=False)))
+
+
+def _fastest(result: MeasuredHousingVibration) -> int:
+    return int(np.argmax(result.vibration.rms[:, result.at_speed, result.at_order]))
+
+
+def _contribution_figure(result: MeasuredHousingVibration) -> Figure | None:
+    """Draw what bearings contribute to the point that moves fastest; None where all are at rest."""
+    point, shares = _fastest(result), _shares(result)
+    part = shares.point[point]
+    if not np.all(np.isfinite(part)):
+        return None
+    most = int(np.argmax(part))
+    return Figure(
+        key="housing_contributions",
+        title=f"Contributions to the mean square velocity of {result.vibration.point[point]}",
+        caption=f"At {_where(result)}. Bars add up to 100 %; below zero: against the sum.",
+        alternative=f"Most comes from {shares.name[most]}, {number(100.0 * float(part[most]), 3)} %.",
+        content=(share_panel(shares, part),),
+        table=_contribution_table(result),
+    )
+
+
+def measured_page(result: MeasuredHousingVibration) -> Page:
+    """Return the page of a measured housing; a table says what its responses replace and leave out."""
+    figures = (measured_figure(result), _contribution_figure(result))
+    drawn = (*(figure for figure in figures if figure is not None), *excitation_figures(result.facts))
+    whole = dynamics_page("Vibration of the housing", drawn, _headlines(result), result.facts)
+    rests = Table("Forces that move the housing", ("what", "how"), force_words(result.facts))
+    absent = Table(_LEFT_OUT, (result.file,), tuple((sentence,) for sentence in result.left_out))
+    accuracy = Section("Accuracy of the velocities", tables=(absent, rests), part=Part.ACCURACY)
+    return replace(whole, sections=(*whole.sections, accuracy))
+
+
+def _headlines(result: MeasuredHousingVibration) -> tuple[Headline, ...]:
+    vibration, point = result.vibration, _fastest(result)
+    rms = float(vibration.rms[point, result.at_speed, result.at_order])
+    first = Headline(f"velocity of {vibration.point[point]}", speed_words(rms), _where(result))
+    part = result.share[:, point]
+    if not np.all(np.isfinite(part)):
+        return (first,)
+    most = int(np.argmax(part))
+    share = f"{number(100.0 * float(part[most]), 3)} % of the mean square"
+    return first, Headline("bearing that contributes most", result.bearing[most], share)
+
+
+def measured_text(result: MeasuredHousingVibration) -> Iterator[Table | str]:
+    """Yield velocities, contributions, excitations, and sentences on what is absent."""
+    yield _largest_table(result)
+    yield _contribution_table(result)
+    if (excites := excitation_table(result.facts)) is not None:
+        yield excites
+    yield from result.left_out
+    yield from (f"{what}: {words}" for what, words in force_words(result.facts))
+    yield from model_text(result.facts)
+
+
+def measured_series(result: MeasuredHousingVibration) -> Table:
+    """Return the velocities, rms along the measured axes in mm/s; empty outside the measured band."""
+    vibration = result.vibration
+    size = np.abs(vibration.velocity) / np.sqrt(2.0) / MM_PER_S
+    directions = [(part.name, part.axis) for part in result.response]
+    head = ["speed_rpm", "order", "frequency_hz", "valid"]
+    head += [f"{name}_{'xyz'[axis]}_mm_per_s" for name, axis in directions]
+    columns = [
+        np.repeat(vibration.speed / RPM, vibration.order.size),
+        np.tile(vibration.order, vibration.speed.size),
+        vibration.frequency.ravel(),
+        vibration.covered.ravel().astype(float),
+        *(size[vibration.point.index(name), axis].ravel() for name, axis in directions),
+    ]
+    rows = tuple(
+        tuple(f"{value:.9g}" if np.isfinite(value) else "" for value in row)
+        for row in zip(*columns, strict=True)
+    )
+    return Table("Velocities by speed and order", tuple(head), rows)

@@ -1,0 +1,50 @@
+"""Contributions of bearings and modes to a velocity: rows of a table and bars, and a velocity in words."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bounds.types import FloatArray
+from dynamics.vibration.vibration_analysis import Shares
+from lineofaction.gearbox.studies.vibration.run import MM_PER_S
+from lineofaction.report.drawing import palette
+from lineofaction.report.drawing.figure import Axis, Bars, Panel, largest, number
+
+SHOWN, SHOWN_MODES = 12, 8
+"""Modes in the table of contributions, and in the bars."""
+
+
+def share_rows(shares: Shares, with_surface: bool) -> list[tuple[str, ...]]:
+    """Return rows of a table in %, of points, and of the surface where there is one."""
+    every = np.vstack([shares.point, shares.surface]) if with_surface else shares.point
+    most = largest(np.max(np.abs(every), axis=0), SHOWN)
+    return [
+        (
+            shares.name[p],
+            number(shares.frequency[p], 5) if np.isfinite(shares.frequency[p]) else "",
+            *(f"{100.0 * float(value):.1f}" for value in every[:, p]),
+        )
+        for p in most
+    ]
+
+
+def share_panel(shares: Shares, part: FloatArray) -> Panel:
+    """Draw contributions (p,) as bars that add up to 100 %, the small ones together."""
+    most = largest(np.abs(part), SHOWN_MODES)
+    values = [100.0 * float(part[p]) for p in most]
+    names = [_name(shares, p) for p in most]
+    if len(most) < part.size:
+        names.append("others")
+        values.append(100.0 - sum(values))
+    bars = Bars("contribution", np.arange(float(len(names))), np.array(values), 0.0, 0.6, palette.BLUE)
+    return Panel(Axis.of_names(names), Axis("contribution, %"), bars=(bars,))
+
+
+def _name(shares: Shares, index: int) -> str:
+    hertz = float(shares.frequency[index])
+    return f"{number(hertz, 4)} Hz" if np.isfinite(hertz) else shares.name[index]
+
+
+def speed_words(rms: float) -> str:
+    """Return a root mean square velocity, m/s, as text."""
+    return f"{number(rms / MM_PER_S, 3)} mm/s rms"
