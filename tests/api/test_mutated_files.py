@@ -105,11 +105,14 @@ def test_a_step_file_that_ends_its_reader_is_named(
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("count", [12, pytest.param(600, marks=pytest.mark.nightly)])
+@pytest.mark.parametrize("count", [12, pytest.param(480, marks=pytest.mark.nightly)])
 def test_spoiled_files_are_refused_or_read(
     http: TestClient, place: Path, files: list[tuple[str, bytes, Asked]], count: int
 ) -> None:
-    """As many of every format, of a mesh and a gear unit in turn of one of their files."""
+    """As many of every format, of a mesh and a gear unit in turn of one of their files.
+
+    All by one warm process, which is replaced after 500 forks.
+    """
     formats = sorted({name.split()[0] for name, _, _ in files})
     fates: Counter[tuple[str, int]] = Counter()
     for number in range(count):
