@@ -32,6 +32,7 @@ from lineofaction.gearbox.problems import (
     UnsupportedMediaType,
 )
 from lineofaction.gearbox.schemas.faults import fault_of, innermost, model_in
+from service.access.quotas import quota_fields
 from service.management.figures import Metrics
 from service.routes.media_types import CBOR, EVENT_STREAM, JSON, NO_STORE, PROBLEM, RAW, media_type
 from service.tracing.tracer import TRACEPARENT, trace_facts, tracer, valid_traceparent
@@ -319,6 +320,9 @@ class _Exchange:
             headers = [*message.get("headers", []), (b"x-request-id", self.identifier.encode()), _AS_SAID]
             if self.traceparent:
                 headers.append((b"traceparent", self.traceparent.encode()))
+            quotas = self._scope.get("state", {}).get("quotas", tuple)  # of who has shares
+            fields = quota_fields(quotas()).items()
+            headers += [(name.lower().encode(), value.encode()) for name, value in fields]
             message = {**message, "headers": headers}
         self.stream.see(message)
         await self._send(message)
