@@ -40,7 +40,7 @@ from service.management.figures import process_registry
 from service.management.server import ManagementServer, Vitals
 from service.queue.scheduler import Machinery, Scheduler, job_machinery
 from service.routes.warm_up import HEAVY
-from service.settings import Settings, load_settings
+from service.settings import Settings, load_settings, note_former_settings
 from service.store.deployment import Deployment, WriteCheck
 from service.worker.process import default_registry
 
@@ -126,6 +126,7 @@ def run_serve(**options: object) -> None:
     settings = load_settings(**options)
     keep_private()
     log_to_standard_error()
+    note_former_settings()
     open_identities(settings)  # refused before a socket is opened
     with _listener(settings) as listener:
         if settings.processes > 1:
