@@ -214,9 +214,10 @@ def writing(
     """
     dialect = dialect_of(engine)
     with ExitStack() as held:
+        connection = held.enter_context(engine.connect())  # before the turn: opening it takes a while
         left_ms = held.enter_context(dialect.turn(engine, patience_ms, ahead=ahead))
-        transaction = engine.execution_options(immediate=True, patience_ms=left_ms).begin()
-        connection = held.enter_context(transaction)
+        connection.execution_options(immediate=True, patience_ms=left_ms)
+        held.enter_context(connection.begin())
         if in_turn:
             dialect.take_turn(connection)
         yield connection

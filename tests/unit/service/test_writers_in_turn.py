@@ -9,7 +9,7 @@ from threading import Event, Thread
 
 import pytest
 from running_service import Bench, until
-from sqlalchemy import Engine
+from sqlalchemy import Engine, event
 
 from lineofaction.gearbox.problems import Busy
 from service.queue.tables import jobs
@@ -39,8 +39,13 @@ def number_waiting(engine: Engine) -> int:
 
 @pytest.mark.law
 def test_writers_are_served_in_the_order_in_which_they_came(tmp_path: Path) -> None:
-    """SQLite alone lets in whoever tries when the file happens to be free."""
+    """SQLite alone lets in whoever tries when the file happens to be free.
+
+    They wait with their connections open: opened within the turns these let half as many write in a time.
+    """
     engine, served, release = open_database(tmp_path / "index.sqlite3"), list[int](), Event()
+    opened = list[object]()
+    event.listen(engine, "connect", lambda connection, _record: opened.append(connection))
     first = Thread(target=Writer(engine).write, args=(lambda: release.wait(60.0),))
     first.start()
     until(lambda: writers_of(str(engine.url.database))._occupied)
@@ -54,6 +59,7 @@ def test_writers_are_served_in_the_order_in_which_they_came(tmp_path: Path) -> N
         threads.append(Thread(target=Writer(engine).write, args=(work,)))
         threads[-1].start()
         until(lambda number=number: number_waiting(engine) == number + 1)  # type: ignore[misc]
+    assert len(opened) == 1 + WRITERS
     release.set()
     for thread in (first, *threads):
         thread.join()
