@@ -29,7 +29,7 @@ from service.routes.warm_up import warm_up
 from service.settings import Settings
 from service.store.deployment import Deployment, WriteCheck
 from service.store.places import CACHE_DIRECTORY
-from service.tracing.tracer import tracer
+from service.tracing import flush_spans, telemetry_options
 from service.version import solver_version
 from service.worker.process import Registry, default_registry
 
@@ -65,7 +65,7 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
         docs_url=None,
         redoc_url=None,
         **ABOUT,
-        **tracer().options,
+        telemetry=telemetry_options(),
     )
     app.state.context, app.state.capacity = context, bearable
     parts = (context.engine, context.store, context.writes, context.scheduler)
@@ -112,7 +112,7 @@ def _lifespan(context: Context, lock: DirectoryLock | None) -> Callable[[FastAPI
                 deliverer.stop()
             if context.scheduler is not None:
                 context.scheduler.stop()
-            tracer().flush()
+            flush_spans()
             context.close()
             if lock is not None:
                 lock.release()

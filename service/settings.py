@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Annotated, Any, get_args
 from urllib.parse import urlsplit
 
+import structlog
 from pydantic import (
     AfterValidator,
     Field,
@@ -271,6 +272,21 @@ def secret_bytes(secret: str) -> bytes:
     if not secret.startswith(_SIGNING) or not 24 <= len(key) <= 64:
         raise ValueError("secret")
     return key
+
+
+_FORMER = {
+    "LOA_DASK_SCHEDULER": "It is LOA_SCHEDULER.",
+    "LOA_LEASE_S": "Remove it: one server owns a job table, by a lock that ends with it.",
+}
+"""Settings that earlier versions had, and what to do with them."""
+logger = structlog.get_logger(__name__)
+
+
+def note_former_settings() -> None:
+    """Say in one line of the log which variables of the environment are settings no longer."""
+    former = {name: remedy for name, remedy in _FORMER.items() if os.environ.get(name)}
+    if former:
+        logger.warning("settings without effect", settings=former)
 
 
 def load_settings(**options: object) -> Settings:

@@ -41,7 +41,7 @@ from service.management.server import ManagementServer, Vitals
 from service.queue.scheduler import Machinery, Scheduler, job_machinery
 from service.reading.reader import require_confinement
 from service.routes.warm_up import HEAVY
-from service.settings import Settings, load_settings
+from service.settings import Settings, load_settings, note_former_settings
 from service.store.deployment import Deployment, WriteCheck
 from service.worker.process import default_registry
 
@@ -127,6 +127,7 @@ def run_serve(**options: object) -> None:
     settings = load_settings(**options)
     keep_private()
     log_to_standard_error()
+    note_former_settings()
     open_identities(settings)  # refused before a socket is opened
     if settings.require_confinement:
         require_confinement()

@@ -15,6 +15,7 @@ import structlog
 from host import most_open_files
 from lineofaction.gearbox.problems import BadInput, TooManyHeld, TooManyRequests
 from service.access.keyring import Holder
+from service.access.quotas import Quota
 
 _AGAIN_S = 1
 NOBODY = ""
@@ -34,6 +35,10 @@ class Held:
 
     def __init__(self, what: str, in_all: int | None = None) -> None:
         self._what, self._in_all, self._held = what, in_all, Counter[str]()
+
+    def number(self, name: str) -> int:
+        """Return how many a holder has."""
+        return self._held[name]
 
     def refuse_beyond(self, name: str, most: int | None) -> None:
         """Raise `TooManyHeld` if a holder has `most`, `TooManyRequests` if all together have theirs."""
@@ -77,13 +82,27 @@ class RateLimits:
         limit = key.requests_per_minute
         if limit is None:
             return 0
-        instant = self._clock()
         with self._lock:
-            left, last = self._left.get(key.name, (float(limit), instant))
-            left = min(limit, left + (instant - last) * limit / _MINUTE_S)
+            left, instant = self._level(key.name, limit)
             taken = left >= 1.0
             self._left[key.name] = (left - 1.0 if taken else left, instant)
         return 0 if taken else math.ceil((1.0 - left) * _MINUTE_S / limit)
+
+    def quota(self, key: Holder) -> Quota | None:
+        """Return what a holder has left; None: it has no limit."""
+        limit = key.requests_per_minute
+        if limit is None:
+            return None
+        with self._lock:
+            left, _ = self._level(key.name, limit)
+        full_s = math.ceil((limit - left) * _MINUTE_S / limit)
+        return Quota("requests", limit, int(left), window_s=int(_MINUTE_S), full_s=full_s)
+
+    def _level(self, name: str, limit: int) -> tuple[float, float]:
+        """Return the requests in a bucket now, and the instant."""
+        instant = self._clock()
+        left, last = self._left.get(name, (float(limit), instant))
+        return min(limit, left + (instant - last) * limit / _MINUTE_S), instant
 
 
 _MOST_CONNECTIONS = 800

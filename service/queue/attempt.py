@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 import structlog
+from opentelemetry.trace import Span
 from prometheus_client import Counter, Histogram, Metric
 from prometheus_client.registry import Collector
 
@@ -24,7 +25,7 @@ from service.queue.cluster import Cluster, Task
 from service.queue.terms import LOWER_COST
 from service.settings import LEAST_MEMORY_MB, Settings
 from service.store.results import ResultStore
-from service.tracing.tracer import Fact, Span, trace_facts, tracer
+from service.tracing import Fact, begun_span, end_span, trace_facts, traceparent_of
 from service.worker.forks import Forks
 from service.worker.order import Outcome, WorkOrder
 from service.worker.process import Process
@@ -144,34 +145,33 @@ class _AttemptTrace:
             "loa.attempt": claim.attempts,
         }
         begun = datetime.fromisoformat(claim.waited_from).timestamp() if claim.waited_from else launched
-        tracer().begin("queue", claim.traceparent, min(begun, launched), facts).end(launched, {})
+        end_span(begun_span("queue", claim.traceparent, min(begun, launched), facts), launched)
         facts |= {f"process.{name}": value for name, value in named.items()}
-        self._attempt = tracer().begin(f"attempt {claim.process}", claim.traceparent, launched, facts)
+        self._attempt = begun_span(f"attempt {claim.process}", claim.traceparent, launched, facts)
         self._name, self._cpu_s, self._left = "", 0.0, _MOST_STAGES
         self._stage = self._begun(_START, launched, 0.0)
 
     def _begun(self, name: str, at_s: float, cpu_s: float) -> Span:
         self._name, self._cpu_s, self._left = name, cpu_s, self._left - 1
-        return tracer().begin(name, self._attempt.traceparent, at_s, {})
+        return begun_span(name, traceparent_of(self._attempt), at_s)
 
     def see(self, steps: Iterable[Step]) -> None:
         """Take what the worker reported: another name ends a stage and begins the next."""
         for step in steps:
             name = stage_name(step.stage)
             if name != self._name and self._left > 0:
-                self._stage.end(step.at, {"loa.cpu_s": step.cpu_s - self._cpu_s})
+                end_span(self._stage, step.at, {"loa.cpu_s": step.cpu_s - self._cpu_s})
                 self._stage = self._begun(name, step.at, step.cpu_s)
 
     def end(self, how: str, usage: Usage | None) -> None:
         """End the attempt; what it took is known if its worker was reaped."""
         now, fault = time.time(), "" if how == "done" else how
-        facts = {"loa.outcome": how}
-        if usage is None:
-            self._stage.end(now, {}, fault=fault)
-            self._attempt.end(now, facts, fault=fault)
-            return
-        self._stage.end(now, {"loa.cpu_s": max(usage.cpu_s - self._cpu_s, 0.0)}, fault=fault)
-        self._attempt.end(now, facts | {"loa.cpu_s": usage.cpu_s, "loa.peak_mb": usage.peak_mb}, fault=fault)
+        of_stage, of_attempt = dict[str, Fact](), dict[str, Fact]({"loa.outcome": how})
+        if usage is not None:
+            of_stage["loa.cpu_s"] = max(usage.cpu_s - self._cpu_s, 0.0)
+            of_attempt |= {"loa.cpu_s": usage.cpu_s, "loa.peak_mb": usage.peak_mb}
+        end_span(self._stage, now, of_stage, fault=fault)
+        end_span(self._attempt, now, of_attempt, fault=fault)
 
 
 @dataclass(frozen=True)
@@ -271,11 +271,11 @@ class Settlement:
     def settle(self, ended: Ended) -> None:
         """Store what was made, or note why nothing is; remove the workspace unless an attempt follows."""
         claim = ended.attempt.claim
-        span = tracer().begin("settle", claim.traceparent, time.time(), {})
+        span = begun_span("settle", claim.traceparent, time.time())
         try:
             waits = self._note(claim, ended.outcome, ended.attempt)
         finally:
-            span.end(time.time(), {"loa.computation": claim.id})
+            end_span(span, time.time(), {"loa.computation": claim.id})
         if not waits:
             shutil.rmtree(ended.attempt.workspace, ignore_errors=True)
 

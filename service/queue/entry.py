@@ -20,7 +20,7 @@ from service.queue.workload import batch_steps
 from service.schemas.answers import Differences
 from service.store.database import now, writing
 from service.store.dialects import retried
-from service.tracing.tracer import TRACEPARENT
+from service.tracing import TRACEPARENT
 from service.version import solver_version
 
 LIVE = ("accepted", "running")

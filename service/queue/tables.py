@@ -40,8 +40,6 @@ computations = Table(
 
 # Single flight: at most one computation of a key waits or runs. A key is an address: see `service.project`.
 Index("computation_in_flight", computations.c.key, unique=True, sqlite_where=_LIVE, postgresql_where=_LIVE)
-Index("computation_by_state", computations.c.state, computations.c.created)
-
 Index("computation_by_key", computations.c.key, computations.c.state, computations.c.created)
 Index("computation_by_turn", computations.c.state, computations.c.priority, computations.c.created)
 
@@ -90,12 +88,8 @@ jobs = Table(
     *_columns(Float, "weight", server_default="0"),
 )
 Index("job_by_parent", jobs.c.parent)
-Index("job_by_caller", jobs.c.caller)
 Index("job_by_caller_and_time", jobs.c.caller, jobs.c.created)
 Index("job_by_computation", jobs.c.computation_id)
-Index("job_by_use", jobs.c.asked)
-Index("job_by_time", jobs.c.created)
-Index("job_by_project", jobs.c.project, jobs.c.created)
 
 # What lists are chosen and ordered by; the database's triggers keep it, see `service.store.listing`.
 listings = Table("listing", metadata, *listing.columns())

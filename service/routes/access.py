@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
+from functools import partial
 
 import structlog
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -14,6 +15,7 @@ from lineofaction.gearbox.problems import KeyExpired, NotForUs, RateExceeded, Se
 from service.access.capacity import NOBODY, Capacity, Held, RateLimits
 from service.access.identities import Identities
 from service.access.keyring import Holder
+from service.access.quotas import Quota
 from service.origin import is_loopback
 from service.routes.media_types import for_one_caller
 
@@ -32,6 +34,10 @@ class Admission:
         self.share = capacity.share
         self._answered = Held("requests under way", capacity.requests)
         self._awaited = Held("bodies under way", capacity.requests)
+
+    def quota(self, name: str, most: int) -> Quota:
+        """Return what a caller has left of the requests that it may have answered at once."""
+        return Quota("concurrent", most, most - self._answered.number(name), unit="concurrent-requests")
 
     @contextmanager
     def admitted(self, scope: Scope, receive: Receive, name: str, most: int | None) -> Iterator[Receive]:
@@ -189,15 +195,21 @@ class Access:
         bind_contextvars(caller=key.name)
         if key.expired:
             raise KeyExpired.of(f"Key {key.name!r} has expired ({key.expires}). Ask for a new one.")
+        most = key.connections or self._admission.share
+        scope["state"]["quotas"] = partial(self._quotas, key, most)
         wait_s = self._rates.wait_s(key)
         if wait_s:
             text = f"Key {key.name!r} has {key.requests_per_minute} requests per minute."
             raise RateExceeded.after(wait_s, text)
-        most = key.connections or self._admission.share
         with ExitStack() as held:
             received = held.enter_context(self._admission.admitted(scope, receive, key.name, most))
             scope["state"] |= {"caller": key, "held": held, "streams": self._streams}
             await self._app(scope, received, for_one_caller(visit.send))
+
+    def _quotas(self, key: Holder, most: int) -> list[Quota]:
+        """Return the shares of a key, as its answer begins."""
+        rate = self._rates.quota(key)
+        return [*([] if rate is None else [rate]), self._admission.quota(key.name, most)]
 
 
 def _presented(scope: Scope) -> str | None:

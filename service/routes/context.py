@@ -204,5 +204,16 @@ def caller_of(request: Request) -> Holder:
     return key_of(request) or ANYBODY
 
 
-From = Annotated[Holder, Depends(caller_of)]
-Ctx = Annotated[Context, Depends(context_of)]
+# A dependency that is no coroutine costs a thread, which takes the interpreter from the loop.
+
+
+async def _caller(request: Request) -> Holder:
+    return caller_of(request)
+
+
+async def _context(request: Request) -> Context:
+    return context_of(request)
+
+
+From = Annotated[Holder, Depends(_caller)]
+Ctx = Annotated[Context, Depends(_context)]

@@ -101,7 +101,7 @@ Once = Annotated[
 ]
 
 
-def job_filter(
+async def job_filter(
     process_id: Processes = [],  # noqa: B006 (the framework copies it)
     status: States = [],  # noqa: B006
     kind: Types = [],  # noqa: B006

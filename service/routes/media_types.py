@@ -15,6 +15,7 @@ from starlette.datastructures import MutableHeaders
 from starlette.types import Message, Send
 
 from lineofaction.gearbox.problems import BadInput
+from service.access.quotas import LIMIT, POLICY
 from service.schemas.answers import Link
 from service.store.results import Mark
 
@@ -88,8 +89,8 @@ def for_one_caller(send: Send) -> Send:
 
 _TEXT, _ADDRESS = {"type": "string"}, {"type": "string", "format": "uri-reference"}
 
-OF_ALL = ("X-Request-ID",)
-"""Of every answer."""
+OF_ALL = ("X-Request-ID", POLICY, LIMIT)
+"""Of every answer; the last two of callers with shares."""
 OF_STATUS: Mapping[int, tuple[str, ...]] = {
     401: ("WWW-Authenticate",),
     403: ("WWW-Authenticate",),
@@ -106,6 +107,12 @@ HEADERS: dict[str, dict[str, Any]] = {
     name: {"description": text, "schema": schema}
     for name, text, schema in (
         ("X-Request-ID", "Identifier of the request, as the log has it", _TEXT),
+        (
+            POLICY,
+            "Shares of the key: quota q, its unit qu, window w in s (draft-ietf-httpapi-ratelimit-headers)",
+            _TEXT,
+        ),
+        (LIMIT, "What the key has left of its shares: r, and t, s until all is there again", _TEXT),
         (
             "WWW-Authenticate",
             "Bearer: send the access key in the header Authorization; the scope that it lacks",

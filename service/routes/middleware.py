@@ -32,9 +32,10 @@ from lineofaction.gearbox.problems import (
     UnsupportedMediaType,
 )
 from lineofaction.gearbox.schemas.faults import fault_of, innermost, model_in
+from service.access.quotas import quota_fields
 from service.management.figures import Metrics
 from service.routes.media_types import CBOR, EVENT_STREAM, JSON, NO_STORE, PROBLEM, RAW, media_type
-from service.tracing.tracer import TRACEPARENT, trace_facts, tracer, valid_traceparent
+from service.tracing import TRACEPARENT, current_traceparent, trace_facts, valid_traceparent
 
 # Every error leaves as problem+json, in one shape.
 
@@ -260,7 +261,7 @@ class _Exchange:
         named = self._headers.get(b"x-request-id", b"")  # another for none, or one that a log should not hold
         self.identifier = named.decode() if _IDENTIFIER.fullmatch(named) else uuid.uuid4().hex[:12]
         sent = self._headers.get(b"traceparent", b"").decode("latin-1")
-        self.traceparent = tracer().current(valid_traceparent(sent))
+        self.traceparent = current_traceparent(valid_traceparent(sent))
 
     def refuse_announced(self) -> None:
         """Refuse a body that says itself that it is too long, or packed."""
@@ -319,6 +320,9 @@ class _Exchange:
             headers = [*message.get("headers", []), (b"x-request-id", self.identifier.encode()), _AS_SAID]
             if self.traceparent:
                 headers.append((b"traceparent", self.traceparent.encode()))
+            quotas = self._scope.get("state", {}).get("quotas", tuple)  # of who has shares
+            fields = quota_fields(quotas()).items()
+            headers += [(name.lower().encode(), value.encode()) for name, value in fields]
             message = {**message, "headers": headers}
         self.stream.see(message)
         await self._send(message)

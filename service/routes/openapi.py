@@ -11,6 +11,7 @@ from pydantic.json_schema import models_json_schema
 
 from lineofaction.gearbox.problems import (
     BadInput,
+    Busy,
     DatabaseDamaged,
     DatabaseUnavailable,
     HeadTooLarge,
@@ -69,7 +70,7 @@ _OF_ALL: tuple[type[ServiceError], ...] = (
     Unexpected,
 )
 _WITH_KEYS = (Unauthorised, KeyExpired, MissingScope, RateExceeded, TooManyHeld, IssuerUnavailable)
-_OF_STORES = (DatabaseUnavailable, DatabaseDamaged, NoSpace, OutOfFiles, StoreUnavailable)
+_OF_STORES = (Busy, DatabaseUnavailable, DatabaseDamaged, NoSpace, OutOfFiles, StoreUnavailable)
 _OF_BODIES = (TooLarge, UnsupportedMediaType, BadInput)
 _OF_ROUTING: Kinds = {405: {"about:blank": "Method Not Allowed"}}
 _KINDS = "x-problems"

@@ -197,16 +197,23 @@ def _url(text: str) -> URL:
 
 
 @contextmanager
-def writing(engine: Engine, *, in_turn: bool = False, patience_ms: int | None = None) -> Iterator[Connection]:
+def writing(
+    engine: Engine, *, in_turn: bool = False, patience_ms: int | None = None, ahead: bool = False
+) -> Iterator[Connection]:
     """Open a transaction that may write.
 
     With `in_turn` it is alone among all that take turns: what it has read stays so until it ends. Others
     rely on the rows they lock. It fails if others hold the database for longer than `patience_ms`, by default
-    10 s.
+    `PATIENCE_MS`. With `ahead` it is the next one of this process.
     """
-    with engine.execution_options(immediate=True, patience_ms=patience_ms).begin() as connection:
+    dialect = dialect_of(engine)
+    with ExitStack() as held:
+        connection = held.enter_context(engine.connect())  # before the turn: opening it takes a while
+        left_ms = held.enter_context(dialect.turn(engine, patience_ms, ahead=ahead))
+        connection.execution_options(immediate=True, patience_ms=left_ms)
+        held.enter_context(connection.begin())
         if in_turn:
-            dialect_of(connection).take_turn(connection)
+            dialect.take_turn(connection)
         yield connection
 
 

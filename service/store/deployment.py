@@ -131,14 +131,14 @@ class Deployment:
             raise self._refusal(f": it belongs {whose}", tip)
 
     def write_database(self) -> None:
-        """Write to the database, in turn as those who enter jobs: to see that this is possible.
+        """Write to the database, ahead of those who enter jobs: to see that this is possible.
 
-        Raises `DatabaseUnavailable`: it does not answer, has to be mended, or others hold it for longer than
-        a moment. `NoSpace`: its disk has no room for a submission.
+        Raises `DatabaseUnavailable`: it does not answer, has to be mended, or one who writes holds it for
+        longer than a moment. `NoSpace`: its disk has no room for a submission.
         """
         _refuse_without_space(dialect_of(self._engine).folder(self._engine.url))
         try:
-            with writing(self._engine, in_turn=True, patience_ms=_MOMENT_MS) as connection:
+            with writing(self._engine, in_turn=True, patience_ms=_MOMENT_MS, ahead=True) as connection:
                 connection.execute(update(deployments).values(checked=now()))
         except SQLAlchemyError as error:
             raise outage_of(error, self._engine) or error from error

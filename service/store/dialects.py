@@ -9,8 +9,8 @@ import os
 import shutil
 import sqlite3
 import time
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar, cast
@@ -23,7 +23,15 @@ from sqlalchemy.exc import TimeoutError as PoolTimeout
 from tenacity import RetryCallState, Retrying, retry_if_exception, stop_after_attempt, stop_after_delay
 from tenacity.wait import wait_exponential, wait_random
 
-from lineofaction.gearbox.problems import BadInput, DatabaseDamaged, DatabaseUnavailable, NoSpace, OutOfFiles
+from lineofaction.gearbox.problems import (
+    BadInput,
+    Busy,
+    DatabaseDamaged,
+    DatabaseUnavailable,
+    NoSpace,
+    OutOfFiles,
+)
+from service.store.writers import TurnTimeout, writers_of
 
 # Space on the disks that are written to, and files that this process may still open.
 
@@ -115,8 +123,10 @@ class _PostgresCommits:
         self._connection.close()
 
 
+PATIENCE_MS = 10_000
+"""How long a transaction waits for others that write, if it says nothing else."""
 _PRAGMAS = (
-    "PRAGMA busy_timeout=10000",  # first: the others may have to wait too
+    f"PRAGMA busy_timeout={PATIENCE_MS}",  # first: the others may have to wait too
     "PRAGMA journal_mode=WAL",
     "PRAGMA synchronous=FULL",
     "PRAGMA foreign_keys=ON",
@@ -129,7 +139,8 @@ _LOOK_EVERY = 20_000
 _TURN = 0x6C6F61  # "loa": any number that all our processes know
 _CONNECT_TIMEOUT_S = 5
 _STALLED = (
-    f"-c idle_in_transaction_session_timeout=30s -c lock_timeout=10s -c statement_timeout={DEADLINE_S:g}s "
+    f"-c idle_in_transaction_session_timeout=30s -c lock_timeout={PATIENCE_MS} "
+    f"-c statement_timeout={DEADLINE_S:g}s "
     "-c tcp_keepalives_idle=10 -c tcp_keepalives_interval=5 -c tcp_keepalives_count=3"
 )
 """A stalled process must not hold rows for ever, nor let its callers wait for longer than a client does; the
@@ -155,6 +166,14 @@ class _Dialect(Protocol):
     def insert(self, table: Table) -> sqlite.Insert | postgresql.Insert:
         """Return an insert that can say what happens on a conflict."""
 
+    def turn(
+        self, engine: Engine, patience_ms: int | None, *, ahead: bool
+    ) -> AbstractContextManager[int | None]:
+        """Wait until this process may begin to write; enter to what is left of the patience, ms.
+
+        With `ahead` it is the next one of this process. Raises `TurnTimeout`: the patience has ended.
+        """
+
     def take_turn(self, connection: Connection) -> None:
         """Let this transaction be the only one of those that take turns, until it ends."""
 
@@ -163,6 +182,9 @@ class _Dialect(Protocol):
 
     def commits(self, engine: Engine) -> _Commits:
         """Return a connection that hears of commits."""
+
+    def busy(self, error: DBAPIError) -> bool:
+        """Whether others held what is needed for too long."""
 
     def lost(self, error: DBAPIError) -> bool:
         """Whether the database, not the statement, is why it failed: another attempt may succeed."""
@@ -201,6 +223,12 @@ class _SQLite:
     def insert(self, table: Table) -> sqlite.Insert:
         return sqlite.insert(table)
 
+    @contextmanager
+    def turn(self, engine: Engine, patience_ms: int | None, *, ahead: bool) -> Iterator[int]:
+        patience_s = (PATIENCE_MS if patience_ms is None else patience_ms) / 1e3
+        with writers_of(str(engine.url.database)).turn(patience_s, ahead=ahead) as left_s:
+            yield round(1e3 * left_s)
+
     def take_turn(self, connection: Connection) -> None:
         """Do nothing: who writes is alone from the start (see `_begin`)."""
 
@@ -211,9 +239,12 @@ class _SQLite:
     def commits(self, engine: Engine) -> _Commits:
         return _SqliteCommits(engine)
 
-    def lost(self, error: DBAPIError) -> bool:
-        """Whether others held the file for too long."""
+    def busy(self, error: DBAPIError) -> bool:
         return any(word in str(error.orig) for word in ("locked", "busy"))
+
+    def lost(self, _error: DBAPIError) -> bool:
+        """Deny it: a file is not reached through a network."""
+        return False
 
     def late(self, error: DBAPIError) -> bool:
         return getattr(error.orig, "sqlite_errorcode", 0) == sqlite3.SQLITE_INTERRUPT
@@ -267,6 +298,7 @@ _POSTGRESQL_REMEDIES: Mapping[str, str] = {
     "58030": _DISK,  # I/O error
 }
 _CANCELED = "57014"  # by the deadline of the statement: nobody else cancels ours
+_LOCKED = "55P03"  # by others, for longer than lock_timeout
 
 
 @dataclass
@@ -332,6 +364,12 @@ class _PostgreSQL:
     def insert(self, table: Table) -> postgresql.Insert:
         return postgresql.insert(table)
 
+    def turn(
+        self, _engine: Engine, patience_ms: int | None, *, ahead: bool
+    ) -> AbstractContextManager[int | None]:
+        """Wait for nobody: many write at a time."""
+        return nullcontext(patience_ms)
+
     def take_turn(self, connection: Connection) -> None:
         """Wait for the lock that all who take turns need; the transaction's end gives it back."""
         connection.execute(select(func.pg_advisory_xact_lock(_TURN)))
@@ -342,16 +380,18 @@ class _PostgreSQL:
     def commits(self, engine: Engine) -> _Commits:
         return _PostgresCommits(engine)
 
+    def busy(self, error: DBAPIError) -> bool:
+        return getattr(error.orig, "sqlstate", None) == _LOCKED
+
     def lost(self, error: DBAPIError) -> bool:
         """Whether the connection broke or never was, or the server asks to try again.
 
-        Classes of SQLSTATE: 08 connection, 40 rolled back (deadlock), 53 out of resources, 57P server ends;
-        55P03 others held a lock for too long.
+        Classes of SQLSTATE: 08 connection, 40 rolled back (deadlock), 53 out of resources, 57P server ends.
         """
         state = getattr(error.orig, "sqlstate", None)
         if state is None:
             return type(error.orig).__name__ in ("OperationalError", "InterfaceError", "ConnectionTimeout")
-        return error.connection_invalidated or state.startswith(("08", "40", "53", "57P", "55P03"))
+        return error.connection_invalidated or state.startswith(("08", "40", "53", "57P"))
 
     def late(self, error: DBAPIError) -> bool:
         return getattr(error.orig, "sqlstate", None) == _CANCELED
@@ -390,9 +430,16 @@ def dialect_of(database: Engine | Connection | URL) -> _Dialect:
 
 def _is_lost(error: BaseException, database: Engine) -> bool:
     """Whether `error` says that the database cannot be reached or asks to try again."""
+    if not isinstance(error, DBAPIError) or _remedy_of(error, database) is not None:
+        return False
+    return dialect_of(database).lost(error)
+
+
+def _is_busy(error: BaseException, database: Engine) -> bool:
+    """Whether `error` says that others have had the database, or all connections to it, for too long."""
     if isinstance(error, DBAPIError):
-        return _remedy_of(error, database) is None and dialect_of(database).lost(error)
-    return isinstance(error, PoolTimeout)
+        return dialect_of(database).busy(error)
+    return isinstance(error, PoolTimeout | TurnTimeout)
 
 
 def _remedy_of(error: BaseException, database: Engine) -> str | None:
@@ -437,7 +484,9 @@ def retried(step: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P],
     Raises
     ------
     DatabaseUnavailable
-        The database has not come back after about two seconds, or others hold what is needed for too long.
+        The database has not come back after about two seconds.
+    Busy
+        Others hold what is needed for too long.
     DatabaseDamaged
         It has to be mended first: damaged, read-only. Not tried again.
     NoSpace, OutOfFiles
@@ -448,7 +497,7 @@ def retried(step: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P],
     def run(self: S, *args: P.args, **kwargs: P.kwargs) -> R:
         engine = self._engine
         attempts = Retrying(
-            retry=retry_if_exception(lambda error: _is_lost(error, engine)),
+            retry=retry_if_exception(lambda error: _is_lost(error, engine) or _is_busy(error, engine)),
             stop=stop_after_attempt(_ATTEMPTS) | stop_after_delay(_PATIENCE_S),
             wait=wait_exponential(_FIRST_WAIT_S, _LONGEST_WAIT_S) + wait_random(0.0, _FIRST_WAIT_S),
             before_sleep=_note,
@@ -467,6 +516,8 @@ def retried(step: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P],
 
 def outage_of(error: SQLAlchemyError, engine: Engine) -> DatabaseUnavailable | None:
     """Return the message about an error of the database itself; None: it is the statement's."""
+    if _is_busy(error, engine):
+        return Busy("Others write, and have not ended in time. Nothing was changed. Try again later.")
     if _is_lost(error, engine):
         return DatabaseUnavailable("The database cannot be reached. Try again later.")
     if isinstance(error, DBAPIError) and dialect_of(engine).late(error):
@@ -487,14 +538,15 @@ def unusable(engine: Engine, fault: str, remedy: str) -> DatabaseUnavailable:
 
 
 def optional(step: Callable[Concatenate[S, P], None]) -> Callable[Concatenate[S, P], None]:
-    """Let a method pass without effect when the database is lost: what calls it goes on without."""
+    """Let a method pass without effect when the database is lost or busy: its caller goes on without."""
 
     @functools.wraps(step)
     def run(self: S, *args: P.args, **kwargs: P.kwargs) -> None:
         try:
             step(self, *args, **kwargs)
         except SQLAlchemyError as error:
-            if not _is_lost(error, self._engine) and _remedy_of(error, self._engine) is None:
+            away = _is_lost(error, self._engine) or _is_busy(error, self._engine)
+            if not away and _remedy_of(error, self._engine) is None:
                 raise
 
     return cast(Callable[Concatenate[S, P], None], run)

@@ -1,4 +1,7 @@
-"""Steps from schema to schema of the database, in order. A step behind `USABLE_SINCE` only adds."""
+"""Steps from schema to schema of the database, in order.
+
+A step behind `USABLE_SINCE` only adds, or removes an index, which no statement names.
+"""
 
 from __future__ import annotations
 
@@ -211,6 +214,16 @@ def _lists_of_jobs(op: Operations) -> None:
     op.create_index("computation_by_key", "computation", ["key", "state", "created"])
 
 
+def _unused_indexes(op: Operations) -> None:
+    """Remove what no statement is answered by since lists have lines of their own, or what begins another.
+
+    By the one of projects a submission looked for its caller's last job among those of all callers.
+    """
+    for name in ("job_by_caller", "job_by_project", "job_by_time", "job_by_use"):
+        op.drop_index(name, "job")
+    op.drop_index("computation_by_state", "computation")
+
+
 STEPS: Mapping[str, Callable[[Operations], None]] = {
     "0001": _jobs_and_results,
     # what runs now is nobody's, and its lease has ended
@@ -239,6 +252,7 @@ STEPS: Mapping[str, Callable[[Operations], None]] = {
     "0017": _lists_of_jobs,
     # runs in a row whose end nobody saw; of jobs of before none is known
     "0018": _added("computation", ("lost_runs", "0", sa.Integer)),
+    "0019": _unused_indexes,
 }
 REVISIONS = tuple(STEPS)
 """All schemas there have been, the newest last."""

@@ -7,15 +7,19 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator
+from inspect import iscoroutinefunction
 from pathlib import Path
 from typing import Any
 
 import pytest
 from described_api import DESCRIPTION
+from fastapi.dependencies.models import Dependant
+from fastapi.routing import APIRoute
 
 from lineofaction.gearbox import problems
 from lineofaction.gearbox.problems import ServiceError
 from lineofaction.gearbox.registry import STUDIES
+from service.routes import cases, drafts, events, health, jobs, processes, results
 from service.routes.media_types import OF_STATUS
 from service.schemas.answers import class_name
 from service.worker.process import default_registry
@@ -176,3 +180,19 @@ def test_answers_are_typed_but_for_what_others_define() -> None:
         for place in untyped(content["schema"], f"{method} {path} {status}", met)
     ]
     assert len(met) > 30 and sorted(places) == sorted(OPEN)
+
+
+def test_no_operation_needs_a_thread_for_what_it_depends_on() -> None:
+    """A dependency that is no coroutine costs one, for which the loop waits beside busy threads."""
+
+    def calls(dependant: Dependant) -> Iterator[object]:
+        for dependency in dependant.dependencies:
+            yield dependency.call
+            yield from calls(dependency)
+
+    routers = [processes.processes_router(default_registry()), jobs.job_results_router(default_registry())]
+    routers += [part.router for part in (cases, drafts, events, health, jobs, processes, results)]
+    routes = [route for router in routers for route in router.routes if isinstance(route, APIRoute)]
+    named = {call for route in routes for call in calls(route.dependant)}
+    assert len(routes) > 40 and len(named) >= 4
+    assert [call for call in named if not iscoroutinefunction(call)] == []

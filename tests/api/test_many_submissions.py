@@ -1,7 +1,8 @@
 """Many submissions of few distinct cases at once: each computed once, right answers for all, a bounded queue.
 
 To one process on SQLite, and to a server with access keys and two schedulers on PostgreSQL: 60 submissions
-of 6 cases with every change, 200 of 20 at night.
+of 6 cases with every change, 200 of 20 at night. And to a server on SQLite by many clients at the same time,
+none of which is refused.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import random
 import re
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -120,3 +122,27 @@ def test_equal_cases_are_computed_once_and_all_are_answered(asked: Asked, cases:
     figures = {f.name: f for f in text_string_to_metric_families(client.get("/metrics").text)}
     counted = [s.value for s in figures["loa_computation_seconds"].samples if s.name.endswith("_count")]
     assert counted == [cases]
+
+
+@pytest.mark.parametrize(
+    ("clients", "submissions"),
+    [
+        (64, 128),
+        pytest.param(64, 1200, marks=pytest.mark.nightly),
+        pytest.param(256, 1200, marks=pytest.mark.nightly),
+    ],
+)
+def test_many_clients_at_once_are_all_answered(tmp_path: Path, clients: int, submissions: int) -> None:
+    """Of 1200 six were told that the database cannot be reached: others had always come before them."""
+    settings = {"LOA_QUEUE_LIMIT": str(submissions)}
+    with KilledService(tmp_path, settings) as service, ThreadPoolExecutor(clients) as pool:
+        service.request("GET", "/ready")
+        limits = httpx2.Limits(max_connections=clients)
+        with httpx2.Client(base_url=service.address, timeout=PATIENCE_S, limits=limits) as client:
+
+            def kind(number: int) -> str:
+                answer = client.post(EXECUTION, json={"inputs": {"wish": {"text": f"case {number}"}}})
+                return str(answer.json().get("type", answer.status_code))
+
+            kinds = Counter(pool.map(kind, range(submissions)))
+    assert kinds == {"process": submissions}

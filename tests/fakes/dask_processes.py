@@ -49,10 +49,13 @@ class DaskProcesses:
             return True
         return False
 
-    def start_workers(self, number: int = 1, *, nanny: bool = True, **environment: str) -> None:
+    def start_workers(
+        self, number: int = 1, *, nanny: bool = True, preload: str = "", **environment: str
+    ) -> None:
         words = ["worker", self.address, "--nthreads", "1", "--nworkers", str(number), "--no-dashboard"]
         words += ["--local-directory", str(self.folder / "dask")]
         words += [] if nanny else ["--no-nanny"]
+        words += ["--preload", preload] if preload else []
         self.workers.append(self._started(words, f"worker_{len(self.workers)}", **environment))
 
     def _started(self, words: list[str], name: str, **more: str) -> subprocess.Popen[bytes]:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import importlib
+import os
 import re
 import shutil
 import subprocess
+import time
 import tomllib
 from collections.abc import Iterator
 from functools import cache
@@ -15,11 +17,13 @@ from typing import Any
 
 import pytest
 import yaml
+from postgres_server import PostgresServer, migrated, postgres
 from typer.main import get_command
 
 from lineofaction.cli.commands import app
 from service.settings import Settings, is_secret
 
+__all__ = ["postgres"]
 ROOT = Path(__file__).resolve().parents[3]
 MANIFESTS = ROOT / "deploy" / "kubernetes"
 FIELDS = {name.upper(): field for name, field in Settings.model_fields.items()}
@@ -46,12 +50,26 @@ def of_kind(part: str, kind: str) -> Iterator[dict[str, Any]]:
     yield from (one for one in documents(part) if one["kind"] == kind)
 
 
+def servers() -> list[dict[str, Any]]:
+    """Return what keeps pods of the service running."""
+    return [*of_kind("service", "Deployment"), *of_kind("service", "StatefulSet")]
+
+
 def pods() -> dict[str, dict[str, Any]]:
     """Return the pods by their part."""
-    makers = [*of_kind("service", "Deployment"), *of_kind("schema", "Job")]
-    found = {one["metadata"]["name"].rpartition("-")[2]: one["spec"]["template"]["spec"] for one in makers}
+    makers = [*servers(), *of_kind("schema", "Job")]
+    found = {one["metadata"]["name"].rpartition("-")[2]: _pod(one["spec"]) for one in makers}
     assert set(found) == set(PARTS)
     return found
+
+
+def _pod(maker: dict[str, Any]) -> dict[str, Any]:
+    """Return the pod of what makes some, the volumes that it claims for each among its volumes."""
+    pod, claims = maker["template"]["spec"], maker.get("volumeClaimTemplates", [])
+    claimed = [
+        {"name": claim["metadata"]["name"], "persistentVolumeClaim": claim["spec"]} for claim in claims
+    ]
+    return {**pod, "volumes": [*pod["volumes"], *claimed]}
 
 
 def container(part: str) -> dict[str, Any]:
@@ -85,10 +103,11 @@ def kubernetes_validate() -> ModuleType:
     return importlib.import_module("kubernetes_validate")
 
 
-@pytest.mark.parametrize("part", ["service", "schema"])
+@pytest.mark.parametrize("part", ["service", "schema", "whole"])
 def test_manifests_are_valid(part: str, kubernetes_validate: ModuleType) -> None:
     for document in documents(part):
-        kubernetes_validate.validate(document, "1.34", strict=True)
+        if not document["apiVersion"].startswith("monitoring.coreos.com/"):  # see the test of the monitor
+            kubernetes_validate.validate(document, "1.34", strict=True)
 
 
 def test_a_manifest_that_is_not_valid_is_found(kubernetes_validate: ModuleType) -> None:
@@ -151,7 +170,7 @@ def test_ports_and_paths_agree() -> None:
     ports = {port["name"]: port["containerPort"] for port in container("serve")["ports"]}
     assert ports == {"http": http, "management": management}
     targets = [port["targetPort"] for one in of_kind("service", "Service") for port in one["spec"]["ports"]]
-    assert sorted(targets) == ["dask", "http"]
+    assert set(targets) == {"dask", "http"}
     assert f":{http}" in compose()["services"]["service"]["ports"][0]
     parts = compose()["services"]["service"]
     assert parts["environment"]["LOA_MANAGEMENT_PORT"] == management
@@ -272,17 +291,164 @@ def test_a_worker_fails_by_its_own_limit_before_the_container_does() -> None:
     assert limit + 600 < 4 * 1024  # the Dask worker, and the warm process it forks children from
 
 
-def test_scaling_follows_a_metric_of_the_program() -> None:
+def test_scaling_needs_no_adapter_and_workers_say_what_they_use() -> None:
     (scaler,) = of_kind("service", "HorizontalPodAutoscaler")
-    (metric,) = [entry["external"]["metric"]["name"] for entry in scaler["spec"]["metrics"]]
-    assert any(f'"{metric}"' in file.read_text() for file in (ROOT / "service").rglob("*.py"))
-    scaled = scaler["spec"]["scaleTargetRef"]["name"]
-    work = next(one for one in of_kind("service", "Deployment") if one["metadata"]["name"] == scaled)
+    assert [entry["type"] for entry in scaler["spec"]["metrics"]] == ["Resource"]
+    target = scaler["spec"]["scaleTargetRef"]
+    work = next(
+        one for one in of_kind("service", target["kind"]) if one["metadata"]["name"] == target["name"]
+    )
     assert "replicas" not in work["spec"]  # two would set it against each other
+    resources = container("work")["resources"]
+    assert resources["requests"]["cpu"] == resources["limits"]["cpu"] == "1"  # a job uses one core: 100 %
+
+
+def test_a_worker_that_is_to_end_has_the_time_to_finish_its_job() -> None:
+    words = {"--no-nanny", "--preload", "service.worker.draining"}
+    for command in (container("work")["args"], compose()["services"]["work"]["command"]):
+        assert words <= {part for word in command for part in word.split("=")}
+    assert pods()["work"]["terminationGracePeriodSeconds"] > Settings.model_fields["deadline_s"].default
+    assert importlib.import_module("service.worker.draining").dask_setup
+
+
+def test_caches_and_temporary_files_are_on_volumes() -> None:
+    """Neither a restart nor an upgrade compiles again, and no temporary file counts as memory."""
+    place = Path(re.search(r"NUMBA_CACHE_DIR=(\S+)", dockerfile())[1])
+    for part in ("serve", "work"):
+        mounts = {mount["mountPath"]: mount["name"] for mount in container(part)["volumeMounts"]}
+        volumes = {volume["name"]: volume for volume in pods()[part]["volumes"]}
+        assert "persistentVolumeClaim" in volumes[mounts["/data"]] and place.is_relative_to("/data")
+        assert "medium" not in volumes[mounts["/tmp"]]["emptyDir"], "memory"
+    (claim,) = of_kind("service", "PersistentVolumeClaim")
+    named = [
+        volume.get("persistentVolumeClaim", {}).get("claimName") for volume in pods()["serve"]["volumes"]
+    ]
+    assert claim["metadata"]["name"] in named
+    for name, service in compose()["services"].items():
+        assert "tmpfs" not in service, name
+        if service.get("read_only"):
+            assert "/tmp" in service["volumes"], name
+    for name in ("service", "work"):
+        paths = [volume.partition(":")[2] for volume in compose()["services"][name]["volumes"]]
+        assert any(path and place.is_relative_to(path) for path in paths), name
+
+
+# What is optional: components, which `whole` has all of.
+
+
+def only(kind: str) -> dict[str, Any]:
+    """Return the document of a kind that there is one of, all that is optional included."""
+    (found,) = of_kind("whole", kind)
+    return found
+
+
+def test_the_whole_has_all_components() -> None:
+    makers = {
+        file.parent.name: yaml.safe_load(file.read_text()) for file in MANIFESTS.glob("*/kustomization.yaml")
+    }
+    components = {name for name, made in makers.items() if made["kind"] == "Component"} - {"image"}
+    assert components == {Path(path).name for path in makers["whole"]["components"]}
+    assert {one["metadata"]["namespace"] for one in documents("whole") if one["kind"] != "Namespace"} == {
+        "lineofaction"
+    }
+
+
+def test_the_proxy_passes_on_what_the_service_takes_and_sends() -> None:
+    ingress = only("Ingress")
+    (rule,) = ingress["spec"]["rules"]
+    (path,) = rule["http"]["paths"]
+    target = path["backend"]["service"]
+    service = next(one for one in of_kind("whole", "Service") if one["metadata"]["name"] == target["name"])
+    assert target["port"]["name"] in {port["name"] for port in service["spec"]["ports"]}
+    assert [rule["host"]] == ingress["spec"]["tls"][0]["hosts"], "no plain HTTP"
+    notes = {key.partition("/")[2]: value for key, value in ingress["metadata"]["annotations"].items()}
+    assert int(notes["proxy-body-size"].rstrip("m")) << 20 >= Settings.model_fields["body_limit"].default
+    assert notes["proxy-buffering"] == "off" and int(notes["proxy-read-timeout"]) >= 3600
+    policy = next(
+        one for one in of_kind("whole", "NetworkPolicy") if one["metadata"]["name"] == "callers-to-serve"
+    )
+    (peer,) = policy["spec"]["ingress"][0]["from"]
+    assert peer["namespaceSelector"]["matchLabels"]["kubernetes.io/metadata.name"] == "ingress-nginx"
+
+
+def test_the_monitor_finds_the_management_port_under_the_name_of_the_alerts() -> None:
+    monitor = only("ServiceMonitor")
+    assert monitor["apiVersion"] == "monitoring.coreos.com/v1"
+    assert set(monitor["spec"]) == {"jobLabel", "selector", "endpoints"}
+    wanted = monitor["spec"]["selector"]["matchLabels"].items()
+    chosen = [
+        one for one in of_kind("whole", "Service") if wanted <= one["metadata"].get("labels", {}).items()
+    ]
+    (service,) = chosen
+    (endpoint,) = monitor["spec"]["endpoints"]
+    (port,) = service["spec"]["ports"]
+    assert (endpoint["port"], endpoint["path"]) == (port["name"], "/metrics")
+    assert port["port"] == int(variables_of("serve")["LOA_MANAGEMENT_PORT"])
+    job = service["metadata"]["labels"][monitor["spec"]["jobLabel"]]
+    alerts = (ROOT / "deploy" / "prometheus" / "alerts.yml").read_text()
+    assert set(re.findall(r'job="([^"]+)"', alerts)) == {job}
+    labels = pods_labels("serve")
+    assert service["spec"]["selector"].items() <= labels.items()
+
+
+def pods_labels(part: str) -> dict[str, str]:
+    """Return the labels of the pods of a part."""
+    (maker,) = (one for one in servers() if one["metadata"]["name"].endswith(part))
+    labels: dict[str, str] = maker["spec"]["template"]["metadata"]["labels"]
+    return labels
+
+
+@pytest.mark.law
+def test_the_backup_reads_the_database_and_reaches_nothing_else() -> None:
+    job = only("CronJob")["spec"]["jobTemplate"]["spec"]["template"]
+    spec = job["spec"]
+    (dump,) = spec["containers"]
+    assert spec["securityContext"] == pods()["serve"]["securityContext"]
+    assert dump["securityContext"] == container("serve")["securityContext"]
+    assert spec["automountServiceAccountToken"] is False
+    secrets = [volume["secret"]["secretName"] for volume in spec["volumes"] if "secret" in volume]
+    assert secrets == ["lineofaction-database"]
+    assert {mount["name"] for mount in dump["volumeMounts"]} == {volume["name"] for volume in spec["volumes"]}
+    policies = [one["spec"] for one in of_kind("whole", "NetworkPolicy")]
+    mine = [policy for policy in policies if _selects(policy["podSelector"], job["metadata"]["labels"])]
+    out = {port["port"] for policy in mine for rule in policy.get("egress", ()) for port in rule["ports"]}
+    assert out == {53, 5432}
+    claim = next(volume for volume in spec["volumes"] if volume["name"] == "backup")["persistentVolumeClaim"]
+    claims = {one["metadata"]["name"] for one in of_kind("whole", "PersistentVolumeClaim")}
+    assert claim["claimName"] in claims
+
+
+def _selects(selector: dict[str, Any], labels: dict[str, str]) -> bool:
+    """Whether a selector of pods chooses one with these labels."""
+    by_list = all(labels.get(part["key"]) in part["values"] for part in selector.get("matchExpressions", ()))
+    return selector.get("matchLabels", {}).items() <= labels.items() and by_list
+
+
+@pytest.mark.skipif(shutil.which("pg_dump") is None, reason="PostgreSQL is not installed")
+def test_the_backup_leaves_whole_dumps_and_removes_old_ones(tmp_path: Path, postgres: PostgresServer) -> None:
+    """Its script, with other folders; a dump that fails leaves the last ones."""
+    (script,) = only("CronJob")["spec"]["jobTemplate"]["spec"]["template"]["spec"]["containers"][0][
+        "command"
+    ][2:]
+    secret, backup = tmp_path / "database", tmp_path / "backup"
+    secret.mkdir()
+    backup.mkdir()
+    script = script.replace("/run/secrets/database", str(secret)).replace("/backup", str(backup))
+    (secret / "url").write_text(migrated(postgres.new_database()))
+    old, young = backup / "loa-20200101T000000Z.dump", backup / "loa-20300101T000000Z.dump"
+    for file, days in ((old, 15), (young, 3)):
+        file.touch()
+        os.utime(file, times=(time.time() - 86_400 * days,) * 2)
+    subprocess.run(["sh", "-euc", script], check=True)
+    (new,) = set(backup.iterdir()) - {young}
+    assert not old.exists() and new.stat().st_size > 10_000
+    (secret / "url").write_text("postgresql://127.0.0.1:1/none")
+    assert subprocess.run(["sh", "-euc", script], check=False, capture_output=True).returncode != 0
+    assert {young, new} <= set(backup.iterdir())
 
 
 def test_selectors_select_pods() -> None:
-    labels = [one["spec"]["template"]["metadata"]["labels"] for one in of_kind("service", "Deployment")]
+    labels = [one["spec"]["template"]["metadata"]["labels"] for one in servers()]
     chosen = [one["spec"]["selector"] for one in of_kind("service", "Service")]
     chosen += [one["spec"]["selector"]["matchLabels"] for one in of_kind("service", "PodDisruptionBudget")]
     chosen += [

@@ -17,7 +17,7 @@ from running_service import Bench, bench
 from service_fakes import REGISTRY
 from sqlalchemy import Connection, event
 
-from lineofaction.gearbox.problems import BadInput, DatabaseUnavailable
+from lineofaction.gearbox.problems import BadInput, Busy
 from service.app import create_app
 from service.queue.entry import BatchCase, Entry
 from service.settings import Settings, load_settings
@@ -139,11 +139,11 @@ def test_a_connection_that_is_cut_in_mid_statement_is_outlasted(
 def test_a_file_that_another_holds_is_waited_for_and_then_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.store.dialects._PRAGMAS", ("PRAGMA busy_timeout=20",))
+    monkeypatch.setattr("service.store.dialects.PATIENCE_MS", 20)
     machine = bench(tmp_path, REGISTRY)
     holder = sqlite3.connect(tmp_path / "service.sqlite3", isolation_level=None)
     holder.execute("BEGIN IMMEDIATE")
-    with pytest.raises(DatabaseUnavailable):
+    with pytest.raises(Busy):
         machine.submit(text="refused")
     # let go at the first refusal
     monkeypatch.setattr("service.store.dialects._note", lambda _state: holder.rollback())

@@ -8,10 +8,12 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from typing import Any
 
 import pytest
 from running_service import Bench, bench
 from service_fakes import REGISTRY
+from sqlalchemy import event
 
 from lineofaction.gearbox.problems import NoSuchJob, QueueFull
 from service.access.keyring import Holder
@@ -196,3 +198,18 @@ def test_jobs_survive_a_restart(machine: Bench, tmp_path: Path) -> None:
     again = bench(tmp_path, REGISTRY, database_url=machine.settings.database_address)
     assert again.submissions.find(job.id) == machine.submissions.find(job.id)
     again.close()
+
+
+def test_a_callers_last_job_is_sought_among_its_own_alone(machine: Bench) -> None:
+    """By the time of all jobs of a project those of others were read, at each submission."""
+    if machine.engine.dialect.name != "sqlite":
+        pytest.skip("a server plans by the numbers of its rows")
+    plan: list[str] = []
+
+    def explain(_connection: object, cursor: Any, statement: str, parameters: Any, *_: object) -> None:
+        rows = cursor.connection.execute(f"EXPLAIN QUERY PLAN {statement}", parameters)
+        plan.extend(str(row[3]) for row in rows)
+
+    event.listen(machine.engine, "before_cursor_execute", explain)
+    assert machine.submissions.newest(Holder(name="one"), "fake") is None
+    assert "SEARCH job USING INDEX job_by_caller_and_time (caller=?)" in plan

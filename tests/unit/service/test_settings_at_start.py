@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+import structlog.testing
 
 from lineofaction.gearbox.problems import BadInput
-from service.settings import load_settings
+from service.settings import _FORMER, Settings, load_settings, note_former_settings
 
 
 @pytest.mark.parametrize("address", ["tcp://gears.example:8786", "ws://[2001:db8::1]:8786"])
@@ -30,3 +31,25 @@ def test_an_empty_name_of_the_key_file_is_none(tmp_path: Path, monkeypatch: pyte
     """Compose passes variables that are not set as empty ones."""
     monkeypatch.setenv("LOA_KEYS_FILE", "")
     assert load_settings(data_directory=tmp_path).key_file == tmp_path / "keys.json"
+
+
+def test_settings_of_earlier_versions_are_named_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Else jobs would run on this machine, and nobody would know why."""
+    monkeypatch.setenv("LOA_DASK_SCHEDULER", "tls://gears.example:8786")
+    monkeypatch.setenv("LOA_LEASE_S", "60")
+    with structlog.testing.capture_logs() as lines:
+        note_former_settings()
+    (line,) = lines
+    assert (line["event"], line["log_level"]) == ("settings without effect", "warning")
+    assert line["settings"]["LOA_DASK_SCHEDULER"] == "It is LOA_SCHEDULER."
+    assert "one server owns a job table" in line["settings"]["LOA_LEASE_S"]
+
+
+def test_a_former_setting_is_no_setting_and_an_empty_one_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    fields = {f"LOA_{name.upper()}" for name in Settings.model_fields}
+    assert not fields & set(_FORMER)
+    for name in _FORMER:
+        monkeypatch.setenv(name, "")
+    with structlog.testing.capture_logs() as lines:
+        note_former_settings()
+    assert lines == []

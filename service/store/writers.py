@@ -1,0 +1,76 @@
+"""The writers of one SQLite file: those of this process take turns in the order in which they came.
+
+SQLite lets one write at a time and lets the others try again and again, each for itself: which of many gets
+in next is chance, and some never do. In a queue each waits for those before it alone. Writers of other
+processes still meet SQLite's lock, at most one of each process at a time.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import cache
+from threading import Lock
+
+from sqlalchemy.exc import SQLAlchemyError
+
+
+class TurnTimeout(SQLAlchemyError):
+    """A writer's turn has not come within its patience."""
+
+
+class WriterQueue:
+    """Who writes, and who waits to; for all threads of a process."""
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+        self._occupied = False
+        self._waiting: deque[Lock] = deque()
+        """A lock of each writer that waits, which is freed when its turn comes."""
+
+    @contextmanager
+    def turn(self, patience_s: float, *, ahead: bool = False) -> Iterator[float]:
+        """Wait for the turn, and have it while the context lasts; yield what is left of the patience, s.
+
+        With `ahead` it is the next one. Raises `TurnTimeout`: it has not come within `patience_s`.
+        """
+        end = time.monotonic() + patience_s
+        self._enter(patience_s, ahead)
+        try:
+            yield max(end - time.monotonic(), 0.0)
+        finally:
+            self._leave()
+
+    def _enter(self, patience_s: float, ahead: bool) -> None:
+        with self._lock:
+            if not self._occupied:
+                self._occupied = True
+                return
+            signal = Lock()
+            signal.acquire()
+            (self._waiting.appendleft if ahead else self._waiting.append)(signal)
+        if not signal.acquire(timeout=patience_s):
+            self._give_up(signal)
+
+    def _give_up(self, signal: Lock) -> None:
+        """Leave the queue, unless the turn has come at the last moment."""
+        with self._lock:
+            if signal in self._waiting:
+                self._waiting.remove(signal)
+                raise TurnTimeout("Others write, and have not ended in time.")
+
+    def _leave(self) -> None:
+        """Let the next one write."""
+        with self._lock:
+            if self._waiting:
+                self._waiting.popleft().release()
+            else:
+                self._occupied = False
+
+
+@cache
+def writers_of(file: str) -> WriterQueue:
+    """Return the queue of a file, the same for all that open it in this process."""
+    return WriterQueue()

@@ -1,0 +1,59 @@
+"""A worker of Dask that is told to end (SIGTERM) finishes the job that it does, and gives its result away.
+
+Dask itself ends a worker at once. As ``dask worker --no-nanny --preload service.worker.draining`` it begins
+no further task, waits for those that it does until their results are elsewhere, and leaves; a second SIGTERM
+ends it at once. Who supervises it waits for as long as a job may take (`terminationGracePeriodSeconds`).
+"""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import time
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+import structlog
+
+if TYPE_CHECKING:
+    from distributed import Worker
+
+JOBS = "loa-"
+"""How the keys of jobs begin: see `service.queue.cluster`."""
+_LOOK_S = 0.1
+_FETCH_S, _MOVE_S = 30.0, 30.0
+"""How long results wait for the server that fetches them, and what is left for a way to other workers."""
+logger = structlog.get_logger(__name__)
+
+
+async def dask_setup(worker: Worker) -> None:
+    """Let SIGTERM drain a worker; Dask calls this when it has started, after it has set its handlers."""
+    loop, draining = asyncio.get_running_loop(), list[asyncio.Task[None]]()
+
+    def told() -> None:
+        loop.remove_signal_handler(signal.SIGTERM)  # a second one ends the process
+        draining.append(loop.create_task(_drain(worker)))
+
+    loop.add_signal_handler(signal.SIGTERM, told)
+
+
+async def _drain(worker: Worker) -> None:
+    """Finish what is being done, and close."""
+    from distributed.core import Status  # noqa: PLC0415 (an extra)
+
+    logger.info("worker drains", worker=worker.address, tasks=len(_in_work(worker)))
+    worker.status = Status.closing_gracefully  # the scheduler sends it no more
+    while _in_work(worker):
+        await asyncio.sleep(_LOOK_S)
+    end = time.monotonic() + _FETCH_S
+    while any(str(key).startswith(JOBS) for key in worker.data) and time.monotonic() < end:
+        await asyncio.sleep(_LOOK_S)
+    with suppress(OSError, TimeoutError):  # a scheduler that is gone has nothing to move
+        leave = worker.scheduler.retire_workers(workers=[worker.address], close_workers=False, remove=True)
+        await asyncio.wait_for(leave, _MOVE_S)
+    await worker.close(reason="drained")
+
+
+def _in_work(worker: Worker) -> set[object]:
+    """Return the tasks that a worker does now."""
+    return {*worker.state.executing, *worker.state.long_running}
