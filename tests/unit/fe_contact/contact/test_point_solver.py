@@ -309,6 +309,7 @@ def test_the_solution_is_the_same_wherever_it_starts_and_nearer_is_sooner(spring
     assert np.all(force == 100.0)
 
 
+@pytest.mark.law
 def test_curves_move_the_contacts_as_the_means_of_their_slices_do() -> None:
     here, rng = candidates(7), np.random.default_rng(2)
     root = rng.normal(size=(here.position.size, here.slices.pair.size, 60))

@@ -107,6 +107,7 @@ def test_the_gap_closes_where_load_is_carried_and_far_ends_stay_rigid():
     assert found.gap[0, alone, [0, -1]] == pytest.approx(expected, rel=0.01)
 
 
+@pytest.mark.law
 def test_face_load_factors_are_one_of_equal_load_and_grow_with_misalignment():
     """A slice twice as loaded as it would be is what the factor says."""
     found = solved(spur_pair(), at=[0.0])
