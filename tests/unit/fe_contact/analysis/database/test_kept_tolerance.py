@@ -253,6 +253,7 @@ def test_a_level_or_a_minimal_receipt_refines_nothing():
         assert "passes" not in receipt(analyze(SPUR, **asked, **PLANE))
 
 
+@pytest.mark.law
 def test_loads_are_inserted_until_every_interval_meets_the_tolerance(tmp_path: Path):
     """Those that were requested stay the axis; the others are support loads between them."""
     wide = analyze(SPUR, tolerance=0.01, **(PLANE | {"torques": [16.0, 80.0]}), cache=tmp_path)

@@ -80,6 +80,7 @@ def test_inserted_nodes_change_nothing_at_those_requested(refined, cache, monkey
         assert (ours.mean, ours.peak_to_peak) == (theirs.mean, theirs.peak_to_peak)
 
 
+@pytest.mark.law
 def test_a_refined_table_answers_as_one_whose_caller_requested_all_nodes(refined, cache) -> None:
     whole = spur(center_distance_changes=refined.center_distance_change, cache=cache)
     assert whole.inserted_center_distance_change.size == 0

@@ -48,6 +48,7 @@ def test_the_line_load_along_the_contact_lines_is_the_force():
     assert np.any(corners.lever[corners.force > 0.0] != 1.0)
 
 
+@pytest.mark.law
 def test_the_pressure_is_hertz_of_the_line_load_on_the_line_of_action():
     """p0^2 = F' E* / (pi R) with R in the normal section from the roll lengths of both flanks."""
     pair = helical_pair()
