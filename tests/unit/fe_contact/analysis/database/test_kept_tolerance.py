@@ -127,6 +127,7 @@ def test_a_small_helical_draft_is_refined(from_draft):
     assert receipt(table)["tolerance"]["met"] is True
 
 
+@pytest.mark.law
 def test_a_time_budget_ends_refinement_and_keeps_what_is_there(from_draft):
     """The draft is kept, its tolerance is not met, and the reason names the refinement and its time."""
     asked = PLANE | {"tolerance": AllowedError(0.001, 0.0)}

@@ -93,6 +93,7 @@ def test_a_refined_table_answers_as_one_whose_caller_requested_all_nodes(refined
             assert np.array_equal(ours.ste, theirs.ste)
 
 
+@pytest.mark.law
 def test_what_is_said_of_an_interval_holds_where_nothing_was_solved(refined, cache) -> None:
     for change in (3e-5, 1.1e-4, 2.2e-4, 3.3e-4):
         truth = spur(center_distance_changes=[change], cache=cache)
