@@ -34,7 +34,7 @@ SLOW = 0.5
 LONG = 2.0
 """CPU seconds from which on a law, too, runs only when what it rests on changed; a fixture that costs as much
 counts for each test of the file that shares it."""
-BUDGET = 60.0
+BUDGET = 30.0
 """CPU seconds of slow tests of files that a run of the day takes because what they rest on changed."""
 IMPORTED = (TESTS / "fakes", ROOT / "scripts")
 """Folders whose modules tests import by their names."""
