@@ -9,6 +9,7 @@ import re
 import signal
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from coarse_sectors import coarse_sectors
@@ -85,6 +86,14 @@ def _turn(item: pytest.Item) -> int:
     """Return the place of a test's folder: 0 without services."""
     folder = item.path.relative_to(TESTS).parts[0]
     return SERVICES.index(folder) + 1 if folder in SERVICES else 0
+
+
+@pytest.hookimpl(optionalhook=True)  # there is none where a run has one process
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Share the files out over workers."""
+    from suite_distribution import scheduler  # noqa: PLC0415 (needs xdist)
+
+    return scheduler(config, log)
 
 
 def pytest_collection_finish() -> None:

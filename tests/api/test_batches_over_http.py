@@ -55,6 +55,7 @@ def count(http: TestClient) -> int:
     return len(http.get("/v1/jobs").json()["jobs"])
 
 
+@pytest.mark.law
 def test_a_batch_is_a_job_whose_results_are_those_of_its_jobs_in_order(http: TestClient) -> None:
     texts = ["c", "a", "b"]
     answer = submitted(http, *({"text": text} for text in texts))

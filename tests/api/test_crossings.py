@@ -153,6 +153,7 @@ def test_what_is_open_to_all_is_what_no_key_is_asked_for() -> None:
     assert open_to_all == {*OPEN_PATHS, f"{OPEN_FOLDER}{{name}}"}
 
 
+@pytest.mark.law
 def test_the_description_names_the_scopes() -> None:
     document = APP.openapi()
     for walked in ROUTES:

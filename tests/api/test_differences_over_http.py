@@ -41,6 +41,7 @@ def relieved(before: float, value: float) -> list[Json]:
     return [{"field": "case.pair.pinion.tip_relief_um", "before": before, "value": value}]
 
 
+@pytest.mark.law
 def test_a_job_is_compared_with_the_one_before_of_its_process(client: TestClient) -> None:
     first = entered(client, relief=10.0)
     entered(client, "flank", relief=30.0)

@@ -110,6 +110,7 @@ def test_a_hash_serves_as_well_as_the_case(client: LineOfActionClient, case: dic
     assert np.array_equal(run["mesh_force"].to_numpy(), other["mesh_force"].to_numpy())
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("how", ["case", "case_file", "database_hash", "database_file"])
 def test_a_scene_runs_here_on_tables_of_the_service(
     client: LineOfActionClient, case: dict[str, Any], tmp_path: Path, how: str

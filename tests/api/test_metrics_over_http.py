@@ -44,6 +44,7 @@ def run(client: TestClient, mode: str, text: str) -> None:
     until(lambda: client.get(location).json()["status"] in ("successful", "failed"))
 
 
+@pytest.mark.law
 def test_figures_are_valid_and_tell_what_was_done(client: TestClient) -> None:
     run(client, "write", "x" * 100)
     run(client, "write", "y" * 23)

@@ -81,6 +81,7 @@ def test_a_body_to_send_has_an_example_of_its_schema(path: str, kind: str, body:
     conforms(body["example"], body["schema"])
 
 
+@pytest.mark.law
 def test_every_answer_has_an_example_of_its_schema() -> None:
     for method, path, status, kind, body in ANSWERED:
         shown = (

@@ -70,6 +70,7 @@ def test_a_key_that_ends_no_body_leaves_the_others_theirs(settings: Settings) ->
         assert http.get("/v1/jobs", headers=mine).status_code == 200, "its bodies are no requests yet"
 
 
+@pytest.mark.law
 def test_bodies_that_do_not_end_take_no_place_of_requests_without_keys(settings: Settings) -> None:
     """All callers are one; what carries no body is answered."""
     app = create_app(settings, REGISTRY, works=False)

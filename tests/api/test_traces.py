@@ -276,6 +276,7 @@ def only(lines: list[dict[str, Any]], event: str) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.law
 def test_a_request_is_followed_to_its_worker_and_what_that_took(log: Path, tmp_path: Path) -> None:
     settings = Settings(data_directory=tmp_path / "data", attempts=2, memory_limit_mb=1000)
     with TestClient(create_app(settings, REGISTRY)) as client:

@@ -11,8 +11,8 @@ from types import ModuleType
 
 import pytest
 from condensed_once import find_condensed
-from page_visit import PATIENCE, Visit, computed, served, shown
-from playwright.sync_api import Browser, Playwright, expect, sync_playwright
+from page_visit import PATIENCE, Visit, bare, computed, served, shown
+from playwright.sync_api import Browser, Page, Playwright, expect, sync_playwright
 
 CLOSED_FORMS = Path(__file__).parents[1] / "unit" / "report" / "conftest.py"
 
@@ -88,6 +88,14 @@ def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
     seen = shown(browser, address, analyzed)
     yield seen
     seen.page.close()
+
+
+@pytest.fixture(scope="module")
+def scripts(browser: Browser, address: str) -> Iterator[Page]:
+    """Return a page whose scripts are asked, without what they draw and ask in the whole one."""
+    page = bare(browser, address)
+    yield page
+    page.close()
 
 
 @pytest.fixture(scope="session")

@@ -60,14 +60,6 @@ def visit(browser: Browser, address: str) -> Iterator[Visit]:
     seen.page.close()
 
 
-@pytest.fixture(scope="module")
-def scripts(browser: Browser, address: str) -> Iterator[Page]:
-    """Return a page whose scripts are asked, and which nothing changes."""
-    page = opened(browser, address).page
-    yield page
-    page.close()
-
-
 def bar(page: Page) -> dict[str, str]:
     return {name: page.locator(f"#bar-{name}").input_value() for name in FIELDS}
 

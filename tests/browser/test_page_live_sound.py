@@ -30,19 +30,19 @@ def rendered(page: Page, *harmonics: list[float]) -> np.ndarray:
 
 
 @pytest.mark.law
-def test_levels_of_live_sounds_are_in_the_ratio_of_what_excites_them(visit: Visit) -> None:
-    single, double, second = rendered(visit.page, [0.1], [0.2], [0.0, 0.1])
+def test_levels_of_live_sounds_are_in_the_ratio_of_what_excites_them(scripts: Page) -> None:
+    single, double, second = rendered(scripts, [0.1], [0.2], [0.0, 0.1])
     level = np.sqrt(np.mean(np.square([single, double, second]), axis=1))
     assert level[1] / level[0] == pytest.approx(2.0, rel=1e-3)
     assert level[2] / level[0] == pytest.approx(2.0, rel=0.02)  # twice the frequency: twice the velocity
     assert 0.4 < np.abs(double).max() <= 0.501
-    together = rendered(visit.page, [0.1] * 6, [0.1])[0]
+    together = rendered(scripts, [0.1] * 6, [0.1])[0]
     assert 0.2 < np.abs(together).max() <= 0.501, "harmonics together stay within the scale"
 
 
 @pytest.mark.law
-def test_a_live_sound_sweeps_over_the_mesh_frequencies(visit: Visit) -> None:
-    (samples,) = rendered(visit.page, [0.1])
+def test_a_live_sound_sweeps_over_the_mesh_frequencies(scripts: Page) -> None:
+    (samples,) = rendered(scripts, [0.1])
     edges = np.flatnonzero((samples[:-1] < 0.0) & (samples[1:] >= 0.0)) / 48000.0
     frequency, at = 1.0 / np.diff(edges), edges[:-1]
     for moment, rpm in ((0.25, 1500), (0.75, 2100)):
@@ -66,8 +66,8 @@ HEARD = """async () => {
 
 
 @pytest.mark.law
-def test_an_order_of_the_map_is_heard_at_its_frequency_and_level(visit: Visit) -> None:
-    heard = visit.page.evaluate(HEARD)
+def test_an_order_of_the_map_is_heard_at_its_frequency_and_level(scripts: Page) -> None:
+    heard = scripts.evaluate(HEARD)
     assert [place["frequency"] for place in heard["places"]] == pytest.approx([400.0, 1.1 * 610 / 3, 400.0])
     loudest, softer, silent = (np.array(tone) for tone in heard["tones"])
     assert np.abs(loudest).max() == pytest.approx(0.5, rel=1e-3)
@@ -109,9 +109,9 @@ FOLLOWED = """async () => {
 
 
 @pytest.mark.law
-def test_the_tone_follows_the_cursor_over_speed_and_order(visit: Visit) -> None:
+def test_the_tone_follows_the_cursor_over_speed_and_order(scripts: Page) -> None:
     """A run down and up again: speeds below its least one sound as that one."""
-    for speed, order, frequency, level, said in visit.page.evaluate(FOLLOWED):
+    for speed, order, frequency, level, said in scripts.evaluate(FOLLOWED):
         assert frequency == pytest.approx(order * max(speed, 2000.0) / 3.0)
         assert level == pytest.approx(0.5)
         assert f"at {speed:.0f}" in said.replace(".0", "")

@@ -64,6 +64,7 @@ def _burn() -> None:
 WAYS = pytest.mark.parametrize("run", [_in_memory, _to_file, _resumed])
 
 
+@pytest.mark.law
 @WAYS
 def test_a_run_that_stalls_costs_no_more_and_lasts_longer(run: Runs, tmp_path: Path) -> None:
     stalls = _Counted(lambda: time.sleep(STALL_S), 50)

@@ -87,6 +87,15 @@ def opened(browser: Browser, address: str, scheme: str = "light", width: int = 1
     return seen
 
 
+def bare(browser: Browser, address: str) -> Page:
+    """Open a file of the page by itself: its modules can be imported, and nothing is drawn or asked."""
+    page = _tab(browser, address)
+    answer = page.goto(f"{address}/page/style.css")
+    assert answer is not None
+    assert answer.ok
+    return page
+
+
 def _tab(browser: Browser, address: str) -> Page:
     """Return a tab of the one window, which costs a second less than a window of its own; nothing is stored.
 

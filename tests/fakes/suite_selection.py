@@ -3,10 +3,11 @@
 By default: all that are quick, those marked `law` that are not long, and of the others those that rest on
 what changed since they last passed. A test rests on its file, on the fakes and scripts that file imports, on
 the houses both import and those below, on what its file names in `RESTS_ON`, and on the versions of packages;
-one that starts processes rests on all houses. Tests marked `chain` go on with what those before them in their
-file left: they run all or none, by the cost of all. `tests/records` holds what each slow test costs and what
-it rested on when it passed; the nightly run renews it. Files that are named on the command line run whole,
-and with `--all` everything does.
+one that starts processes rests on all houses. Of a test with several cases on record a fifth runs by day,
+with each version another, as of those marked `drawn`. Tests marked `chain` go on with what those before them
+in their file left: they run all or none, by the cost of all. `tests/records` holds what each slow test costs
+and what it rested on when it passed; the nightly run renews it. Files that are named on the command line run
+whole, and with `--all` everything does.
 """
 
 from __future__ import annotations
@@ -22,17 +23,18 @@ from pathlib import Path
 
 import pytest
 import structure
+from drawn_cases import draw, turn
 
 TESTS = Path(__file__).parents[1]
 ROOT = TESTS.parent
 RECORDS = TESTS / "records"
 COSTS, PASSED = RECORDS / "cpu_seconds.csv", RECORDS / "passed.csv"
-SLOW = 0.6
+SLOW = 0.5
 """CPU seconds of a test from which on it is slow."""
 LONG = 2.0
 """CPU seconds from which on a law, too, runs only when what it rests on changed; a fixture that costs as much
 counts for each test of the file that shares it."""
-BUDGET = 60.0
+BUDGET = 30.0
 """CPU seconds of slow tests of files that a run of the day takes because what they rest on changed."""
 IMPORTED = (TESTS / "fakes", ROOT / "scripts")
 """Folders whose modules tests import by their names."""
@@ -77,9 +79,11 @@ def _of_the_day(items: Sequence[pytest.Item], passed: dict[str, str] | None) -> 
         if item.get_closest_marker("chain"):
             chains[item.path] += own[item.nodeid]
 
+    undrawn = _undrawn(items, own)
+
     def stays(item: pytest.Item) -> bool:
         cost = chains[item.path] if item.get_closest_marker("chain") else own[item.nodeid]
-        if cost <= (LONG if item.get_closest_marker("law") else SLOW):
+        if cost <= _limit(item) and item.nodeid not in undrawn:
             return True
         name = name_of(item.path)
         if passed is None or name in left_to_the_night():
@@ -87,6 +91,25 @@ def _of_the_day(items: Sequence[pytest.Item], passed: dict[str, str] | None) -> 
         return passed.get(name) != digest(item.path)
 
     return [item for item in items if stays(item)]
+
+
+def _limit(item: pytest.Item) -> float:
+    """Return the CPU time (s) up to which a test runs whatever changed."""
+    return LONG if item.get_closest_marker("law") else SLOW
+
+
+def _undrawn(items: Sequence[pytest.Item], own: dict[str, float]) -> set[str]:
+    """Return cases on record beyond a drawn fifth, of tests that have several and are slow by their sum."""
+    tests = defaultdict[str, list[str]](list)
+    for item in items:
+        if own[item.nodeid] > 0.0 and own[item.nodeid] <= _limit(item) and not _chosen_otherwise(item):
+            tests[item.nodeid.partition("[")[0]].append(item.nodeid)
+    slow = [cases for cases in tests.values() if len(cases) > 1 and sum(own[case] for case in cases) > SLOW]
+    return {case for cases in slow for case in set(cases) - draw(cases, turn())}
+
+
+def _chosen_otherwise(item: pytest.Item) -> bool:
+    return any(item.get_closest_marker(name) for name in ("chain", "drawn", "nightly"))
 
 
 @cache

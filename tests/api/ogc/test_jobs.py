@@ -8,6 +8,7 @@ from ogc_jobs import EXCEPTIONS, executed, link
 from service_fakes import EXECUTION
 
 
+@pytest.mark.law
 @pytest.mark.requirement("/req/core/job", "/req/core/job-success")
 def test_a_job_tells_its_status(client: TestClient) -> None:
     status = executed(client, text="job")

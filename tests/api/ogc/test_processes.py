@@ -69,6 +69,7 @@ def test_the_landing_page_leads_everywhere(client: TestClient) -> None:
         assert client.get(link(answer.json(), relation)).status_code == 200
 
 
+@pytest.mark.law
 @pytest.mark.requirement("/rec/core/api-definition-oas")
 def test_types_of_the_definition(client: TestClient) -> None:
     """What the links say they lead to is answered to those who accept it."""

@@ -69,6 +69,7 @@ def test_the_surface_and_the_cost_of_the_housing_are_written(scene: Path, tmp_pa
     assert "housing_transfer" in page
 
 
+@pytest.mark.law
 def test_figures_are_root_mean_squares_and_contributions_add_up(scene: Path) -> None:
     answer = told(scene)
     cover = answer["points"]["cover"]

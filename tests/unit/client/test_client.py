@@ -206,6 +206,7 @@ def test_the_import_is_light() -> None:
     assert not {"fe_contact", "dynamics", "bounds", "numpy"} & packages
 
 
+@pytest.mark.law
 def test_a_table_fetched_as_a_dataset_is_the_same_table(client: LineOfActionClient) -> None:
     found, expected = client.fetch_dataset(KEY), small_table().to_xarray()
     assert found.equals(expected)

@@ -85,6 +85,36 @@ def test_a_chain_runs_whole_or_not_at_all(on_record: dict[str, str], monkeypatch
     assert _left(chain) == []
 
 
+CASES = [f"case[{number}]" for number in range(7)]
+
+
+@pytest.mark.parametrize("turn", range(5))
+def test_of_cases_that_are_slow_by_their_sum_a_fifth_runs(
+    on_record: dict[str, str], monkeypatch: pytest.MonkeyPatch, turn: int
+) -> None:
+    costs = {SLOW_TEST.replace("slow", name): 0.6 * SLOW for name in CASES}
+    monkeypatch.setattr(suite_selection, "read_costs", lambda: costs)
+    monkeypatch.setattr(suite_selection, "turn", lambda: turn)
+    for marks in ((), ("law",)):
+        left = _left([_item("quick[0]"), _item("quick[1]"), *(_item(name, *marks) for name in CASES)])
+        assert len(left) in (5, 6) and set(left) < set(CASES)
+    assert _left([_item(name) for name in CASES[:1]]) == []
+    assert _left([_item(name, "drawn") for name in CASES]) == []
+    on_record.clear()
+    assert _left([_item(name) for name in CASES]) == []
+
+
+@pytest.mark.usefixtures("on_record")
+def test_a_case_of_the_night_is_not_drawn_in_place_of_one_of_the_day(monkeypatch: pytest.MonkeyPatch) -> None:
+    costs = {SLOW_TEST.replace("slow", name): 0.6 * SLOW for name in CASES}
+    monkeypatch.setattr(suite_selection, "read_costs", lambda: costs)
+    day, night = CASES[:2], CASES[2:]
+    for turn in range(5):
+        monkeypatch.setattr(suite_selection, "turn", lambda turn=turn: turn)
+        left = _left([_item(name) for name in day] + [_item(name, "nightly") for name in night])
+        assert len(left) == 1 and left[0] in day
+
+
 @pytest.mark.usefixtures("on_record")
 def test_everything_runs_on_request() -> None:
     assert _left([_item("slow")], all=True) == []

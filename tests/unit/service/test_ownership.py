@@ -98,6 +98,7 @@ def test_a_lock_that_is_lost_is_acquired_again_and_the_work_goes_on(
     until(lambda: not lives(child))
 
 
+@pytest.mark.law
 def test_who_has_lost_the_table_to_another_server_ends_its_work_and_starts_none(
     tmp_path: Path, server: Bench, postgres: PostgresServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -143,6 +143,7 @@ def test_a_stop_tells_all_who_follow(machine: Bench, watcher: Watcher[Job]) -> N
         assert received == [None]
 
 
+@pytest.mark.law
 def test_lost_connections_lose_no_state(
     postgres: PostgresServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

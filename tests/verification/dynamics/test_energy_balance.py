@@ -223,6 +223,7 @@ def test_the_error_of_the_steps_is_the_one_stated(tolerance, record_figure):
     assert 0.3 < max(stated["bearing_force_orders"]) / max(by_force) < 3.0
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("positions", [24, 64])
 def test_the_error_of_the_table_is_within_the_one_stated(positions, record_figure):
     fine = Integration(tolerance=1e-10)

@@ -58,6 +58,7 @@ def test_the_walls_of_a_closed_cavity_are_left_out() -> None:
     assert outer.cap_area == 0.0
 
 
+@pytest.mark.law
 def test_the_mean_square_of_a_motion_leaves_out_the_walls_of_a_cavity() -> None:
     along_z = surface_weight(housing_of("closed"))[2, 2]
     assert along_z == pytest.approx(2.0 * SIZE[0] * SIZE[1] / OUTER, rel=1e-12)
@@ -82,6 +83,7 @@ def test_both_sides_of_an_open_tub_are_outside() -> None:
     assert outer.hull.area == pytest.approx(OUTER - SIZE[0] * SIZE[1] + rim + tub, rel=1e-9)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("opening", ["closed", "bores", "no cover"])
 def test_a_rigid_motion_displaces_no_volume_and_a_swelling_its_own(opening: str) -> None:
     outer = hull_of(opening)

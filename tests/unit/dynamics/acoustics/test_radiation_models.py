@@ -96,6 +96,7 @@ def disc(rings: int) -> Hull:
     return Hull(np.concatenate(nodes), np.array(triangles))
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("ka", [0.5, 1.0, 2.0, 4.0])
 def test_a_baffled_piston_radiates_as_rayleigh_says(ka: float) -> None:
     piston = disc(24)

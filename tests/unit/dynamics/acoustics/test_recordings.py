@@ -164,6 +164,7 @@ def heard_order(samples: np.ndarray, rate: int, run: RunResult, order: int, at: 
     return float(2.0 * abs(np.sum(weight * samples * turned)) / weight.sum())
 
 
+@pytest.mark.law
 @pytest.mark.parametrize(("start", "end"), [(250.0, 250.0), (60.0, 900.0), (900.0, 60.0)])
 def test_orders_of_the_file_have_the_levels_of_the_map(tmp_path: Path, start: float, end: float) -> None:
     run = run_of(start, end)

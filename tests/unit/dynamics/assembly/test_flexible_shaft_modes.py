@@ -221,6 +221,7 @@ def test_an_overhung_disc_whirls_as_its_flexibility_says():
     assert expected[1] / expected[0] > 1.2
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("torn", [False, True])
 def test_time_integration_has_the_gyroscopic_terms_of_the_whirl_modes(torn):
     """All of them where torques alone turn the shaft, what shifts a frequency by 1e-4 where a drive does."""

@@ -91,6 +91,7 @@ def test_a_disc_behind_a_coupling_moves_the_same_from_either_frame():
     assert np.max(np.abs(apart)) < 1e-5 * np.max(np.abs(one.q[:, location[:2]]))
 
 
+@pytest.mark.law
 def test_derivatives_are_those_of_the_forces():
     system = assemble(coupled_disc("disc"))
     arrays = system.arrays

@@ -104,6 +104,7 @@ def test_the_load_moves_to_the_end_that_a_tilt_presses_together(table, body, sen
     assert on_driver @ advances[:2] < 0.0
 
 
+@pytest.mark.law
 def test_the_static_limit_is_the_database_at_the_operating_point_of_the_bodies(table, database):
     scene = with_mesh(scene_on(table), misalignment=5e-6, center_distance_change=2e-5)
     system = assemble(scene)

@@ -103,6 +103,7 @@ def test_its_interface_is_that_of_the_standards_header(element, tmp_path):
     assert len(found[0].splitlines()) == 28
 
 
+@pytest.mark.law
 def test_a_state_can_be_kept_and_taken_up_again(element, tmp_path):
     names = ("driver_angle", "driver_turns", "mesh_force", "dte_from_angles", "damping")
     with Instance(export_fmu(element, tmp_path / "m.fmu")) as unit:

@@ -16,6 +16,7 @@ def reduced():
     return reduced_housing(meshed())
 
 
+@pytest.mark.law
 def test_other_mounts_are_those_of_a_new_reduction(reduced):
     found, expected = with_mounts(reduced, 1.7), reduced_housing(meshed(mount=1.7))
     changed = np.abs(expected.frequency / reduced.frequency - 1.0).max()

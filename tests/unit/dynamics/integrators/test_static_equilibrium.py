@@ -95,6 +95,7 @@ def test_no_load_rests_at_lift_off():
     assert found.mesh_force[0] == pytest.approx(0.0, abs=1e-6)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("planets", [3, 4, 5])
 def test_a_planet_set_back_too_far_leaves_its_load_to_the_others(planets):
     """Sun, ring and carrier held across the axis: the others share alike, and it touches nothing."""

@@ -260,6 +260,7 @@ def test_a_varying_stiffness_is_that_of_the_time_domain(rpm):
     )
 
 
+@pytest.mark.law
 def test_a_swept_resonance_is_as_high_as_it_can_grow():
     """One freedom hardly damped, driven through its resonance in 0.4 s (Lewis, 1932)."""
     top = 2.0 * NATURAL / 20

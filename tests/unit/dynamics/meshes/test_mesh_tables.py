@@ -248,6 +248,7 @@ def test_positions_just_below_a_period_stay_in_the_table():
         assert found == pytest.approx(at if x != -1e-300 else table_force(packed, 0, 0.0, 60e-6, 0)[0])
 
 
+@pytest.mark.law
 def test_the_tangent_is_the_derivative_and_continuous_everywhere():
     packed = pack_tables([TABLE])
     for x in rng.uniform(0, 1, 10):

@@ -61,6 +61,7 @@ def test_a_small_ripple_gives_the_harmonic_response(bearings):
         np.testing.assert_allclose(line, theirs, rtol=0.0, atol=2e-5 * np.max(np.abs(theirs)))
 
 
+@pytest.mark.law
 def test_a_long_run_settles_on_the_orbit():
     """On a table with a handover; samples of the run's last pitch against the orbit's."""
     scene = gear_pair_scene(speed=TimeLaw.constant(SPEED))

@@ -99,6 +99,7 @@ def test_the_case_spells_out_every_damping(result):
     assert 0.0 < result.receipt["error"]["time_step"]["rms"] < 1e-9
 
 
+@pytest.mark.law
 def test_files_give_back_every_bit(result, tmp_path):
     path = tmp_path / "run.nc"
     result.to_netcdf(path)

@@ -66,6 +66,7 @@ def test_effects_off_are_what_leaving_them_out_changes(pair):
     assert off.mean.value / full.mean.value - 1.0 == pytest.approx(0.017, abs=0.003)
 
 
+@pytest.mark.law
 def test_the_error_estimate_covers_the_true_error(pair):
     """Against a mesh twice as fine; the draft's estimate must hold and not be idle."""
     rough = draft(pair, positions=None)

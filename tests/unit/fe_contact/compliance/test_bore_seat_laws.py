@@ -148,6 +148,7 @@ def solved_keyed(gear: Gear, reach: int = 2) -> FlankCompliance3D:
     return flank_compliance_3d(gear, coarse(gear), reach=reach)
 
 
+@pytest.mark.law
 @GEARS
 def test_a_key_around_the_whole_bore_is_the_seat_all_round(gear: Gear) -> None:
     seat, key = (solved_keyed(g) for g in (replace(gear, seat=SEAT), keyed(gear, math.pi * 12e-3, 1.0)))

@@ -53,6 +53,7 @@ def usual(gear: Gear) -> FiniteWidthCompliance:
     return beyond(gear)
 
 
+@pytest.mark.law
 @pytest.mark.usefixtures("exact_ring")
 def test_half_a_face_stands_for_the_whole(gear: Gear) -> None:
     """Under even loads mid-face is a plane of symmetry."""

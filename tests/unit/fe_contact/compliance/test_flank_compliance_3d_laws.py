@@ -89,6 +89,7 @@ def test_numbering_of_teeth_closes_the_ring() -> None:
     assert relative(found.blocks[3], found.blocks[3].T) > 1e-3
 
 
+@pytest.mark.law
 def test_opposite_hands_are_mirror_images_to_the_last_bit() -> None:
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
     recipe = coarse(HELICAL)
@@ -138,6 +139,7 @@ def test_a_right_hand_tooth_leans_counter_clockwise() -> None:
     assert low @ found.block(1, 0) @ high > 1.05 * (high @ found.block(1, 0) @ low) > 0.0
 
 
+@pytest.mark.law
 @GEARS
 def test_compliance_goes_with_one_over_modulus_and_length(gear: Gear) -> None:
     found = flank_compliance_3d(gear, coarse(gear))

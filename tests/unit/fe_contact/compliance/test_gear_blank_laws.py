@@ -83,6 +83,7 @@ def test_less_of_a_body_is_softer(field: str, values: tuple[float, ...]) -> None
         assert np.all(np.diff(over_face) > 0.01 * over_face[0])
 
 
+@pytest.mark.law
 def test_torsion_of_web_and_hub_is_that_of_tubes_in_the_plane() -> None:
     """A moment at the rim's inside turns it against hub and bore by (1/r_i^2 - 1/r_o^2) / (4 pi G b)."""
     gear, recipe = with_blank(), coarse_plane(SOLID)

@@ -171,6 +171,7 @@ def patch(found: UnitRootStress, gear: Gear) -> np.ndarray:
     return forces
 
 
+@pytest.mark.law
 def test_one_layer_without_axial_displacement_is_the_plane() -> None:
     """Two meshes and two ways to condense: eight-node quadrilaterals and triangles."""
     recipe = replace(SectorRecipe.fine(PLANE), layers=1, merge_rows=(), layer_growth=1.0, land_elements=8)

@@ -141,6 +141,7 @@ def test_the_force_at_an_approach_is_its_inverse(slope):
     assert _force_at(law, 0, -1e-9) == (0.0, 0.0)
 
 
+@pytest.mark.law
 def test_a_parabola_needs_no_search():
     # what the solver takes where neither an edge nor a break is near is the same law
     law = law_of(math.nan)

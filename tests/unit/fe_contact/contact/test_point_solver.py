@@ -152,6 +152,7 @@ def test_a_compliance_without_a_solution_is_reported(entry):
     assert not np.any(residual < 1.0)
 
 
+@pytest.mark.law
 def test_residuals_measure_what_they_say():
     # a state that violates each condition by a known amount
     problem = point([[STIFF, 0.0], [0.0, STIFF]], [0.0, 5e-6])
@@ -288,6 +289,7 @@ def test_compiled_code_sees_one_order_in_memory(springs: ContactProblem) -> None
     assert len(kinds) == 1
 
 
+@pytest.mark.law
 def test_the_solution_is_the_same_wherever_it_starts_and_nearer_is_sooner(springs: ContactProblem) -> None:
     """There is one alone: from its own forces, from others by far, and from none."""
     cold = solve_contact(springs, THREE_LOADS)
@@ -309,6 +311,7 @@ def test_the_solution_is_the_same_wherever_it_starts_and_nearer_is_sooner(spring
     assert np.all(force == 100.0)
 
 
+@pytest.mark.law
 def test_curves_move_the_contacts_as_the_means_of_their_slices_do() -> None:
     here, rng = candidates(7), np.random.default_rng(2)
     root = rng.normal(size=(here.position.size, here.slices.pair.size, 60))

@@ -158,6 +158,7 @@ def state_of(problem: PointProblem, held: np.ndarray) -> State:
     return state
 
 
+@pytest.mark.law
 def test_motions_are_the_gradient_of_one_energy_and_yield_as_its_second_derivative(problem):
     point = tilted(problem)
     n = len(point.bodies)

@@ -49,6 +49,7 @@ def compliance(pair: GearPair, model: ContactModel, slices: int) -> FloatArray:
     return slice_compliance(pair, candidates.slices, model)
 
 
+@pytest.mark.law
 def test_springs_are_as_soft_as_finite_elements() -> None:
     model, position = ContactModel(couple_teeth=True, corner_contact=True), np.arange(16) / 16
     rule = PatchRule(0.15 * M, 0.0125 * M)

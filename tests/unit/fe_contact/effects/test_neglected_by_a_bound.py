@@ -90,6 +90,7 @@ def drawn(seed: int) -> GearPair:
     return GearPair(pinion, wheel)
 
 
+@pytest.mark.law
 @pytest.mark.drawn
 @pytest.mark.parametrize("seed", range(6))
 def test_what_is_neglected_changes_less_than_its_bound_and_the_tolerance(seed: int) -> None:

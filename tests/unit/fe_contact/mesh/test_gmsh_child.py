@@ -56,6 +56,7 @@ def test_fills_the_polygon_and_keeps_its_points_bit_for_bit() -> None:
     assert {(i, i + 1) for i in range(39)} <= edges
 
 
+@pytest.mark.law
 def test_is_deterministic_and_free_of_scale() -> None:
     first, again = (_triangulate([RING, SQUARE], 1.0)[0] for _ in range(2))
     assert np.array_equal(first.points, again.points)

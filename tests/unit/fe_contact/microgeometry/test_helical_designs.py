@@ -224,6 +224,7 @@ def test_the_order_of_the_loads_is_that_of_the_figures() -> None:
     assert WeightedMean(WEIGHTS).of(other.expected(second)) != pytest.approx(objective, rel=1e-3)
 
 
+@pytest.mark.law
 def test_helix_slope_and_misalignment_of_straight_teeth_add_up_at_every_load() -> None:
     """Both open the flanks linearly over the face: a slope of minus the misalignment levels that load."""
     tilted = evaluator_of_loads(SPUR, TORQUES, SKEWS).evaluate(OF_LEAD)

@@ -170,6 +170,7 @@ def test_a_root_stress_that_no_relief_reaches_is_told(found: Optimization) -> No
     assert np.all(np.isnan(found.start.figures.root_stress_error))
 
 
+@pytest.mark.law
 def test_a_gain_smaller_than_the_errors_is_not_claimed() -> None:
     tiny = [DesignVariable("pinion.profile_slope", -1e-10, 1e-10)]
     best = searched(tiny, PAIR)

@@ -248,6 +248,7 @@ def by_name(result: Sweep, name: str) -> Any:
     return next(quantity for quantity in result.quantities if quantity.name == name)
 
 
+@pytest.mark.law
 def test_every_point_is_the_pair_analyzed_alone(swept: Sweep) -> None:
     ripple = by_name(swept, "peak_to_peak")
     for k in (1, 5, 6):

@@ -84,6 +84,7 @@ def test_the_caller_may_have_it_fail_or_only_reported(cache: Path) -> None:
     same(reported, table(CLEAR, cache, **SKEWED, effects={"corner_contact": "off"}))
 
 
+@pytest.mark.law
 def test_what_was_switched_off_by_name_stays_off(cache: Path) -> None:
     asked = {"torques": [100.0], "level": "draft", "positions": 64}
     without, whole = (table(PAIR, cache, **asked, effects=e) for e in ({"corner_contact": "off"}, {}))

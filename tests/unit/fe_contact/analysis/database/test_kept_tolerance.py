@@ -127,6 +127,7 @@ def test_a_small_helical_draft_is_refined(from_draft):
     assert receipt(table)["tolerance"]["met"] is True
 
 
+@pytest.mark.law
 def test_a_time_budget_ends_refinement_and_keeps_what_is_there(from_draft):
     """The draft is kept, its tolerance is not met, and the reason names the refinement and its time."""
     asked = PLANE | {"tolerance": AllowedError(0.001, 0.0)}
@@ -253,6 +254,7 @@ def test_a_level_or_a_minimal_receipt_refines_nothing():
         assert "passes" not in receipt(analyze(SPUR, **asked, **PLANE))
 
 
+@pytest.mark.law
 def test_loads_are_inserted_until_every_interval_meets_the_tolerance(tmp_path: Path):
     """Those that were requested stay the axis; the others are support loads between them."""
     wide = analyze(SPUR, tolerance=0.01, **(PLANE | {"torques": [16.0, 80.0]}), cache=tmp_path)

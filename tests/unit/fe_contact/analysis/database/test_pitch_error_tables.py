@@ -70,6 +70,7 @@ def test_the_curve_of_a_long_period_shows_orders_between_the_mesh_harmonics():
     )
 
 
+@pytest.mark.law
 def test_load_shares_follow_the_early_tooth():
     """A tooth 20 um early carries all, wherever it is in mesh; pairs count from each whole pitch."""
     early = GearPair(gear(20, np.where(np.arange(20) == 4, 20e-6, 0.0)), gear(23))

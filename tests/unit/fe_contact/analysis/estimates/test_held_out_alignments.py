@@ -80,6 +80,7 @@ def test_inserted_nodes_change_nothing_at_those_requested(refined, cache, monkey
         assert (ours.mean, ours.peak_to_peak) == (theirs.mean, theirs.peak_to_peak)
 
 
+@pytest.mark.law
 def test_a_refined_table_answers_as_one_whose_caller_requested_all_nodes(refined, cache) -> None:
     whole = spur(center_distance_changes=refined.center_distance_change, cache=cache)
     assert whole.inserted_center_distance_change.size == 0
@@ -92,6 +93,7 @@ def test_a_refined_table_answers_as_one_whose_caller_requested_all_nodes(refined
             assert np.array_equal(ours.ste, theirs.ste)
 
 
+@pytest.mark.law
 def test_what_is_said_of_an_interval_holds_where_nothing_was_solved(refined, cache) -> None:
     for change in (3e-5, 1.1e-4, 2.2e-4, 3.3e-4):
         truth = spur(center_distance_changes=[change], cache=cache)

@@ -74,6 +74,7 @@ def test_the_estimate_of_a_coarse_axis_covers_the_true_error_all_over_its_interv
     assert np.max(found) > 1e-7  # of 10 um: the axis is coarse
 
 
+@pytest.mark.law
 def test_the_estimate_between_loads_covers_the_true_error(coarse, made):
     error = stated(coarse, "force")[1]
     truths = {}

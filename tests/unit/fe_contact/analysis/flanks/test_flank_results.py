@@ -48,6 +48,7 @@ def test_the_line_load_along_the_contact_lines_is_the_force():
     assert np.any(corners.lever[corners.force > 0.0] != 1.0)
 
 
+@pytest.mark.law
 def test_the_pressure_is_hertz_of_the_line_load_on_the_line_of_action():
     """p0^2 = F' E* / (pi R) with R in the normal section from the roll lengths of both flanks."""
     pair = helical_pair()
@@ -107,6 +108,7 @@ def test_the_gap_closes_where_load_is_carried_and_far_ends_stay_rigid():
     assert found.gap[0, alone, [0, -1]] == pytest.approx(expected, rel=0.01)
 
 
+@pytest.mark.law
 def test_face_load_factors_are_one_of_equal_load_and_grow_with_misalignment():
     """A slice twice as loaded as it would be is what the factor says."""
     found = solved(spur_pair(), at=[0.0])

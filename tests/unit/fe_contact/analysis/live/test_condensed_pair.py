@@ -77,6 +77,7 @@ def test_crowning_and_misalignment_have_the_curve_of_their_own_analysis(cache: P
     assert np.array_equal(quick.face_centroid, whole.face_centroid)
 
 
+@pytest.mark.law
 def test_crowned_and_misaligned_flanks_carry_what_they_carry_in_results_of_their_own(cache: Path) -> None:
     crowned = with_flank(PAIR, FlankModification(helix_crowning=2e-6))
     table, solved = condensed(PAIR, cache, "3d").solve_table(crowned, TORQUES, misalignment=5e-6)
