@@ -23,7 +23,8 @@ from lineofaction.cli.pair_sketch import (
     planetary_stage,
 )
 from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
-from lineofaction.gearbox.from_rexs.account import FATES, Assumption
+from lineofaction.gearbox.from_rexs.account import FATES
+from lineofaction.gearbox.from_rexs.assumptions import Assumption
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import read_rexs

@@ -14,10 +14,10 @@ from dynamics.deflection import BearingLoad, CaseDeflection, MeshAlignment
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import Curve, SteDatabase
 from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
-from lineofaction.gearbox.from_rexs.gears import StageCase
 from lineofaction.gearbox.from_rexs.loads import LoadCase
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
-from lineofaction.gearbox.from_rexs.scene import BearingPart, SceneParts, ShaftPart
+from lineofaction.gearbox.from_rexs.scene_parts import BearingPart, SceneParts, ShaftPart
+from lineofaction.gearbox.from_rexs.stage_case import StageCase
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.model import Attribute, Component, Document
 from lineofaction.gearbox.rexs.upgrade import upgrade

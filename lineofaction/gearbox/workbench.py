@@ -20,7 +20,7 @@ from lineofaction.gearbox.convert.case import CheckedCase, CheckedCases
 from lineofaction.gearbox.convert.housings import HousedScene, housings_in
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.convert.scene import TabledScene
-from lineofaction.gearbox.from_rexs.account import Assumption
+from lineofaction.gearbox.from_rexs.assumptions import Assumption
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.input_file import InputFile, Override
 from lineofaction.gearbox.problems import BadInput, JobFailed

@@ -41,9 +41,9 @@ from dynamics.deflection import BearingLoad
 from fe_contact.ste import Metadata
 from lineofaction.gearbox.convert.case import case_json, gear_pair
 from lineofaction.gearbox.from_rexs.gear_unit import BEARINGS, COUPLINGS, GearUnit
-from lineofaction.gearbox.from_rexs.gears import StageCase
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
-from lineofaction.gearbox.from_rexs.scene import BearingPart
+from lineofaction.gearbox.from_rexs.scene_parts import BearingPart
+from lineofaction.gearbox.from_rexs.stage_case import StageCase
 from lineofaction.gearbox.rexs.files import parsed, read_rexs, serialized
 from lineofaction.gearbox.rexs.model import Document
 from lineofaction.gearbox.rexs.upgrade import upgrade

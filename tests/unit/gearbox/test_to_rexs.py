@@ -35,8 +35,8 @@ from dynamics.mechanism.line_of_action import table_sense
 from fe_contact.ste import Metadata, SteDatabase
 from lineofaction.gearbox.convert.case import case_json, gear_pair
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.gears import StageCase
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
+from lineofaction.gearbox.from_rexs.stage_case import StageCase
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import parsed, serialized
 from lineofaction.gearbox.rexs.model import Attribute, Component, Document
