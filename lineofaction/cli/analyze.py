@@ -38,9 +38,10 @@ from lineofaction.gearbox.convert.effects import (
     trifles_title,
 )
 from lineofaction.gearbox.convert.live import plan_json, plan_of
+from lineofaction.gearbox.executor import open_executor
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import JobFailed
-from lineofaction.gearbox.tabled_scene import database_of, open_executor
+from lineofaction.gearbox.tabled_scene import database_of
 from lineofaction.gearbox.units import MM, NM, UM
 from lineofaction.report.ste.page import static_headlines
 from model_studies.workers import InProcess, Workers

@@ -33,7 +33,9 @@ from lineofaction.gearbox.rexs.model import Document
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.schemas.plan import left_out_warnings
-from lineofaction.gearbox.to_rexs import CALCULATED, deflected, exported, left_out
+from lineofaction.gearbox.to_rexs.attributes import CALCULATED
+from lineofaction.gearbox.to_rexs.deflection import deflected, left_out
+from lineofaction.gearbox.to_rexs.stage import exported
 from lineofaction.gearbox.units import UM
 from lineofaction.report.document import file_attributes, read_run, read_stored, stored_study
 

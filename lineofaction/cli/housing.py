@@ -20,7 +20,8 @@ from lineofaction.cli.guard import warn
 from lineofaction.cli.output import check_writable, console, print_json, print_written, table
 from lineofaction.gearbox.convert.placement import Placement
 from lineofaction.gearbox.from_step.housing import DIRECTIONS, StepHousing, even_length, step_housing
-from lineofaction.gearbox.input_file import InputFile, number_list
+from lineofaction.gearbox.input_file import InputFile
+from lineofaction.gearbox.number_list import number_list
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.schemas.files import READERS, beside, read_text, written_out
 from lineofaction.gearbox.schemas.housings import PERPENDICULAR

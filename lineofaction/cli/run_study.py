@@ -39,7 +39,9 @@ from lineofaction.cli.subjects import (
 from lineofaction.gearbox.convert.case import CheckedCase, case_json
 from lineofaction.gearbox.convert.complaint import marks_of_case
 from lineofaction.gearbox.convert.plausibility import case_warnings
-from lineofaction.gearbox.input_file import InputFile, number_list
+from lineofaction.gearbox.executor import open_executor
+from lineofaction.gearbox.input_file import InputFile
+from lineofaction.gearbox.number_list import number_list
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.project import result_name
 from lineofaction.gearbox.registry import SUFFIX
@@ -51,7 +53,6 @@ from lineofaction.gearbox.schemas.report import ReportInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.study import Study
-from lineofaction.gearbox.tabled_scene import open_executor
 from lineofaction.report.document import read_run, write_whole
 from lineofaction.report.document import write as write_result
 from lineofaction.report.drawing.marks import marked_page_of_case

@@ -29,13 +29,14 @@ from lineofaction.cli.subjects import (
     tables_cost,
 )
 from lineofaction.gearbox.convert.effects import run_lines
+from lineofaction.gearbox.executor import open_executor
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.project import RUN
-from lineofaction.gearbox.result_files import run_json, stamp, stamp_scene
+from lineofaction.gearbox.result_figures import run_json
+from lineofaction.gearbox.result_files import stamp, stamp_scene
 from lineofaction.gearbox.stages import staged
 from lineofaction.gearbox.studies.excitations import facts_of_scene
-from lineofaction.gearbox.tabled_scene import open_executor
 from lineofaction.report.drawing.figure import number
 from lineofaction.report.drawing.page import Headline
 from lineofaction.report.presentation import effect_text

@@ -11,7 +11,7 @@ import typer
 from lineofaction.cli.guard import computing, grouped
 from lineofaction.cli.options import AsJson, to_file
 from lineofaction.cli.verbs import Later
-from lineofaction.gearbox.input_file import number_list
+from lineofaction.gearbox.number_list import number_list
 
 if TYPE_CHECKING:
     from lineofaction.cli import pages

@@ -37,9 +37,10 @@ from lineofaction.gearbox.convert.live import plan_of
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.studies.computation import Means
-from lineofaction.gearbox.studies.cost import CASES, LONG, StudyCost, Work
+from lineofaction.gearbox.studies.cost import LONG, StudyCost, Work
 from lineofaction.gearbox.studies.noise.run import USUAL_LINE
 from lineofaction.gearbox.studies.scatter import run as scatter
+from lineofaction.gearbox.studies.scene_before_tables import CASES
 from lineofaction.gearbox.studies.study import run
 from lineofaction.gearbox.subjects import scene_of
 from model_studies.stage_clock import StageClock

@@ -43,7 +43,8 @@ from lineofaction.gearbox.rexs.model import Attribute, Component, Document
 from lineofaction.gearbox.rexs.vocabulary import si_value
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection
 from lineofaction.gearbox.studies.deflect.run import RUN
-from lineofaction.gearbox.to_rexs import deflected, exported, left_out
+from lineofaction.gearbox.to_rexs.deflection import deflected, left_out
+from lineofaction.gearbox.to_rexs.stage import exported
 
 
 def one_stage() -> GearUnit:
