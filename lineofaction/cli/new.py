@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-import math
 import sys
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
-from lineofaction.cli.guard import warn
+from lineofaction.cli.case_text import case_text
 from lineofaction.cli.options import PairWishes
 from lineofaction.cli.output import check_writable, console, print_json, print_written
-from lineofaction.cli.pair_sketch import (
-    LOAD,
-    PLANETS,
-    GearSketch,
-    PairSketch,
-    StageSketch,
-    external_pair,
-    internal_pair,
-    planetary_stage,
-)
+from lineofaction.cli.pair_sketch import external_pair, internal_pair
+from lineofaction.cli.planetary_text import planetary_text
+from lineofaction.cli.scene_text import pair_scene_text
+from lineofaction.cli.stage_sketch import planetary_stage
+from lineofaction.cli.verb_warnings import warn
 from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
 from lineofaction.gearbox.from_rexs.account import FATES
 from lineofaction.gearbox.from_rexs.assumptions import Assumption
@@ -33,310 +27,19 @@ from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_table
 
-# The text of a case file: tables with a comment beside every figure.
-
-
-_PINION, _WHEEL = "the driving gear", "the driven gear"
-
-
-def _case_text(pair: PairSketch, head: str) -> str:
-    """Return a case file under a line that says what it holds."""
-    return f"""# {head}
-# Made by loa new; every figure may be changed. All fields: docs/case-file.md.
-# Next: loa geometry FILE, then loa analyze FILE -o ste.nc, then loa report ste.nc.
-
-{_case_tables(pair)}
-[accuracy]
-tolerance = 0.02 # relative, of mean and peak-to-peak STE; or level = "draft" for a first look
-"""
-
-
-def _case_tables(pair: PairSketch, prefix: str = "") -> str:
-    """Return the tables of a case but for its accuracy, within another table if `prefix` names it."""
-    torques = ", ".join(f"{torque:g}" for torque in pair.torque)
-    helix = f"helix_angle_deg = {pair.helix:g} # of the pinion; > 0: right hand\n" if pair.helix else ""
-    return f"""[{prefix}pair]
-normal_module_mm = {pair.module:g}
-{helix}center_distance_mm = {pair.center_distance:.10g}
-
-[{prefix}pair.pinion] # {_PINION}
-{_external_gear(pair, pair.pinion)}
-[{prefix}pair.wheel] # {_WHEEL}
-{_wheel_fields(pair)}
-[{prefix}load]
-torque_n_m = [{torques}] # on the pinion, to {LOAD:g} N/mm^2 of tangential force over face width and module
-"""
-
-
-def _wheel_fields(pair: PairSketch) -> str:
-    if not pair.internal:
-        return _external_gear(pair, pair.wheel)
-    wheel = pair.wheel
-    return f"""internal = true # a ring gear
-teeth = {wheel.teeth}
-face_width_mm = {pair.width:g}
-rim_diameter_mm = {wheel.held:g} # outside of the rim, which is held
-addendum_coefficient = {pair.ring_addendum:g} # the full addendum would meet the pinion below its involute
-thickness_allowance_um = {wheel.allowance:g} # is backlash
-"""
-
-
-def _external_gear(pair: PairSketch, gear: GearSketch) -> str:
-    relief, length = pair.relief
-    shift = (
-        f"profile_shift_coefficient = {gear.shift:g} # balances the sliding of both roots\n"
-        if gear.shift
-        else ""
-    )
-    allowance = f"thickness_allowance_um = {gear.allowance:g} # is backlash\n" if gear.allowance else ""
-    return f"""teeth = {gear.teeth}
-face_width_mm = {pair.width:g}
-bore_diameter_mm = {gear.held:g}
-{shift}{allowance}tip_relief_um = {relief:g}
-tip_relief_length_mm = {length:g} # along the radius
-helix_crowning_um = {pair.crowning:g} # at both ends of the face
-"""
-
-
-# The text of scene files: a pair between two shafts, and a planetary stage.
-
-
-HEAD = """# {head}
-# Made by loa new; every figure may be changed. All fields: docs/case-file.md#scene.
-# Next: loa simulate FILE -o run.nc, then loa report run.nc; loa modes FILE for natural frequencies.
-"""
-ACCURACY = """
-[meshes.case.accuracy]
-level = "draft" # a table for a first run; "standard" or a tolerance once the scene is right
-"""
-
-
-def _pair_scene_text(pair: PairSketch, head: str) -> str:
-    """Return a motor, a pair between two shafts on two bearings each, and a brake; the motor runs up."""
-    length = 4.0 * pair.width
-    sides = (("input", "pinion", pair.pinion, 0.0), ("output", "wheel", pair.wheel, pair.center_distance))
-    shafts = "".join(
-        _shaft(name, length, gear.held, origin)
-        + _gear(tooth, name, 0.5 * length, gear.held)
-        + _scene_text_bearings(name, length)
-        for name, tooth, gear, origin in sides
-    )
-    load = pair.torque[-2] * pair.wheel.teeth / pair.pinion.teeth
-    return f"""{HEAD.format(head=head)}
-[run]
-duration_s = 1.0
-{shafts}
-[[meshes]]
-name = "mesh"
-driver = "pinion"
-driven = "wheel"
-damping_ratio = 0.07 # measured ones lie between 0.03 and 0.17
-
-{_case_tables(pair, "meshes.case.")}{ACCURACY}
-[[drives]] # the angle is imposed: a run-up
-name = "motor"
-shaft = "input"
-time_s = [0.0, 1.0]
-speed_rpm = [300.0, 3000.0]
-
-[[loads]]
-name = "brake"
-shaft = "output"
-torque_n_m = [{load:.4g}] # three quarters of the table's highest load
-
-[outputs]
-bearing_forces = true
-"""
-
-
-def _shaft(name: str, length: float, diameter: float, origin: float) -> str:
-    return f"""
-[[shafts]]
-name = "{name}"
-length_mm = {length:g}
-diameter_mm = {diameter:g}
-origin_mm = [{origin:.10g}, 0.0, 0.0]
-"""
-
-
-def _gear(name: str, shaft: str, position: float, bore: float) -> str:
-    """Return a gear whose body follows from its case."""
-    return f"""
-[[gears]]
-name = "{name}"
-shaft = "{shaft}"
-position_mm = {position:g} # along the shaft
-bore_diameter_mm = {bore:g}
-"""
-
-
-def _scene_text_bearings(shaft: str, length: float) -> str:
-    """Return the two bearings of a shaft; the left one carries the axial force."""
-    return "".join(
-        f"""
-[[bushings]]
-name = "{shaft} {side}"
-shaft = "{shaft}"
-position_mm = {position:g}
-radial_stiffness_n_per_m = 3e8
-{"axial_stiffness_n_per_m = 1e8" + chr(10) if side == "left" else ""}damping_ratio = 0.02
-"""
-        for side, position in (("left", 0.0), ("right", length))
-    )
-
-
-# The text of a scene file of a planetary stage.
-
-
-_LOAD_SHARE = 0.6
-"""Of the sun's highest torque in the table."""
-
-
-def _planetary_text(stage: StageSketch, head: str) -> str:
-    """Return a stage whose sun is driven, whose carrier is braked, and whose ring is held."""
-    length = 2.0 * stage.sun.width
-    middle = 0.5 * length
-    brake = PLANETS * _LOAD_SHARE * stage.sun.torque[-1] * stage.ratio
-    return f"""{HEAD.format(head=head)}
-[run]
-duration_s = 0.5
-{_shafts(stage, length)}{_gears(stage, middle)}{_bearings(middle)}
-[[planets]] # all are copies of the first
-planet = "planet"
-number = {PLANETS}
-
-[[meshes]]
-name = "sun mesh"
-driver = "sun gear"
-driven = "planet gear"
-damping_ratio = 0.07 # measured ones lie between 0.03 and 0.17
-
-{_case_tables(stage.sun, "meshes.case.")}{ACCURACY}
-[[meshes]]
-name = "ring mesh"
-driver = "planet gear"
-driven = "ring gear"
-damping_ratio = 0.07
-
-{_case_tables(stage.ring, "meshes.case.")}{ACCURACY}
-[[drives]] # the angle is imposed: a run-up
-name = "motor"
-shaft = "sun"
-time_s = [0.0, 0.5]
-speed_rpm = [300.0, 1500.0]
-
-[[drives]]
-name = "ring held"
-shaft = "ring"
-speed_rpm = [0.0]
-
-[[loads]]
-name = "brake"
-shaft = "carrier"
-torque_n_m = [{brake:.3g}]
-"""
-
-
-def _shafts(stage: StageSketch, length: float) -> str:
-    """Return carrier, sun, ring and the first planet; inertia of the carrier grows as its size."""
-    radius = 1e-3 * stage.sun.center_distance
-    mass = 800.0 * radius**2 * 1e-3 * length * math.pi * 7.85
-    none = "{ mass_kg = 0.0, polar_kg_m2 = 0.0, transverse_kg_m2 = 0.0 }"
-    polar = 0.5 * mass * radius**2
-    carrier = f"{{ mass_kg = {mass:.3g}, polar_kg_m2 = {polar:.3g}, transverse_kg_m2 = {0.6 * polar:.3g} }}"
-    return f"""
-[[shafts]]
-name = "carrier"
-frame = "carrier" # a carrier names itself
-length_mm = {length:g}
-inertia = {carrier}
-
-[[shafts]]
-name = "sun"
-frame = "carrier"
-length_mm = {length:g}
-diameter_mm = {stage.sun.pinion.held:g}
-
-[[shafts]]
-name = "ring"
-frame = "carrier"
-length_mm = {length:g}
-inertia = {none}
-
-[[shafts]] # the first planet
-name = "planet"
-frame = "carrier"
-length_mm = {length:g}
-diameter_mm = {stage.sun.wheel.held:g}
-origin_mm = [{stage.sun.center_distance:.10g}, 0.0, 0.0]
-"""
-
-
-def _gears(stage: StageSketch, middle: float) -> str:
-    """Return the gears at mid-length; the ring's inertia counts for nothing while it is held."""
-    return f"""
-[[gears]]
-name = "sun gear"
-shaft = "sun"
-position_mm = {middle:g}
-bore_diameter_mm = {stage.sun.pinion.held:g}
-
-[[gears]]
-name = "planet gear"
-shaft = "planet"
-position_mm = {middle:g}
-bore_diameter_mm = {stage.sun.wheel.held:g}
-
-[[gears]]
-name = "ring gear"
-shaft = "ring"
-position_mm = {middle:g}
-inertia = {{ mass_kg = 1.0, polar_kg_m2 = 1e-2, transverse_kg_m2 = 5e-3 }}
-"""
-
-
-def _bearings(middle: float) -> str:
-    """Return the sun's soft bearing, the ring's mount, the carrier's bearing and the planet's pin."""
-    return (
-        "".join(
-            f"""
-[[bushings]]
-name = "{name}"
-shaft = "{shaft}"
-position_mm = {middle:g}
-radial_stiffness_n_per_m = {stiffness}
-axial_stiffness_n_per_m = 1e8
-"""
-            for name, shaft, stiffness in (
-                ("sun bearing", "sun", "1e6 # soft: the sun floats between the planets"),
-                ("ring mount", "ring", "1e9"),
-                ("carrier bearing", "carrier", "2e8"),
-            )
-        )
-        + f"""
-[[planet_bearings]]
-name = "pin"
-shaft = "planet"
-carrier = "carrier"
-position_mm = {middle:g}
-radial_stiffness_n_per_m = 2e8
-axial_stiffness_n_per_m = 1e8
-"""
-    )
-
-
 _spur = partial(external_pair, teeth=24, ratio=1.5, helix=0.0, module=3.0)
 _helical = partial(external_pair, teeth=23, ratio=67 / 23, helix=22.0, module=1.8)
 _internal = partial(internal_pair, teeth=36, ratio=96 / 36, module=2.0)
 _STAGE = "A planetary stage: the sun drives, the carrier is braked, the ring is held"
 _SCENE = "A helical pair between two shafts: motor, brake, four bearings"
 
+
 KINDS: Mapping[str, Callable[[PairWishes], str]] = {
-    "spur": lambda wanted: _case_text(_spur(wanted), "A spur pair"),
-    "helical": lambda wanted: _case_text(_helical(wanted), "A helical pair"),
-    "internal": lambda wanted: _case_text(_internal(wanted), "A pinion in a ring gear"),
-    "planetary": lambda wanted: _planetary_text(planetary_stage(wanted), _STAGE),
-    "scene": lambda wanted: _pair_scene_text(_helical(wanted), _SCENE),
+    "spur": lambda wanted: case_text(_spur(wanted), "A spur pair"),
+    "helical": lambda wanted: case_text(_helical(wanted), "A helical pair"),
+    "internal": lambda wanted: case_text(_internal(wanted), "A pinion in a ring gear"),
+    "planetary": lambda wanted: planetary_text(planetary_stage(wanted), _STAGE),
+    "scene": lambda wanted: pair_scene_text(_helical(wanted), _SCENE),
 }
 """What is made, by the option that names it."""
 
@@ -382,9 +85,6 @@ def _new_text(kind: str, wanted: PairWishes) -> str:
     for case in cases:
         gear_pair(case)
     return text
-
-
-# ``loa open``.
 
 
 def run_open(file: Path, output: Path | None, assume: Sequence[str] = (), *, as_json: bool) -> None:

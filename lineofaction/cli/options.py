@@ -11,7 +11,7 @@ from typing import Annotated, Any, TypeVar
 import typer
 from typer.models import OptionInfo
 
-from lineofaction.cli.guard import keyword, parameters_of, with_parameters
+from lineofaction.cli.verb_parameters import keyword, parameters_of, with_parameters
 from lineofaction.gearbox.input_file import InputFile, Override
 from lineofaction.gearbox.number_list import number_list
 

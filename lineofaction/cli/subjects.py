@@ -17,8 +17,8 @@ from fe_contact.solver_version import SOLVER_VERSION, software_versions
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from host.directories import cache_home
-from lineofaction.cli.guard import in_lines, warn
 from lineofaction.cli.output import Report
+from lineofaction.cli.verb_warnings import in_lines, warn
 from lineofaction.gearbox.convert.case import CheckedCase, CheckedCases, case_at, case_json
 from lineofaction.gearbox.convert.live import costs_of
 from lineofaction.gearbox.convert.plausibility import case_warnings

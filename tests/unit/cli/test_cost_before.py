@@ -386,7 +386,7 @@ def test_a_scene_is_assembled_once_for_all_verbs_that_ask_of_it(monkeypatch: pyt
         resolved.append(own.highest_frequency)
         return assemble(own)
 
-    monkeypatch.setattr("lineofaction.gearbox.studies.cost.assemble", counted)
+    monkeypatch.setattr("lineofaction.gearbox.studies.scene_before_tables.assemble", counted)
     for verb in ("modes", "response", "steady", "response"):
         inputs = validated(STUDIES[verb].inputs, {"speed_rpm": SPEEDS[:2]})
         assert study_cost(STUDIES[verb], scene, folder, inputs) is not None
