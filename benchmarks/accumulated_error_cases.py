@@ -12,7 +12,7 @@ from dynamics.meshes.gear_mesh import CoastFlank
 from dynamics.meshes.mesh_table import MeshTable
 from dynamics.scene import Integration, Outputs, Scene, pair_scene
 from dynamics.shafts import GearBody, hollow_cylinder
-from lineofaction.hardcases.dynamics.laws import (
+from lineofaction.hardcases.dynamics.oscillators import (
     BASE_RADIUS,
     NATURAL,
     RPM,

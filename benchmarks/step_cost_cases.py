@@ -23,7 +23,7 @@ from dynamics.simulation import simulate
 from fe_contact import ste_database
 from lineofaction.gearbox.convert.case import analysis_options, gear_pair, table_axes
 from lineofaction.gearbox.convert.scene import dynamic_scene
-from lineofaction.gearbox.subjects import _case_of_mesh, scene_of
+from lineofaction.gearbox.subjects import case_of_mesh, scene_of
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 LOOPS, REPEATS = 1000, 30
@@ -77,7 +77,7 @@ def example(stem: str) -> Scene:
     scene, folder = scene_of(EXAMPLES / f"{stem}.toml")
     tables = {}
     for index, mesh in enumerate(scene.meshes):
-        case = _case_of_mesh(mesh, f"meshes[{index}]", folder)
+        case = case_of_mesh(mesh, f"meshes[{index}]", folder)
         assert case is not None
         options = replace(analysis_options(case), receipt="minimal")
         tables[mesh.name] = ste_database(gear_pair(case), table_axes(case), options)

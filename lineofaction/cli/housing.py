@@ -16,11 +16,12 @@ from dynamics.errors import InputError, SolveError
 from dynamics.housings import step_solid
 from dynamics.solid_housing import MATERIALS
 from host.directories import whole_file
-from lineofaction.cli.guard import warn
 from lineofaction.cli.output import check_writable, console, print_json, print_written, table
+from lineofaction.cli.verb_warnings import warn
 from lineofaction.gearbox.convert.placement import Placement
 from lineofaction.gearbox.from_step.housing import DIRECTIONS, StepHousing, even_length, step_housing
-from lineofaction.gearbox.input_file import InputFile, number_list
+from lineofaction.gearbox.input_file import InputFile
+from lineofaction.gearbox.number_list import number_list
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.schemas.files import READERS, beside, read_text, written_out
 from lineofaction.gearbox.schemas.housings import PERPENDICULAR

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from bounds import engineering
 from bounds.types import Json
-from lineofaction.cli.guard import warn
 from lineofaction.cli.output import check_writable, console, print_json, print_written, table
+from lineofaction.cli.verb_warnings import warn
 from lineofaction.gearbox.convert.case import case_json
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.inspection.as_made import Inspected, measured_case

@@ -11,8 +11,9 @@ from typing import Annotated, Any, TypeVar
 import typer
 from typer.models import OptionInfo
 
-from lineofaction.cli.guard import keyword, parameters_of, with_parameters
-from lineofaction.gearbox.input_file import InputFile, Override, number_list
+from lineofaction.cli.verb_parameters import keyword, parameters_of, with_parameters
+from lineofaction.gearbox.input_file import InputFile, Override
+from lineofaction.gearbox.number_list import number_list
 
 DEFAULT_SERVICE = "http://127.0.0.1:8321"
 

@@ -27,7 +27,7 @@ from rich.progress import (
 from rich.text import Text
 from rich.theme import Theme
 
-from lineofaction.cli.guard import in_lines, warnings_so_far
+from lineofaction.cli.verb_warnings import in_lines, warnings_so_far
 from lineofaction.gearbox.problems import BadInput
 from model_studies.progress import silent, stage_name
 

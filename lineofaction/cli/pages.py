@@ -15,12 +15,13 @@ from bounds.types import Json
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import PairFacts
 from host.directories import cache_home
-from lineofaction.cli.guard import messages, warn
 from lineofaction.cli.output import FOUND, Report, check_writable, console, print_json, progress_bar, table
 from lineofaction.cli.run_study import run_study
 from lineofaction.cli.subjects import assessed_case
+from lineofaction.cli.verb_warnings import messages, warn
 from lineofaction.gearbox.convert.case import CheckedCase, case_at
-from lineofaction.gearbox.input_file import InputFile, number_list
+from lineofaction.gearbox.input_file import InputFile
+from lineofaction.gearbox.number_list import number_list
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import about, file_of, results_by_part, results_in
 from lineofaction.gearbox.registry import STUDIES

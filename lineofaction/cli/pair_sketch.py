@@ -1,4 +1,4 @@
-"""A pair or a planetary stage from few arguments, its data by rule."""
+"""A pair from few arguments, its data by rule."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from fe_contact.geometry import Gear
 from fe_contact.geometry.backlash import balanced_shifts, reference_center_distance
 from lineofaction.cli.options import PairWishes
-from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.units import DEGREE, MM
 
 OVERLAP = 1.5
@@ -67,13 +66,13 @@ def external_pair(wanted: PairWishes, *, teeth: int, ratio: float, helix: float,
     helix = helix if wanted.helix is None else wanted.helix
     first = wanted.teeth or teeth
     second = _hunting_teeth(first, wanted.ratio or ratio)
-    width = wanted.width or _face_width(module, helix)
-    pinion, wheel = (_blank(count, module, helix, width) for count in (first, second))
+    width = wanted.width or face_width(module, helix)
+    pinion, wheel = (blank_table(count, module, helix, width) for count in (first, second))
     distance = _round_up(reference_center_distance(pinion, wheel) / MM, 0.5 if module >= 1.0 else 0.1)
     shifts = balanced_shifts(pinion, wheel, distance * MM)
     allowance = float(round(20.0 * module + 10.0))
     gears = [
-        GearSketch(gear.teeth, round(shift, 4), _bore(gear, shift), allowance)
+        GearSketch(gear.teeth, round(shift, 4), bore_diameter(gear, shift), allowance)
         for gear, shift in zip((pinion, wheel), shifts, strict=True)
     ]
     return PairSketch(module, helix, width, distance, gears[0], gears[1], _torques(pinion))
@@ -83,13 +82,13 @@ def internal_pair(wanted: PairWishes, *, teeth: int, ratio: float, module: float
     """Return a pinion in a ring gear, without profile shift."""
     module = wanted.module or module
     helix, first = wanted.helix or 0.0, wanted.teeth or teeth
-    width = wanted.width or _face_width(module, helix)
-    return _ring_pair(module, helix, width, first, round(first * (wanted.ratio or ratio)))
+    width = wanted.width or face_width(module, helix)
+    return ring_pair(module, helix, width, first, round(first * (wanted.ratio or ratio)))
 
 
-def _ring_pair(module: float, helix: float, width: float, teeth: int, ring_teeth: int) -> PairSketch:
+def ring_pair(module: float, helix: float, width: float, teeth: int, ring_teeth: int) -> PairSketch:
     """Return a pinion in a ring gear of these numbers of teeth; lengths in mm, angles in deg."""
-    pinion = _blank(teeth, module, helix, width)
+    pinion = blank_table(teeth, module, helix, width)
     transverse = module / math.cos(helix * DEGREE)
     rim = _round_up(transverse * ring_teeth + 2.0 * module * (1.25 + _RIM), 1.0)
     allowance = float(round(20.0 * module + 10.0))
@@ -99,7 +98,7 @@ def _ring_pair(module: float, helix: float, width: float, teeth: int, ring_teeth
         helix,
         width,
         distance,
-        GearSketch(teeth, 0.0, _bore(pinion), 0.0),
+        GearSketch(teeth, 0.0, bore_diameter(pinion), 0.0),
         GearSketch(ring_teeth, 0.0, rim, 2.0 * allowance),
         _torques(pinion),
         _ring_addendum(pinion, ring_teeth, distance),
@@ -122,20 +121,20 @@ def _hunting_teeth(teeth: int, ratio: float) -> int:
     return next((count for count in counts if math.gcd(count, teeth) == 1), counts[0])
 
 
-def _face_width(module: float, helix: float) -> float:
+def face_width(module: float, helix: float) -> float:
     """Return a face width in mm: 10 modules, of helical gears what `OVERLAP` takes."""
     if not helix:
         return float(math.ceil(10.0 * module))
     return float(math.ceil(OVERLAP * math.pi * module / math.sin(abs(helix) * DEGREE)))
 
 
-def _blank(teeth: int, module: float, helix: float, width: float) -> Gear:
+def blank_table(teeth: int, module: float, helix: float, width: float) -> Gear:
     """Return a gear without profile shift; enough of one that is undercut to measure it."""
     lengths = (module * MM, width * MM, 0.1 * teeth * module * MM)
     return Gear(teeth, *lengths, helix_angle=helix * DEGREE)
 
 
-def _bore(gear: Gear, shift: float = 0.0) -> float:
+def bore_diameter(gear: Gear, shift: float = 0.0) -> float:
     """Return the bore of a gear in mm."""
     shifted = replace(gear, profile_shift_coefficient=round(shift, 4))
     diameter = 2.0 * _BORE * shifted.root_radius / MM
@@ -151,42 +150,3 @@ def _torques(pinion: Gear) -> tuple[float, ...]:
 
 def _round_up(value: float, step: float) -> float:
     return round(math.ceil(value / step - 1e-9) * step, 6)
-
-
-# A planetary stage.
-
-
-PLANETS = 3
-_LEAST_TEETH = 18
-"""Of a planet: with fewer, teeth without profile shift are undercut."""
-
-
-@dataclass(frozen=True)
-class StageSketch:
-    """Both meshes of a stage with a held ring, and its ratio of sun to carrier."""
-
-    sun: PairSketch
-    ring: PairSketch
-    ratio: float
-
-
-def planetary_stage(wanted: PairWishes) -> StageSketch:
-    """Return a stage of three planets; its ring has the teeth of the sun and twice those of a planet.
-
-    Raises `BadInput`: no planets fit a ratio that small.
-    """
-    module, teeth, helix = wanted.module or 2.0, wanted.teeth or 24, wanted.helix or 0.0
-    wished = 0.5 * teeth * ((wanted.ratio or 5.0) - 2.0)
-    fitting = [count for count in range(_LEAST_TEETH, int(wished) + 4) if (teeth + count) % PLANETS == 0]
-    if not fitting or wished < _LEAST_TEETH:
-        least = 2.0 + 2.0 * _LEAST_TEETH / teeth
-        bound = f"at least {least:.3g} with {teeth} teeth of the sun"
-        raise BadInput.of("--ratio", wanted.ratio, bound, "Or leave it out.")
-    planet = min(fitting, key=lambda count: abs(count - wished))
-    width = wanted.width or _face_width(module, helix)
-    ring = _ring_pair(module, helix, width, planet, teeth + 2 * planet)
-    transverse = module / math.cos(helix * DEGREE)
-    sun = GearSketch(teeth, 0.0, _bore(_blank(teeth, module, helix, width)), ring.wheel.allowance)
-    torque = tuple(float(f"{value * teeth / planet:.2g}") for value in ring.torque)
-    pair = PairSketch(module, helix, width, 0.5 * transverse * (teeth + planet), sun, ring.pinion, torque)
-    return StageSketch(pair, ring, 2.0 + 2.0 * planet / teeth)

@@ -18,8 +18,8 @@ from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from host.extras import MissingExtra
-from lineofaction.cli.guard import warn
 from lineofaction.cli.output import check_writable, console, print_headlines, print_json, print_written, table
+from lineofaction.cli.verb_warnings import warn
 from lineofaction.client import JobState, LineOfActionClient, Result, Watch
 from lineofaction.client.page_address import PageAddress
 from lineofaction.gearbox.convert.case import case_as_filed

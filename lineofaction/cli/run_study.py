@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import shutil
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
@@ -13,10 +12,9 @@ from typing import Any
 
 from bounds import engineering
 from bounds.types import Json
-from fe_contact.solver_version import SOLVER_VERSION
 from host import cpu_seconds
 from host.directories import cache_home
-from lineofaction.cli.guard import messages, until_interrupted, warn, warnings_so_far
+from lineofaction.cli.interrupts import until_interrupted
 from lineofaction.cli.output import (
     Report,
     check_writable,
@@ -28,6 +26,7 @@ from lineofaction.cli.output import (
     print_written,
     progress_bar,
 )
+from lineofaction.cli.study_cache import cached_workers
 from lineofaction.cli.subjects import (
     announce_cost,
     assessed_scene,
@@ -36,10 +35,13 @@ from lineofaction.cli.subjects import (
     tabled_scene,
     tables_cost,
 )
+from lineofaction.cli.verb_warnings import messages, warn, warnings_so_far
 from lineofaction.gearbox.convert.case import CheckedCase, case_json
 from lineofaction.gearbox.convert.complaint import marks_of_case
 from lineofaction.gearbox.convert.plausibility import case_warnings
-from lineofaction.gearbox.input_file import InputFile, number_list
+from lineofaction.gearbox.executor import open_executor
+from lineofaction.gearbox.input_file import InputFile
+from lineofaction.gearbox.number_list import number_list
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.project import result_name
 from lineofaction.gearbox.registry import SUFFIX
@@ -51,38 +53,17 @@ from lineofaction.gearbox.schemas.report import ReportInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.study import Study
-from lineofaction.gearbox.tabled_scene import open_executor
 from lineofaction.report.document import read_run, write_whole
 from lineofaction.report.document import write as write_result
 from lineofaction.report.drawing.marks import marked_page_of_case
 from lineofaction.report.presentation import presentation_of
 from lineofaction.report.title_block import titled
-from model_studies.workers import Remembering, Workers
-from model_studies.workers.remembering import content_digest
-from service.version import solver_version
-
-# Studies that go on where they were: what their tasks found is kept in the user's cache until they end.
-
-
-@contextmanager
-def _resumed_workers(
-    study: Study, subjects: Sequence[BoundaryModel], inputs: BoundaryModel, workers: Workers
-) -> Iterator[Workers]:
-    """Provide workers that keep what they did, for a study that can be resumed; else the same workers.
-
-    A study that is interrupted or killed leaves its folder to the next one of the same subjects and inputs.
-    """
-    if not study.run.resumed:
-        yield workers
-        return
-    content = (study.name, inputs.model_dump_json(), *(subject.model_dump_json() for subject in subjects))
-    folder = cache_home() / "studies" / content_digest(content)
-    version = f"{solver_version()} {SOLVER_VERSION}"
-    yield Remembering(workers, folder, version)
-    shutil.rmtree(folder, ignore_errors=True)
-
+from model_studies.workers import Workers
 
 Writer = Callable[[Any, Path], object]
+
+_MOST_SAID = 2
+"""First lines of a study among which a main result may stand already."""
 
 
 def run_study(study: Study, options: Json) -> None:
@@ -107,7 +88,7 @@ def run_study(study: Study, options: Json) -> None:
     with (
         open_executor(options["workers"], options["scheduler"]) as others,
         _announced_cost(study, subjects, inputs, options),
-        _resumed_workers(study, written, inputs, others) as workers,
+        cached_workers(study, written, inputs, others) as workers,
         progress_bar() as report,
         stopping() as cancel,
     ):
@@ -277,10 +258,6 @@ def _csv(study: Study, result: Any) -> str:
     assert numbers is not None
     series = numbers(result)
     return csv_text(series.head, series.rows)
-
-
-_MOST_SAID = 2
-"""First lines of a study among which a main result may stand already."""
 
 
 def _show(study: Study, result: Any, targets: list[Path], remote_seconds: float) -> None:

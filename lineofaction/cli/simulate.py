@@ -9,7 +9,7 @@ from typing import Any
 from dynamics.scene import Scene
 from dynamics.simulation import interrupted_run, simulate_to_file
 from dynamics.types import RunStatus
-from lineofaction.cli.guard import until_interrupted, warnings_so_far
+from lineofaction.cli.interrupts import until_interrupted
 from lineofaction.cli.output import (
     Report,
     check_netcdf_output,
@@ -28,39 +28,19 @@ from lineofaction.cli.subjects import (
     tabled_scene,
     tables_cost,
 )
+from lineofaction.cli.verb_warnings import warnings_so_far
 from lineofaction.gearbox.convert.effects import run_lines
+from lineofaction.gearbox.executor import open_executor
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.project import RUN
-from lineofaction.gearbox.result_files import run_json, stamp, stamp_scene
+from lineofaction.gearbox.result_figures import run_json
+from lineofaction.gearbox.result_files import stamp, stamp_scene
 from lineofaction.gearbox.stages import staged
 from lineofaction.gearbox.studies.excitations import facts_of_scene
-from lineofaction.gearbox.tabled_scene import open_executor
 from lineofaction.report.drawing.figure import number
 from lineofaction.report.drawing.page import Headline
 from lineofaction.report.presentation import effect_text
-
-# The main figures of a run: how far its forces swing.
-
-
-def _run_headlines(peaks: Mapping[str, Any]) -> tuple[Headline, ...]:
-    """Return the largest mesh force, and the largest force on a bearing, from the `peaks` of a receipt."""
-    meshes = {name: (force["peak"], force["rms"]) for name, force in peaks.get("mesh_force", {}).items()}
-    bearings = {
-        f"{name}, {axis}": (peak, rms)
-        for name, force in peaks.get("bearing_force", {}).items()
-        for axis, peak, rms in zip("xyz", force["peak"], force["rms"], strict=True)
-    }
-    headlines = []
-    for what, forces in (("mesh force of", meshes), ("force on bearing", bearings)):
-        if forces:
-            name, (peak, rms) = max(forces.items(), key=lambda entry: entry[1][0])
-            value, remark = f"{number(peak, 4)} N", f"rms {number(rms, 4)} N"
-            headlines.append(Headline(f"largest {what} {name}", value, remark))
-    return tuple(headlines)
-
-
-# ``loa simulate``.
 
 
 def run_simulate(
@@ -92,6 +72,23 @@ def run_simulate(
         print_json(facts)
     else:
         _show(facts)
+
+
+def _run_headlines(peaks: Mapping[str, Any]) -> tuple[Headline, ...]:
+    """Return the largest mesh force, and the largest force on a bearing, from the `peaks` of a receipt."""
+    meshes = {name: (force["peak"], force["rms"]) for name, force in peaks.get("mesh_force", {}).items()}
+    bearings = {
+        f"{name}, {axis}": (peak, rms)
+        for name, force in peaks.get("bearing_force", {}).items()
+        for axis, peak, rms in zip("xyz", force["peak"], force["rms"], strict=True)
+    }
+    headlines = []
+    for what, forces in (("mesh force of", meshes), ("force on bearing", bearings)):
+        if forces:
+            name, (peak, rms) = max(forces.items(), key=lambda entry: entry[1][0])
+            value, remark = f"{number(peak, 4)} N", f"rms {number(rms, 4)} N"
+            headlines.append(Headline(f"largest {what} {name}", value, remark))
+    return tuple(headlines)
 
 
 def _run(scene: Scene, output: Path, report: Report, *, resume: bool) -> None:

@@ -23,7 +23,8 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import ResultState, file_of, status_of, unread_in
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, read_model, read_table
-from lineofaction.gearbox.studies.cost import CASES, StudyCost
+from lineofaction.gearbox.studies.cost import StudyCost
+from lineofaction.gearbox.studies.scene_before_tables import CASES
 from lineofaction.gearbox.subjects import scene_of
 
 

@@ -12,8 +12,8 @@ import numpy as np
 
 from bounds import engineering
 from fe_contact.ste import SteDatabase
-from lineofaction.cli.guard import warn
 from lineofaction.cli.output import FOUND, aligned, console, csv_text, print_json, table
+from lineofaction.cli.verb_warnings import warn
 from lineofaction.gearbox.convert.answers import curve_json, teeth_words
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import only, tables_in

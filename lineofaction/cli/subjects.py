@@ -17,13 +17,14 @@ from fe_contact.solver_version import SOLVER_VERSION, software_versions
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from host.directories import cache_home
-from lineofaction.cli.guard import in_lines, warn
 from lineofaction.cli.output import Report
+from lineofaction.cli.verb_warnings import in_lines, warn
 from lineofaction.gearbox.convert.case import CheckedCase, CheckedCases, case_at, case_json
 from lineofaction.gearbox.convert.live import costs_of
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.input_file import InputFile
+from lineofaction.gearbox.mesh_tables import MeshTables, finished
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import inputs_in, usual_speeds
 from lineofaction.gearbox.schemas import Case, read_model, validated
@@ -34,9 +35,11 @@ from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.reading import located
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.studied import OverSpeeds
-from lineofaction.gearbox.studies.cost import CASES, StudyCost, Work, panels_work, run_cost
+from lineofaction.gearbox.studies.cost import StudyCost, Work, panels_work
+from lineofaction.gearbox.studies.run_cost import run_cost
+from lineofaction.gearbox.studies.scene_before_tables import CASES
 from lineofaction.gearbox.study import Study
-from lineofaction.gearbox.subjects import MeshTables, finished, scene_of, with_own_cases
+from lineofaction.gearbox.subjects import scene_of, with_own_cases
 from lineofaction.gearbox.tabled_scene import ComputedTables
 from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
 from model_studies.kept_file import kept_in

@@ -92,7 +92,8 @@ class _SceneCalls(Surface):
         `JobFailed`, `NotFound`, `Unreachable`, `ServiceError`.
         """
         # what declares the fields of a scene is loaded with the first call
-        from lineofaction.gearbox.subjects import MeshTables, scene_of  # noqa: PLC0415
+        from lineofaction.gearbox.mesh_tables import MeshTables  # noqa: PLC0415
+        from lineofaction.gearbox.subjects import scene_of  # noqa: PLC0415
 
         inputs, folder = scene_of(scene)
         source, tables = MeshTables(folder, ServiceTables(self)), {}

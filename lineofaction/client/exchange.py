@@ -1,9 +1,8 @@
-"""Requests to a service: retries, downloads, and answers checked or turned into errors."""
+"""Requests to a service: retries, downloads, the caller's trace, and answers checked."""
 
 from __future__ import annotations
 
 import hashlib
-import json
 import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -13,60 +12,16 @@ from typing import Any, BinaryIO, TypeVar
 
 import httpx2
 
+from lineofaction.client.problem_answers import problem_of, stranger
 from lineofaction.client.steps import Open, Pause, Piece, Send, Steps, Stream
-from lineofaction.gearbox import problems
 from lineofaction.gearbox.problems import (
-    BadInput,
-    Fault,
-    JobFailed,
-    NotFound,
-    ServiceError,
-    Unexpected,
     Unreachable,
 )
 
-# Problems that a service answers with, turned back into the errors they were.
+_TRY_AGAIN = (429, 502, 503, 504)
+_FIRST_PAUSE_S, _LONGEST_OWN_PAUSE_S, _LONGEST_PAUSE_S = 0.1, 2.0, 10.0
 
-
-def problem_of(response: httpx2.Response) -> ServiceError:
-    """Return the error that an answer tells of; `Unreachable` if it is not this service's."""
-    try:
-        facts = response.json()
-        detail, kind = str(facts["detail"]), str(facts["type"])
-        faults = [Fault(**fault) for fault in facts.get("errors", [])]
-    except (json.JSONDecodeError, UnicodeDecodeError, KeyError, TypeError):
-        return stranger(response)
-    if kind == BadInput.type:
-        return BadInput(faults)
-    if kind == JobFailed.type:
-        return BadInput(faults) if faults else JobFailed(detail)
-    known = _BY_TYPE.get(kind)
-    if known is not None:
-        return known(detail)
-    return NotFound(detail) if response.status_code == NotFound.status else ServiceError(detail)
-
-
-def stranger(response: httpx2.Response) -> Unreachable:
-    """Return the error of an answer that this service does not give."""
-    status, url = response.status_code, response.request.url
-    to = f" and sends to {response.headers['location']}" if response.has_redirect_location else ""
-    return Unreachable(
-        f"{url} answered with status {status}{to}, which is not an answer of this service. Check the address."
-    )
-
-
-_WITH_MORE = (BadInput, JobFailed, Unexpected)
-"""Errors that are not made of their text alone."""
-
-_BY_TYPE = {
-    kind.type: kind
-    for kind in vars(problems).values()
-    if isinstance(kind, type) and issubclass(kind, ServiceError) and "type" in vars(kind)
-    if kind is not ServiceError and kind not in _WITH_MORE
-}
-
-
-# The trace that a caller is in goes with every request.
+T = TypeVar("T")
 
 
 def traced(options: dict[str, Any]) -> dict[str, Any]:
@@ -81,12 +36,6 @@ def traced(options: dict[str, Any]) -> dict[str, Any]:
     headers: dict[str, str] = {}
     inject(headers)
     return {**options, "headers": headers | options.get("headers", {})} if headers else options
-
-
-_TRY_AGAIN = (429, 502, 503, 504)
-_FIRST_PAUSE_S, _LONGEST_OWN_PAUSE_S, _LONGEST_PAUSE_S = 0.1, 2.0, 10.0
-
-T = TypeVar("T")
 
 
 class _TryAgain(Exception):

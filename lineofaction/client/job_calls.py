@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import time
 import uuid
@@ -13,7 +12,9 @@ from typing import Any, TypeVar
 
 import httpx2
 
-from lineofaction.client.exchange import Exchange, stranger
+from lineofaction.client.event_stream import EVENT_STREAM, EventReader
+from lineofaction.client.exchange import Exchange
+from lineofaction.client.problem_answers import stranger
 from lineofaction.client.status import (
     AWAY,
     AWAY_PAUSE_S,
@@ -35,6 +36,10 @@ from service.version import solver_version
 T = TypeVar("T")
 _PAGE = 100
 """Entries that are fetched at a time."""
+
+_LONGEST_PAUSE_S = 2.0
+_REFERENCES = {"response": "document", "transmissionMode": "reference"}
+"""Whatever form a job was submitted with: say where its result is."""
 
 
 def pages(
@@ -71,36 +76,6 @@ def pages(
         if following is None or (left is not None and left <= 0):
             return
         shown, following = yield from exchange.read(read, "GET", following)
-
-
-# Events of a job as they come (server-sent events, HTML Living Standard, clause 9.2).
-
-
-EVENT_STREAM = "text/event-stream"
-
-
-class EventReader:
-    """The documents of a stream of events, which comes in pieces of any size."""
-
-    def __init__(self) -> None:
-        self._rest, self._data = b"", list[bytes]()
-
-    def documents(self, piece: bytes) -> list[dict[str, Any]]:
-        """Return what a further piece completes; comments and names of events are passed over."""
-        *lines, self._rest = (self._rest + piece).split(b"\n")
-        complete = []
-        for line in (line.rstrip(b"\r") for line in lines):
-            if line.startswith(b"data:"):
-                self._data.append(line[5:].removeprefix(b" "))
-            elif not line and self._data:
-                complete.append(json.loads(b"\n".join(self._data)))
-                self._data.clear()
-        return complete
-
-
-_LONGEST_PAUSE_S = 2.0
-_REFERENCES = {"response": "document", "transmissionMode": "reference"}
-"""Whatever form a job was submitted with: say where its result is."""
 
 
 def pace_of_known(session: Session, timeout: float | None = None, interval: float = 0.05) -> Pace:

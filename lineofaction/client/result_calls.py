@@ -28,9 +28,6 @@ Column = float | Collection[float]
 """One value for all points, or a list or one-dimensional array with one for each."""
 
 
-# What a live question may ask beside the torques.
-
-
 class LiveOptions(TypedDict, total=False):
     """Options of `ste`, in the words of a case file; what is left out is as in the case."""
 

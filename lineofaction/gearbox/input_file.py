@@ -1,8 +1,7 @@
-"""What callers set in a text: values over those of a case or scene file, and lists of numbers."""
+"""What callers set in a text: values over those of a case or scene file."""
 
 from __future__ import annotations
 
-import math
 import re
 import tomllib
 from collections.abc import Iterator, Sequence
@@ -18,30 +17,6 @@ Json = dict[str, Any]
 _FORM = "PATH=VALUE, as in pair.pinion.tip_relief_um=20"
 _ENTRY = re.compile(r"^([^.\[\]]+)(?:\[(\d+)\])?$")
 _EVERY = "*"
-
-
-@dataclass(frozen=True)
-class Override:
-    """A value that takes the place of a file's."""
-
-    path: str
-    """Names from the top of the file, ``pair.pinion.teeth``; an entry of a list by ``[0]``, by the ``name``
-    of a part (``loads.brake.torque_n_m``) or ``*`` for all.
-    """
-    value: Any
-    """As TOML has it; None leaves the field out."""
-
-    @classmethod
-    def of(cls, text: str) -> Override:
-        """Return what ``PATH=VALUE`` says: a value as TOML has it, or else a text; none leaves the field out.
-
-        Raises `BadInput`: it has another form.
-        """
-        path, sign, typed = text.partition("=")
-        names = path.strip().split(".")
-        if not sign or not all(_ENTRY.match(name) for name in names):
-            raise BadInput.of("--set", text, f"of the form {_FORM}", "Several: --set A=1 --set B=2.")
-        return cls(path.strip(), _value(typed.strip()))
 
 
 @dataclass(frozen=True)
@@ -102,6 +77,30 @@ class InputFile:
         return changed
 
 
+@dataclass(frozen=True)
+class Override:
+    """A value that takes the place of a file's."""
+
+    path: str
+    """Names from the top of the file, ``pair.pinion.teeth``; an entry of a list by ``[0]``, by the ``name``
+    of a part (``loads.brake.torque_n_m``) or ``*`` for all.
+    """
+    value: Any
+    """As TOML has it; None leaves the field out."""
+
+    @classmethod
+    def of(cls, text: str) -> Override:
+        """Return what ``PATH=VALUE`` says: a value as TOML has it, or else a text; none leaves the field out.
+
+        Raises `BadInput`: it has another form.
+        """
+        path, sign, typed = text.partition("=")
+        names = path.strip().split(".")
+        if not sign or not all(_ENTRY.match(name) for name in names):
+            raise BadInput.of("--set", text, f"of the form {_FORM}", "Several: --set A=1 --set B=2.")
+        return cls(path.strip(), _value(typed.strip()))
+
+
 def _value(text: str) -> Any:
     """Return what was typed, as TOML has it."""
     if not text:
@@ -154,35 +153,3 @@ def _parts(parts: list[Any], override: Override, name: str) -> list[int]:
 
 def _no_place(override: Override, bound: str, advice: str) -> BadInput:
     return BadInput.of(override.path, override.value, bound, advice)
-
-
-# Numbers in a text: a list, or a range with its step.
-
-MOST = 10_000
-_BOUND = "FIRST:LAST:STEP, or increasing numbers separated by commas"
-_ADVICE = "For example 100:3000:50 or 300,600,900."
-_ROUNDING = 1e-9  # of a step
-
-
-def number_list(option: str, text: str) -> list[float]:
-    """Return the numbers of an option; a range holds its last value where a step ends there.
-
-    Raises `BadInput`: it is neither a range nor a list, or holds too many numbers.
-    """
-    try:
-        if ":" in text:
-            first, last, step = (float(part) for part in text.split(":"))
-            return _range(option, text, first, last, step)
-        return [float(part) for part in text.split(",")]
-    except ValueError:
-        raise BadInput.of(option, text, _BOUND, _ADVICE) from None
-
-
-def _range(option: str, text: str, first: float, last: float, step: float) -> list[float]:
-    usable = all(math.isfinite(value) for value in (first, last, step)) and step > 0.0 and last >= first
-    if not usable:
-        raise BadInput.of(option, text, "a range FIRST:LAST:STEP that rises by a step above 0", _ADVICE)
-    count = math.floor((last - first) / step * (1.0 + _ROUNDING) + _ROUNDING) + 1
-    if count > MOST:
-        raise BadInput.of(option, text, f"at most {MOST} values", "Take a wider step.")
-    return [first + step * index for index in range(count)]

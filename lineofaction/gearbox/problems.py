@@ -300,8 +300,6 @@ class Unreachable(_Away):
     title = "The service cannot be reached"
 
 
-# Those that are no more than a title, an HTTP status, an exit code, and seconds after which to try again.
-
 Kind = TypeVar("Kind", bound=ServiceError)
 
 
@@ -313,9 +311,10 @@ def _row(
     retry_after_s: int | None = None,
     home: str = _OURS,
 ) -> type[Kind]:
+    """Return a class of no more than a title, an HTTP status, and seconds after which to try again."""
     facts = {"status": status, "type": f"{home}{name}", "title": title, "retry_after_s": retry_after_s}
-    own = {"__module__": __name__, "__doc__": f"{title}."}
-    kind: type[Kind] = type(name.title().replace("-", ""), (base,), facts | own)
+    names = {"__module__": __name__, "__doc__": f"{title}."}
+    kind: type[Kind] = type(name.title().replace("-", ""), (base,), facts | names)
     return kind
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,6 @@ from typing import Any
 from fe_contact.options import Run
 from fe_contact.ste import PairFacts, SteDatabase
 from host import cpu_seconds
-from host.extras import MissingExtra
 from lineofaction.gearbox.convert.case import (
     CheckedCase,
     CheckedCases,
@@ -22,68 +20,19 @@ from lineofaction.gearbox.convert.case import (
 from lineofaction.gearbox.convert.housings import housings_in
 from lineofaction.gearbox.convert.plausibility import case_warnings, phrased_for, scene_warnings, within
 from lineofaction.gearbox.convert.scene import TabledScene, check_scene, dynamic_scene
+from lineofaction.gearbox.mesh_tables import Steps
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.subjects import Steps, with_case, with_own_cases, without_modes_files
+from lineofaction.gearbox.subjects import with_case, with_own_cases, without_modes_files
 from model_studies.progress import Progress, silent
-from model_studies.workers import InProcess, Workers, WorkersLost, dask_workers, local_processes
+from model_studies.workers import InProcess, Workers
 
 Warn = Callable[[Iterable[dict[str, Any]]], object]
 OnDraft = Callable[[SteDatabase, str], None]
 TableOf = Callable[[int, MeshInput], SteDatabase]
 KeptTable = Callable[[Case], SteDatabase | None]
-
-
-def database_of(
-    checked: CheckedCase,
-    home: Path,
-    progress: Progress = silent,
-    workers: Workers = InProcess(),  # noqa: B008 (frozen)
-    on_draft: OnDraft | None = None,
-) -> SteDatabase:
-    """Compute the STE database of a case; condensed gears are kept in `home`, the folder of caches.
-
-    Raises `BadInput`: no such pair exists, or not under these loads.
-    """
-    run = Run(workers, home / "compliance", progress)
-    return checked_table(checked, run, on_draft)
-
-
-def checked_table(checked: CheckedCase, run: Run, on_draft: OnDraft | None = None) -> SteDatabase:
-    """Compute the STE database of a case, its warnings in the fields and units of the case."""
-    from fe_contact.analysis.analyze import ste_database  # noqa: PLC0415 (start-up time)
-
-    request = checked.checked
-    with boundary_errors():
-        database = ste_database(request, run=run, case=case_json(checked.case), on_draft=on_draft)
-    made = database.metadata
-    if (allowed := allowed_misalignment(checked.case)) is not None:
-        made = replace(made, receipt=made.receipt | {"misalignment_range": allowed.words})
-    warnings = phrased_for(checked.case, made.warnings)
-    return replace(database, metadata=replace(made, warnings=warnings))
-
-
-class ComputedTables:
-    """A source of tables that computes them in this process, and holds none.
-
-    `compute`: ``compute(case)``, the database of a case.
-    """
-
-    def __init__(self, compute: Callable[[Case], SteDatabase]) -> None:
-        self._compute = compute
-
-    def by_hash(self, key: str) -> Steps[SteDatabase]:
-        """Refuse: only a service knows hashes."""
-        yield from ()
-        advice = "Name the service that holds it: --service http://127.0.0.1:8321"
-        raise BadInput.of("database_hash", key, "used together with a service", advice)
-
-    def by_case(self, case: Case) -> Steps[SteDatabase]:
-        """Compute."""
-        yield from ()
-        return self._compute(case)
 
 
 def tabled_scene(
@@ -144,6 +93,56 @@ def tabled_scene(
     return TabledScene(without_modes_files(own), databases, built, housings, cpu_seconds() - began)
 
 
+def database_of(
+    checked: CheckedCase,
+    home: Path,
+    progress: Progress = silent,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
+    on_draft: OnDraft | None = None,
+) -> SteDatabase:
+    """Compute the STE database of a case; condensed gears are kept in `home`, the folder of caches.
+
+    Raises `BadInput`: no such pair exists, or not under these loads.
+    """
+    run = Run(workers, home / "compliance", progress)
+    return checked_table(checked, run, on_draft)
+
+
+def checked_table(checked: CheckedCase, run: Run, on_draft: OnDraft | None = None) -> SteDatabase:
+    """Compute the STE database of a case, its warnings in the fields and units of the case."""
+    from fe_contact.analysis.analyze import ste_database  # noqa: PLC0415 (start-up time)
+
+    request = checked.checked
+    with boundary_errors():
+        database = ste_database(request, run=run, case=case_json(checked.case), on_draft=on_draft)
+    made = database.metadata
+    if (allowed := allowed_misalignment(checked.case)) is not None:
+        made = replace(made, receipt=made.receipt | {"misalignment_range": allowed.words})
+    warnings = phrased_for(checked.case, made.warnings)
+    return replace(database, metadata=replace(made, warnings=warnings))
+
+
+class ComputedTables:
+    """A source of tables that computes them in this process, and holds none.
+
+    `compute`: ``compute(case)``, the database of a case.
+    """
+
+    def __init__(self, compute: Callable[[Case], SteDatabase]) -> None:
+        self._compute = compute
+
+    def by_hash(self, key: str) -> Steps[SteDatabase]:
+        """Refuse: only a service knows hashes."""
+        yield from ()
+        advice = "Name the service that holds it: --service http://127.0.0.1:8321"
+        raise BadInput.of("database_hash", key, "used together with a service", advice)
+
+    def by_case(self, case: Case) -> Steps[SteDatabase]:
+        """Compute."""
+        yield from ()
+        return self._compute(case)
+
+
 def _facts(
     index: int, mesh: MeshInput, table_of: TableOf, cases: CheckedCases, warn: Warn, kept_table: KeptTable
 ) -> PairFacts:
@@ -156,46 +155,3 @@ def _facts(
         return PairFacts.of(checked.feasible.request.pair)
     except BadInput as error:
         raise error.within(f"{field}.case") from None
-
-
-# The workers of a study: those of a job, or of the command line.
-
-
-@contextmanager
-def open_executor(processes: int = 1, scheduler: str | None = None) -> Iterator[Workers]:
-    """Provide the workers of a study, and send those of this machine home at the end.
-
-    Parameters
-    ----------
-    processes : int
-        Of this machine.
-    scheduler : str, optional
-        Address of a Dask scheduler, or the file in which it left it.
-
-    Raises `BadInput`: both are given, or nobody answers at the address.
-    """
-    if scheduler is not None and processes != 1:
-        bound = "left out with --scheduler or LOA_SCHEDULER"
-        raise BadInput.of("--workers", processes, bound, "A cluster has its own.")
-    if scheduler is not None:
-        with _connected(scheduler) as cluster:
-            yield cluster
-    elif processes == 1:
-        yield InProcess()
-    else:
-        with local_processes(processes) as pool:
-            yield pool
-
-
-@contextmanager
-def _connected(scheduler: str) -> Iterator[Workers]:
-    try:
-        cluster = dask_workers(scheduler)
-    except MissingExtra as error:
-        raise BadInput.of("--scheduler", scheduler, "left out without the extra dask", f"{error}.") from None
-    except WorkersLost as error:
-        bound = "the address of a running Dask scheduler, such as tcp://host:8786, or its file"
-        advice = f"{error} Start one: dask scheduler; and workers: dask worker ADDRESS --nthreads 1"
-        raise BadInput.of("--scheduler", scheduler, bound, advice) from None
-    with cluster.client:
-        yield cluster

@@ -20,9 +20,10 @@ from lineofaction.gearbox.convert.case import CheckedCase, CheckedCases
 from lineofaction.gearbox.convert.housings import HousedScene, housings_in
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.convert.scene import TabledScene
-from lineofaction.gearbox.from_rexs.account import Assumption
+from lineofaction.gearbox.from_rexs.assumptions import Assumption
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.input_file import InputFile, Override
+from lineofaction.gearbox.mesh_tables import MeshTables, finished
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
@@ -31,7 +32,7 @@ from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.study import Study
-from lineofaction.gearbox.subjects import MeshTables, Subject, case_of, finished, scene_of, with_own_files
+from lineofaction.gearbox.subjects import Subject, case_of, scene_of, with_own_files
 from lineofaction.gearbox.tabled_scene import ComputedTables, database_of
 from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
 from model_studies.progress import Progress, silent

@@ -3,27 +3,62 @@
 A scene is a function in the file of its subject, declared by `Scenes.add`.
 """
 
-from lineofaction.hardcases import tables
-from lineofaction.hardcases.contact import flanks, pairs, sizes
-from lineofaction.hardcases.dynamics import contact_loss, stepping
-from lineofaction.hardcases.jobs import disturbances
-from lineofaction.hardcases.scene import HardScene, Measured, Outcome, run_scenes
+from lineofaction.hardcases import broken_table, force_extraction
+from lineofaction.hardcases.contact import (
+    bodies,
+    faces,
+    flank_gaps,
+    handover,
+    load_range,
+    sizes,
+    tip_edges,
+    tooth_numbers,
+    touching_pair,
+)
+from lineofaction.hardcases.dynamics import (
+    contact_loss,
+    driven_gear,
+    interrupted_run,
+    resonance,
+    stepping,
+    supports,
+    unlike_masses,
+    unloaded_planet,
+    varying_stiffness,
+)
+from lineofaction.hardcases.jobs import disturbances, process_deaths, shortages
+from lineofaction.hardcases.scene import HardScene, Measured, Outcome
+from lineofaction.hardcases.scene_process import run_scenes
 
 __all__ = ["HARD_SCENES", "HardScene", "Measured", "Outcome", "run_scenes"]
 
 HARD_SCENES: tuple[HardScene, ...] = tuple(
     scene
-    for scenes in (
-        flanks.SCENES,
-        pairs.SCENES,
-        sizes.SCENES,
-        tables.SCENES,
-        contact_loss.GAPS,
-        stepping.STEPS,
-        contact_loss.STIFFNESSES,
-        stepping.TRAINS,
-        disturbances.SCENES,
+    for module in (
+        load_range,
+        touching_pair,
+        tip_edges,
+        flank_gaps,
+        faces,
+        handover,
+        tooth_numbers,
+        sizes,
+        bodies,
+        force_extraction,
+        broken_table,
+        contact_loss,
+        resonance,
+        stepping,
+        driven_gear,
+        varying_stiffness,
+        supports,
+        unlike_masses,
+        unloaded_planet,
+        interrupted_run,
+        disturbances,
+        process_deaths,
+        shortages,
     )
-    for scene in scenes.listed
+    for scene in module.SCENES.listed
 )
 """In the order in which `loa hardcases` and tests/stability run them."""

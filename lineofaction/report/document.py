@@ -19,7 +19,8 @@ from host.directories import whole_file
 from lineofaction.gearbox.convert.complaint import marks_of_case
 from lineofaction.gearbox.problems import BadInput, DamagedFile
 from lineofaction.gearbox.registry import STUDIES
-from lineofaction.gearbox.result_files import COMPLAINT, making_of, stamped
+from lineofaction.gearbox.result_figures import making_of
+from lineofaction.gearbox.result_files import COMPLAINT, stamped
 from lineofaction.gearbox.studies.bodies import UNIT
 from lineofaction.gearbox.study import Study
 from lineofaction.report.drawing.attaching import attached

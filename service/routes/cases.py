@@ -276,7 +276,7 @@ async def housing_surface(body: HousingsRequest, context: Ctx, request: Request)
 
 units_router = APIRouter(tags=["units"], route_class=ScopedRoute)
 
-ENTRY = "lineofaction.gearbox.from_rexs.opened:unit_of_rexs"
+ENTRY = "lineofaction.gearbox.from_rexs.unit_answer:unit_of_rexs"
 
 
 @units_router.post(

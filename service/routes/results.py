@@ -90,7 +90,7 @@ _FIGURES_OR_FILE = answer(
 _NETCDF_FILE = answer("The netCDF file", *OF_RESULT, "Content-Digest", content={NETCDF: {"schema": FILE}})
 _UNMODIFIED, _UNMODIFIED_ANSWER = answer("Not modified", *OF_RESULT), answer("Not modified", *_VERSION)
 case_of_file = on_demand("lineofaction.gearbox.result_files:case_of_file")
-figures_of = on_demand("lineofaction.gearbox.result_files:figures_of")
+figures_of = on_demand("lineofaction.gearbox.result_figures:figures_of")
 metadata_json = on_demand("lineofaction.gearbox.convert.answers:metadata_json")
 
 router = APIRouter(tags=["results"], route_class=ScopedRoute)

@@ -23,7 +23,7 @@ from fe_contact.errors import SolveError
 from fe_contact.ste import SteDatabase
 from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.convert.scene import dynamic_scene
-from lineofaction.gearbox.result_files import figures_of
+from lineofaction.gearbox.result_figures import figures_of
 from lineofaction.gearbox.stages import PacedFraction
 from service.store.places import stored_results
 from service.store.results import IndexLine

@@ -53,7 +53,7 @@ def modules_after(unit: str, out: Path) -> set[str]:
     code = f"""
 import sys
 from pathlib import Path
-from lineofaction.cli.new import run_open
+from lineofaction.cli.open_unit import run_open
 run_open(Path({unit!r}), Path({str(out)!r}), as_json=True)
 print(*sys.modules, file=sys.stderr)
 """

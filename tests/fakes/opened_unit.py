@@ -13,7 +13,8 @@ from fe_contact.ste import PairFacts
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.opened import SCENE_FILE, OpenedUnit
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit
+from lineofaction.gearbox.from_rexs.unit_files import SCENE_FILE
 from lineofaction.gearbox.rexs.model import Document
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lineofaction.cli.guard import computing, grouped
+from lineofaction.cli.guard import computing
 from lineofaction.cli.options import AsJson, Force, file_argument, overridable, to_file
+from lineofaction.cli.verb_parameters import grouped
 from lineofaction.cli.verbs import Later
 from lineofaction.gearbox.input_file import InputFile
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lineofaction.cli.guard import computing, grouped, guarded
+from lineofaction.cli.guard import computing, guarded
 from lineofaction.cli.options import (
     AsJson,
     CaseFile,
@@ -20,13 +20,15 @@ from lineofaction.cli.options import (
     overridable,
     to_file,
 )
+from lineofaction.cli.verb_parameters import grouped
 from lineofaction.cli.verbs import Later
 
 if TYPE_CHECKING:
-    from lineofaction.cli import analyze, new, pages, simulate, status, ste
+    from lineofaction.cli import analyze, new, pages, plan, simulate, status, ste
 else:
-    analyze, new, pages, simulate, status, ste = map(
-        Later, ("cli.analyze", "cli.new", "cli.pages", "cli.simulate", "cli.status", "cli.ste")
+    analyze, new, pages, plan, simulate, status, ste = map(
+        Later,
+        ("cli.analyze", "cli.new", "cli.pages", "cli.plan", "cli.simulate", "cli.status", "cli.ste"),
     )
 
 verbs = typer.Typer()
@@ -166,4 +168,4 @@ def _plan(
     json: AsJson = False,
 ) -> None:
     """Predict time by stage, memory and error of a case, with its effects; computes no contact."""
-    analyze.run_plan(case, time_budget_s, as_json=json)
+    plan.run_plan(case, time_budget_s, as_json=json)

@@ -12,9 +12,9 @@ from lineofaction.cli.options import AsJson
 from lineofaction.cli.verbs import Later
 
 if TYPE_CHECKING:
-    from lineofaction.cli import new
+    from lineofaction.cli import open_unit
 else:
-    new = Later("cli.new")
+    open_unit = Later("cli.open_unit")
 
 verbs = typer.Typer()
 
@@ -41,4 +41,4 @@ def _open_unit(
     json: AsJson = False,
 ) -> None:
     """Open a gear unit of another tool (REXS): write its cases, its scene and the report of the import."""
-    new.run_open(file, output, assume or (), as_json=json)
+    open_unit.run_open(file, output, assume or (), as_json=json)

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lineofaction.cli.guard import computing, grouped
+from lineofaction.cli.guard import computing
 from lineofaction.cli.options import AsJson, to_file
+from lineofaction.cli.verb_parameters import grouped
 from lineofaction.cli.verbs import Later
-from lineofaction.gearbox.input_file import number_list
+from lineofaction.gearbox.number_list import number_list
 
 if TYPE_CHECKING:
     from lineofaction.cli import pages

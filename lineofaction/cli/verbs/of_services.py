@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from lineofaction.cli.guard import computing, grouped, guarded
+from lineofaction.cli.guard import computing, guarded
 from lineofaction.cli.options import DEFAULT_SERVICE, AsJson, Service, file_argument, overridable, to_file
+from lineofaction.cli.verb_parameters import grouped
 from lineofaction.cli.verbs import Later
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.registry import studies_of

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from lineofaction.cli.guard import computing, keyword
+from lineofaction.cli.guard import computing
 from lineofaction.cli.options import (
     AsCsv,
     AsJson,
@@ -20,6 +20,7 @@ from lineofaction.cli.options import (
     file_argument,
     overridable,
 )
+from lineofaction.cli.verb_parameters import keyword
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas.model import item_type, spelling_of

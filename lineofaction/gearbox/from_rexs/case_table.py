@@ -4,143 +4,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
-from typing import Any
 
-from fe_contact.errors import FeContactError
-from fe_contact.geometry import Gear
 from lineofaction.gearbox.convert.case import check_plain_case
-from lineofaction.gearbox.from_rexs.gear_unit import Part, rounded
+from lineofaction.gearbox.from_rexs.gear_body import (
+    Table,
+    blank_table,
+    bore,
+    elasticity,
+    material_table,
+    rim_diameter,
+)
+from lineofaction.gearbox.from_rexs.gear_unit import rounded
 from lineofaction.gearbox.from_rexs.micro_geometry import micro_geometry
-from lineofaction.gearbox.from_rexs.placement import u_on_shaft
-from lineofaction.gearbox.from_rexs.toothing import ToothDepth, ToothedPair, ToothingData
+from lineofaction.gearbox.from_rexs.profile_shifts import ToothedPair
+from lineofaction.gearbox.from_rexs.ring_tip import clearing_tip
+from lineofaction.gearbox.from_rexs.tooth_depth import ToothDepth
+from lineofaction.gearbox.from_rexs.toothing import ToothingData
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.reading import validated
-from lineofaction.gearbox.units import DEGREE, GPA, MM, UM
-
-# What carries the teeth: bore or rim, rim and web of the gear body, and the material.
-
-
-RIM = 3.5
-"""Normal modules: thinner rims weaken the tooth root, thicker have no influence (ISO 6336-3, clause 9)."""
-_THINNEST = 1.0  # normal modules between bore and root circle; less is one piece with the shaft
-_INTEGRAL = 0.5  # of the root diameter
-STEEL = (210e9, 0.3)
-
-
-def _rim_diameter(gear: ToothingData, root: float) -> float:
-    for part in (gear.part, *gear.part.children("gear_body")):
-        value = part.number("outer_diameter", "rim_diameter_mm")
-        if value is not None and value > root:
-            return value
-    rim = root + 2.0 * RIM * gear.normal_module
-    words = f"rim_diameter_mm {rim / MM:.7g} = d_f + 2 * {RIM} m_n: the file gives no rim"
-    gear.part.say("outer_diameter", "defaulted", words)
-    return rim
-
-
-def _bore(gear: ToothingData, root: float) -> float:
-    """Return the bore: the gear's or its body's own, else the shaft's outside, else half the root circle."""
-    largest = root - 2.0 * _THINNEST * gear.normal_module
-    for part in (gear.part, *gear.part.children("gear_body")):
-        value = part.number("inner_diameter", "bore_diameter_mm")
-        if value is not None and 0.0 < value < root:
-            return value
-    shaft = _shaft_diameter(gear.part)
-    if shaft is not None and shaft <= largest:
-        words = f"bore_diameter_mm {shaft / MM:.7g}: the shaft's outer diameter there"
-        gear.part.say("inner_diameter", "derived", words)
-        return shaft
-    bore = _INTEGRAL * root
-    why = "no bore and no shaft section" if shaft is None else "one piece with its shaft"
-    words = f"bore_diameter_mm {bore / MM:.7g} = d_f / 2, within which nothing deflects: {why}"
-    gear.part.say("inner_diameter", "defaulted", words)
-    return bore
-
-
-def _shaft_diameter(gear: Part) -> float | None:
-    """Return the outer diameter of the shaft's section at the gear's middle, m."""
-    shaft, place = gear.shaft, u_on_shaft(gear)
-    if shaft is None or place is None:
-        return None
-    start = 0.0
-    for section in shaft.children("shaft_section"):
-        length = section.number("length", "length of the section") or 0.0
-        start = section.number("u_coordinate_on_shaft", "begin of the section", start)
-        if start <= place <= start + length:
-            begin = section.number("outer_diameter_begin", "outer diameter of the section")
-            end = section.number("outer_diameter_end", "outer diameter of the section")
-            if begin is None or end is None:
-                return begin if end is None else end
-            return begin + (0.0 if length == 0.0 else (place - start) / length) * (end - begin)
-        start += length
-    return None
-
-
-def _elasticity(gear: Part) -> tuple[float, float]:
-    """Return Young's modulus in Pa and Poisson's ratio: the gear's, its body's, its shaft's, else steel's."""
-    shaft = gear.shaft
-    owners = (gear, *gear.children("gear_body"), *(() if shaft is None else (shaft,)))
-    for owner in owners:
-        for material in owner.referenced:
-            young = material.number("elastic_modulus", "youngs_modulus_gpa")
-            if young is None:
-                continue
-            poisson = material.number("poisson_ratio", "poissons_ratio")
-            if owner is not gear:
-                gear.say("material", "derived", f"{material.name}, the material of {owner.name}")
-            return young, STEEL[1] if poisson is None else poisson
-    gear.say("material", "defaulted", f"steel, {STEEL[0] / GPA:g} GPa, {STEEL[1]:g}: the file names none")
-    return STEEL
-
-
-# A ring gear's tip that the file leaves out, clear of the mate's fillet.
-
-
-_STEP = 0.01 * MM  # tip diameters are rounded up to it
-
-
-def _clearing_tip(pair: ToothedPair, depths: Sequence[ToothDepth], shifts: Mapping[int, float]) -> ToothDepth:
-    """Return the ring gear's depth, of those of both, with a tip that stays on the involute of its mate.
-
-    The tip meets the mate's form circle at the roll length l_F1 + a sin(alpha_wt) of the ring gear.
-    """
-    ring, depth = pair.wheel, depths[1]
-    base = 0.5 * ring.reference_diameter * math.cos(ring.transverse_pressure_angle)
-    tangent = pair.center_distance * math.sin(pair.working_pressure_angle)
-    least = 2.0 * math.hypot(base, _form_roll_length(pair, depths[0], shifts) + tangent)
-    if depth.tip_diameter > least:
-        return depth
-    tip = math.ceil(least / _STEP + 1e-3) * _STEP
-    words = f"{tip / MM:.7g} mm, above {least / MM:.7g} mm = 2 sqrt(r_b2^2 + (l_F1 + a sin alpha_wt)^2),"
-    words += f" where the tip meets the form circle of {pair.pinion.part.name}; d - 2 m_n (x + h_aP) would be"
-    ring.part.say("tip_diameter", "defaulted", f"{words} {depth.tip_diameter / MM:.7g} mm")
-    return replace(depth, tip_diameter=tip)
-
-
-def _form_roll_length(pair: ToothedPair, depth: ToothDepth, shifts: Mapping[int, float]) -> float:
-    gear, shift = pair.pinion, shifts[pair.pinion.part.id]
-    try:
-        return Gear(
-            gear.teeth,
-            gear.normal_module,
-            gear.face_width,
-            0.1 * gear.reference_diameter,  # any bore: the flank does not depend on it
-            normal_pressure_angle=gear.pressure_angle,
-            helix_angle=gear.helix_angle,
-            profile_shift_coefficient=shift,
-            dedendum_coefficient=depth.dedendum_coefficient,
-            root_radius_coefficient=depth.root_radius_coefficient,
-            tip_diameter=depth.tip_diameter,
-            thickness_allowance=depth.thickness_allowance,
-            tooth_thinning=depth.tooth_thinning,
-        ).form_roll_length
-    except FeContactError as error:
-        raise BadInput.of(gear.part.place, gear.part.name, f"a gear that exists: {error}") from None
-
-
-Table = dict[str, Any]
+from lineofaction.gearbox.units import DEGREE, MM, UM
 
 LOAD_INTENSITIES = (5e6, 15e6, 30e6)
 """F_t / (b m_n) in Pa of the load levels of a stage without torques."""
@@ -161,13 +44,13 @@ def case_of(pair: ToothedPair, pairs: Sequence[ToothedPair], shifts: Mapping[int
     _refuse_strangers(pair)
     depths = [_depth(gear, pairs, shifts) for gear in pair.gears]
     if pair.meshing.internal and not depths[1].tip_stated:
-        depths[1] = _clearing_tip(pair, depths, shifts)
+        depths[1] = clearing_tip(pair, depths, shifts)
     first, second = (
         _gear(gear, depth, shifts[gear.part.id]) for gear, depth in zip(pair.gears, depths, strict=True)
     )
-    stiff = tuple(_elasticity(gear.part) for gear in pair.gears)
+    stiff = tuple(elasticity(gear.part) for gear in pair.gears)
     if stiff[0] != stiff[1]:
-        second["material"] = _material(stiff[1])
+        second["material"] = material_table(stiff[1])
     pinion = pair.pinion
     if pair.meshing.internal:
         second["internal"] = True
@@ -180,7 +63,7 @@ def case_of(pair: ToothedPair, pairs: Sequence[ToothedPair], shifts: Mapping[int
             "pinion": first,
             "wheel": second,
         },
-        "material": _material(stiff[0]),
+        "material": material_table(stiff[0]),
         "load": {"torque_n_m": _torques(pair)},
     }
     if abs(pair.axial_offset) > 1e-9:
@@ -249,7 +132,7 @@ def _gear(gear: ToothingData, depth: ToothDepth, shift: float) -> Table:
     # d_f = d - 2 m_n (h_fP - x_E), of a ring gear d + 2 m_n (h_fP - x_E)
     height = gear.normal_module * (depth.dedendum_coefficient - shift) + depth.infeed(gear.pressure_angle)
     root = gear.reference_diameter - 2.0 * gear.sign * height
-    held, diameter = ("rim_diameter_mm", _rim_diameter) if gear.sign < 0 else ("bore_diameter_mm", _bore)
+    held, diameter = ("rim_diameter_mm", rim_diameter) if gear.sign < 0 else ("bore_diameter_mm", bore)
     return {
         "teeth": gear.teeth,
         "face_width_mm": rounded(gear.face_width / MM),
@@ -261,7 +144,7 @@ def _gear(gear: ToothingData, depth: ToothDepth, shift: float) -> Table:
         "tooth_thinning": depth.tooth_thinning,
         held: rounded(diameter(gear, root) / MM),
         **depth.cutter,
-        **_blank(gear),
+        **blank_table(gear),
     }
 
 
@@ -281,23 +164,6 @@ def _alteration(pair: ToothedPair, shifts: Mapping[int, float]) -> float:
     reference = 0.5 * (pair.pinion.reference_diameter + pair.wheel.reference_diameter)
     alteration = (pair.center_distance - reference) / pair.pinion.normal_module - (first + second)
     return alteration if math.isfinite(alteration) and alteration < -1e-9 else 0.0
-
-
-def _blank(gear: ToothingData) -> Table:
-    """Return rim and web of an external gear's body, nothing of a solid one."""
-    for body in gear.part.children("gear_body") if gear.sign > 0 else ():
-        rim = body.number("gear_body_rim_thickness", "blank.rim_thickness_mm")
-        web = body.number("gear_body_web_thickness", "blank.web_thickness_mm")
-        if rim and web:
-            sizes = {"rim_thickness_mm": rim, "web_thickness_mm": web}
-            return {"blank": {name: rounded(value / MM) for name, value in sizes.items()}}
-        if body.attribute("body_contour_coordinate_u") is not None:
-            body.say("body_contour_coordinate_u", "ignored", "a solid body: contours have no place in a case")
-    return {}
-
-
-def _material(stiffness: tuple[float, float]) -> Table:
-    return {"youngs_modulus_gpa": rounded(stiffness[0] / GPA), "poissons_ratio": rounded(stiffness[1])}
 
 
 def _torques(pair: ToothedPair) -> list[float]:

@@ -13,6 +13,16 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.model import Attribute, Component, Model, Relation, Value
 from lineofaction.gearbox.rexs.vocabulary import quantities, quantity
 
+BEARINGS = (
+    "concept_bearing",
+    "rolling_bearing_with_catalog_geometry",
+    "rolling_bearing_with_detailed_geometry",
+)
+COUPLINGS = ("coupling", "switchable_coupling")
+GROUND = ("gear_casing", "assembly_group", "gear_unit")
+
+NO_STAGE = "relation `stage` needs two gears with teeth, on two shafts that carry them and turn by themselves"
+
 
 class Part:
     """A component as an import reads it, with its account and the parts that it is related to.
@@ -234,18 +244,6 @@ def rounded(value: float) -> float:
     return float(f"{value:.12g}") + 0.0
 
 
-# What joins two components: couplings and bearings with an inner and an outer side.
-
-
-BEARINGS = (
-    "concept_bearing",
-    "rolling_bearing_with_catalog_geometry",
-    "rolling_bearing_with_detailed_geometry",
-)
-COUPLINGS = ("coupling", "switchable_coupling")
-GROUND = ("gear_casing", "assembly_group", "gear_unit")
-
-
 @dataclass(frozen=True)
 class Connection:
     """A bearing or a coupling, and the components that it joins, on its inner and its outer side."""
@@ -304,12 +302,6 @@ def _shift_index(unit: GearUnit) -> int:
     return 0
 
 
-# Stages of a REXS model: two gears in mesh, the shafts that carry them, and their ratio.
-
-
-NO_STAGE = "relation `stage` needs two gears with teeth, on two shafts that carry them and turn by themselves"
-
-
 @dataclass(frozen=True)
 class GearStage:
     """Two gears in mesh."""
@@ -345,9 +337,6 @@ def _gear_stages(unit: GearUnit) -> Iterator[GearStage]:
         internal = any(gear.type == "ring_gear" for gear in gears)
         first, second = (abs(teeth) for teeth in signed)
         yield GearStage(stage, (gears[0], gears[1]), (shafts[0], shafts[1]), (first, second), internal)
-
-
-# Planetary sets of a REXS model: carrier, planets, central shafts.
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,9 @@ from typing import Any, Literal
 import numpy as np
 
 from lineofaction.gearbox.from_rexs.gear_unit import GearStage, Part, rounded
+from lineofaction.gearbox.from_rexs.part_names import Names
 from lineofaction.gearbox.from_rexs.power_flow import PowerFlow
-from lineofaction.gearbox.from_rexs.scene_shafts import Names, SceneShafts
+from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
 from lineofaction.gearbox.units import RPM
 
 _HELD_TORQUE = 1e-9

@@ -1,9 +1,8 @@
-"""How two gears of a stage turn and mesh, and which of their flanks is loaded."""
+"""How two gears of a stage turn and mesh, and which of them drives."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,55 +17,6 @@ _DATA = ("cylindrical_stage_gear_data", "stage_gear_data")
 
 _Sense = tuple[float, str]
 """Sense of a gear or shaft about its own u axis, 1 or -1, and the shaft whose speed it follows from."""
-
-
-def _stage_gears(stage: Part) -> tuple[Part, Part] | None:
-    """Return gear 1 and gear 2 of a stage, None if the file does not relate them."""
-    for relation in stage.unit.relations("stage"):
-        first, second = relation.of_role("gear_1"), relation.of_role("gear_2")
-        if relation.of_role("stage") == stage.id and first is not None and second is not None:
-            return stage.unit.part(first), stage.unit.part(second)
-    return None
-
-
-def _senses(unit: GearUnit) -> dict[int, _Sense]:
-    """Return the senses by component that follow from given speeds, shaft by shaft and stage by stage.
-
-    Mating external gears turn in opposite senses, a ring gear as its mate. In a planetary stage these are
-    the senses relative to the carrier, if the sun turns faster than it.
-    """
-    shafts = unit.of_type("shaft")
-    known = {shaft.id: (sense, shaft.name) for shaft in shafts if (sense := _sense_of_speed(shaft))}
-    gears = unit.of_type("cylindrical_gear", "ring_gear")
-    links = [(shaft, gear, _aligned(shaft, gear)) for gear in gears if (shaft := gear.shaft) is not None]
-    for stage in unit.of_type(*STAGES):
-        if (pair := _stage_gears(stage)) is not None:
-            same = "ring_gear" in (pair[0].type, pair[1].type)
-            links.append((*pair, _aligned(*pair) * (1.0 if same else -1.0)))
-    while True:
-        count = len(known)
-        for first, second, ratio in links:
-            for source, target in ((first, second), (second, first)):
-                if source.id in known and target.id not in known:
-                    sense, shaft_name = known[source.id]
-                    known[target.id] = ratio * sense, shaft_name
-        if len(known) == count:
-            return known
-
-
-def _sense_of_speed(shaft: Part) -> float | None:
-    """Return the sign of a shaft's speed: its own, else that of a load case; None without one."""
-    cases = shaft.unit.load_cases()
-    for part in (shaft, *(part for case in cases for part in case if part.id == shaft.id)):
-        speed = part.number("rotational_speed", "sense in which the gears turn")
-        if speed:
-            return math.copysign(1.0, speed)
-    return None
-
-
-def _aligned(first: Part, second: Part) -> float:
-    """Return 1 if two u axes point the same way, else -1."""
-    return math.copysign(1.0, float(np.dot(frame_of(first).u, frame_of(second).u)))
 
 
 @dataclass(frozen=True)
@@ -125,6 +75,55 @@ class Meshing:
         return self.pinion if self.wheel_drives else self.wheel
 
 
+def _stage_gears(stage: Part) -> tuple[Part, Part] | None:
+    """Return gear 1 and gear 2 of a stage, None if the file does not relate them."""
+    for relation in stage.unit.relations("stage"):
+        first, second = relation.of_role("gear_1"), relation.of_role("gear_2")
+        if relation.of_role("stage") == stage.id and first is not None and second is not None:
+            return stage.unit.part(first), stage.unit.part(second)
+    return None
+
+
+def _senses(unit: GearUnit) -> dict[int, _Sense]:
+    """Return the senses by component that follow from given speeds, shaft by shaft and stage by stage.
+
+    Mating external gears turn in opposite senses, a ring gear as its mate. In a planetary stage these are
+    the senses relative to the carrier, if the sun turns faster than it.
+    """
+    shafts = unit.of_type("shaft")
+    known = {shaft.id: (sense, shaft.name) for shaft in shafts if (sense := _sense_of_speed(shaft))}
+    gears = unit.of_type("cylindrical_gear", "ring_gear")
+    links = [(shaft, gear, _aligned(shaft, gear)) for gear in gears if (shaft := gear.shaft) is not None]
+    for stage in unit.of_type(*STAGES):
+        if (pair := _stage_gears(stage)) is not None:
+            same = "ring_gear" in (pair[0].type, pair[1].type)
+            links.append((*pair, _aligned(*pair) * (1.0 if same else -1.0)))
+    while True:
+        count = len(known)
+        for first, second, ratio in links:
+            for source, target in ((first, second), (second, first)):
+                if source.id in known and target.id not in known:
+                    sense, shaft_name = known[source.id]
+                    known[target.id] = ratio * sense, shaft_name
+        if len(known) == count:
+            return known
+
+
+def _sense_of_speed(shaft: Part) -> float | None:
+    """Return the sign of a shaft's speed: its own, else that of a load case; None without one."""
+    cases = shaft.unit.load_cases()
+    for part in (shaft, *(part for case in cases for part in case if part.id == shaft.id)):
+        speed = part.number("rotational_speed", "sense in which the gears turn")
+        if speed:
+            return math.copysign(1.0, speed)
+    return None
+
+
+def _aligned(first: Part, second: Part) -> float:
+    """Return 1 if two u axes point the same way, else -1."""
+    return math.copysign(1.0, float(np.dot(frame_of(first).u, frame_of(second).u)))
+
+
 def _other(gears: tuple[Part, Part], gear: Part) -> Part:
     return gears[1] if gear is gears[0] else gears[0]
 
@@ -164,47 +163,3 @@ def _sense(stage: Part, driver: Part, torques: tuple[float, ...]) -> float:
         return known[0]
     stage.say("sense_of_rotation", "defaulted", f"{driver.name} turns about +u: the file gives no speed")
     return 1.0
-
-
-# Which flank of a gear carries, and which of its faces is the datum face.
-
-
-_DIRECTIONS = {"positive": 1.0, "negative": -1.0}
-
-
-@dataclass(frozen=True)
-class LoadedFlank:
-    """The flank that carries, and where its face coordinates lie in the case."""
-
-    gear: Part
-    side: str
-    """``"right"`` or ``"left"``, seen from the datum face."""
-    flank: Part | None
-    other: Part | None
-    """`flank`, `other`: The flank that carries and its counterpart; None where the file has none."""
-    datum: float
-    """1 if the datum face is at the end of positive z, -1 if at the other."""
-
-    @classmethod
-    def of(cls, meshing: Meshing, gear: Part) -> LoadedFlank:
-        """Return the flank of a gear that carries in a stage."""
-        u_along_z = 1.0 if float(np.dot(frame_of(gear).u, meshing.z)) > 0.0 else -1.0
-        datum = u_along_z * _datum_along_u(gear)
-        sides = ("right", "left") if datum > 0.0 else ("left", "right")
-        flank, other = (next(iter(gear.related("flank", "gear", side)), None) for side in sides)
-        return cls(gear, sides[0], flank, other, datum)
-
-    @property
-    def flanks(self) -> Iterator[Part]:
-        """The flanks that the file has, the loaded one first."""
-        return (flank for flank in (self.flank, self.other) if flank is not None)
-
-
-def _datum_along_u(gear: Part) -> float:
-    """Return 1 if the datum face is in the direction of the gear's u axis, -1 if in the other."""
-    word = gear.text("datum_face_orientation", "from where flanks and coordinates are seen")
-    if word in _DIRECTIONS:
-        return _DIRECTIONS[word]
-    default = "negative: coordinates of the face count along +u"
-    gear.say("datum_face_orientation", "defaulted" if word is None else "refused", default)
-    return -1.0

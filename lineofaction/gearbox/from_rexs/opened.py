@@ -1,26 +1,36 @@
-"""A gear unit opened from a REXS file: its cases, scenes, reports and the answer over HTTP."""
+"""A gear unit opened from a REXS file: its cases, a scene, load cases and the account of the import."""
 
 from __future__ import annotations
 
-import base64
-import binascii
-import csv
-import io
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, astuple, dataclass, field, fields
-from pathlib import Path
-from typing import Any
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 
-from lineofaction.gearbox.convert.case import case_json
-from lineofaction.gearbox.from_rexs.account import Assumption, Line, assumed
+from lineofaction.gearbox.from_rexs.account import Line
+from lineofaction.gearbox.from_rexs.assumptions import Assumption, assumed
+from lineofaction.gearbox.from_rexs.gear_train import Train
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.gears import StageCase
-from lineofaction.gearbox.from_rexs.layout import Layout, Train
+from lineofaction.gearbox.from_rexs.layout import Layout
 from lineofaction.gearbox.from_rexs.loads import LoadCase
-from lineofaction.gearbox.from_rexs.power_flow import REPLACED, OperatingPoint, PowerFlow
-from lineofaction.gearbox.from_rexs.scene import SceneParts, SceneTable
+from lineofaction.gearbox.from_rexs.operating_points import OperatingPoint
+from lineofaction.gearbox.from_rexs.power_flow import REPLACED, PowerFlow
+from lineofaction.gearbox.from_rexs.refusals import (
+    NO_REASON,
+    REASONS,
+    line_name,
+    refusal_texts,
+    refused_lines,
+)
+from lineofaction.gearbox.from_rexs.scene import SceneTable
+from lineofaction.gearbox.from_rexs.scene_parts import SceneParts
+from lineofaction.gearbox.from_rexs.stage_case import StageCase
+from lineofaction.gearbox.from_rexs.unit_files import (
+    ACCOUNT_FILE,
+    LOAD_CASES_FILE,
+    SCENE_FILE,
+    account_csv,
+    plain_table,
+)
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.rexs.files import parsed
 from lineofaction.gearbox.rexs.model import Document
 from lineofaction.gearbox.rexs.upgrade import Change, upgrade
 from lineofaction.gearbox.rexs.vocabulary import words
@@ -28,57 +38,6 @@ from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.files import side_files
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_text
-
-# What a file has and its scene has not: every refused line of the account, by its reason.
-
-
-MOST, LONGEST = 100, 2000
-"""Statements of a unit, and characters of one."""
-_NO_REASON = "no part of the scene is made of it"
-_OF_TYPE = {
-    "cylindrical_gear": "it is in no stage of the scene",
-    "ring_gear": "it is in no stage of the scene",
-    "external_load": "it acts on no shaft of the scene",
-    "side_plate": "it is part of no planet carrier of the scene",
-}
-
-
-def _statements(lines: Iterable[Line]) -> tuple[str, ...]:
-    """Return what is left out with lines of the file and the reason, a sentence for each reason.
-
-    Stages come first, for what stands behind them is left out with them; then other parts, then values of
-    parts, each in the order of the file.
-    """
-    groups: dict[str, list[Line]] = {}
-    for line in _refused(lines):
-        groups.setdefault(line.words, []).append(line)
-    texts = [_statement(group, reason) for reason, group in groups.items()]
-    rest = len(texts) - MOST
-    return tuple(texts if rest <= 0 else [*texts[:MOST], f"and {rest} more: see the account of the import"])
-
-
-def _refused(lines: Iterable[Line]) -> list[Line]:
-    """Return the refused lines: stages, other parts, values of parts."""
-    refused = (line for line in lines if line.fate == "refused")
-    return sorted(refused, key=lambda line: (bool(line.item), not line.kind.endswith("_stage")))
-
-
-def _statement(group: list[Line], reason: str) -> str:
-    lines = {line: "" if line.line is None else f" (line {line.line})" for line in group}
-    named = "; ".join(
-        f"{_named(line)}{place}{f', {line.item}' if line.item else ''}" for line, place in lines.items()
-    )
-    most = max(LONGEST - len(reason) - 2, LONGEST // 2)
-    named = named if len(named) <= most else f"{named[: most - 4]} ..."
-    return f"{named}: {reason}"[:LONGEST]
-
-
-def _named(line: Line) -> str:
-    return f"{line.kind} {line.component}" + (f' "{line.name}"' if line.name else "")
-
-
-# Open a gear unit: from a REXS document to cases, a scene, load cases and the account of the import.
-
 
 _DIGITS = 9
 """Of torques: those of equal planets agree to the rounding of the statics."""
@@ -106,28 +65,28 @@ class OpenedUnit:
     @property
     def left_out(self) -> tuple[str, ...]:
         """What the file has and the scene has not, a sentence for each reason; as the scene states it."""
-        return _statements(self.lines)
+        return refusal_texts(self.lines)
 
     @property
     def headline(self) -> str:
         """Return all that is left out on one line, with its attributes in brackets; empty for nothing."""
         parts: dict[str, list[str]] = {}
-        for line in _refused(self.lines):
-            parts.setdefault(_named(line), []).append(line.item)
+        for line in refused_lines(self.lines):
+            parts.setdefault(line_name(line), []).append(line.item)
         brackets = {named: ", ".join(dict.fromkeys(filter(None, items))) for named, items in parts.items()}
         texts = [f"{named} ({items})" if items else named for named, items in brackets.items()]
         return f"left out of the scene: {'; '.join(texts)}" if parts else ""
 
     def files(self) -> dict[str, str]:
         """Return the texts of the files by their names."""
-        files = {f"{case.name}.toml": toml_text(_plain(case.case)) for case in self.cases}
+        files = {f"{case.name}.toml": toml_text(plain_table(case.case)) for case in self.cases}
         if self.scene is not None:
-            table, beside = side_files(_plain(self.scene))
+            table, beside = side_files(plain_table(self.scene))
             files[SCENE_FILE] = toml_text(table)
             files |= {file.name: file.unpacked().decode() for file in beside}
         if self.load_cases:
             files[LOAD_CASES_FILE] = toml_text({"load_cases": [case.table() for case in self.load_cases]})
-        files[ACCOUNT_FILE] = _account_csv(self.lines)
+        files[ACCOUNT_FILE] = account_csv(self.lines)
         return files
 
     def summary(
@@ -176,7 +135,7 @@ class OpenedUnit:
         descriptive = words("descriptive_components")
         for component in () if table is None else model.components:
             if component.type not in descriptive and not unit.account.is_stated(component):
-                unit.part(component.id).say("", "refused", _OF_TYPE.get(component.type, _NO_REASON))
+                unit.part(component.id).say("", "refused", REASONS.get(component.type, NO_REASON))
         scene = None if table is None else _scene(layout, table)
         loads = _load_cases(flows, table)
         parts = SceneParts() if table is None or scene is None else table.parts
@@ -223,7 +182,7 @@ def _torques(layout: Layout, flows: Sequence[PowerFlow]) -> Mapping[int, tuple[f
 
 def _scene(layout: Layout, table: SceneTable) -> SceneInput | None:
     """Return the validated scene, marked by what is left out; None if the account says what it lacks."""
-    left_out = _statements(layout.unit.account.lines())
+    left_out = refusal_texts(layout.unit.account.lines())
     try:
         return validated(SceneInput, table.table | ({"left_out": list(left_out)} if left_out else {}))
     except BadInput as error:
@@ -241,77 +200,3 @@ def _load_cases(flows: Sequence[PowerFlow], table: SceneTable | None) -> tuple[L
         forces = tuple(own for own, of_scene in both if own != of_scene)
         cases.append(LoadCase.of(flow, table.leader, forces))
     return tuple(sorted(cases, key=lambda case: case.number))
-
-
-# An opened gear unit as files: a case a stage, the scene, its load cases, and the account.
-
-
-SCENE_FILE, LOAD_CASES_FILE, ACCOUNT_FILE = "scene.toml", "load_cases.toml", "import.csv"
-_FILE_DIGITS = 12
-
-
-def _account_csv(lines: Iterable[Line]) -> str:
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(field.name for field in fields(Line))
-    writer.writerows(map(_safe, astuple(line)) for line in lines)
-    return text.getvalue()
-
-
-def _safe(value: object) -> object:
-    """Return a cell that no spreadsheet takes for a formula: names come from the file."""
-    return f"'{value}" if isinstance(value, str) and value.startswith(("=", "+", "-", "@", "\t")) else value
-
-
-def _plain(model: Any) -> dict[str, Any]:
-    return dict(_rounded(model.model_dump(mode="json", exclude_unset=True)))
-
-
-def _rounded(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _rounded(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_rounded(item) for item in value]
-    return float(f"{value:.{_FILE_DIGITS}g}") if isinstance(value, float) else value
-
-
-# An opened gear unit as the answer of the service; a process of its own reads the file.
-
-
-Json = dict[str, Any]
-
-
-def unit_of_rexs(inputs: Json, _folder: Path, _announce: Callable[[str], None]) -> Json:
-    """Return a gear unit as JSON; its scene has the cases of its meshes written out.
-
-    Raises `BadInput`: no base64, no REXS, no assumption, or as `OpenedUnit.of`.
-    """
-    try:
-        data = base64.b64decode(inputs["rexs_base64"], validate=True)
-    except (binascii.Error, ValueError):
-        raise BadInput.of("rexs_base64", inputs["rexs_base64"][:20], "base64 of the file's bytes") from None
-    return _unit_json(OpenedUnit.of(parsed(data), [Assumption.of(text) for text in inputs.get("assume", ())]))
-
-
-def _unit_json(unit: OpenedUnit) -> Json:
-    """Return an opened unit as JSON."""
-    cases = [
-        {"name": c.name, "stage": c.stage, "equal": list(c.equal), "case": case_json(c.case)}
-        for c in unit.cases
-    ]
-    return {
-        "left_out": list(unit.left_out),
-        "cases": cases,
-        "scene": None if unit.scene is None else _whole(unit.scene, cases),
-        "load_cases": [{"forces": [], **case.table()} for case in unit.load_cases],
-        "lines": [asdict(line) for line in unit.lines],
-        "summary": list(unit.summary()),
-    }
-
-
-def _whole(scene: SceneInput, cases: list[Json]) -> Json:
-    by_file = {f"{case['name']}.toml": case["case"] for case in cases}
-    whole: Json = scene.model_dump(mode="json", exclude_unset=True)
-    for mesh in whole["meshes"]:
-        mesh["case"] = by_file[mesh.pop("case_file")]
-    return whole

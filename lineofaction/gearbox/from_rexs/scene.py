@@ -1,217 +1,26 @@
-"""The scene of a gear unit at an operating point, and which of its parts is which of the file."""
+"""The scene of a gear unit at an operating point."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from bounds.types import FloatArray
-from lineofaction.gearbox.from_rexs.gear_unit import NO_STAGE, GearStage, Part, rounded
-from lineofaction.gearbox.from_rexs.gears import StageCase, scene_discs, scene_gears
+from lineofaction.gearbox.from_rexs.gear_unit import NO_STAGE, GearStage
 from lineofaction.gearbox.from_rexs.layout import Layout
 from lineofaction.gearbox.from_rexs.loads import AppliedTorque, SceneMotion
-from lineofaction.gearbox.from_rexs.placement import FIXED, SAME_PLACE, PlacedShaft, Placement
-from lineofaction.gearbox.from_rexs.power_flow import FORCES, OperatingPoint, PowerFlow
+from lineofaction.gearbox.from_rexs.part_names import Names
+from lineofaction.gearbox.from_rexs.placement import FIXED, Placement
+from lineofaction.gearbox.from_rexs.power_flow import PowerFlow
 from lineofaction.gearbox.from_rexs.scene_bearings import SceneBearings
-from lineofaction.gearbox.from_rexs.scene_shafts import Names, SceneShafts
-from lineofaction.gearbox.units import MM
-
-# Which component each part of a scene is, and how its axes u, v, w lie in the scene.
-
-
-@dataclass(frozen=True)
-class ShaftPart:
-    """A shaft."""
-
-    component: int
-    turn: FloatArray
-    """Takes components along u, v, w to x, y, z. Shape (3, 3)."""
-    sense: int
-    """+1 where u is along z, -1 where it is against it."""
-    zero: float
-    """Position of u = 0 from the left end of the scene's shaft, m."""
-
-
-@dataclass(frozen=True)
-class BearingPart:
-    """A bearing, or a coupling, on the ground."""
-
-    component: int
-    turn: FloatArray
-    """Takes components along its u, v, w to x, y, z. Shape (3, 3)."""
-    shaft_inside: bool
-    """Whether the shaft is on the inner side."""
-
-
-@dataclass(frozen=True)
-class _MeshPart:
-    """A stage."""
-
-    component: int
-    case: str
-    """Name of its case."""
-    sense: int
-    """+1 where the face positions of the case count along u of the shaft of the stage's gear 1, -1 against
-    it; the opposite where a load case turns the train the other way.
-    """
-
-
-@dataclass(frozen=True)
-class SceneParts:
-    """The components of shafts, bearings on the ground and meshes by their names in the scene.
-
-    Copies of planets, planet bearings and stubs are not among them.
-    """
-
-    shafts: Mapping[str, ShaftPart] = field(default_factory=dict)
-    bearings: Mapping[str, BearingPart] = field(default_factory=dict)
-    meshes: Mapping[str, _MeshPart] = field(default_factory=dict)
-
-
-def _scene_parts(
-    layout: Layout,
-    flow: PowerFlow,
-    shafts: SceneShafts,
-    seats: Mapping[int, str],
-    meshes: Sequence[tuple[str, StageCase]],
-) -> SceneParts:
-    """Return the components of a scene's parts, its meshes in the order of `shafts.stages`.
-
-    A carrier is a shaft of them only if the component of its rotor is a shaft of its own.
-    """
-    of_meshes = {
-        name: _MeshPart(stage.stage.id, case.name, _face_sense(layout, flow, stage, case))
-        for stage, (name, case) in zip(shafts.stages, meshes, strict=True)
-    }
-    of_shafts = {}
-    for rotor, shaft in shafts.by_rotor.items():
-        if (placed := layout.shafts.get(rotor)) is not None:
-            turn, zero = layout.axes.turn(placed.place), float(placed.start[2]) - shaft.begin
-            of_shafts[shaft.name] = ShaftPart(rotor, turn, placed.sense, zero)
-    of_bearings = {}
-    for entry in (*layout.unit.bearings, *layout.unit.couplings):
-        if entry.part.id in seats and entry.held.id in layout.shafts:
-            turn, inside = layout.turn(entry.part, entry.held), entry.held.id == entry.inner.id
-            of_bearings[seats[entry.part.id]] = BearingPart(entry.part.id, turn, inside)
-    return SceneParts(of_shafts, of_bearings, of_meshes)
-
-
-def _face_sense(layout: Layout, flow: PowerFlow, stage: GearStage, case: StageCase) -> int:
-    """Return how the face positions of the case count along u of gear 1's shaft.
-
-    They count against the scene's z if the case's driving gear turns about +z; a ring gear that drives is
-    pushed back by it.
-    """
-    driver, _ = case.driving(stage)
-    relative = flow.relative_speed(stage, 0 if driver.id == stage.gears[0].id else 1)
-    pushed = -relative if case.wheel_drives else relative
-    return -int(np.sign(pushed)) * layout.sense(stage.shafts[0].id)
-
-
-# Forces of the scene: what acts on shafts from outside across and along their axes, by load case.
-
-
-ROUNDING = 1e-12
-"""Of the largest component of a vector: less is that of the turn of its axes."""
-
-
-@dataclass(frozen=True)
-class _SceneForce:
-    """A force and moment on a shaft of the scene, fixed in space."""
-
-    name: str
-    shaft: str
-    """`name`, `shaft`: Its own and its shaft's name in the scene."""
-    position_mm: float
-    """Where it acts, from the left end of that shaft."""
-    load: int
-    """The external load that it is."""
-    turn: FloatArray
-    """Takes components along u, v, w of the load's shaft to x, y, z. Shape (3, 3)."""
-    lever: float
-    """Along z from where it acts in the scene to the load's place, m; 0 but beyond the end of its shaft."""
-
-    def stated(self, point: OperatingPoint) -> dict[str, Any]:
-        """Return what an entry of a load case's forces says at an operating point.
-
-        The moment about the axis is not in it: torques drive and load the train.
-        """
-        wrench = np.array(point.forces.get(self.load, (0.0,) * len(FORCES)))
-        force, moment = self.turn @ wrench[:3], self.turn @ wrench[3:]
-        moment[:2] += self.lever * np.array([-force[1], force[0]])
-        moment[2] = 0.0
-        return {"name": self.name, "force_n": _digits(force), "moment_n_m": _digits(moment)}
-
-    def table(self, point: OperatingPoint) -> dict[str, Any]:
-        """Return its table in a scene that runs at an operating point."""
-        return {**self.stated(point), "shaft": self.shaft, "position_mm": self.position_mm}
-
-
-def _forces(layout: Layout, points: Sequence[OperatingPoint], shafts: SceneShafts) -> Iterator[_SceneForce]:
-    """Yield the external loads that push or tilt a shaft at any of some operating points.
-
-    The account says which are left out, and why.
-    """
-    names = Names()
-    acting = {load for point in points for load, wrench in point.forces.items() if any(wrench)}
-    for part in layout.unit.of_type("external_load"):
-        if part.id not in acting:
-            continue
-        placed, reason = _placed(layout, part, shafts)
-        if placed is None:
-            _refuse(layout, part, reason)
-            continue
-        shaft, z = shafts.by_rotor[layout.rotor(placed.part.id)], layout.z_on(placed, part)
-        position = shaft.position_mm(z)
-        lever = z - shaft.begin - position * MM
-        turn = layout.axes.turn(placed.place)
-        part.say("", "taken", f"acts on shaft {shaft.name}")
-        if part.number("width_of_external_load", "width of a line load, mm"):
-            words = "a line load is not spread: its force acts at u_coordinate_on_shaft"
-            part.say("width_of_external_load", "ignored", words)
-        if abs(lever) <= SAME_PLACE:
-            lever = 0.0
-        else:
-            words = (
-                f"{abs(lever) / MM:.6g} mm beyond the end of its shaft: the force is there, with its moment"
-            )
-            part.say("u_coordinate_on_shaft", "derived", words)
-        yield _SceneForce(names.of(part), shaft.name, position, part.id, turn, lever)
-
-
-def _placed(layout: Layout, load: Part, shafts: SceneShafts) -> tuple[PlacedShaft | None, str]:
-    """Return the shaft that a load acts on, or why its force cannot be one of the scene."""
-    shaft = load.shaft
-    if shaft is None:
-        return None, "acts on no shaft"
-    if shaft.id not in layout.shafts or layout.rotor(shaft.id) not in shafts.by_rotor:
-        return None, "acts on a shaft that the scene has not"
-    if shaft.id in {planet.id for planets in layout.rotors.sets for planet in planets.planets}:
-        return None, "acts on a planet, and a scene has one for all of its set"
-    placed = layout.shafts[shaft.id]
-    axis = MM * np.array(shafts.by_rotor[layout.rotor(shaft.id)].table["origin_mm"][:2])
-    if not np.hypot(*(np.array(placed.origin[:2]) - axis)) <= 1e2 * SAME_PLACE:
-        return None, "acts off the axis of the planet carrier that its shaft is part of"
-    return placed, ""
-
-
-def _refuse(layout: Layout, load: Part, reason: str) -> None:
-    """State of a load's forces and moments, its own and those of load cases, that they are left out."""
-    cases = (part for case in layout.unit.load_cases() for part in case if part.id == load.id)
-    for part in (load, *cases):
-        for item in FORCES:
-            if part.value(item):
-                part.say(item, "refused", reason)
-
-
-def _digits(vector: FloatArray) -> list[float]:
-    least = ROUNDING * float(np.max(np.abs(vector)))
-    return [0.0 if abs(value) <= least else rounded(value) for value in vector]
-
+from lineofaction.gearbox.from_rexs.scene_forces import SceneForce, scene_forces
+from lineofaction.gearbox.from_rexs.scene_gears import scene_discs, scene_gears
+from lineofaction.gearbox.from_rexs.scene_parts import SceneParts, scene_parts
+from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
+from lineofaction.gearbox.from_rexs.stage_case import StageCase
 
 STANDARD_GRAVITY = 9.80665
 """m/s^2."""
@@ -227,7 +36,7 @@ class SceneTable:
     """Tables of a scene file; meshes name their case files."""
     leader: AppliedTorque | None
     """What drives it first."""
-    forces: tuple[_SceneForce, ...]
+    forces: tuple[SceneForce, ...]
     """The external loads that its forces are."""
     parts: SceneParts
     """The components that its parts are."""
@@ -245,7 +54,7 @@ class SceneTable:
         bearings = SceneBearings(layout, shafts)
         gears, meshes = scene_gears(layout, shafts, by_stage)
         motion = SceneMotion(flow, shafts, cut)
-        forces = tuple(_forces(layout, [each.point for each in flows], shafts))
+        forces = tuple(scene_forces(layout, [each.point for each in flows], shafts))
         table: dict[str, Any] = {
             "run": {"duration_s": _duration(layout, motion.slowest_mesh())},
             "gravity_m_per_s2": _gravity(layout),
@@ -270,7 +79,7 @@ class SceneTable:
             {key: value for key, value in table.items() if value != []},
             motion.drivers[0] if motion.drivers else None,
             forces,
-            _scene_parts(layout, flow, shafts, bearings.seats, named),
+            scene_parts(layout, flow, shafts, bearings.seats, named),
         )
 
 

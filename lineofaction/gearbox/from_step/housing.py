@@ -12,7 +12,8 @@ from dynamics.housings import FlatFace, StepSolid
 from dynamics.solid_housing import MATERIALS
 from dynamics.types import FloatArray
 from lineofaction.gearbox.convert.placement import Placement
-from lineofaction.gearbox.from_step.placement import Bearings, Seated, found, seated
+from lineofaction.gearbox.from_step.candidates import Bearings
+from lineofaction.gearbox.from_step.placement import Seated, found, seated
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.bearings import BushingInput, RollingBearingInput
 from lineofaction.gearbox.schemas.scene import SceneInput

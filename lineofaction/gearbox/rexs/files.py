@@ -2,33 +2,62 @@
 
 from __future__ import annotations
 
-import io
-import re
-import zipfile
-import zlib
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 
 from lineofaction.gearbox.problems import BadInput, Fault
+from lineofaction.gearbox.rexs.archive import MOST_BYTES, archive_of, read_archive
 from lineofaction.gearbox.rexs.json_form import json_of, read_json
 from lineofaction.gearbox.rexs.model import Document, Model
 from lineofaction.gearbox.rexs.xml_form import read_xml, xml_of
 
-_MOST_BYTES = 64_000_000
-"""Of a file, and of an archive's files together."""
-_MOST_FILES = 1_000
-_MOST_RATIO = 200
-"""Bytes of an archive's files by bytes of the archive; models compress 20 to 50 times."""
-
-_MODEL_NAME = "rexs-model.rexs"
-_MODEL_ENDINGS = (".rexs", ".rexsj")
-_FIRST_DAY = (1980, 1, 1, 0, 0, 0)
-_UNREADABLE = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError, OSError)
-"""What the reader of archives raises for one that is damaged or locked, or for what it does not know."""
-
 _ASSEMBLIES = ("assembly", "ordered_assembly")
 _MOST_FAULTS = 20
+
+ENDINGS = (".rexs", ".rexsj", ".rexsz", ".rexs.zip")
+
+
+def read_rexs(path: Path) -> Document:
+    """Return what a REXS file holds: XML, JSON or ZIP by its content. No other file is opened.
+
+    Raises `BadInput`: it is missing, too large, damaged, or says what a model cannot be; the message names
+    the place.
+    """
+    try:
+        with path.open("rb") as stream:
+            data = stream.read(MOST_BYTES + 1)
+    except OSError as error:
+        raise BadInput.of("file", str(path), f"a file that can be read ({error.strerror})") from None
+    return parsed(data)
+
+
+def parsed(data: bytes) -> Document:
+    """Return the document of a file's bytes."""
+    if len(data) > MOST_BYTES:
+        raise BadInput.of("file", f"more than {MOST_BYTES} bytes", "smaller")
+    text, files = read_archive(data) if data.startswith(b"PK") else (data, {})
+    start = text.removeprefix(b"\xef\xbb\xbf").lstrip()[:1]
+    model = read_json(text) if start == b"{" else read_xml(text)
+    _check(model)
+    return Document(model, files)
+
+
+def serialized(document: Document, name: str) -> bytes:
+    """Return a document in the form that the ending of a file's name says.
+
+    Raises `BadInput`: the ending is none of REXS, the form has no place for something, or the model is
+    unsound.
+    """
+    ending = next((end for end in reversed(ENDINGS) if name.lower().endswith(end)), None)
+    if ending is None:
+        raise BadInput.of("file", name, "a name that ends in one of " + ", ".join(ENDINGS))
+    _check(document.model)
+    if ending in (".rexsz", ".rexs.zip"):
+        return archive_of(xml_of(document.model), document.files)
+    if document.files:
+        raise BadInput.of("file", name, "an archive (.rexsz): other files belong to the model")
+    return json_of(document.model) if ending == ".rexsj" else xml_of(document.model)
 
 
 def _check(model: Model) -> None:
@@ -91,102 +120,3 @@ def _cycles(model: Model) -> Iterator[Fault]:
                 settled.append(whole)
     for number in sorted(whole for whole, count in open_parts.items() if count):
         yield Fault(f"component {number}", number, "no part of itself, nor whole of one that is")
-
-
-ENDINGS = (".rexs", ".rexsj", ".rexsz", ".rexs.zip")
-
-
-def read_rexs(path: Path) -> Document:
-    """Return what a REXS file holds: XML, JSON or ZIP by its content. No other file is opened.
-
-    Raises `BadInput`: it is missing, too large, damaged, or says what a model cannot be; the message names
-    the place.
-    """
-    try:
-        with path.open("rb") as stream:
-            data = stream.read(_MOST_BYTES + 1)
-    except OSError as error:
-        raise BadInput.of("file", str(path), f"a file that can be read ({error.strerror})") from None
-    return parsed(data)
-
-
-def parsed(data: bytes) -> Document:
-    """Return the document of a file's bytes."""
-    if len(data) > _MOST_BYTES:
-        raise BadInput.of("file", f"more than {_MOST_BYTES} bytes", "smaller")
-    text, files = _read_archive(data) if data.startswith(b"PK") else (data, {})
-    start = text.removeprefix(b"\xef\xbb\xbf").lstrip()[:1]
-    model = read_json(text) if start == b"{" else read_xml(text)
-    _check(model)
-    return Document(model, files)
-
-
-def serialized(document: Document, name: str) -> bytes:
-    """Return a document in the form that the ending of a file's name says.
-
-    Raises `BadInput`: the ending is none of REXS, the form has no place for something, or the model is
-    unsound.
-    """
-    ending = next((end for end in reversed(ENDINGS) if name.lower().endswith(end)), None)
-    if ending is None:
-        raise BadInput.of("file", name, "a name that ends in one of " + ", ".join(ENDINGS))
-    _check(document.model)
-    if ending in (".rexsz", ".rexs.zip"):
-        return _archive_of(xml_of(document.model), document.files)
-    if document.files:
-        raise BadInput.of("file", name, "an archive (.rexsz): other files belong to the model")
-    return json_of(document.model) if ending == ".rexsj" else xml_of(document.model)
-
-
-# The ZIP form (``.rexsz``, ``.rexs.zip``): a model and the files it names, read within bounds.
-
-
-def _read_archive(data: bytes) -> tuple[bytes, dict[str, bytes]]:
-    """Return the text of the model, and the other files of an archive by name."""
-    try:
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            files = _unpacked(archive, len(data))
-    except _UNREADABLE:
-        raise BadInput.of("archive", None, "a ZIP archive that can be read") from None
-    models = [name for name in files if name.lower().endswith(_MODEL_ENDINGS)]
-    if len(models) != 1:
-        raise BadInput.of("archive", ", ".join(models) or None, "an archive of one model, .rexs or .rexsj")
-    return files.pop(models[0]), files
-
-
-def _archive_of(model: bytes, files: Mapping[str, bytes]) -> bytes:
-    """Return an archive of a model's XML and its files, the same bytes at every time."""
-    stream = io.BytesIO()
-    with zipfile.ZipFile(stream, "w") as archive:
-        for name, data in [(_MODEL_NAME, model), *sorted(files.items())]:
-            entry = zipfile.ZipInfo(name, _FIRST_DAY)
-            entry.external_attr = 0o644 << 16
-            archive.writestr(entry, data, zipfile.ZIP_DEFLATED)
-    return stream.getvalue()
-
-
-def _unpacked(archive: zipfile.ZipFile, size: int) -> dict[str, bytes]:
-    entries = [entry for entry in archive.infolist() if not entry.is_dir()]
-    if len(entries) > _MOST_FILES:
-        raise BadInput.of("archive", f"{len(entries)} files", f"at most {_MOST_FILES}")
-    files: dict[str, bytes] = {}
-    left = min(_MOST_BYTES, _MOST_RATIO * size)
-    for entry in entries:
-        parts = re.split(r"[/\\]", entry.filename)  # a relative name that stays in its folder on every system
-        if not parts[0] or ".." in parts or ":" in entry.filename or "\0" in entry.filename:
-            raise BadInput.of("archive", entry.filename, "a name inside the archive")
-        if entry.filename in files:
-            raise BadInput.of("archive", entry.filename, "in the archive once")
-        files[entry.filename] = _read(archive, entry, left)
-        left -= len(files[entry.filename])
-    return files
-
-
-def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, most: int) -> bytes:
-    """Return a file of an archive, of at most so many bytes, whatever the archive says."""
-    with archive.open(entry) as stream:
-        data = stream.read(most + 1)
-    if len(data) > most:
-        bound = f"at most {_MOST_BYTES} bytes and {_MOST_RATIO} times its archive"
-        raise BadInput.of("archive", f"{entry.filename}, larger", bound)
-    return data

@@ -21,9 +21,10 @@ from lineofaction.gearbox.schemas.figures import Figures
 from lineofaction.gearbox.schemas.gear import FlankPoint
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.studies.cost import CASES, StudyCost
+from lineofaction.gearbox.studies.cost import StudyCost
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.motion import OfferedMotion
+from lineofaction.gearbox.studies.scene_before_tables import CASES
 from model_studies.record_file import read_record, write_record
 from model_studies.workers import InProcess, Workers
 

@@ -33,8 +33,9 @@ from lineofaction.gearbox.schemas.figures import LINEAR
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.studied import OverOrders, OverSpeedsOrRun
 from lineofaction.gearbox.studies.computation import Means
-from lineofaction.gearbox.studies.cost import StudyCost, Work, scene_before_tables, sized
+from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.excitations import excitations_of
+from lineofaction.gearbox.studies.scene_before_tables import scene_before_tables, sized
 from lineofaction.gearbox.units import RPM
 
 ADVICE = (

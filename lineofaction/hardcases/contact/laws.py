@@ -1,127 +1,15 @@
-"""Pairs ready to be solved at any position and load, and the laws that every one of them obeys."""
+"""Laws of every contact scene: the conditions of contact, and a second solver that agrees."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-
 import numpy as np
 
-from fe_contact.analysis.pairs.pair_contact import PairContact, operating_points, pair_contact
-from fe_contact.analysis.request.request_check import check_request
-from fe_contact.contact import ContactModel, ContactProblem, ContactSolution
+from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.contact.point_problem import motions, point_problems, pressed_state, problem_at
 from fe_contact.contact.tilted_bodies import fill_yielding, move
-from fe_contact.geometry import Gear, GearPair, ParallelAxes
-from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.planning.plan import Plan
-from fe_contact.types import FloatArray, IntArray
+from fe_contact.types import FloatArray
 from lineofaction.hardcases.contact.interior_point import GapAbout, Problem, solve
 from lineofaction.hardcases.scene import Measured
-
-NOMINAL_TORQUE = 100.0
-"""N m on the driving gear of the nominal pair: 0.5 GPa of Hertz pressure."""
-
-CYCLIC = 2e-5
-"""How much STE may differ from tooth to tooth in the plane: the mesh of the body is not the same for all."""
-
-
-@dataclass(frozen=True)
-class Posed:
-    """A pair at one misalignment, its plan and the model its effects compose."""
-
-    contact: PairContact
-    model: ContactModel
-
-    @property
-    def plan(self) -> Plan:
-        """The discretization."""
-        return self.contact.plan
-
-    @property
-    def pair(self) -> ParallelAxes:
-        """The pair."""
-        return self.contact.pair
-
-    def solve(
-        self, position: FloatArray, load: FloatArray | None = None, pitch: IntArray | None = None
-    ) -> tuple[ContactProblem, ContactSolution]:
-        """Solve positions (P,) in base pitches at normal forces (L,) in N; None: those of the plan."""
-        return self.contact.solve(self.model, position, self.plan.load if load is None else load, pitch)
-
-    def ste(self, position: FloatArray) -> FloatArray:
-        """Return the STE (P, L) in m at the loads of the plan."""
-        return self.solve(position)[1].deflection
-
-    def with_model(self, **changes: object) -> Posed:
-        """Return the same bodies with another contact model."""
-        return replace(self, model=replace(self.model, **changes))  # type: ignore[arg-type]
-
-
-def nominal_gear(**changes: object) -> Gear:
-    """Return a gear of 20 teeth, module 4 mm, 25 mm wide, on a bore of 40 mm."""
-    plain: dict[str, object] = {
-        "teeth": 20,
-        "normal_module": 4e-3,
-        "face_width": 25e-3,
-        "bore_diameter": 40e-3,
-    }
-    return Gear(**(plain | changes))  # type: ignore[arg-type]
-
-
-def nominal_pair(**changes: object) -> GearPair:
-    """Return the pair of two such gears at 80 mm."""
-    gear = nominal_gear(**changes)
-    return GearPair(gear, gear, 80e-3)
-
-
-def posed(
-    pair: ParallelAxes,
-    torques: Sequence[float] | FloatArray = (NOMINAL_TORQUE,),
-    *,
-    model: str = "plane_strain",
-    level: str = "draft",
-    misalignment: float = 0.0,
-    pitches: int | None = None,
-    effects: dict[str, str] | None = None,
-    bodies: PairContact | None = None,
-) -> Posed:
-    """Plan a pair for torques in N m as `analyze` does.
-
-    Its compliances are computed afresh, or taken from `bodies` of the same macro geometry.
-    """
-    axes = TableAxes(torques, misalignments=[misalignment], pitches=pitches)
-    checked = check_request(pair, axes, AnalysisOptions(level=level, model=model, effects=effects or {}))
-    request = checked.request
-    plan = checked.plan()
-    known = None if bodies is None else replace(bodies, pair=pair, plan=plan, _problems={})
-    contact = known or pair_contact(pair, plan, None)
-    (point,) = operating_points(request.scene, request.choices, contact).places
-    return Posed(point.contact, point.model)
-
-
-def even_positions(count: int) -> FloatArray:
-    """Return positions spread evenly over one base pitch."""
-    return np.arange(count) / count
-
-
-def off(values: FloatArray, expected: FloatArray) -> float:
-    """Return the largest relative difference."""
-    return float(np.abs(values / expected - 1.0).max())
-
-
-def mean_off(values: FloatArray, expected: FloatArray) -> float:
-    """Return the relative difference of the means."""
-    return abs(float(values.mean() / expected.mean()) - 1.0)
-
-
-def range_off(values: FloatArray, expected: FloatArray) -> float:
-    """Return the relative difference of the ranges."""
-    return abs(float(np.ptp(values) / np.ptp(expected)) - 1.0)
-
-
-# Laws of every contact scene: the conditions of contact, and a second solver that agrees.
-
 
 LARGEST_RESIDUAL = 1e-9
 MOST_ITERATIONS = 40

@@ -1,113 +1,22 @@
-"""A service of its own for a scene, and what becomes of a disturbed job and of those behind it."""
+"""A job that cannot end well, with jobs behind it: what became of all of them."""
 
 from __future__ import annotations
 
 import sqlite3
-import tempfile
 import time
-from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager, suppress
+from collections.abc import Callable
+from contextlib import closing
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from structlog.testing import capture_logs
 
-from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
-from host import kill, processes_in
-from lineofaction.gearbox.schemas import Case, validated
-from lineofaction.hardcases.scene import TIME_LIMIT, Measured
+from lineofaction.hardcases.jobs.job_service import Disturb, JobService, fresh_service
+from lineofaction.hardcases.scene import Measured
 from service.queue.job import Job
-from service.queue.scheduler import Scheduler, job_machinery
-from service.queue.submissions import Submissions
-from service.schemas.execute import AnalyzeInputs
-from service.settings import Settings
 from service.store.places import DATABASE_FILE
-from service.store.results import ResultStore
-from service.worker.process import ANALYZE, default_registry
-
-LOOK_S = 0.02
-"""Between two looks at a job: a mesher needs several times as long to load."""
-
-Disturb = Callable[["JobService", Job], None]
-
-
-@dataclass(frozen=True)
-class JobService:
-    """A service at work.
-
-    `log`: what it has logged.
-    """
-
-    directory: Path
-    submissions: Submissions
-    store: ResultStore
-    scheduler: Scheduler
-    log: list[Any]
-
-    def submit(self, case: dict[str, Any]) -> Job:
-        """Enter the analysis of a case as the execution route does."""
-        inputs = ANALYZE.prepare(AnalyzeInputs(case=validated(Case, case)), self.store)
-        key = ANALYZE.key(inputs)
-        stored = self.store.find(key, "database") is not None
-        job = self.submissions.submit("analyze", key, inputs, stored=stored)
-        self.scheduler.wake()
-        return job
-
-    def ended(self, job: Job, disturb: Disturb | None = None) -> Job:
-        """Wait for a job; `disturb` is called at every look.
-
-        Raises `TimeoutError`: it has not ended within the time a scene may take.
-        """
-        latest = time.monotonic() + TIME_LIMIT
-        while not (state := self.submissions.find(job.id)).ended:
-            if time.monotonic() > latest:
-                raise TimeoutError(f"the job has not ended after {TIME_LIMIT:g} s; it says: {state.message}")
-            if disturb is not None:
-                disturb(self, state)
-            time.sleep(LOOK_S)
-        return state
-
-    def errors(self, job: Job) -> FloatArray:
-        """Return the transmission errors of a job that has succeeded."""
-        file = self.store.verified(job.key, "database").path
-        return SteDatabase.from_netcdf(file).static_transmission_error
-
-    def end_processes(self) -> None:
-        """Kill what should have ended before, so that a scene that fails leaves nothing either."""
-        for pid in self.processes():
-            with suppress(ProcessLookupError):
-                kill(pid)
-
-    def processes(self, name: str = "") -> list[int]:
-        """Return the processes at work for the service, or those of them whose command has `name`.
-
-        Each worker, and what it starts, stands in a directory of its own below that of the service.
-        """
-        return processes_in(self.directory, name)
-
-
-@contextmanager
-def _fresh_service(**settings: Any) -> Iterator[JobService]:
-    """Run a service with one worker on a directory of its own, its log kept from the terminal."""
-    with tempfile.TemporaryDirectory(prefix="loa-hard-jobs-") as name, capture_logs() as log:
-        directory = Path(name).resolve()
-        chosen = Settings(data_directory=directory, workers=1, **settings)
-        parts = job_machinery(chosen, default_registry())
-        assert parts.scheduler is not None
-        service = JobService(directory, parts.submissions, parts.store, parts.scheduler, log)
-        service.scheduler.start()
-        try:
-            yield service
-        finally:
-            service.scheduler.stop()
-
-
-# A job that cannot end well, with jobs behind it: what became of all of them.
-
 
 Json = dict[str, Any]
 Settle = Callable[[float], Json]
@@ -116,25 +25,6 @@ Settle = Callable[[float], Json]
 _SETTLING_S = 2.0
 
 _GEAR = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0, "thickness_allowance_um": 90.0}
-
-
-def _case_of(model: str, level: str, torques: tuple[float, ...] = (40.0,), positions: int = 16) -> Json:
-    """Return the nominal pair with this model, level, torques in N m and number of positions."""
-    return {
-        "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": _GEAR, "wheel": _GEAR},
-        "load": {"torque_n_m": list(torques)},
-        "accuracy": {"level": level, "positions": positions, "model": model},
-    }
-
-
-SMALL = _case_of("plane_strain", "draft")
-"""Done in a second, of which half is the start of its worker."""
-MEDIUM = _case_of("plane_strain", "standard")
-"""Other meshes than those of the small one."""
-LARGE = _case_of("3d", "fine")
-"""Needs 1.1 GB where the small one needs 270 MB."""
-LONG = _case_of("3d", "fine", tuple(float(torque) for torque in range(10, 40)), 1000)
-"""Needs fifty times as long as the small one."""
 
 
 @dataclass(frozen=True)
@@ -165,7 +55,7 @@ def aftermath(
     With `resubmit` the first is submitted once more at the end, undisturbed.
     """
     before = undisturbed()
-    with _fresh_service(**settle(before.seconds)) as service:
+    with fresh_service(**settle(before.seconds)) as service:
         jobs = [service.submit(case), service.submit(_case_of("plane_strain", "draft", (30.0,)))]
         service.submissions.dismiss(jobs[1].id)
         jobs.append(service.submit(SMALL))
@@ -175,6 +65,25 @@ def aftermath(
         errors = service.errors(last) if last.status == "successful" else None
         service.end_processes()
         return Aftermath(ended[0], errors, figures)
+
+
+def _case_of(model: str, level: str, torques: tuple[float, ...] = (40.0,), positions: int = 16) -> Json:
+    """Return the nominal pair with this model, level, torques in N m and number of positions."""
+    return {
+        "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": _GEAR, "wheel": _GEAR},
+        "load": {"torque_n_m": list(torques)},
+        "accuracy": {"level": level, "positions": positions, "model": model},
+    }
+
+
+SMALL = _case_of("plane_strain", "draft")
+"""Done in a second, of which half is the start of its worker."""
+MEDIUM = _case_of("plane_strain", "standard")
+"""Other meshes than those of the small one."""
+LARGE = _case_of("3d", "fine")
+"""Needs 1.1 GB where the small one needs 270 MB."""
+LONG = _case_of("3d", "fine", tuple(float(torque) for torque in range(10, 40)), 1000)
+"""Needs fifty times as long as the small one."""
 
 
 @dataclass(frozen=True)
@@ -188,7 +97,7 @@ class _Undisturbed:
 @cache
 def undisturbed() -> _Undisturbed:
     """Run the small job, once for all scenes of a process."""
-    with _fresh_service() as service:
+    with fresh_service() as service:
         began = time.perf_counter()
         ended = service.ended(service.submit(SMALL))
         return _Undisturbed(time.perf_counter() - began, service.errors(ended))

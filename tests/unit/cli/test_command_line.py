@@ -22,7 +22,7 @@ from small_table import small_table
 from typer.testing import CliRunner
 
 from lineofaction.cli import commands
-from lineofaction.cli.guard import grouped, parameters_of
+from lineofaction.cli.verb_parameters import grouped, parameters_of
 from lineofaction.client import JobState, LineOfActionClient, OfflineWarning
 
 ROOT = Path(__file__).parents[3]

@@ -37,9 +37,10 @@ from lineofaction.gearbox.convert.live import plan_of
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.studies.computation import Means
-from lineofaction.gearbox.studies.cost import CASES, LONG, StudyCost, Work
+from lineofaction.gearbox.studies.cost import LONG, StudyCost, Work
 from lineofaction.gearbox.studies.noise.run import USUAL_LINE
 from lineofaction.gearbox.studies.scatter import run as scatter
+from lineofaction.gearbox.studies.scene_before_tables import CASES
 from lineofaction.gearbox.studies.study import run
 from lineofaction.gearbox.subjects import scene_of
 from model_studies.stage_clock import StageClock
@@ -385,7 +386,7 @@ def test_a_scene_is_assembled_once_for_all_verbs_that_ask_of_it(monkeypatch: pyt
         resolved.append(own.highest_frequency)
         return assemble(own)
 
-    monkeypatch.setattr("lineofaction.gearbox.studies.cost.assemble", counted)
+    monkeypatch.setattr("lineofaction.gearbox.studies.scene_before_tables.assemble", counted)
     for verb in ("modes", "response", "steady", "response"):
         inputs = validated(STUDIES[verb].inputs, {"speed_rpm": SPEEDS[:2]})
         assert study_cost(STUDIES[verb], scene, folder, inputs) is not None

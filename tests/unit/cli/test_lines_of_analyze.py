@@ -15,7 +15,7 @@ from typer.testing import Result
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, SteDatabase, analyze
 from fe_contact.analysis.run_plan import plan_run
 from fe_contact.options import AnalysisOptions, TableAxes
-from lineofaction.cli.analyze import _tolerance_lines, _tolerance_warnings
+from lineofaction.cli.tolerance_lines import tolerance_lines, tolerance_warnings
 from lineofaction.gearbox.convert.answers import draft_line
 from lineofaction.gearbox.convert.effects import assumption_lines, ledger_table, run_lines
 from lineofaction.gearbox.problems import EXIT_WARNINGS
@@ -225,27 +225,27 @@ def test_a_job_carries_the_draft_in_its_stages_and_its_fraction_stays(draft: Ste
 
 def test_passes_are_listed_where_there_are_several() -> None:
     second = PASS | {"level": "standard", "used": 1.5, "refined": ["mesh draft -> standard"]}
-    lines = list(_tolerance_lines({"tolerance": KEPT, "passes": [PASS, second]}))
+    lines = list(tolerance_lines({"tolerance": KEPT, "passes": [PASS, second]}))
     errors = "numerical error 1.5 %; of the method 0.3 %, which no mesh lowers"
     assert lines[0] == f"tolerance 1 % or 20 nm: NOT met; {errors}"
     assert lines[1] == "pass 1: plane strain, draft, 0.5 CPU s, used 3"
     assert lines[2].endswith("used 1.5, refined mesh draft -> standard")
-    assert len(list(_tolerance_lines({"tolerance": KEPT, "passes": [PASS]}))) == 1
-    assert list(_tolerance_lines({})) == []
+    assert len(list(tolerance_lines({"tolerance": KEPT, "passes": [PASS]}))) == 1
+    assert list(tolerance_lines({})) == []
 
 
 def test_what_is_missed_between_loads_says_where_a_value_is_wanted() -> None:
     limit = {"limit": "add a value there"}
     beyond = {"axis": "misalignment", "used": 2.0, "between": [0.0, 3e-5]} | limit
-    (_, line) = _tolerance_lines({"tolerance": KEPT | {"between_nodes": [beyond]}})
+    (_, line) = tolerance_lines({"tolerance": KEPT | {"between_nodes": [beyond]}})
     what = "interpolation errs by 2 times the tolerance: add a value there"
     assert line == f"between the misalignments 0 and 30 µm {what}"
     beyond = {"axis": "force", "used": 2.0, "between": [400.0, 1200.0]} | limit
-    (_, line) = _tolerance_lines({"tolerance": KEPT | {"between_nodes": [beyond]}}, 40.0)
+    (_, line) = tolerance_lines({"tolerance": KEPT | {"between_nodes": [beyond]}}, 40.0)
     assert line == f"between the torques 10 and 30 N m {what}"
 
 
 def test_errors_that_were_not_estimated_are_no_warning() -> None:
     unknown = {"relative": AllowedError().relative, "floor_m": 2e-8, "used": None, "met": None}
-    assert list(_tolerance_warnings({"tolerance": unknown})) == []
-    assert [one["check"] for one in _tolerance_warnings({"tolerance": KEPT})] == ["tolerance"]
+    assert list(tolerance_warnings({"tolerance": unknown})) == []
+    assert [one["check"] for one in tolerance_warnings({"tolerance": KEPT})] == ["tolerance"]

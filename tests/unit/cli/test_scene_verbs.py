@@ -14,7 +14,7 @@ from scene_files import scene_file
 
 from dynamics.linearize import ForcedResponse, peaks
 from dynamics.periodic import find_orbit
-from lineofaction.gearbox.input_file import number_list
+from lineofaction.gearbox.number_list import number_list
 from lineofaction.gearbox.problems import EXIT_FAILED, BadInput
 from lineofaction.gearbox.studies.steady.run import RUN as STEADY
 from lineofaction.report.document import write_report

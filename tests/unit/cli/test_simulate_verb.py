@@ -12,7 +12,7 @@ from geared_scenes import gear_pair_scene
 from dynamics.results import RunResult
 from dynamics.simulation import simulate
 from dynamics.types import RunStatus
-from lineofaction.cli.guard import until_interrupted
+from lineofaction.cli.interrupts import until_interrupted
 from lineofaction.cli.simulate import _run, _run_headlines
 from lineofaction.gearbox.convert.effects import scene_table
 from lineofaction.gearbox.units import boundary_ledger

@@ -34,7 +34,9 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import read_model
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.study import Inputs, QuantityName
-from lineofaction.gearbox.studies.study.run import RUN, _design_of, _factor_places, _meshes_and_bearings
+from lineofaction.gearbox.studies.study.design import design_of
+from lineofaction.gearbox.studies.study.request import _meshes_and_bearings, factor_places
+from lineofaction.gearbox.studies.study.run import RUN
 from lineofaction.gearbox.studies.study.scenes import VariedScene, _part_name, places_of, with_value
 from lineofaction.gearbox.subjects import scene_of, with_own_cases
 from lineofaction.report.document import write_report
@@ -306,7 +308,7 @@ def test_a_class_of_iso_1328_is_a_band_about_the_design(written: SceneInput) -> 
     inputs = Inputs.model_validate(
         {"factors": [factor], "responses": [{"quantity": "dte_rms"}], "samples": 500}
     )
-    points = _design_of(written, inputs, _factor_places(written, inputs)).points[:, 0]
+    points = design_of(written, inputs, factor_places(written, inputs)).points[:, 0]
     # (0.4 m_n + 0.001 d + 4) um of class 5, m_n = 4, d = 80; two classes coarser: twice; above 10: whole
     assert np.abs(points).max() <= 11.0
     assert points.std() == pytest.approx(11.0 / 3.0, rel=0.1)
@@ -320,7 +322,7 @@ def test_deviations_of_a_case_with_axes_are_refused(written: SceneInput) -> None
         {"factors": [{"path": PATH, "levels": [1.0]}], "responses": [{"quantity": "dte_rms"}]}
     )
     with pytest.raises(BadInput, match="one misalignment"):
-        _factor_places(several, inputs)
+        factor_places(several, inputs)
 
 
 def test_responses_may_name_what_a_scene_has_with_all_its_planets() -> None:

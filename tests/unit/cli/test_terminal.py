@@ -17,8 +17,8 @@ from small_table import small_table
 from spur_case import spur_case
 
 from lineofaction.cli.commands import app
-from lineofaction.cli.guard import in_lines
 from lineofaction.cli.output import FOUND, console, print_parts, table
+from lineofaction.cli.verb_warnings import in_lines
 from lineofaction.cli.verbs import of_imports
 from lineofaction.cli.verbs.of_studies import GROUPS, StudyGroup
 from lineofaction.report.presentation import effect_text

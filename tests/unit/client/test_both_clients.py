@@ -25,7 +25,7 @@ from lineofaction.client import (
     LineOfActionClient,
     LiveOptions,
 )
-from lineofaction.client.job_calls import EventReader
+from lineofaction.client.event_stream import EventReader
 from lineofaction.gearbox.problems import BadInput, JobFailed, NotFound, Unreachable
 from lineofaction.gearbox.schemas.live import LiveInput
 

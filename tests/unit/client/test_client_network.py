@@ -16,7 +16,7 @@ import pytest
 from stored_jobs import against, state
 
 from lineofaction.client import JobState, LineOfActionClient
-from lineofaction.client.exchange import problem_of
+from lineofaction.client.problem_answers import problem_of
 from lineofaction.gearbox import problems
 from lineofaction.gearbox.problems import (
     BadInput,

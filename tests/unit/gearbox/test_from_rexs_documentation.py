@@ -10,9 +10,9 @@ from rexs_stage import PINION, PINION_RIGHT, STAGE, WHEEL, WHEEL_LEFT, WHEEL_RIG
 from rexs_unit import BALL, ROW, inside, on_lines
 
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.gears import StageCase
 from lineofaction.gearbox.from_rexs.modifications import READERS, UNREAD
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
+from lineofaction.gearbox.from_rexs.stage_case import StageCase
 from lineofaction.gearbox.schemas.bearings import BallRowInput, RollerRowInput, RollingBearingInput
 from lineofaction.gearbox.schemas.case import WheelInput
 from lineofaction.gearbox.schemas.gear import GearInput

@@ -26,8 +26,9 @@ from fe_contact.geometry import Toothing
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.gears import StageCase
-from lineofaction.gearbox.from_rexs.meshing import LoadedFlank, Meshing
+from lineofaction.gearbox.from_rexs.loaded_flank import LoadedFlank
+from lineofaction.gearbox.from_rexs.meshing import Meshing
+from lineofaction.gearbox.from_rexs.stage_case import StageCase
 from lineofaction.gearbox.schemas import Case
 
 

@@ -31,7 +31,9 @@ from rexs_unit import (
     two_stages,
 )
 
-from lineofaction.gearbox.from_rexs.opened import LOAD_CASES_FILE, OpenedUnit, _unit_json
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit
+from lineofaction.gearbox.from_rexs.unit_answer import _unit_json
+from lineofaction.gearbox.from_rexs.unit_files import LOAD_CASES_FILE
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import serialized
 from lineofaction.gearbox.rexs.model import Document

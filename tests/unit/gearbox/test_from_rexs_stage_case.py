@@ -23,7 +23,7 @@ from rexs_stage import (
 
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.gears import StageCase
+from lineofaction.gearbox.from_rexs.stage_case import StageCase
 
 
 def only(unit: GearUnit, **options: Any) -> StageCase:

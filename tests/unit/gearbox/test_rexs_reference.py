@@ -41,16 +41,18 @@ from dynamics.deflection import BearingLoad
 from fe_contact.ste import Metadata
 from lineofaction.gearbox.convert.case import case_json, gear_pair
 from lineofaction.gearbox.from_rexs.gear_unit import BEARINGS, COUPLINGS, GearUnit
-from lineofaction.gearbox.from_rexs.gears import StageCase
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
-from lineofaction.gearbox.from_rexs.scene import BearingPart
+from lineofaction.gearbox.from_rexs.scene_parts import BearingPart
+from lineofaction.gearbox.from_rexs.stage_case import StageCase
 from lineofaction.gearbox.rexs.files import parsed, read_rexs, serialized
 from lineofaction.gearbox.rexs.model import Document
 from lineofaction.gearbox.rexs.upgrade import upgrade
 from lineofaction.gearbox.rexs.values import KINDS, kind_of
 from lineofaction.gearbox.rexs.vocabulary import units, words
 from lineofaction.gearbox.schemas.case import PairInput
-from lineofaction.gearbox.to_rexs import _bearing_results, deflected, exported
+from lineofaction.gearbox.to_rexs.bearing import bearing_results
+from lineofaction.gearbox.to_rexs.deflection import deflected
+from lineofaction.gearbox.to_rexs.stage import exported
 
 pytestmark = needs_reference
 PACKAGE = Path(__file__).parents[3] / "lineofaction" / "gearbox" / "rexs"
@@ -220,7 +222,7 @@ def test_a_deflection_is_valid_and_its_attributes_belong_to_their_components(
 def test_every_kind_of_bearing_has_the_attributes_of_results() -> None:
     load = BearingLoad("", "", 0.0, np.ones(5), 1.0, np.ones(5), np.ones(5), np.ones(5))
     owned = owners("2.0.0")
-    for entry in _bearing_results(BearingPart(1, np.eye(3), shaft_inside=True), load):
+    for entry in bearing_results(BearingPart(1, np.eye(3), shaft_inside=True), load):
         assert {*BEARINGS, *COUPLINGS} <= owned[entry.id]
 
 

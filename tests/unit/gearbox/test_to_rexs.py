@@ -35,15 +35,16 @@ from dynamics.mechanism.line_of_action import table_sense
 from fe_contact.ste import Metadata, SteDatabase
 from lineofaction.gearbox.convert.case import case_json, gear_pair
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
-from lineofaction.gearbox.from_rexs.gears import StageCase
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
+from lineofaction.gearbox.from_rexs.stage_case import StageCase
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import parsed, serialized
 from lineofaction.gearbox.rexs.model import Attribute, Component, Document
 from lineofaction.gearbox.rexs.vocabulary import si_value
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection
 from lineofaction.gearbox.studies.deflect.run import RUN
-from lineofaction.gearbox.to_rexs import deflected, exported, left_out
+from lineofaction.gearbox.to_rexs.deflection import deflected, left_out
+from lineofaction.gearbox.to_rexs.stage import exported
 
 
 def one_stage() -> GearUnit:

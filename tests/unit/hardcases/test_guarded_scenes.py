@@ -19,8 +19,8 @@ from lineofaction.hardcases import HARD_SCENES, Measured, Outcome, run_scenes
 @pytest.fixture(autouse=True)
 def _imported_once(monkeypatch: pytest.MonkeyPatch) -> None:
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["lineofaction.hardcases.scene", "scenes_that_break"])
-    monkeypatch.setattr("lineofaction.hardcases.scene.multiprocessing.get_context", lambda _: context)
+    context.set_forkserver_preload(["lineofaction.hardcases.scene_process", "scenes_that_break"])
+    monkeypatch.setattr("lineofaction.hardcases.scene_process.multiprocessing.get_context", lambda _: context)
 
 
 @pytest.mark.law

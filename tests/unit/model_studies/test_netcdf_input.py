@@ -17,7 +17,8 @@ from small_table import small_table
 from dynamics.housings import ReducedHousing
 from dynamics.results import RunResult
 from fe_contact.ste import SteDatabase
-from lineofaction.gearbox.result_files import case_of_file, run_json, stamped
+from lineofaction.gearbox.result_figures import run_json
+from lineofaction.gearbox.result_files import case_of_file, stamped
 from lineofaction.report.document import file_attributes
 from model_studies import netcdf as netcdf_input
 from model_studies.array_file import Stored, read_arrays, write_arrays

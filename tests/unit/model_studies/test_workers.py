@@ -30,8 +30,8 @@ from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceStudy, s
 from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import AnalysisOptions, Run
+from lineofaction.gearbox.executor import open_executor
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.tabled_scene import open_executor
 from model_studies.workers import (
     ByExecutor,
     InProcess,

@@ -21,7 +21,7 @@ from lineofaction.gearbox.convert.live import plan_of
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.toml import toml_text
-from lineofaction.gearbox.studies import cost
+from lineofaction.gearbox.studies import scene_before_tables
 from service.app import create_app
 from service.page.files import examples
 from service.schemas.execute import AnalyzeInputs
@@ -75,7 +75,7 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> Iterator[Calls]:
         return validate(text)
 
     monkeypatch.setattr(Case, "model_validate_json", read)
-    for cases in (preparations.CASES, cost.CASES):
+    for cases in (preparations.CASES, scene_before_tables.CASES):
         monkeypatch.setattr(cases, "_kept", type(cases)()._kept)
     _replace(monkeypatch, "gear_pair", convert, converted)
     _replace(monkeypatch, "check_request", check, checked)

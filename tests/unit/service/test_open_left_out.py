@@ -18,7 +18,7 @@ from fastapi.testclient import TestClient
 from faulty_units import LEFT_OUT, REFUSED, TWO_STAGE
 from rexs_reference import examples, needs_reference
 
-from lineofaction.gearbox.from_rexs.opened import unit_of_rexs
+from lineofaction.gearbox.from_rexs.unit_answer import unit_of_rexs
 from lineofaction.gearbox.input_file import InputFile, Override
 from lineofaction.gearbox.result_files import stamped
 from lineofaction.gearbox.schemas import Case, read_model, validated

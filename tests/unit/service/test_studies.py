@@ -15,7 +15,8 @@ from lineofaction.client.offers import offers
 from lineofaction.gearbox.convert.answers import metadata_json, summary_json
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.live import outline_json
-from lineofaction.gearbox.from_rexs.opened import OpenedUnit, _unit_json
+from lineofaction.gearbox.from_rexs.opened import OpenedUnit
+from lineofaction.gearbox.from_rexs.unit_answer import _unit_json
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES, study_of
 from lineofaction.gearbox.rexs.files import read_rexs

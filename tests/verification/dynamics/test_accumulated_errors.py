@@ -16,14 +16,8 @@ from dynamics.scene import Integration, Outputs
 from dynamics.simulation import interrupted_run, simulate, simulate_to_file
 from dynamics.simulation.whole_run_error import RunPair, _level_error, blind_windows, finer_run
 from dynamics.types import RunStatus
-from lineofaction.hardcases.dynamics.laws import (
-    BASE_RADIUS,
-    NATURAL,
-    bounce,
-    coast,
-    cycle,
-    torsional,
-)
+from lineofaction.hardcases.dynamics.bouncing_mass import bounce, cycle
+from lineofaction.hardcases.dynamics.oscillators import BASE_RADIUS, NATURAL, coast, torsional
 
 SCENES = scenes()
 QUICK = ("torque reversal", "gentle reversal", "reversal of a free train", "undamped torque step", "rattle")

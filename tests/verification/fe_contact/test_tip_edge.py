@@ -11,7 +11,7 @@ import pytest
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.contact.flank_forces import contact_pressure
 from fe_contact.geometry import InternalGearPair, ParallelAxes, RingGear
-from lineofaction.hardcases.contact.laws import Posed, even_positions, nominal_pair, posed
+from lineofaction.hardcases.contact.posed_pair import Posed, even_positions, nominal_pair, posed
 
 TORQUES = [20.0, 100.0, 400.0]
 POSITIONS = even_positions(200)

@@ -21,7 +21,8 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.ablate import AblateFigures, Inputs
 from lineofaction.gearbox.studies.computation import Computation, Means, record_file
-from lineofaction.gearbox.studies.cost import StudyCost, Work, runs_cost
+from lineofaction.gearbox.studies.cost import StudyCost, Work
+from lineofaction.gearbox.studies.run_cost import runs_cost
 
 
 class _AblateStudy(

@@ -50,9 +50,9 @@ from lineofaction.gearbox.studies.change import (
 from lineofaction.gearbox.studies.change.question import HeardQuestion, heard_housing
 from lineofaction.gearbox.studies.change.result import ALL
 from lineofaction.gearbox.studies.computation import Means
-from lineofaction.gearbox.studies.cost import scene_before_tables, sized
 from lineofaction.gearbox.studies.deflect.cases import load_cases
 from lineofaction.gearbox.studies.housings import radiation_of
+from lineofaction.gearbox.studies.scene_before_tables import scene_before_tables, sized
 from lineofaction.gearbox.units import MM, RPM, UM
 
 CANCELED = 0.1

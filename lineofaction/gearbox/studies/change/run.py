@@ -37,8 +37,9 @@ from lineofaction.gearbox.studies.change.heard_flanks import (
 from lineofaction.gearbox.studies.change.question import check_driving, check_heard, heard_mesh
 from lineofaction.gearbox.studies.change.result import DesignLevels, FlankChange
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
-from lineofaction.gearbox.studies.cost import CASES, StudyCost, Work
+from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.scatter.run import tolerance_request
+from lineofaction.gearbox.studies.scene_before_tables import CASES
 from lineofaction.gearbox.studies.study.scenes import FLANKS
 from lineofaction.gearbox.units import RPM
 from model_studies.progress import announce

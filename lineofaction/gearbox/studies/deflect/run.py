@@ -21,18 +21,15 @@ from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.bodies import UNIT
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
-from lineofaction.gearbox.studies.cost import CASES, StudyCost, Work
+from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.deflect import DeflectFigures, Inputs
-from lineofaction.gearbox.studies.deflect.agreement import (
-    Agreement,
-    DividedTables,
-    MeshContact,
-    in_agreement,
-)
+from lineofaction.gearbox.studies.deflect.agreement import Agreement, in_agreement
 from lineofaction.gearbox.studies.deflect.cases import check_cases, load_cases
 from lineofaction.gearbox.studies.deflect.figures import figures_by_case, write_spectrum
+from lineofaction.gearbox.studies.deflect.mesh_contact import DividedTables, MeshContact
 from lineofaction.gearbox.studies.deflect.result import HARMONICS, GearboxDeflection, MeshFlanks, Outline
 from lineofaction.gearbox.studies.motion import OfferedMotion, UnitMotion
+from lineofaction.gearbox.studies.scene_before_tables import CASES
 from lineofaction.gearbox.studies.unit_bodies import bodies_of
 from model_studies.workers import divided, spent
 

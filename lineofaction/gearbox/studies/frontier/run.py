@@ -19,8 +19,9 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Computation, Means, record_file
-from lineofaction.gearbox.studies.cost import StudyCost, Work, runs_cost
+from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.frontier import FrontierFigures, Inputs
+from lineofaction.gearbox.studies.run_cost import runs_cost
 from lineofaction.gearbox.units import in_um
 
 LEAST = 2

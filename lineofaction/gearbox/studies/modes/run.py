@@ -18,10 +18,11 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.bodies import HOUSING, UNIT, Hull
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
-from lineofaction.gearbox.studies.cost import StudyCost, Work, scene_before_tables, sized
+from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.excitations import with_facts_of_scene
 from lineofaction.gearbox.studies.modes import Inputs, ModesFigures
 from lineofaction.gearbox.studies.motion import OfferedMotion, UnitMotion, chosen_rows
+from lineofaction.gearbox.studies.scene_before_tables import scene_before_tables, sized
 from lineofaction.gearbox.studies.unit_bodies import surface_motion
 from lineofaction.gearbox.units import RPM
 

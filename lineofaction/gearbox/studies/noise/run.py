@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import NamedTuple
 
 import numpy as np
 
@@ -23,11 +22,9 @@ from dynamics.acoustics import (
     outer_hull,
     sound_power_level,
 )
-from dynamics.acoustics.levels import FLOOR, REFERENCE_PRESSURE
 from dynamics.acoustics.model_comparison import WORK
 from dynamics.acoustics.recording import LOWEST
 from dynamics.housings import ReducedHousing, write_surface
-from dynamics.linearize.line_floor import LineFloor
 from dynamics.noise import (
     CorrectedRadiation,
     EstimatedRadiation,
@@ -41,7 +38,6 @@ from dynamics.noise import (
     loudest,
     models_at,
     panel_sound,
-    pressure_transfer,
     radiated_sound,
     regions,
     sound_over_time,
@@ -49,13 +45,12 @@ from dynamics.noise import (
 from dynamics.noise.estimated_radiation import LEAST
 from dynamics.noise.estimated_radiation import NAME as ESTIMATE
 from dynamics.noise.exact_lines import BUDGET, COARSE, EXACT, FLAT, LINES, line_cost
-from dynamics.noise.floor_sound import mean_square_floor
 from dynamics.noise.housing_radiation import resolved_frequency
 from dynamics.noise.sound_band import responses_of_band
 from dynamics.noise.sound_over_time import BLOCK
 from dynamics.results import RunResult
-from dynamics.types import ComplexArray, FloatArray
-from dynamics.vibration import BearingHarmonics, seat_forces
+from dynamics.types import FloatArray
+from dynamics.vibration import BearingHarmonics
 from dynamics.work_cost import on_this_host
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.housings import FOLDER
@@ -79,6 +74,7 @@ from lineofaction.gearbox.studies.noise import (
     PressureFigures,
     SoundOverTimeFigures,
 )
+from lineofaction.gearbox.studies.noise.sound_pressure import SoundSource, pressure_at
 from lineofaction.gearbox.studies.noise.uncertainty import uncertainty
 from lineofaction.gearbox.units import MM
 from model_studies.workers import spent
@@ -90,6 +86,9 @@ MODELS: dict[str, PanelModel] = {
 }
 """What is computed for a radiation."""
 
+USUAL_LINE = BoundaryElements().cost(2 * COARSE.cells, 0.0, 0)
+"""Of boundary elements on the reference host: most hulls are the coarsest, two panels to a cell."""
+
 
 def _write_panels(sound: RadiatedSound, _scene: SceneInput, file: Path) -> None:
     """Write power and intensity of the panels at the loudest point for ParaView."""
@@ -98,15 +97,6 @@ def _write_panels(sound: RadiatedSound, _scene: SceneInput, file: Path) -> None:
         raise BadInput.of("output", str(file), "another ending than .vtu", "Nothing radiates.")
     fields = {"intensity": panels.intensity, "power": panels.power}
     write_surface(file, panels.hull.nodes, panels.hull.triangles, {}, fields)
-
-
-USUAL_LINE = BoundaryElements().cost(2 * COARSE.cells, 0.0, 0)
-"""Of boundary elements on the reference host: most hulls are the coarsest, two panels to a cell."""
-
-
-def _usual_lines(points: int) -> int:
-    """Return how many lines boundary elements usually correct: 1 of 4 points, 3 of 36."""
-    return min(LINES, math.ceil(0.5 * math.sqrt(points)))
 
 
 class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
@@ -177,9 +167,9 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
         whole = replace(whole, facts=known)
         known |= uncertainty(subject, whole, radiation, off, inputs, means)
         if (place := _microphone(subject.inputs, inputs)) is not None:
-            sources = [_SoundSource(each.body, each.bearings, each.cheap) for each in housings]
+            sources = [SoundSource(each.body, each.bearings, each.cheap) for each in housings]
             with boundary_errors():
-                heard_there = _pressure_at(response, sources, np.array(place) * MM, known["band"])
+                heard_there = pressure_at(response, sources, np.array(place) * MM, known["band"])
             known["pressure"] = figures_of(PressureFigures, heard_there)
         return replace(whole, facts=known)
 
@@ -197,6 +187,11 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
             "housings": {name: _housing(about, name) for name in sound.housing},
             "parting": sound.speed[~sound.in_contact],
         }
+
+
+def _usual_lines(points: int) -> int:
+    """Return how many lines boundary elements usually correct: 1 of 4 points, 3 of 36."""
+    return min(LINES, math.ceil(0.5 * math.sqrt(points)))
 
 
 def _microphone(scene: SceneInput, inputs: Inputs) -> tuple[float, ...] | None:
@@ -406,70 +401,6 @@ def _joined_error(
             off = np.broadcast_to(np.reshape(stated, (2, 1, 1)), true.shape)
         power, true = power + sound.power, true + sound.power * 10.0 ** (-off / 10.0)
     return np.asarray(-10.0 * np.log10(np.maximum(true, LEAST) / np.maximum(power, LEAST)))
-
-
-# Sound pressure of the orders at a microphone, beside the sound power.
-
-
-class _SoundSource(NamedTuple):
-    """A housing, the bearings in its seats, and its radiation."""
-
-    body: ReducedHousing
-    bearings: tuple[str, ...]
-    radiation: HousingRadiation
-
-
-def _pressure_at(
-    response: BearingHarmonics, sources: Iterable[_SoundSource], microphone: FloatArray, band: Json | None
-) -> Json:
-    """Return the sound pressure levels at a microphone (3,), m: by order, then by speed, dB(A) re 20 uPa.
-
-    Housings add up by their phases, in the free field. Where an order is loudest it has the band of its sound
-    power, as what is guessed moves both alike; what a single direction may add to it is not known.
-
-    Raises `InputError`: the microphone is not in the air.
-    """
-    hertz = response.frequency
-    pressure, floors = np.zeros(hertz.shape, dtype=complex), list[ComplexArray]()
-    for source in sources:
-        estimate = source.radiation if isinstance(source.radiation, EstimatedRadiation) else None
-        path = pressure_transfer(source.body, microphone, hertz.ravel(), estimate=estimate)
-        force = seat_forces(response, source.body, source.bearings)
-        pressure += np.sum(force * path.reshape(force.shape), axis=-1)
-        if response.floor is not None:
-            floors.append(_pressure_floor(response.floor, source, microphone))
-    weighted = 0.5 * np.abs(pressure) ** 2 * 10.0 ** (a_weighting(hertz) / 10.0)
-    level = _decibels(weighted)
-    at = np.argmax(level, axis=0)
-    rows = []
-    for h, s in enumerate(at):
-        of_power = None if band is None else band["orders"][h]["largest"]
-        own: Json = {"order": float(response.order[h]), "speed": float(response.speed[s])}
-        own["level_db_a"] = float(level[s, h])
-        for end in ("low_db_a", "high_db_a"):
-            off = None if of_power is None else of_power[end] - of_power["level_db_a"]
-            own[end] = None if off is None else own["level_db_a"] + off
-        rows.append(own)
-    whole = np.sum(weighted, axis=1)
-    if response.floor is not None:
-        left_out = mean_square_floor(response.floor, np.sum(floors, axis=0))
-        whole = whole + np.sum(left_out.power * 10.0 ** (a_weighting(left_out.frequency) / 10.0), axis=1)
-    total = _decibels(whole)
-    return {"microphone": microphone.tolist(), "level": level.T, "total_level": total, "orders": rows}
-
-
-def _pressure_floor(floor: LineFloor, source: _SoundSource, microphone: FloatArray) -> ComplexArray:
-    """Return the sound pressure of a source per input of the lines left out, (G, e)."""
-    estimate = source.radiation if isinstance(source.radiation, EstimatedRadiation) else None
-    path = pressure_transfer(source.body, microphone, floor.frequency, estimate=estimate)
-    force = seat_forces(floor, source.body, source.bearings)
-    return np.asarray(np.sum(force * path.reshape(len(force), 1, -1), axis=-1))
-
-
-def _decibels(square: FloatArray) -> FloatArray:
-    """Return the level of mean squares, Pa^2, at least `FLOOR`."""
-    least = 10.0 ** (FLOOR / 10.0)
-    return np.asarray(10.0 * np.log10(np.maximum(square / REFERENCE_PRESSURE**2, least)))
 
 
 RUN = _NoiseStudy()

@@ -19,9 +19,10 @@ from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
-from lineofaction.gearbox.studies.cost import LONG, StudyCost, Work, scene_before_tables, sized
+from lineofaction.gearbox.studies.cost import LONG, StudyCost, Work
 from lineofaction.gearbox.studies.excitations import with_facts_of_scene
 from lineofaction.gearbox.studies.figures import Row, rows
+from lineofaction.gearbox.studies.scene_before_tables import scene_before_tables, sized
 from lineofaction.gearbox.studies.steady import Inputs, SteadyFigures
 from lineofaction.gearbox.units import RPM
 

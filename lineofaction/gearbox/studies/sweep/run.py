@@ -31,7 +31,7 @@ from lineofaction.gearbox.convert.case import (
     case_at,
     operating_point,
 )
-from lineofaction.gearbox.input_file import number_list
+from lineofaction.gearbox.number_list import number_list
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.declared import Figure, figures
 from lineofaction.gearbox.schemas.gear import FlankPoint

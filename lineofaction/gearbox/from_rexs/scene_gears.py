@@ -1,150 +1,23 @@
-"""Cases of the stages, and their gears as bodies of a scene."""
+"""Gears, meshes and additional masses of the scene."""
 
 from __future__ import annotations
 
 import math
-import re
-import unicodedata
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from functools import partial
-from typing import Any, TypeVar
+from collections.abc import Mapping
+from typing import Any
 
-import numpy as np
-
-from bounds.types import FloatArray
 from dynamics.shafts import Inertia, hollow_cylinder
-from lineofaction.gearbox.from_rexs.account import mend
-from lineofaction.gearbox.from_rexs.case_table import RIM, case_of
-from lineofaction.gearbox.from_rexs.gear_unit import GearStage, GearUnit, Part
+from lineofaction.gearbox.from_rexs.carrier_body import inertia_table
+from lineofaction.gearbox.from_rexs.gear_body import RIM
+from lineofaction.gearbox.from_rexs.gear_unit import GearStage, Part
 from lineofaction.gearbox.from_rexs.layout import Layout
-from lineofaction.gearbox.from_rexs.meshing import OTHER_STAGES, STAGES, LoadedFlank, Meshing
-from lineofaction.gearbox.from_rexs.placement import frame_of
-from lineofaction.gearbox.from_rexs.scene_shafts import Names, SceneShaft, SceneShafts, inertia_table
-from lineofaction.gearbox.from_rexs.toothing import ToothedPair, ToothingData, derived_shifts
-from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.from_rexs.scene_shafts import Names, SceneShaft, SceneShafts
+from lineofaction.gearbox.from_rexs.stage_case import StageCase
 from lineofaction.gearbox.units import MM
-
-T = TypeVar("T")
-_LONGEST_NAME = 60
-
-
-@dataclass(frozen=True)
-class StageCase:
-    """The case of a cylindrical stage."""
-
-    stage: int
-    """Id of the stage."""
-    name: str
-    """Name for a file: small letters, digits and underscores, unlike those of the unit's other cases."""
-    case: Case
-    """Its pinion is the driver, unless the ring gear drives."""
-    driver: int
-    driven: int
-    """`driver`, `driven`: Ids of the gears."""
-    wheel_drives: bool
-    """Whether the case's wheel, a ring gear, drives."""
-    center_distance: float
-    """m."""
-    equal: tuple[int, ...] = ()
-    """Ids of further stages with the same case: those of the other planets."""
-
-    def driving(self, stage: GearStage) -> tuple[Part, Part]:
-        """Return driver and driven gear of a stage, which may be that of an equal planet."""
-        first, second = stage.gears
-        if self.driver == second.id or (self.driven == first.id and self.driver != first.id):
-            return second, first
-        return first, second
-
-    @staticmethod
-    def all_of(
-        unit: GearUnit, torques: Mapping[int, tuple[float, ...]], drivers: Mapping[int, int] | None = None
-    ) -> tuple[StageCase, ...]:
-        """Return a case for each cylindrical stage; of stages with equal cases, as of planets, the first.
-
-        A stage that cannot be computed has no case, and the account has the reason; so have bevel and worm
-        stages.
-
-        Parameters
-        ----------
-        torques : mapping of int to tuple of float
-            By id of the stage: torques of its shaft on the driving gear about that gear's u axis, N m, all of
-            the sign of its sense of rotation. A stage without gets three load levels, which the account says.
-        drivers : mapping of int to int, optional
-            The driving gear by stage; else as the file marks it, else gear 1 of the stage.
-        """
-        for stage in unit.of_type(*OTHER_STAGES):
-            stage.say("", "refused", "no cylindrical stage: its loads stand in its place")
-        pairs: list[ToothedPair] = []
-        for stage in unit.of_type(*STAGES):
-            driver = (drivers or {}).get(stage.id)
-            pair = _attempt(stage, partial(_pair, stage, torques.get(stage.id, ()), driver))
-            pairs += [] if pair is None else [pair]
-        shifts = derived_shifts(pairs)
-        cases: list[StageCase] = []
-        for pair in pairs:
-            case = _attempt(pair.stage, partial(case_of, pair, pairs, shifts))
-            if case is not None:
-                _enter(cases, pair, case)
-        return tuple(cases)
-
-
-def _attempt(stage: Part, make: Callable[[], T]) -> T | None:
-    """Return what is made of a stage, None if it is refused, which the account says."""
-    try:
-        return make()
-    except BadInput as error:
-        stage.say("", "refused", f"no case: {error}{mend(error)}")
-        return None
-
-
-def _pair(stage: Part, torques: tuple[float, ...], driver: int | None) -> ToothedPair:
-    meshing = Meshing.of(stage, driver, torques)
-    loaded = [LoadedFlank.of(meshing, gear) for gear in (meshing.pinion, meshing.wheel)]
-    gears = [ToothingData.of(flank) for flank in loaded]
-    apart = frame_of(meshing.wheel).origin - frame_of(meshing.pinion).origin
-    offset = float(apart @ meshing.z)
-    distance = _center_distance(stage, apart - offset * meshing.z)
-    pair = ToothedPair(meshing, gears[0], gears[1], distance, offset, torques)
-    _ = pair.working_pressure_angle  # raises if there is none
-    return pair
-
-
-def _center_distance(stage: Part, across: FloatArray) -> float:
-    """Return the center distance in m: the stage's own, else the distance of the gears' axes."""
-    value = stage.number("center_distance", "center_distance_mm")
-    if value:
-        return abs(value)
-    distance = float(np.linalg.norm(across))
-    if not distance > 0.0:
-        raise stage.refusal("center_distance", value, "given, or gears on axes apart")
-    stage.say("center_distance", "derived", f"{distance / MM:.7g} mm, the distance of the gears' axes")
-    return distance
-
-
-def _enter(cases: list[StageCase], pair: ToothedPair, case: Case) -> None:
-    """Enter a case, or the stage beside an equal case of the same planetary stage."""
-    meshing, stage = pair.meshing, pair.stage
-    for index, present in enumerate(cases):
-        shared = {present.driver, present.driven} & {meshing.driver.id, meshing.driven.id}
-        if present.case == case and present.wheel_drives == meshing.wheel_drives and shared:
-            stage.say("", "derived", f"its case is that of stage {present.stage}: the planets are equal")
-            cases[index] = replace(present, equal=(*present.equal, stage.id))
-            return
-    plain = unicodedata.normalize("NFKD", stage.name).encode("ascii", "ignore").decode().lower()
-    name = re.sub(r"[^a-z0-9]+", "_", plain).strip("_")[:_LONGEST_NAME] or f"stage_{stage.id}"
-    name += f"_{stage.id}" if name in {present.name for present in cases} else ""
-    stage.say("", "taken", f"case {name}")
-    distance, gears = pair.center_distance, (meshing.driver.id, meshing.driven.id)
-    cases.append(StageCase(stage.id, name, case, *gears, meshing.wheel_drives, distance))
-
-
-# Gears, meshes and additional masses of the scene.
-
 
 SAME = 1e-6
 """Relative; axes of a scene that differ more from the center distance of their mesh are refused."""
+
 INTEGRAL = 0.95
 """Share of the pitch diameter from which a shaft's section is the gear's own body."""
 

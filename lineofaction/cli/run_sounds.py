@@ -1,0 +1,59 @@
+"""Runs as sounds, by the forces and motions that they hold."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from bounds.types import Json
+from dynamics.acoustics import Recording
+from dynamics.results import RunResult
+from lineofaction.gearbox.studies.listen.run import (
+    NO_LOUDNESS,
+)
+from lineofaction.report.drawing.figure import number, unit_of
+from lineofaction.report.run.levels import Loudest, loudest
+from lineofaction.report.run.sound import heard_runs
+from lineofaction.report.run.view import RunView
+
+FAINT = 1e-3
+"""Of the overall level: weaker orders are not printed."""
+
+
+@dataclass(frozen=True)
+class RunSound:
+    """A run as it is heard."""
+
+    name: str
+    recording: Recording
+    facts: Json = field(default_factory=dict)
+    """Plain JSON beside the recording's own."""
+    cells: dict[str, str] = field(default_factory=dict)
+    """What is printed in the columns of these names."""
+
+
+def bearing_sounds(runs: Mapping[str, RunResult], view: RunView) -> tuple[list[RunSound], str]:
+    """Return runs by what they hold, e.g. forces on a bearing, and what to say of all."""
+    sounds = []
+    for one in tuple(heard_runs(dict(runs), view)):
+        recording, moment = one.recording(), loudest(one.run, one.signal)
+        facts: Json = {"loudest": None}
+        if moment is not None:
+            orders = {str(order): value for order, value in moment.orders.items()}
+            facts = {"loudest": {"time_s": moment.time, "rms": moment.overall, "orders_rms": orders}}
+        sounds.append(RunSound(one.name, recording, facts, _moment_cells(moment, recording.unit)))
+    return sounds, NO_LOUDNESS
+
+
+def _moment_cells(moment: Loudest | None, unit: str) -> dict[str, str]:
+    """Say where a run is loudest, and the levels of its orders there."""
+    where, text = "", "too short for orders"
+    if moment is not None:
+        levels = [
+            f"{order}x {20.0 * math.log10(value):.1f}"
+            for order, value in moment.orders.items()
+            if value > FAINT * moment.overall
+        ]
+        where, text = f"{number(moment.where, 4)} {unit_of(moment.axis.label)}", ", ".join(levels)
+    return {"loudest at": where, f"orders there, dB re 1 {unit} rms": text}

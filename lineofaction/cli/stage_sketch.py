@@ -1,0 +1,56 @@
+"""A planetary stage from few arguments, its data by rule."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from lineofaction.cli.options import PairWishes
+from lineofaction.cli.pair_sketch import (
+    GearSketch,
+    PairSketch,
+    blank_table,
+    bore_diameter,
+    face_width,
+    ring_pair,
+)
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.units import DEGREE
+
+PLANETS = 3
+
+_LEAST_TEETH = 18
+"""Of a planet: with fewer, teeth without profile shift are undercut."""
+
+
+def planetary_stage(wanted: PairWishes) -> StageSketch:
+    """Return a stage of three planets; its ring has the teeth of the sun and twice those of a planet.
+
+    Raises `BadInput`: no planets fit a ratio that small.
+    """
+    module, teeth, helix = wanted.module or 2.0, wanted.teeth or 24, wanted.helix or 0.0
+    wished = 0.5 * teeth * ((wanted.ratio or 5.0) - 2.0)
+    fitting = [count for count in range(_LEAST_TEETH, int(wished) + 4) if (teeth + count) % PLANETS == 0]
+    if not fitting or wished < _LEAST_TEETH:
+        least = 2.0 + 2.0 * _LEAST_TEETH / teeth
+        bound = f"at least {least:.3g} with {teeth} teeth of the sun"
+        raise BadInput.of("--ratio", wanted.ratio, bound, "Or leave it out.")
+    planet = min(fitting, key=lambda count: abs(count - wished))
+    width = wanted.width or face_width(module, helix)
+    ring = ring_pair(module, helix, width, planet, teeth + 2 * planet)
+    transverse = module / math.cos(helix * DEGREE)
+    sun = GearSketch(
+        teeth, 0.0, bore_diameter(blank_table(teeth, module, helix, width)), ring.wheel.allowance
+    )
+    torque = tuple(float(f"{value * teeth / planet:.2g}") for value in ring.torque)
+    pair = PairSketch(module, helix, width, 0.5 * transverse * (teeth + planet), sun, ring.pinion, torque)
+    return StageSketch(pair, ring, 2.0 + 2.0 * planet / teeth)
+
+
+@dataclass(frozen=True)
+class StageSketch:
+    """Both meshes of a stage with a held ring, and its ratio of sun to carrier."""
+
+    sun: PairSketch
+    ring: PairSketch
+    ratio: float

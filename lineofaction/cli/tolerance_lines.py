@@ -1,0 +1,69 @@
+"""Lines about a tolerance: drafts while an analysis refines, its passes, and whether it is met."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from bounds import engineering
+from bounds.types import Json
+from lineofaction.gearbox.units import MM, NM, UM
+
+NODES = {
+    "misalignment": ("misalignments", UM, "µm"),
+    "center_distance_change": ("center distance changes", MM, "mm"),
+}
+
+
+def tolerance_lines(receipt: Json, newton_metre: float = 1.0) -> Iterator[str]:
+    """Yield whether the tolerance is met as measured, why not, and passes; `newton_metre`: its force, N."""
+    kept = receipt.get("tolerance")
+    if not kept:
+        return
+    yield _verdict(kept)
+    passes = receipt.get("passes", ())
+    if len(passes) > 1:
+        yield from (_pass(number, entry) for number, entry in enumerate(passes, 1))
+    axes = NODES | {"force": ("torques", newton_metre, "N m")}
+    for beyond in kept.get("between_nodes", ()):
+        name, unit, symbol = axes[beyond["axis"]]
+        low, high = (f"{value / unit:.6g}" for value in beyond["between"])
+        yield (
+            f"between the {name} {low} and {high} {symbol} interpolation errs by "
+            f"{engineering(beyond['used'], 2)} times the tolerance: {beyond['limit']}"
+        )
+
+
+def tolerance_warnings(receipt: Json) -> Iterable[Json]:
+    """Return one warning where errors were measured and the tolerance is not met."""
+    kept = receipt.get("tolerance")
+    if not kept or kept["met"] is not False:
+        return []
+    reason = f" ({kept['reason']})" if kept.get("reason") else ""
+    return [{"check": "tolerance", "message": f"{_verdict(kept)}{reason}"}]
+
+
+def _verdict(kept: Json) -> str:
+    tolerance = (
+        f"tolerance {engineering(100 * kept['relative'], 3)} % or {engineering(kept['floor_m'] / NM, 3)} nm"
+    )
+    if kept["met"] is None:
+        return f"{tolerance}: errors not estimated"
+    numerical = "" if kept["used"] is None else _percent(kept["used"] * kept["relative"], "numerical error")
+    lasting = (
+        f"{_percent(kept['lasting'], 'of the method')}, which no mesh lowers" if "lasting" in kept else ""
+    )
+    return f"{tolerance}: {'met' if kept['met'] else 'NOT met'}{numerical}{lasting}"
+
+
+def _percent(part: float, name: str) -> str:
+    return f"; {name} {engineering(100.0 * part, 2)} %"
+
+
+def _pass(number: int, entry: Json) -> str:
+    mesh = entry["level"] if entry["slices"] == 1 else f"{entry['level']}, {entry['slices']} slices"
+    used = "failed" if entry["used"] is None else f"used {engineering(entry['used'], 2)}"
+    refined = f", refined {', '.join(entry['refined'])}" if entry["refined"] else ""
+    return (
+        f"pass {number}: {entry['model']}, {mesh}, "
+        f"{engineering(entry['cpu_seconds'], 2)} CPU s, {used}{refined}"
+    )

@@ -1,0 +1,102 @@
+"""Assumptions of a caller about a REXS file: values of attributes over those of the file."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.rexs.model import Attribute, Component, Model
+from lineofaction.gearbox.rexs.values import entry_kind, kind_of, scalar_of, texts_of
+from lineofaction.gearbox.rexs.vocabulary import listed_unit
+
+ASSUMED, FORMER = "assumed", "former"
+"""Origin of an attribute that is assumed, and the field in which it keeps what the file says."""
+
+_FORM = re.compile(r"(\d{1,18})\.([A-Za-z]\w*)=(.+)")
+
+_EXAMPLE = "COMPONENT.ATTRIBUTE=VALUE, as in 14.helix_angle_reference_diameter=-12"
+
+_PLACE = re.compile(r"component (\d+), (\w+)$")
+"""The end of a field that names an attribute of a component."""
+
+_SEVERAL = re.compile(r"[,\s]+")
+
+
+@dataclass(frozen=True)
+class Assumption:
+    """A value of an attribute."""
+
+    component: int
+    """Id of the component."""
+    attribute: str
+    """Its name in the newest version of REXS."""
+    value: str
+    """As XML writes it, in the unit of the file, else in that of REXS; numbers of an array apart by commas.
+    """
+
+    @classmethod
+    def of(cls, text: str) -> Assumption:
+        """Return what ``COMPONENT.ATTRIBUTE=VALUE`` says.
+
+        Raises `BadInput`: it has another form.
+        """
+        match = _FORM.fullmatch(text.strip())
+        if match is None:
+            raise BadInput.of("assume", text, f"of the form {_EXAMPLE}")
+        return cls(int(match[1]), match[2], match[3].strip())
+
+
+def assumed(model: Model, assumptions: Iterable[Assumption]) -> Model:
+    """Return a model of the newest version with the assumed values, in load cases that state them too."""
+    for assumption in assumptions:
+        if model.component(assumption.component) is None:
+            bound = "the id of a component of the file"
+            raise BadInput.of("assume", assumption.component, bound, f"The form is {_EXAMPLE}.")
+        model = _with(model, assumption)
+    return model
+
+
+def attribute_text(attribute: Attribute) -> str:
+    """Return the value of an attribute with its unit."""
+    unit = "" if attribute.unit in (None, "none", "-") else f" {attribute.unit}"
+    return ", ".join(texts_of(attribute.value)) + unit
+
+
+def mend(error: BadInput) -> str:
+    """Return the assumptions that replace the values at fault, empty where none is that of a component."""
+    places = [_PLACE.search(fault.field) for fault in error.faults]
+    known = [place for place in places if place is not None and listed_unit(place[2]) is not None]
+    options = ", ".join(f"--assume {place[1]}.{place[2]}=VALUE" for place in known)
+    return f" Or open it with {options}." if options else ""
+
+
+def _with(model: Model, assumption: Assumption) -> Model:
+    def changed(place: str, part: Component) -> Component:
+        former = part.attribute(assumption.attribute)
+        is_own, in_case = place == f"component {part.id}", "load case" in place and former is not None
+        if part.id != assumption.component or not (is_own or in_case):
+            return part
+        kept = tuple(entry for entry in part.attributes if entry.id != assumption.attribute)
+        return replace(part, attributes=(*kept, _attribute(assumption, former)))
+
+    return model.mapped(changed)
+
+
+def _attribute(assumption: Assumption, former: Attribute | None) -> Attribute:
+    """Return the attribute, of the file's kind and unit where it has them."""
+    name, place = assumption.attribute, f"assume, {assumption.component}.{assumption.attribute}"
+    several = "," in assumption.value
+    texts = _SEVERAL.split(assumption.value.strip("[] ")) if several else [assumption.value]
+    kind = kind_of(name, texts) if former is None else entry_kind(former.kind)
+    values = tuple(scalar_of(kind, text, place) for text in texts)
+    before = "no value" if former is None or former.value is None else attribute_text(former)
+    return Attribute(
+        name,
+        f"{kind}_array" if several else kind,
+        values if several else values[0],
+        listed_unit(name) if former is None else former.unit,
+        origin=ASSUMED,
+        extra=((FORMER, before),),
+    )

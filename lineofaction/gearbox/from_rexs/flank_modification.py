@@ -1,0 +1,97 @@
+"""A modification of a flank: what it removes, and the flank that it is on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from fe_contact.geometry import Toothing
+from fe_contact.types import FloatArray
+from lineofaction.gearbox.from_rexs.gear_unit import Part
+from lineofaction.gearbox.from_rexs.loaded_flank import LoadedFlank
+from lineofaction.gearbox.units import MM
+
+Removed = Callable[[FloatArray, FloatArray], FloatArray]
+"""Material removed in m at roll lengths and at coordinates from the datum face, both in m."""
+
+_SAME = 1e-6  # of the flank: places that a writer's rounding sets apart are one
+
+
+@dataclass(frozen=True)
+class Modification:
+    """A modification of a flank: what it removes, and fields of the case that say the same."""
+
+    part: Part
+    removed: Removed
+    fields: Mapping[str, Any] = field(default_factory=dict)
+    """Empty where the case has none for it."""
+    rolls: tuple[float, ...] = ()
+    faces: tuple[float, ...] = ()
+    """`rolls`, `faces`: Where it has kinks: roll lengths, coordinates from the datum face, m."""
+
+
+@dataclass(frozen=True)
+class FlankPlace:
+    """The flank of a gear without modifications, and places on it: roll lengths and face coordinates, m."""
+
+    gear: Toothing
+    loaded: LoadedFlank
+
+    @property
+    def tip(self) -> float:
+        """Roll length of the tip circle."""
+        return self.gear.tip_roll_length
+
+    @property
+    def root(self) -> float:
+        """Roll length where the involute begins."""
+        return self.gear.form_roll_length
+
+    @property
+    def towards_tip(self) -> float:
+        """1 if roll lengths grow towards the tip, -1 of a ring gear."""
+        return math.copysign(1.0, self.tip - self.root)
+
+    @property
+    def width(self) -> float:
+        """Face width."""
+        return self.gear.face_width
+
+    def roll_length(self, part: Part, diameter: str, words: str) -> float | None:
+        """Return the roll length of a diameter outside the base circle, None where the file gives none."""
+        value = part.number(diameter, words)
+        if not value:
+            return None
+        radius, base = 0.5 * abs(value), self.gear.base_radius
+        if radius <= base:
+            raise part.refusal(diameter, value / MM, f"above the base diameter {2.0 * base / MM:.7g} mm")
+        return math.sqrt(radius**2 - base**2)
+
+    def stated_roll(self, part: Part, diameter: str, length: str, end: float) -> float:
+        """Return the roll length where an amount is stated, by a diameter or as such; else an end."""
+        words = "where the amount is stated"
+        stated = self.roll_length(part, diameter, words)
+        return (part.number(length, f"{words}: a roll length") if stated is None else stated) or end
+
+    def roll_range(self, part: Part, start: str, ends: Sequence[str]) -> tuple[float, float]:
+        """Return the roll lengths over which an amount is stated, those of the whole flank by default."""
+        first = self.roll_length(part, start, "range of the amount")
+        rolls = (self.roll_length(part, end, "range of the amount") for end in ends)
+        last = next((roll for roll in rolls if roll is not None), None)
+        return (self.root if first is None else first), (self.tip if last is None else last)
+
+    def face_field(self, name: str, *, datum: bool) -> str:
+        """Return a field of one face: the case's datum face is the end of negative z, whatever the file's."""
+        at_negative_z = datum == (self.loaded.datum < 0.0)
+        return f"{name}_{'datum_face' if at_negative_z else 'non_datum_face'}"
+
+    def same(self, first: float, second: float) -> bool:
+        """Return whether two roll lengths or face coordinates are one."""
+        return abs(first - second) <= _SAME * max(abs(self.tip - self.root), self.width)
+
+    def radial(self, roll_length: float, end: float) -> float:
+        """Return the radial distance in mm between two roll lengths."""
+        first, second = (math.hypot(self.gear.base_radius, length) for length in (roll_length, end))
+        return abs(second - first) / MM

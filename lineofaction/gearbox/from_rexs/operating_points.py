@@ -1,0 +1,135 @@
+"""The operating points of a REXS file: speeds and torques from outside, with their shares of the time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from lineofaction.gearbox.from_rexs.gear_unit import GearUnit, Part
+
+_SPEED, _TORQUE, _POWER = "rotational_speed", "torque_around_u_axis", "power"
+
+_SHARES = ("operating_time_fraction", "load_duration_fraction")
+"""As REXS has it, and as one writer names it."""
+
+FORCES: Mapping[str, str] = {
+    "force_u_direction": "force along u of the shaft, N",
+    "force_v_direction": "force along v of the shaft, N",
+    "force_w_direction": "force along w of the shaft, N",
+    "torque_around_u_axis": "",
+    "torque_around_v_axis": "moment about v of the shaft, N m",
+    "torque_around_w_axis": "moment about w of the shaft, N m",
+}
+"""Force and moment of an external load, in words; the torque about u is none of them, and stays 0."""
+
+LARGEST = 1e9
+"""N or N m, of a force in a scene."""
+
+
+@dataclass(frozen=True)
+class OperatingPoint:
+    """What a load case states."""
+
+    name: str
+    number: int
+    """Its place in the spectrum, from 1."""
+    share: float
+    """Of the time, 0 to 1."""
+    speeds: Mapping[int, float]
+    """rad/s about u, by shaft."""
+    torques: Mapping[int, float | None]
+    """N m about u from outside, by external load; None where it follows from the others."""
+    powers: Mapping[int, float]
+    """W into the unit, by external load whose torque is not stated."""
+    forces: Mapping[int, tuple[float, ...]]
+    """Force along and moment about u, v, w of its shaft, N and N m, by external load that states any; the
+    moment about u is 0.
+    """
+
+    @staticmethod
+    def all_of(unit: GearUnit) -> tuple[OperatingPoint, ...]:
+        """Return the load cases of the first spectrum, or what components themselves state as one case."""
+        own = unit.of_type("shaft", "external_load", "gear_unit")
+        cases = unit.load_cases()
+        for number, spectrum in enumerate(unit.model.spectra[1:], 2):
+            for part in (part for case in spectrum.cases for part in case.components):
+                unit.account.say(part, "", "refused", f"load spectrum {number}; the first is taken")
+        if not cases:
+            return (_point("nominal", (1, 1.0), own, ()),)
+        shares = [_share(case) for case in cases]
+        whole = sum(share for share in shares if share is not None)
+        if whole > 0.0 and None not in shares:
+            parts = [(share or 0.0) / whole for share in shares]
+        else:
+            parts = [1.0 / len(cases)] * len(cases)
+            for root in unit.of_type("gear_unit"):
+                root.say(_SHARES[0], "defaulted", "equal shares: not every load case states one")
+        rows = enumerate(zip(cases, parts, strict=True), 1)
+        return tuple(_point(f"load case {n}", (n, share), own, case) for n, (case, share) in rows)
+
+
+def _share(case: tuple[Part, ...]) -> float | None:
+    """Return the share of the time that a case states, 0 to 1."""
+    for part in case:
+        for item in _SHARES if part.type == "gear_unit" else ():
+            if (share := part.number(item, "share of the time, %")) is not None:
+                return max(0.0, share)
+    return None
+
+
+def _point(
+    name: str, place: tuple[int, float], own: tuple[Part, ...], case: tuple[Part, ...]
+) -> OperatingPoint:
+    """Return an operating point: what a case sets counts before what the component itself states."""
+    parts = [*own, *case]
+    loads = [part for part in parts if part.type == "external_load"]
+    speeds = {
+        part.id: speed
+        for part in parts
+        if part.type == "shaft" and (speed := part.number(_SPEED, "speed about u, 1/min")) is not None
+    }
+    torques: dict[int, float | None] = {}
+    powers: dict[int, float] = {}
+    forces: dict[int, tuple[float, ...]] = {}
+    for part in loads:
+        _enter_torque(part, torques, powers)
+        _enter_forces(part, forces)
+    return OperatingPoint(name, *place, speeds, torques, powers, forces)
+
+
+def _enter_forces(part: Part, forces: dict[int, tuple[float, ...]]) -> None:
+    """Enter the force and moment that a load states, each component in place of one entered before."""
+    wrench = list(forces.get(part.id, (0.0,) * len(FORCES)))
+    is_stated = False
+    for index, (item, words) in enumerate(FORCES.items()):
+        value = part.number(item, words) if words else None
+        if value is None:
+            continue
+        if not abs(value) <= LARGEST:
+            raise part.refusal(item, value, f"from {-LARGEST:g} to {LARGEST:g} N or N m")
+        if value == 0.0 == wrench[index]:
+            part.say(item, "ignored", "0")
+        wrench[index], is_stated = value, True
+    if is_stated:
+        forces[part.id] = tuple(wrench)
+
+
+def _enter_torque(part: Part, torques: dict[int, float | None], powers: dict[int, float]) -> None:
+    """Enter the torque of a load, or its power; one that transmits torque without a value is open."""
+    torque = part.number(_TORQUE, "torque about u from outside, N m")
+    power = part.number(_POWER, "power into the unit, kW")
+    if torque is not None:
+        torques[part.id] = torque
+        powers.pop(part.id, None)
+    elif power is not None:
+        torques[part.id] = None
+        powers[part.id] = power
+    elif part.id not in torques and _transmits(part):
+        torques[part.id] = None
+
+
+def _transmits(part: Part) -> bool:
+    value = part.value("transmits_torque")
+    if value is not None:
+        part.say("transmits_torque", "taken", "whether the load passes torque on")
+    return value is True

@@ -1,0 +1,148 @@
+"""The shafts of a REXS model: where they stand along the scene's z axis, and their sections."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import accumulate
+
+import numpy as np
+
+from bounds.types import FloatArray
+from dynamics.shafts import BeamSection
+from lineofaction.gearbox.from_rexs.gear_unit import Part
+from lineofaction.gearbox.from_rexs.placement import Placement
+from lineofaction.gearbox.from_rexs.scene_axes import SceneAxes
+
+SAME_PLACE = 1e-6
+"""m; file and sum of lengths agree to rounding."""
+
+_LENGTHS = ("length", "outer_diameter_begin", "outer_diameter_end")
+
+
+@dataclass(frozen=True)
+class PlacedShaft:
+    """A shaft along the z axis of the scene."""
+
+    part: Part
+    place: Placement
+    """In the frame of the model; its origin is u = 0."""
+    start: FloatArray
+    """Of u = 0 in the scene, m. Shape (3,)."""
+    sense: int
+    """+1 where u is along z, -1 where it is against it."""
+    begin: float
+    end: float
+    """`begin`, `end`: u of both ends, m."""
+    sections: tuple[BeamSection, ...] = ()
+    """From the left end, the lower z; none where the file has none."""
+
+    @classmethod
+    def of(cls, part: Part, place: Placement, axes: SceneAxes) -> PlacedShaft:
+        """Return a shaft with its sections."""
+        rows = tuple(_rows(part))
+        sense = axes.sense(place)
+        begin = rows[0][0] if rows else 0.0
+        sections = tuple(section if sense > 0 else _turned(section) for _, section in rows)
+        end = begin + sum(section.length for section in sections)
+        along_z = sections if sense > 0 else sections[::-1]
+        return cls(part, place, axes.point(place.origin), sense, begin, end, along_z)
+
+    @property
+    def length(self) -> float:
+        """Length, m."""
+        return self.end - self.begin
+
+    @property
+    def origin(self) -> FloatArray:
+        """Left end of the axis in the scene, m."""
+        left = self.begin if self.sense > 0 else -self.end
+        return np.asarray(self.start + np.array([0.0, 0.0, left]))
+
+    def position(self, u: float) -> float:
+        """Return the position of a u from the left end, m."""
+        return u - self.begin if self.sense > 0 else self.end - u
+
+    def off_axis(self, point: FloatArray) -> float:
+        """Return the distance of a point of the model from the axis, m."""
+        return float(np.linalg.norm(np.cross(self.place.axes[0], point - self.place.origin)))
+
+    def outer_diameter(self, u: float) -> float:
+        """Return the outer diameter at a u, m; 0 without sections."""
+        position, left = self.position(u), 0.0
+        for section in self.sections:
+            if left - SAME_PLACE <= position <= left + section.length + SAME_PLACE:
+                share = min(1.0, max(0.0, (position - left) / section.length))
+                first, last = section.outer_diameters
+                return first + share * (last - first)
+            left += section.length
+        return 0.0
+
+
+def _rows(shaft: Part) -> Iterator[tuple[float, BeamSection]]:
+    """Yield u of the left end and the section of each piece, one after the other; state other places."""
+    pieces = [
+        (part.number("u_coordinate_on_shaft", "left end of the section, mm"), part)
+        for part in shaft.children("shaft_section")
+    ]
+    if all(u is not None for u, _ in pieces):
+        pieces.sort(key=lambda piece: piece[0] or 0.0)
+    first = (pieces[0][0] or 0.0) if pieces else 0.0
+    sections = [_section(shaft, part) for _, part in pieces]
+    summed = list(accumulate((section.length for section in sections), initial=first))[:-1]
+    for (_, part), at, section in zip(pieces, summed, sections, strict=True):
+        item = "u_coordinate_on_shaft"
+        stated = part.number(item, "left end of the section, mm")
+        derived = f"{at * 1e3:.6g} mm, the sum of the lengths before it"
+        if stated is None:
+            part.say(item, "derived", derived)
+        elif abs(stated - at) > SAME_PLACE:
+            part.say(item, "refused", f"{stated * 1e3:.6g} mm leaves a gap or overlaps; taken: {derived}")
+        yield at, section
+
+
+def _section(shaft: Part, part: Part) -> BeamSection:
+    length, begin, end = (_size(part, name) for name in _LENGTHS)
+    bore = part.number("inner_diameter_begin", "bore of the section, mm") or 0.0
+    end_bore = part.number("inner_diameter_end", "bore at the end of the section, mm")
+    tapers = end != begin or end_bore not in (None, bore)
+    if bore >= begin or (end_bore or 0.0) >= end:
+        bound = f"smaller than the outer diameter, {begin * 1e3:g} mm"
+        raise part.refusal("inner_diameter_begin", bore * 1e3, bound)
+    return BeamSection(
+        length,
+        begin,
+        bore,
+        **_material(shaft),
+        end_outer_diameter=end if tapers else None,
+        end_bore_diameter=(bore if end_bore is None else end_bore) if tapers else None,
+    )
+
+
+def _size(part: Part, item: str) -> float:
+    value = part.number(item, f"{item} of the section, mm")
+    if value is None and item == "outer_diameter_end":
+        value = part.number("outer_diameter_begin", "outer diameter of the section, mm")
+        part.say(item, "derived", "as at the begin")
+    if value is None or not 0.0 < value <= 100.0:
+        written = None if value is None else value * 1e3
+        raise part.refusal(item, written, "above 0 mm and at most 100000 mm")
+    return value
+
+
+def _material(shaft: Part) -> dict[str, float]:
+    names = {"elastic_modulus": "youngs_modulus", "poisson_ratio": "poissons_ratio", "density": "density"}
+    for part in shaft.referenced:
+        if part.type == "material":
+            values = {own: part.number(item, f"{own} of the shaft") for item, own in names.items()}
+            return {own: value for own, value in values.items() if value}
+    return {}
+
+
+def _turned(section: BeamSection) -> BeamSection:
+    """Return a section seen from its other end."""
+    if section.end_outer_diameter is None:
+        return section
+    outer, bore = section.outer_diameters, section.bore_diameters
+    material = section.youngs_modulus, section.poissons_ratio, section.density
+    return BeamSection(section.length, outer[1], bore[1], *material, outer[0], bore[0])

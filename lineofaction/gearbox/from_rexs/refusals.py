@@ -1,0 +1,54 @@
+"""Refusals of an import: what a file has and its scene has not, by the reason."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from lineofaction.gearbox.from_rexs.account import Line
+
+MOST, LONGEST = 100, 2000
+"""Statements of a unit, and characters of one."""
+
+NO_REASON = "no part of the scene is made of it"
+
+REASONS = {
+    "cylindrical_gear": "it is in no stage of the scene",
+    "ring_gear": "it is in no stage of the scene",
+    "external_load": "it acts on no shaft of the scene",
+    "side_plate": "it is part of no planet carrier of the scene",
+}
+
+
+def refusal_texts(lines: Iterable[Line]) -> tuple[str, ...]:
+    """Return what is left out with lines of the file and the reason, a sentence for each reason.
+
+    Stages come first, for what stands behind them is left out with them; then other parts, then values of
+    parts, each in the order of the file.
+    """
+    groups: dict[str, list[Line]] = {}
+    for line in refused_lines(lines):
+        groups.setdefault(line.words, []).append(line)
+    texts = [_statement(group, reason) for reason, group in groups.items()]
+    rest = len(texts) - MOST
+    return tuple(texts if rest <= 0 else [*texts[:MOST], f"and {rest} more: see the account of the import"])
+
+
+def refused_lines(lines: Iterable[Line]) -> list[Line]:
+    """Return the refused lines: stages, other parts, values of parts."""
+    refused = (line for line in lines if line.fate == "refused")
+    return sorted(refused, key=lambda line: (bool(line.item), not line.kind.endswith("_stage")))
+
+
+def _statement(group: list[Line], reason: str) -> str:
+    lines = {line: "" if line.line is None else f" (line {line.line})" for line in group}
+    named = "; ".join(
+        f"{line_name(line)}{place}{f', {line.item}' if line.item else ''}" for line, place in lines.items()
+    )
+    most = max(LONGEST - len(reason) - 2, LONGEST // 2)
+    named = named if len(named) <= most else f"{named[: most - 4]} ..."
+    return f"{named}: {reason}"[:LONGEST]
+
+
+def line_name(line: Line) -> str:
+    """Return type, id and name of the component of a line."""
+    return f"{line.kind} {line.component}" + (f' "{line.name}"' if line.name else "")

@@ -1,0 +1,79 @@
+"""Rotors: what turns as one body, a shaft by itself or all parts of a planet carrier."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from lineofaction.gearbox.from_rexs.gear_unit import Connection, GearUnit, PlanetarySet
+
+_RIGID_ROTATION = 1e12
+"""N m/rad; no coupling of a gear unit is as stiff: files write 1e17 and more for one that does not yield."""
+
+
+@dataclass(frozen=True)
+class Rotors:
+    """The rotating bodies of a gear unit."""
+
+    of: Mapping[int, int]
+    """The rotor of a shaft or side plate: the lowest id of the components that turn as one."""
+    held: frozenset[int]
+    """Rotors that a coupling holds on the ground."""
+    couplings: tuple[Connection, ...]
+    """Couplings between two rotors."""
+    sets: tuple[PlanetarySet, ...]
+    """The planetary sets."""
+
+    def carrier_of(self, *shafts: int) -> int | None:
+        """Return the carrier's rotor if one of the shafts is a planet's, None otherwise."""
+        for planets in self.sets:
+            if {shaft.id for shaft in planets.planets} & set(shafts):
+                return self.of[planets.carrier[0].id]
+        return None
+
+    def members(self, rotor: int) -> tuple[int, ...]:
+        """Return the ids of the components that make up a rotor."""
+        return tuple(part for part, own in self.of.items() if own == rotor)
+
+
+def rotors_of(unit: GearUnit, sets: Sequence[PlanetarySet]) -> Rotors:
+    """Return the rotors: the parts of a carrier are one, with what is rigidly coupled to them."""
+    of = {part.id: part.id for part in unit.of_type("shaft", "side_plate")}
+    joined = [
+        entry
+        for entry in unit.couplings
+        if entry.on_ground is None and {entry.inner.id, entry.outer.id} <= of.keys()
+    ]
+    for planets in sets:
+        _merge(of, [part.id for part in planets.carrier])
+    carriers = {of[planets.carrier[0].id] for planets in sets}
+    changed = True
+    while changed:
+        changed = False
+        for entry in joined:
+            ends = of[entry.inner.id], of[entry.outer.id]
+            if ends[0] != ends[1] and carriers & set(ends) and _rotation(entry) >= _RIGID_ROTATION:
+                carriers.add(_merge(of, list(ends)))
+                changed = True
+    grounded = [entry for entry in unit.couplings if entry.on_ground is not None]
+    held = frozenset(of[entry.held.id] for entry in grounded if entry.held.id in of and _rotation(entry))
+    between = tuple(entry for entry in joined if of[entry.inner.id] != of[entry.outer.id])
+    for entry in joined:
+        if entry not in between:
+            entry.part.say("", "derived", "rigid: its sides are parts of one planet carrier")
+    return Rotors(of, held, between, tuple(sets))
+
+
+def _merge(of: dict[int, int], parts: list[int]) -> int:
+    rotors = {of[part] for part in parts}
+    lowest = min(rotors)
+    for part, rotor in of.items():
+        if rotor in rotors:
+            of[part] = lowest
+    return lowest
+
+
+def _rotation(entry: Connection) -> float:
+    """Return the torsional stiffness of a coupling, N m/rad; rigid where the file says none."""
+    item, words = "rotational_stiffness", "torsional stiffness, N mm/rad"
+    return entry.part.number(item, words, _RIGID_ROTATION, "rigid: the file gives none")

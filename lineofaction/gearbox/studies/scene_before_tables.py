@@ -1,0 +1,96 @@
+"""Scenes before their tables are computed: their motion, and how many freedoms they have."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dynamics.assembly.assemble import System, assemble
+from dynamics.mechanism.kinematics import at_steady_speeds
+from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table
+from dynamics.meshes.technique import PlainTable
+from dynamics.scene import Scene
+from fe_contact.geometry import ParallelAxes
+from fe_contact.ste import PairFacts
+from lineofaction.gearbox.convert.case import CheckedCases
+from lineofaction.gearbox.convert.scene import check_scene
+from lineofaction.gearbox.schemas import Case
+from lineofaction.gearbox.schemas.scene import SceneInput
+
+if TYPE_CHECKING:
+    pass
+
+CASES = CheckedCases(16)
+"""Cases whose costs were predicted last: those of a scene and of several verbs are checked once."""
+
+_SINGLE_STIFFNESS = 14e9
+"""Of a pair of teeth per unit width, N/m^2: the usual value of ISO 6336-1:2019, 9.3."""
+
+_POSITIONS = 48
+"""Of a table in a base pitch, about as many as a computed one has."""
+
+
+@dataclass(frozen=True)
+class SceneText:
+    """A scene by its text: what is made of the last ones is kept, since several verbs are of the same."""
+
+    text: str
+    scene: SceneInput = field(compare=False)
+
+
+def _pairs(scene: SceneInput) -> dict[str, ParallelAxes] | None:
+    cases = {mesh.name: mesh.case for _, mesh in scene.with_database}
+    if not all(isinstance(case, Case) for case in cases.values()):
+        return None
+    return {name: CASES.of(case).feasible.request.pair for name, case in cases.items() if case}
+
+
+def scene_before_tables(scene: SceneInput) -> Scene | None:
+    """Return a scene at steady speeds on usual tables and placeholders for solids; None: it names tables."""
+    before = moving_before_tables(scene)
+    return None if before is None else at_steady_speeds(before)
+
+
+def moving_before_tables(scene: SceneInput) -> Scene | None:
+    """Return a scene as `scene_before_tables` does, in the motion of its run."""
+    return scene_in_motion(SceneText(scene.model_dump_json(), scene))
+
+
+@lru_cache(2)
+def scene_in_motion(written: SceneText) -> Scene | None:
+    """Return a scene on usual tables in the motion of its run; None: it names tables."""
+    scene = written.scene
+    pairs = _pairs(scene)
+    if pairs is None:
+        return None
+    facts = {name: PairFacts.of(pair) for name, pair in pairs.items()}
+    return check_scene(scene, facts, {name: _usual_table(pair) for name, pair in pairs.items()})
+
+
+def _usual_table(pair: ParallelAxes) -> PlainTable:
+    """Return a table by the usual stiffness of the pairs of teeth that the contact ratio says.
+
+    Those of a helical pair come in over its overlap. Measured on three units, a run on such tables takes 0.4
+    to 1.3 of the steps of one on computed tables; on tables of constant stiffness 0.35.
+    """
+    position = np.arange(_POSITIONS) / _POSITIONS
+    across = np.linspace(0.0, pair.overlap_ratio, _POSITIONS, endpoint=False)
+    entered = (position[:, None] - across) % 1.0
+    pairs = np.mean(np.ceil(pair.transverse_contact_ratio - entered), axis=1)
+    stiffness = pair.face_width * _SINGLE_STIFFNESS * (0.75 * pairs + 0.25)
+    return stiffness_table(PeriodicCurve.tabulated(position.tolist(), stiffness.tolist()))
+
+
+def sized(scene: SceneInput, highest_hz: float | None = None) -> System:
+    """Return the system of a scene before its tables, its shafts resolved to a frequency if one is named."""
+    return _system(SceneText(scene.model_dump_json(), scene), highest_hz)
+
+
+@lru_cache(4)
+def _system(written: SceneText, highest_hz: float | None) -> System:
+    before = scene_before_tables(written.scene)
+    assert before is not None  # its callers have asked
+    return assemble(before if highest_hz is None else replace(before, highest_frequency=highest_hz))

@@ -1,0 +1,131 @@
+"""Hard pairs by their faces: misaligned, or a single slice wide."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.contact.problem import POINTS
+from fe_contact.types import FloatArray
+from lineofaction.hardcases.contact.laws import soundness
+from lineofaction.hardcases.contact.posed_pair import (
+    NOMINAL_TORQUE,
+    Posed,
+    even_positions,
+    nominal_pair,
+    off,
+    posed,
+)
+from lineofaction.hardcases.scene import Measured, Scenes
+
+SCENES = Scenes("contact")
+
+_MISALIGNMENT = 300e-6
+_WIDE = 60e-3
+
+
+@SCENES.add(
+    "misaligned_to_5_percent",
+    "0.3 mm of misalignment over the face: one slice of nineteen carries, and gaps are 40 times the "
+    "deflection.",
+    "The side that comes closer carries; both sides are mirror images, in STE and in the place of the load; "
+    "the rigid gap is that of the wedge.",
+)
+def _five_per_cent() -> Sequence[Measured]:
+    """Misalign a wide pair until one slice of nineteen carries all, to either side."""
+    case, other = (
+        posed(
+            nominal_pair(face_width=_WIDE),
+            [0.02 * NOMINAL_TORQUE],
+            model="3d",
+            misalignment=sign * _MISALIGNMENT,
+        )
+        for sign in (1.0, -1.0)
+    )
+    position = even_positions(24)
+    problem, solution = case.solve(position)
+    mirrored_problem, mirrored = other.solve(position)
+    slices = case.plan.discretization.slices
+    wedge = 0.5 * _MISALIGNMENT * (1.0 - 1.0 / (slices * POINTS))
+    face = problem.candidates.face_position
+    loaded = [np.unique(face[force > 0.0]).size for force in solution.force[:, 0]]
+    return (
+        *soundness(problem, solution, 8),
+        Measured("part of the face that carries, %", 100.0 * (max(loaded) / np.unique(face).size), most=6.0),
+        Measured(
+            "centroid over half the face width, to the side that comes closer, least",
+            # positive misalignment opens the gap towards larger face positions: the load is at the lower ones
+            float(-_centroid(problem, solution).max() / (0.5 * _WIDE)),
+            least=0.9,
+        ),
+        Measured(
+            "misaligned to the other side: relative difference of STE",
+            off(mirrored.deflection, solution.deflection),
+            most=1e-9,
+        ),
+        Measured(
+            "centroids off their mirror images, m",
+            float(np.abs(_centroid(mirrored_problem, mirrored) + _centroid(problem, solution)).max()),
+            most=1e-9,
+        ),
+        Measured("rigid gap off the wedge's, m", float(np.abs(solution.no_load + wedge).max()), most=1e-12),
+    )
+
+
+@SCENES.add(
+    "single_slice",
+    "One slice over the whole face: the load may not spread as it likes, and patches are as wide as the "
+    "gear.",
+    "Dividing slices frees the load: from three on STE falls everywhere (least complementary energy); one, "
+    "which knows no free ends of the face, is within 5 % of nine.",
+)
+def _single_slice() -> Sequence[Measured]:
+    """Spread the load evenly: one slice in three dimensions, then three, then nine."""
+    full = posed(nominal_pair(), model="3d")
+    position = even_positions(24)
+    curves = []
+    for slices in (1, 3, 9):
+        fewer = Posed(full.contact.in_slices(slices), full.model)
+        problem, solution = fewer.solve(position)
+        curves.append(solution.deflection[:, 0])
+        if slices == 1:
+            figures = soundness(problem, solution, 8)
+    freed = float(np.min(curves[1] - curves[2]))
+    return (
+        *figures,
+        Measured("least drop of STE as three slices are divided, m", freed, least=0.0),
+        Measured(
+            "mean of one slice over nine", float(curves[0].mean() / curves[2].mean()), most=1.05, least=0.95
+        ),
+    )
+
+
+@SCENES.add(
+    "identical_positions",
+    "Positions given twice make spacings of zero.",
+    "Equal positions have equal STE to the last bit, whatever stands beside them.",
+)
+def _duplicates() -> Sequence[Measured]:
+    """Ask for the same position several times, in any order, alone and among others."""
+    case = posed(nominal_pair())
+    positions = np.array([0.3, 0.3, 0.0, 0.97, 0.3, 0.0, 0.5, 0.5])
+    problem, together = case.solve(positions)
+    apart = [case.ste(np.array([x]))[0, 0] for x in positions]
+    groups = [together.deflection[positions == x, 0] for x in np.unique(positions)]
+    return (
+        *soundness(problem, together),
+        Measured("spread over equal positions, m", max(float(np.ptp(group)) for group in groups), most=0.0),
+        Measured(
+            "asked together or alone, difference in m",
+            float(np.abs(together.deflection[:, 0] - apart).max()),
+            most=1e-20,
+        ),
+    )
+
+
+def _centroid(problem: ContactProblem, solution: ContactSolution) -> FloatArray:
+    """Return where along the face the load acts, m."""
+    force = solution.force[:, 0]
+    return np.asarray(force @ problem.candidates.face_position / force.sum(axis=1))

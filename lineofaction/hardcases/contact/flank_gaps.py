@@ -1,0 +1,148 @@
+"""Gaps larger than any deflection: deep relief, teeth out of their places, noise on the flanks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from fe_contact.contact import ContactProblem, solve_contact
+from fe_contact.geometry import FlankGrid, FlankModification, Gear, GearPair, PitchDeviation
+from fe_contact.types import FloatArray
+from lineofaction.hardcases.contact.laws import soundness
+from lineofaction.hardcases.contact.posed_pair import (
+    NOMINAL_TORQUE,
+    even_positions,
+    nominal_gear,
+    nominal_pair,
+    posed,
+)
+from lineofaction.hardcases.contact.tip_edges import largest
+from lineofaction.hardcases.scene import Measured, Scenes
+
+SCENES = Scenes("contact")
+
+_STEP = 50e-6
+"""Pitch deviation of one tooth in m: six times the deflection at nominal load."""
+
+_NOISE = 2e-6
+"""Standard deviation of the noise on a flank in m."""
+
+_SEED = 20260101
+
+
+@SCENES.add(
+    "gap_beyond_deflection",
+    "Relief of 0.3 mm where teeth bend by 8 µm: gaps and deflections differ by orders of magnitude, and "
+    "most candidates never touch.",
+    "Out of reach means without effect: taking those candidates away, or a meter further, changes no bit.",
+)
+def _gap_beyond_deflection() -> Sequence[Measured]:
+    """Relieve both tips by 0.3 mm, so that most pairs cannot touch whatever the load."""
+    relief = FlankModification(tip_relief=300e-6, tip_relief_length=3e-3)
+    case = posed(nominal_pair(modification=relief), NOMINAL_TORQUE * np.array([0.01, 1.0, 4.0]))
+    problem, solution = case.solve(even_positions(200))
+    c = problem.candidates
+    elastic = float((solution.deflection - solution.no_load[:, None]).max())
+    far = np.isfinite(c.gap) & (c.gap - solution.no_load[:, None] > 2.0 * elastic)
+    without = solve_contact(_with_gap(problem, np.where(far, np.inf, c.gap)), case.plan.load)
+    wider = solve_contact(_with_gap(problem, np.where(far, c.gap + 1.0, c.gap)), case.plan.load)
+    return (
+        *soundness(problem, solution),
+        Measured("candidates out of reach", float(far.sum()), least=50.0),
+        Measured("largest gap over the elastic deflection", float(c.gap[far].max()) / elastic),
+        Measured("force on them, N", float(solution.force[far[:, None, :].repeat(3, 1)].max()), most=0.0),
+        Measured("STE without them, change in m", largest(without.deflection - solution.deflection), 0.0),
+        Measured("STE with 1 m more gap, change in m", largest(wider.deflection - solution.deflection), 0.0),
+    )
+
+
+@SCENES.add(
+    "pitch_error_beyond_deflection",
+    "One tooth stands 50 µm ahead where teeth bend by 8 µm: its neighbors lose contact and STE jumps.",
+    "The tooth ahead carries alone, on the curve shifted by its deviation on the line of action; all teeth "
+    "ahead shift the whole curve (superposition of rigid offsets).",
+)
+def _pitch_error_beyond_deflection() -> Sequence[Measured]:
+    """Put one tooth 50 um ahead of its place, then all of them."""
+    position = even_positions(48)
+    plain = posed(nominal_pair())
+    _, alone = plain.solve(position)
+    teeth = np.zeros(20)
+    teeth[5] = _STEP
+    case = posed(_with_pitch(tuple(teeth)), pitches=20, bodies=plain.contact)
+    problem, solution = case.solve(position, case.plan.load, np.repeat(np.arange(20), 48))
+    shift = _STEP * np.cos(plain.pair.pinion.transverse_pressure_angle)
+    every = posed(_with_pitch((_STEP,) * 20), bodies=plain.contact)
+    shifted = every.ste(position) - alone.deflection + shift
+    meeting = np.repeat(np.arange(20), 48)[:, None] - problem.candidates.pair
+    carried = np.tile(alone.force[:, 0] > 0.0, (20, 1))
+    single = carried.sum(axis=1) == 1
+    ahead = single & np.any(carried & (meeting == 5), axis=1)
+    apart = single & ~np.any(np.isfinite(problem.candidates.gap) & (np.abs(meeting % 20 - 5) <= 1), axis=1)
+    change = solution.deflection[:, 0] - np.tile(alone.deflection[:, 0], 20)
+    share = solution.force[:, 0].max(axis=1) / solution.force[:, 0].sum(axis=1)
+    return (
+        *soundness(problem, solution),
+        Measured("share of the tooth that is ahead, least", float(share[ahead].min()), least=1.0),
+        Measured("its STE off the shifted curve, m", largest(change[ahead] + shift), most=1e-15),
+        Measured("STE far from it, change in m", largest(change[apart]), most=1e-15),
+        Measured("all teeth ahead: STE off the shifted curve, m", largest(shifted), most=1e-15),
+        Measured("positions with the one tooth alone", float(ahead.sum()), least=5.0),
+    )
+
+
+@SCENES.add(
+    "noisy_flanks",
+    "Flanks from a measurement with 2 µm of noise: bumps as high as the deflection, touching points that "
+    "wander.",
+    "STE grows by no less than the least and no more than the most removed, and with load; two solvers "
+    "agree.",
+)
+def _noisy_flanks() -> Sequence[Measured]:
+    """Put noise on both flanks, as a measurement would."""
+    rng = np.random.default_rng(_SEED)
+    plain = posed(nominal_pair())
+    position = even_positions(200)
+    smooth = plain.ste(position)
+    first, second = (_with_grid(np.maximum(rng.normal(5.0 * _NOISE, _NOISE, 25), 0.0)) for _ in range(2))
+    noisy = posed(
+        GearPair(first, second, 80e-3), NOMINAL_TORQUE * np.geomspace(1e-3, 4.0, 7), bodies=plain.contact
+    )
+    problem, solution = noisy.solve(position)
+    low, high = (sum(side(_heights(gear)) for gear in (first, second)) for side in (np.min, np.max))
+    nominal = posed(GearPair(first, second, 80e-3), bodies=plain.contact).solve(position, plain.plan.load)[1]
+    added = nominal.deflection - smooth
+    return (
+        *soundness(problem, solution),
+        Measured("added STE over the least removed", float(added.min()) / low, least=1.0),
+        Measured("added STE over the most removed", float(added.max()) / high, most=1.0),
+        Measured(
+            "least growth of STE with load, m", float(np.diff(solution.deflection, axis=1).min()), least=1e-12
+        ),
+    )
+
+
+def _with_gap(problem: ContactProblem, gap: FloatArray) -> ContactProblem:
+    return problem.touching(problem.candidates.touching(replace(problem.candidates.touch, gap=gap)))
+
+
+def _with_pitch(cumulative: tuple[float, ...]) -> GearPair:
+    pinion = nominal_gear(pitch_deviation=PitchDeviation(cumulative))
+    return GearPair(pinion, nominal_gear(), 80e-3)
+
+
+def _with_grid(heights: FloatArray) -> Gear:
+    """Return the nominal gear with these heights removed along its profile, the same all over the face."""
+    gear = nominal_gear()
+    roll = np.linspace(gear.form_roll_length, gear.tip_roll_length, heights.size)
+    half = 0.5 * gear.face_width
+    grid = FlankGrid(tuple(roll), (-half, half), tuple((h, h) for h in heights))
+    return nominal_gear(modification=FlankModification(flank_grid=grid))
+
+
+def _heights(gear: Gear) -> FloatArray:
+    """Material removed all along the profile."""
+    roll = np.linspace(gear.form_roll_length, gear.tip_roll_length, 20_001)
+    return gear.modification.material_removed(gear, roll)

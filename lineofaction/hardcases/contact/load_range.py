@@ -1,0 +1,86 @@
+"""Contact at zero load, and at loads over seven decades."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from fe_contact.analysis.analyze import analyze
+from fe_contact.errors import InputError
+from fe_contact.geometry import FlankModification
+from lineofaction.hardcases.contact.laws import soundness
+from lineofaction.hardcases.contact.posed_pair import (
+    NOMINAL_TORQUE,
+    even_positions,
+    mean_off,
+    nominal_pair,
+    posed,
+    range_off,
+)
+from lineofaction.hardcases.scene import Measured, Scenes
+
+SCENES = Scenes("contact")
+
+_DECADES = np.geomspace(1e-4, 1e3, 29)
+
+
+@SCENES.add(
+    "load_seven_decades",
+    "One table holds 1e-4 and 1e3 times the nominal load: patches fit for the highest load are wider than "
+    "the tooth, and forces differ by 1e7.",
+    "STE grows with load, the tangent compliance never does, two solvers agree, and the curve at nominal "
+    "load is that of a table which holds nothing else.",
+)
+def _seven_decades() -> Sequence[Measured]:
+    """Solve one table over seven decades of load, and its nominal curve alone."""
+    wide = posed(nominal_pair(), NOMINAL_TORQUE * _DECADES)
+    problem, solution = wide.solve(even_positions(48))
+    alone = posed(nominal_pair())
+    nominal = alone.ste(even_positions(48))[:, 0]
+    here = solution.deflection[:, int(np.argmin(np.abs(_DECADES - 1.0)))]
+    elastic = solution.deflection - solution.no_load[:, None]
+    stiffening = np.diff(solution.tangent, axis=1) / solution.tangent[:, :-1]
+    return (
+        *soundness(problem, solution),
+        Measured(
+            "least growth of STE from load to load",
+            float(np.min(elastic[:, 1:] / elastic[:, :-1])),
+            least=1.0 + 1e-9,
+        ),
+        Measured("largest growth of the tangent compliance", float(stiffening.max()), most=1e-9),
+        Measured(
+            "mean STE at nominal load, against a table of that load alone", mean_off(here, nominal), 5e-3
+        ),
+        Measured("peak-to-peak likewise", range_off(here, nominal), most=2e-2),
+        Measured("points whose contact outgrew its patch", float(solution.beyond.sum())),
+    )
+
+
+@SCENES.add(
+    "zero_load",
+    "At zero load no tangent stiffness exists and every figure is 0/0.",
+    "STE tends to the rigid gap, where the table's force is exactly zero; a load of zero is refused by name.",
+)
+def _zero_load() -> Sequence[Measured]:
+    """Go to zero load in the solver, in the table and at the entry point."""
+    relief = FlankModification(tip_relief=20e-6, tip_relief_length=2e-3, profile_crowning=5e-6)
+    pair = nominal_pair(modification=relief)
+    case = posed(pair, NOMINAL_TORQUE * np.geomspace(1e-15, 1.0, 6))
+    problem, solution = case.solve(even_positions(48))
+    left = (solution.deflection[:, 0] - solution.no_load) / solution.deflection[:, -1]
+    table = analyze(pair, torques=[NOMINAL_TORQUE], level="draft", positions=48, receipt="minimal")
+    at_rest = table.ste(table.position, 0.0)
+    lift_off = table.no_load_transmission_error[:, 0, 0]
+    try:
+        analyze(pair, torques=[0.0, NOMINAL_TORQUE])
+        refused = ""
+    except InputError as error:
+        refused = error.field
+    return (
+        *soundness(problem, solution),
+        Measured("STE left at 1e-15 of the load, over its nominal value", float(left.max()), 1e-12, 0.0),
+        Measured("table at zero force against the rigid gap, m", float(np.ptp(at_rest - lift_off)), 1e-16),
+        Measured("force at lift-off, N", float(table.force_at(table.position, lift_off).force.max()), 0.0),
+        Measured("zero in a list of torques refused by its name", float(refused == "torques[0]"), least=1.0),
+    )

@@ -1,0 +1,132 @@
+"""Resonance with loss of contact: two motions at one speed, and jumps between them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from dynamics.assembly.assemble import System, assemble
+from dynamics.joints import ImposedRotation
+from dynamics.loads import LoadTorque, TimeLaw
+from dynamics.meshes import CoastFlank, GearMesh
+from dynamics.periodic import (
+    Orbit,
+    PeriodicProblem,
+    find_orbit,
+    follow_branch,
+    motion,
+    periodic_problem,
+    settled,
+)
+from dynamics.scene import Integration, Scene
+from dynamics.shafts import GearBody, Inertia, Shaft
+from dynamics.types import FloatArray
+from lineofaction.hardcases.dynamics.laws import METHODS
+from lineofaction.hardcases.dynamics.oscillators import spring
+from lineofaction.hardcases.scene import Measured, Scenes
+
+SCENES = Scenes("dynamics")
+
+_ZETA, _MEAN, _AMPLITUDE, _TEETH = 0.05, 0.1, 0.05, 20
+
+_SLOWEST = 0.5
+
+_CONVERGED = {
+    0.5: (0.011759, 0.011759),
+    0.7: (0.033653, 0.033653),
+    0.75: (0.044803, 0.224724),
+    0.8: (0.061357, 0.202258),
+    0.85: (0.181301, 0.181301),
+    1.0: (0.133083, 0.133083),
+    1.2: (0.094212, 0.094212),
+    1.6: (0.057716, 0.057716),
+}
+"""Frequency: rms of the alternating part at rising and at falling frequencies, converged independently."""
+
+_JUMP_UP, _JUMP_DOWN = 0.8285, 0.7080
+
+
+@SCENES.add(
+    "jumps_of_resonance",
+    "Between two jumps three motions exist at one speed, the middle one unstable; at the folds Newton's "
+    "matrix is singular.",
+    "Sixteen converged rms values of rising and falling speeds to 0.05 %, both jumps to 3e-4; integrators "
+    "agree.",
+)
+def _both_sweeps() -> Sequence[Measured]:
+    """Sweep up and down through the jumps by shooting, and find where the branch turns back."""
+    by_method = {method: [_sweep(method, side) for side in (0, 1)] for method in METHODS}
+    off = max(
+        abs(values[w] / _CONVERGED[w][side] - 1.0)
+        for sweeps in by_method.values()
+        for side, values in enumerate(sweeps)
+        for w in _CONVERGED
+    )
+    apart = max(
+        abs(first[w] / second[w] - 1.0)
+        for first, second in zip(by_method["implicit"], by_method["explicit"], strict=True)
+        for w in _CONVERGED
+    )
+    up, down = _fold(_JUMP_UP, 0.65, 0.9), _fold(_JUMP_DOWN, 0.9, 0.65)
+    return (
+        Measured("rms off the converged numbers, worst of 32", off, most=5e-4),
+        Measured("two integrators apart, rms relative", apart, most=1e-5),
+        Measured("jump up, off 0.8285", abs(up - _JUMP_UP), most=3e-4),
+        Measured("jump down, off 0.7080", abs(down - _JUMP_DOWN), most=3e-4),
+    )
+
+
+def _sweep(method: str, side: int) -> dict[float, float]:
+    """Return the rms at all frequencies, each settled from the motion at the one before."""
+    state: FloatArray | None = None
+    sizes: dict[float, float] = {}
+    for frequency in sorted(_CONVERGED, reverse=side == 1):
+        problem = periodic_problem(_oscillator(frequency, method), _SLOWEST / _TEETH)
+        state = settled(problem, frequency / _TEETH, state)
+        orbit = find_orbit(problem, frequency / _TEETH, state)
+        sizes[frequency] = _rms(problem, orbit, frequency) if orbit.status.usable and orbit.stable else np.nan
+        state = orbit.state
+    return sizes
+
+
+def _rms(problem: PeriodicProblem, orbit: Orbit, frequency: float) -> float:
+    """Return the rms of the alternating part of d - e."""
+    error = motion(problem, orbit).dynamic_transmission_error[0]
+    phase = 2.0 * np.pi * np.arange(error.size) / error.size
+    return float(np.std(error - _excitation(frequency) * np.cos(phase)))
+
+
+def _fold(jump: float, start: float, end: float) -> float:
+    """Return the frequency at which the branch first turns back, the excitation exact at `jump`."""
+    problem = periodic_problem(_oscillator(jump), 0.6 / _TEETH)
+    guess = settled(problem, start / _TEETH)
+    branch = follow_branch(problem, start / _TEETH, end / _TEETH, 0.05, guess)
+    return float(branch.folds[0]) * _TEETH if branch.status.usable and branch.folds.size == 2 else np.nan
+
+
+def _excitation(frequency: float) -> float:
+    """Return the amplitude of the error that makes the force Fa W^2."""
+    return float(_AMPLITUDE * frequency / np.hypot(frequency, 2.0 * _ZETA))
+
+
+def _oscillator(frequency: float, method: str = "implicit") -> System:
+    """Return the system of unit mass and stiffness, damped against the ground."""
+    amplitude = _excitation(frequency)
+    gears = tuple(
+        GearBody(f"gear {k}", f"shaft {k}", 0.5, _TEETH, 1.0, 0.1, inertia=Inertia(1.0, 1.0, 1.0))
+        for k in (1, 2)
+    )
+    back = CoastFlank(2.0, 0.0, spring(-amplitude, 256, 1.0))
+    scene = Scene(
+        (Shaft("shaft 1", 1.0), Shaft("shaft 2", 1.0, (2.2, 0.0, 0.0))),
+        gears,
+        (GearMesh("mesh", "gear 1", "gear 2", spring(amplitude, 256, 1.0), damping=0.0, coast=back),),
+        (ImposedRotation("drive", "shaft 1", TimeLaw.constant(frequency / _TEETH)),),
+        duration=1.0,
+        loads=(LoadTorque("load", "shaft 2", TimeLaw.constant(_MEAN)),),
+        integration=Integration(method, tolerance=1e-6, largest_step=1.0),
+    )
+    system = assemble(scene)
+    return replace(system, arrays=system.arrays.with_matrices(damping=np.array([[2.0 * _ZETA]])))

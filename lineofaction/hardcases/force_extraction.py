@@ -1,0 +1,227 @@
+"""Force extraction from tables that ask much of an interpolant."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from fe_contact.errors import InputError
+from fe_contact.ste import SteDatabase
+from fe_contact.types import FloatArray
+from lineofaction.hardcases.contact.posed_pair import even_positions, off
+from lineofaction.hardcases.scene import Measured, Scenes
+from lineofaction.hardcases.tables import COMPLIANCE, PLAIN_TABLE, along, square_wave, table_of
+
+SCENES = Scenes("table")
+
+_SEED = 20260102
+
+_FORCE = np.array([500.0, 1000.0, 2500.0, 5000.0])
+
+
+@SCENES.add(
+    "square_wave_ste",
+    "STE doubles between two knots, at every load: any smooth interpolant wants to swing.",
+    "No value leaves the wave's range, force grows with approach, and force and STE are inverse to each "
+    "other.",
+)
+def _square_wave_ste() -> Sequence[Measured]:
+    """Extract forces from an STE that jumps to its double between two knots."""
+    position = even_positions(64)
+    ste = square_wave(position)[:, None] * _FORCE
+    table = table_of(position, _FORCE, ste, np.zeros(64))
+    x = np.linspace(0.0, 1.0, 20_001)
+    curve = table.ste(x, 2500.0)
+    over = max(
+        float(curve.max() / (2500.0 * COMPLIANCE)) - 1.0, 1.0 - float(curve.min() / (1250.0 * COMPLIANCE))
+    )
+    depth = np.linspace(0.0, 1.2 * ste.max(), 400)
+    force = table.force_at(x[::50, None], depth).force
+    return (
+        Measured("overshoot over the wave", over, most=1e-12),
+        *_inverse(table, x),
+        Measured(
+            "least change of force as teeth approach, N", float(np.diff(force, axis=1).min()), least=-1e-9
+        ),
+        _slope_error(table),
+    )
+
+
+@SCENES.add(
+    "two_loads_only",
+    "Two stored loads, or one, leave nothing to take a curvature from, and lift-off below them.",
+    "Force and STE are inverse to each other; a linear table stays linear between its loads.",
+)
+def _two_loads() -> Sequence[Measured]:
+    """Extract forces from a table of two loads, and of one."""
+    position = even_positions(16)
+    compliance = COMPLIANCE * (1.0 + 0.3 * np.cos(2.0 * np.pi * position))
+    figures: list[Measured] = []
+    for force in (np.array([1000.0, 3000.0]), np.array([3000.0])):
+        table = table_of(position, force, compliance[:, None] * force, np.zeros(16))
+        between = np.linspace(0.0, 3000.0, 31)[1:]
+        straight = compliance[:, None] * between
+        growth = np.diff(table.ste(position[:, None], between), axis=1)
+        loads = f"{force.size} load" + "s" * (force.size > 1)
+        stored = between >= table.force[0]
+        figures += [
+            *(Measured(f"{f.name}, {loads}", f.value, f.most, f.least) for f in _inverse(table, position)),
+            Measured(
+                f"from the lowest load on, off the straight law, {loads}",
+                off(table.ste(table.position[:, None], between[stored]), straight[:, stored]),
+                1e-12,
+            ),
+            Measured(f"least growth of STE with load, {loads}, m", float(growth.min()), least=1e-9),
+        ]
+    return figures
+
+
+@SCENES.add(
+    "force_at_lift_off",
+    "The force sets in along a curve in position and approach; at it stiffness is zero by convention.",
+    "Force and stiffness are zero at and below lift-off, continuous through it, and positive above.",
+)
+def _lift_off() -> Sequence[Measured]:
+    """Move across lift-off, where the force sets in, with a gap that varies over the pitch."""
+    position = even_positions(32)
+    gap = 20e-6 * np.sin(2.0 * np.pi * position)
+    ste = gap[:, None] + COMPLIANCE * _FORCE**0.9
+    table = table_of(position, _FORCE, ste, gap)
+    x = np.linspace(0.0, 1.0, 501)
+    first = table.ste(x, 0.0)
+    below, at, above = (table.force_at(x, first + step) for step in (-1e-12, 0.0, 1e-12))
+    near = table.force_at(x, first + 1e-9)
+    return (
+        Measured("force at and below lift-off, N", float(max(below.force.max(), at.force.max())), most=0.0),
+        Measured(
+            "stiffness at and below lift-off, N/m", float(max(below.stiffness.max(), at.stiffness.max())), 0.0
+        ),
+        Measured("force 1 pm above it, N", float(above.force.max()), most=1e-6, least=0.0),
+        Measured(
+            "force 1 nm above it over the secant's", float(near.force.max() * COMPLIANCE / 1e-9), most=1.0
+        ),
+        Measured("least force 1 nm above it, N", float(near.force.min()), least=1e-12),
+        *_inverse(table, x),
+    )
+
+
+@SCENES.add(
+    "queries_outside",
+    "Positions of a million pitches, approaches far beyond the highest load, and what is no number.",
+    "Position repeats; beyond the top the curve goes on straight and is flagged; no number is refused.",
+)
+def _queries_outside() -> Sequence[Measured]:
+    """Ask beyond every end of the table, far away, and for what is no number."""
+    position = even_positions(32)
+    compliance = COMPLIANCE * (1.0 + 0.3 * np.cos(2.0 * np.pi * position))
+    table = table_of(position, _FORCE, compliance[:, None] * _FORCE, np.zeros(32))
+    x = np.linspace(0.0, 1.0, 101)[:-1]
+    here = table.ste(x, 2500.0)
+    far = np.abs(table.ste(x + 1e6, 2500.0) / here - 1.0).max()
+    behind = np.abs(table.ste(x - 12345.0, 2500.0) / here - 1.0).max()
+    top = table.ste(x, _FORCE[-1])
+    beyond = table.force_at(x, 2.0 * top)
+    inside = table.force_at(x, 0.99 * top)
+    straight = _FORCE[-1] + table.force_at(x, top).stiffness * top
+    refused = sum(
+        _refused(table, *query) for query in ((np.nan, 1e-5), (0.0, np.nan), (np.inf, 1e-5), (0.0, np.inf))
+    )
+    return (
+        Measured("a million pitches away, relative change", float(far), most=1e-9),
+        Measured("12345 pitches back, relative change", float(behind), most=1e-11),
+        Measured("beyond the top, off the straight continuation", off(beyond.force, straight), most=1e-9),
+        Measured("flags beyond the top", float(np.count_nonzero(beyond.validity)), least=float(x.size)),
+        Measured("flags inside", float(np.count_nonzero(inside.validity)), most=0.0),
+        Measured("of four queries that are no numbers, refused", float(refused), least=4.0),
+        *_along_the_axis(table, x),
+    )
+
+
+def _along_the_axis(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
+    """Ask a table of three misalignments at each of them, between and beyond."""
+    misalignment, factor = np.array([-20e-6, 0.0, 30e-6]), np.array([1.2, 1.0, 1.5])
+    names = ("static_transmission_error", "tangent_compliance", "no_load_transmission_error")
+    scaled: dict[str, Any] = {name: along(getattr(table, name), factor) for name in names}
+    scaled |= {name: along(getattr(table, name), np.ones(factor.size)) for name in PLAIN_TABLE}
+    wide = replace(table, misalignment=misalignment, **scaled)
+    here = table.ste(x, 2500.0)
+    at = [wide.ste(x, 2500.0, misalignment=m) / here for m in misalignment]
+    between = wide.ste(x, 2500.0, misalignment=15e-6) / here
+    force = [
+        wide.force_at(x, f * here, misalignment=m).force for m, f in zip(misalignment, factor, strict=True)
+    ]
+    beyond = wide.force_at(x, here, misalignment=1e-3)
+    return (
+        Measured(
+            "STE at each misalignment off the one stored for it",
+            max(off(values, np.full(x.size, f)) for values, f in zip(at, factor, strict=True)), 1e-12,
+        ),
+        Measured("force likewise", max(off(values, np.full(x.size, 2500.0)) for values in force), 1e-9),
+        Measured("STE between two misalignments over that at the lower one", float(between.min()), least=1.0),
+        Measured("over that at the higher one", float(between.max() / 1.5), most=1.0),
+        Measured("flags beyond the axis", float(np.count_nonzero(beyond.validity)), least=float(x.size)),
+    )  # fmt: skip
+
+
+@SCENES.add(
+    "nearly_parallel_curves",
+    "Curves of neighboring loads lie a picometer apart over a wave of microns: where they cross a force "
+    "has two values.",
+    "Their order holds everywhere, and force and STE are inverse to each other.",
+)
+def _nearly_parallel() -> Sequence[Measured]:
+    """Keep loads apart whose curves run a picometer from each other over a square wave."""
+    position = even_positions(48)
+    force = 1000.0 + np.array([0.0, 1e-3, 2e-3, 1.0])
+    ste = square_wave(position)[:, None] * force
+    ste[:, 1:3] = ste[:, :1] + np.array([1e-12, 2e-12])
+    table = table_of(position, force, ste, np.zeros(48))
+    x = np.linspace(0.0, 1.0, 4001)
+    levels = table.ste(x[:, None], np.r_[0.0, force])
+    return (
+        Measured(
+            "least distance of neighboring curves, m", float(np.diff(levels, axis=1).min()), least=1e-13
+        ),
+        Measured(
+            "curves off their knots, m",
+            float(np.abs(table.ste(position[:, None], force) - ste).max()),
+            most=0.0,
+        ),
+        *_inverse(table, x),
+    )
+
+
+def _inverse(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
+    """Return how well force and STE are inverse to each other between zero and the highest load."""
+    rng = np.random.default_rng(_SEED)
+    force = rng.uniform(0.0, float(table.force[-1]), x.size)
+    deflection = table.ste(x, force)
+    sample = table.force_at(x, deflection)
+    # what one rounding of the deflection changes, at the steepest of the table
+    steepest = float(np.diff(table.force_table().level).max() / np.diff(table.force_table().deflection).min())
+    rounding = 32.0 * np.spacing(np.abs(deflection)) * max(steepest, float(sample.stiffness.max()))
+    off = np.maximum(np.abs(sample.force - force) - rounding, 0.0) / table.force[-1]
+    return (Measured("force of the STE of a force, off by", float(off.max()), most=1e-9),)
+
+
+def _slope_error(table: SteDatabase) -> Measured:
+    """Return how far the stated stiffness is from the difference of forces."""
+    rng = np.random.default_rng(_SEED)
+    x, force = rng.uniform(0.0, 1.0, 500), rng.uniform(100.0, 4900.0, 500)
+    deflection = table.ste(x, force)
+    step = 1e-6 * deflection
+    sides = [table.force_at(x, deflection + sign * step).force for sign in (-1.0, 1.0)]
+    stated = table.force_at(x, deflection).stiffness
+    off = np.abs((sides[1] - sides[0]) / (2.0 * step) - stated) / stated.max()
+    return Measured("stiffness off the difference of forces", float(off.max()), most=1e-3)
+
+
+def _refused(table: SteDatabase, position: float, deflection: float) -> bool:
+    try:
+        table.force_at(position, deflection)
+    except InputError:
+        return True
+    return False

@@ -1,0 +1,129 @@
+"""Processes that die under a job: its mesher, its worker, and its worker every time."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+import numpy as np
+
+from fe_contact.analysis.analyze import ste_database
+from fe_contact.types import FloatArray
+from host import kill as end
+from lineofaction.gearbox.convert.case import analysis_options, gear_pair, table_axes
+from lineofaction.gearbox.schemas import Case, validated
+from lineofaction.hardcases.jobs.aftermath import (
+    MEDIUM,
+    Aftermath,
+    aftermath,
+    largest_difference,
+    undisturbed,
+)
+from lineofaction.hardcases.jobs.disturbances import AFTER
+from lineofaction.hardcases.jobs.job_service import JobService
+from lineofaction.hardcases.scene import Measured, Scenes
+from service.queue.job import Job
+
+SCENES = Scenes("service")
+
+MESHER_COMMAND, WORKER_COMMAND = "gmsh_worker", "service.worker."
+"""What their commands hold; a worker is started anew or forked."""
+
+_HANGING = """
+import time
+time.sleep(3600.0)
+"""
+"""A mesher that is met, however short its mesh."""
+
+
+@contextmanager
+def replaced_mesher(does: str) -> Iterator[Path]:
+    """Put what the mesher loads first on the path of the workers, which hand it on; undone once unlinked."""
+    undisturbed()
+    before = os.environ.get("PYTHONPATH")
+    with tempfile.TemporaryDirectory(prefix="loa-hard-mesher-") as name:
+        stand_in = Path(name, "gmsh.py")
+        stand_in.write_text(does, encoding="utf-8")
+        os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (name, before)))
+        try:
+            yield stand_in
+        finally:
+            os.environ.pop("PYTHONPATH") if before is None else os.environ.update(PYTHONPATH=before)
+
+
+def _killing(command: str, times: int) -> tuple[Aftermath, int]:
+    """Kill the process of this command each time the mesher hangs; returns how often it was."""
+    killed: list[int] = []
+    with replaced_mesher(_HANGING) as hangs:
+
+        def kill(service: JobService, _job: Job) -> None:
+            met = service.processes(command) if service.processes(MESHER_COMMAND) else []
+            if met and len(killed) < times:
+                if len(killed) + len(met) == times:
+                    hangs.unlink()
+                for pid in met:
+                    with suppress(ProcessLookupError):
+                        end(pid)
+                        killed.append(pid)
+
+        return aftermath(MEDIUM, kill), len(killed)
+
+
+@SCENES.add(
+    "job_whose_mesh_fails",
+    "The mesher is killed in mid-mesh: a process started by the worker, of which the service knows nothing.",
+    f"The job fails at its first attempt and says that the mesher was killed; {AFTER}",
+)
+def _mesher_killed() -> Sequence[Measured]:
+    outcome, killed = _killing(MESHER_COMMAND, 1)
+    stated = "gmsh worker: killed by SIGKILL" in outcome.job.message
+    return (
+        Measured("meshers killed", float(killed), 1.0, 1.0),
+        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), least=1.0),
+        Measured("says that the mesh failed, and how", float(stated), least=1.0),
+        *outcome.figures,
+    )
+
+
+@SCENES.add(
+    "worker_killed_once",
+    "The worker is killed (SIGKILL) while its mesher hangs: nobody tells the service, and the mesher stays.",
+    f"The second attempt gives what Python gives undisturbed, to the last bit; {AFTER}",
+)
+def _worker_killed_once() -> Sequence[Measured]:
+    """Kill the first worker in mid-mesh."""
+    outcome, killed = _killing(WORKER_COMMAND, 1)
+    off = np.inf if outcome.errors is None else largest_difference(outcome.errors, python_ste())
+    return (
+        Measured("workers killed", float(killed), 1.0, 1.0),
+        Measured("done at the second attempt", float(outcome.ended_as("successful", 2)), least=1.0),
+        Measured("result off that of Python, m", off, most=0.0),
+        *outcome.figures,
+    )
+
+
+@SCENES.add(
+    "worker_killed_at_every_attempt",
+    "Every worker of the job is killed while its mesher hangs: tried for ever, it would block all others.",
+    f"The job fails at its second attempt, with the signal and the number of attempts; {AFTER}",
+)
+def _worker_killed_always() -> Sequence[Measured]:
+    """Kill every worker in mid-mesh."""
+    outcome, killed = _killing(WORKER_COMMAND, 2)
+    message = outcome.job.message
+    stated = "ended by SIGKILL" in message and message.endswith("That was attempt 2 of 2.")
+    return (
+        Measured("workers killed", float(killed), 2.0, 2.0),
+        Measured("failed at the last attempt", float(outcome.ended_as("failed", 2)), least=1.0),
+        Measured("says what ended it, and how often it was tried", float(stated), least=1.0),
+        *outcome.figures,
+    )
+
+
+def python_ste() -> FloatArray:
+    """Return the STE of the medium case, computed in this process, m."""
+    case = validated(Case, MEDIUM)
+    return ste_database(gear_pair(case), table_axes(case), analysis_options(case)).static_transmission_error
