@@ -42,7 +42,8 @@ from fe_contact.compliance.root_stress import (
 from fe_contact.compliance.sector_stiffness import above, cylindrical_frames, node_axes, twist
 from fe_contact.compliance.substructure import Condensation
 from fe_contact.geometry import Toothing, tooth_profile
-from fe_contact.geometry.flank_profile import FlankProfile, tangent_angle
+from fe_contact.geometry.flank_profile import FlankProfile
+from fe_contact.geometry.root_tangent import tangent_angle
 from fe_contact.material import Material
 from fe_contact.mesh.quad_sector import QuadSector, quad_sector
 from fe_contact.mesh.recipe import SectorRecipe

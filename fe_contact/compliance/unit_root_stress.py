@@ -45,7 +45,8 @@ from fe_contact.compliance.root_stress import (
 )
 from fe_contact.errors import InputError
 from fe_contact.geometry import Toothing, tooth_profile
-from fe_contact.geometry.flank_profile import FlankProfile, tangent_angle
+from fe_contact.geometry.flank_profile import FlankProfile
+from fe_contact.geometry.root_tangent import tangent_angle
 from fe_contact.material import Material
 from fe_contact.mesh import MeshRecipe, SectorRecipe, mesh_gear
 from fe_contact.mesh.sector_grid import BoreSupport, bore_support

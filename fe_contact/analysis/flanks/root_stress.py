@@ -27,7 +27,7 @@ from fe_contact.compliance import (
 from fe_contact.contact import face_flank_forces, plane_flank_forces
 from fe_contact.contact.patch import Patches
 from fe_contact.geometry import ParallelAxes, tooth_profile
-from fe_contact.geometry.flank_profile import critical_section
+from fe_contact.geometry.root_tangent import critical_section
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.planning.cost_model import body_seconds

@@ -33,7 +33,7 @@ from fe_contact.contact.face_patch import FaceGrid, face_loads
 from fe_contact.contact.patch import load_vector
 from fe_contact.errors import SolveError
 from fe_contact.geometry import Gear, RingGear, Toothing, tooth_profile
-from fe_contact.geometry.flank_profile import critical_section, tangent_angle
+from fe_contact.geometry.root_tangent import critical_section, tangent_angle
 from fe_contact.material import Material
 from fe_contact.mesh import (
     ClampedBore,
