@@ -26,7 +26,7 @@ from fe_contact.analysis.request.request import Checked, Influences, Request, es
 from fe_contact.analysis.request.solved_run import Solved
 from fe_contact.analysis.tables import SolvedTable, condensed_bodies, solve_table
 from fe_contact.contact import ContactSolution
-from fe_contact.contact.problem import condition_numbers
+from fe_contact.contact.condition_number import condition_numbers
 from fe_contact.options import Run
 from fe_contact.planning.cost_model import log_name
 from fe_contact.plausibility import merged, table_findings

@@ -27,9 +27,9 @@ from fe_contact.contact import (
     load_arm,
     solve_contact,
 )
-from fe_contact.contact.assembly import together
+from fe_contact.contact.condition_number import condition_numbers
+from fe_contact.contact.face_assembly import together
 from fe_contact.contact.plain_touch import Touch
-from fe_contact.contact.problem import condition_numbers
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.cost_model import unit_work
 from fe_contact.planning.plan import Plan

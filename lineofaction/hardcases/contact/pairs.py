@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fe_contact.contact import ContactProblem, ContactSolution
-from fe_contact.contact.problem import POINTS
+from fe_contact.contact.slices import POINTS
 from fe_contact.geometry import Gear, GearPair
 from fe_contact.types import FloatArray
 from lineofaction.hardcases.contact.laws import (
