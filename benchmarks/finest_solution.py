@@ -9,7 +9,8 @@ import numpy as np
 
 from benchmarks.assessed import HARMONICS
 from benchmarks.pair_cases import PairCase
-from fe_contact.analysis.pairs.pair_contact import PairContact, operating_points, pair_contact
+from fe_contact.analysis.pairs.operating_points import operating_points
+from fe_contact.analysis.pairs.pair_contact import PairContact, pair_contact
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.geometry import Toothing

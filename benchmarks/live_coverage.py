@@ -18,7 +18,7 @@ from benchmarks.pair_cases import M, PairCase, face_cases, plane_cases
 from benchmarks.stored_runs import FILE, errors_by_source, quantities, together
 from fe_contact import FlankModification, analyze
 from fe_contact.analysis.live.condensed_pair import CondensedPair
-from fe_contact.analysis.live.condensed_request import condensed_pair
+from fe_contact.analysis.live.stored_bodies import condensed_pair
 from fe_contact.analysis.pairs.pair_contact import PairContact, pair_contact
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.geometry import ParallelAxes

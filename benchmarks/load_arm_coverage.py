@@ -17,7 +17,8 @@ from benchmarks.figures import Figure
 from benchmarks.finest_solution import FACE_POSITIONS
 from benchmarks.pair_cases import PairCase
 from fe_contact import analyze
-from fe_contact.analysis.pairs.pair_contact import operating_points, pair_contact
+from fe_contact.analysis.pairs.operating_points import operating_points
+from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact import load_arm
 from fe_contact.planning.plan import FINER_SLICES, make_plan, patch_rules

@@ -18,8 +18,9 @@ from benchmarks.marked_section import replace_section
 from benchmarks.quiet_helical_cases import QuietPair, quiet_pairs
 from fe_contact.analysis.checks.effect_ledger import toggled
 from fe_contact.analysis.database.compute_database import compute_database
+from fe_contact.analysis.request.influences import estimated_influences
 from fe_contact.analysis.request.model_choice import decide
-from fe_contact.analysis.request.request import Checked, estimated_influences
+from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.effects.influence.estimate import RIPPLE_FLOOR, Influence, signed
 from fe_contact.options import AnalysisOptions, Run, TableAxes

@@ -13,8 +13,9 @@ if TYPE_CHECKING:
     from fe_contact.allowed_error import AllowedError
     from fe_contact.analysis.analyze import analyze, ste_database
     from fe_contact.analysis.deviating_cycle import DeviatingCycle, deviating_cycle
+    from fe_contact.analysis.flanks.contact_pattern import ContactPattern, contact_pattern
     from fe_contact.analysis.flanks.deformed_pair import DeformedPair, deformed_pairs
-    from fe_contact.analysis.flanks.flank_file import ContactPattern, contact_pattern, flank_results
+    from fe_contact.analysis.flanks.flank_results import flank_results
     from fe_contact.analysis.flanks.load_distribution import LoadDistribution
     from fe_contact.analysis.flanks.root_stress import RootStress, root_stress
     from fe_contact.analysis.studies.ablation import Ablation, ablate
@@ -107,8 +108,9 @@ _NAMES = {
     "fe_contact.allowed_error": "AllowedError",
     "fe_contact.analysis.analyze": "analyze ste_database",
     "fe_contact.analysis.deviating_cycle": "DeviatingCycle deviating_cycle",
+    "fe_contact.analysis.flanks.contact_pattern": "ContactPattern contact_pattern",
     "fe_contact.analysis.flanks.deformed_pair": "DeformedPair deformed_pairs",
-    "fe_contact.analysis.flanks.flank_file": "ContactPattern contact_pattern flank_results",
+    "fe_contact.analysis.flanks.flank_results": "flank_results",
     "fe_contact.analysis.flanks.load_distribution": "LoadDistribution",
     "fe_contact.analysis.flanks.root_stress": "RootStress root_stress",
     "fe_contact.analysis.studies.ablation": "Ablation ablate",

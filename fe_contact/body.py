@@ -1,62 +1,13 @@
-"""The body of a gear and its supports: blank, seat of the bore, shaft; light."""
+"""The body of a gear below its teeth: rim, web, hub (gear blank, ISO 6336-1) and the seat of its bore."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass, replace
 
-from bounds import Declared, Kind, Quantity, SiNote, Text, between, declared, described, required, up_to
-from fe_contact.errors import InputError, declared_fields, within
-from fe_contact.material import STEEL, Material
+from bounds import Declared, Kind, Quantity, Text, between, declared, described, required, up_to
+from fe_contact.errors import InputError, declared_fields
 from fe_contact.types import Json
-
-# The shaft that carries a gear between two bearings.
-
-_LENGTH = Declared(Kind.LENGTH, "m", up_to(50.0), "Distance between the bearings", 0.2)
-_DIAMETER = Declared(Kind.LENGTH, "m", between(1e-6, 10.0), "Diameter", 0.04)
-_POSITION = Declared(
-    Kind.LENGTH,
-    "m",
-    between(-50.0, 100.0),
-    "Mid-face of the gear towards +z from the bearing of smaller z; overhangs by at most the length",
-    0.06,
-)
-_STIFFNESS = Declared(
-    Kind.STIFFNESS,
-    "N/m",
-    up_to(1e15),
-    "Radial stiffness of each bearing; left out: rigid",
-    4e8,
-    written="N/µm",
-)
-
-
-@described
-@dataclass(frozen=True)
-class Shaft:
-    """A round shaft of constant diameter on two radial bearings, with the gear between or beside them.
-
-    A gear whose position is negative or beyond the length overhangs; +z is along the pinion's axis. Raises
-    `InputError`: a value out of its bounds.
-    """
-
-    length: float = required(_LENGTH)
-    diameter: float = required(_DIAMETER)
-    position: float = required(_POSITION)
-    bearing_stiffness: float | None = declared(None, _STIFFNESS)
-    material: Material = STEEL
-
-    def __post_init__(self) -> None:
-        declared_fields(self)
-        advice = SiNote("In m from the bearing of smaller z; a gear may overhang by one length.")
-        within("position", self.position, -self.length, 2.0 * self.length, advice)
-
-
-Shafts = tuple[Shaft | None, Shaft | None]
-"""Of the driving and the driven gear; None is rigid."""
-
-
-# The body of a gear below its teeth: rim, web and hub (gear blank, ISO 6336-1).
 
 ROUNDING = 1e-4  # of the face width: faces closer than that are one, since foils of elements are no help
 
@@ -65,6 +16,17 @@ _RIM = "Rim thickness s_R below the root circle; half a module or more, less tha
 _WEB = "Web thickness b_s; 0.02 face widths to the face width, which is a solid gear"
 _HUB = "Outside of the hub, the bore diameter or more; left out: the web reaches down to the bore"
 _WEB_OFFSET = "Middle of the web towards +z from mid-face; the web stays within the face"
+
+FOUNDATIONS = ("radial_foundation", "tangential_foundation", "axial_foundation")
+_KEY = Text.of(
+    "About G / h for a key of height h: ", Quantity(1e13, "N/m^3"), " for ", Quantity(8e-3, "m"), " of steel."
+)
+
+_ACROSS = "Width along the circumference"
+_ANGLE = "Angle of its middle, counter-clockwise from the center line of the reference tooth at mid-face"
+_WIDTH = "Axial length of the seat, 0.02 face widths or more; left out: the face width"
+_KEYED = "A key; the tangential foundation is then its own"
+_SEAT_OFFSET = "Middle of the seat towards +z from mid-face; the seat stays within the face"
 
 
 @dataclass(frozen=True)
@@ -118,24 +80,11 @@ class GearBlank:
         return Web(root_radius - self.rim_thickness, 0.5 * hub, low, high)
 
 
-FOUNDATIONS = ("radial_foundation", "tangential_foundation", "axial_foundation")
-_KEY = Text.of(
-    "About G / h for a key of height h: ", Quantity(1e13, "N/m^3"), " for ", Quantity(8e-3, "m"), " of steel."
-)
-
-
 def _foundation(direction: str, example: float) -> Declared:
     """Return the declaration of a foundation modulus: traction per displacement, N/m^3."""
     return Declared(
         Kind.STIFFNESS, "N/m^3", up_to(1e18), f"{direction} foundation modulus; left out: rigid", example
     )
-
-
-_ACROSS = "Width along the circumference"
-_ANGLE = "Angle of its middle, counter-clockwise from the center line of the reference tooth at mid-face"
-_WIDTH = "Axial length of the seat, 0.02 face widths or more; left out: the face width"
-_KEYED = "A key; the tangential foundation is then its own"
-_SEAT_OFFSET = "Middle of the seat towards +z from mid-face; the seat stays within the face"
 
 
 @described

@@ -15,31 +15,6 @@ from numpy.typing import ArrayLike
 from fe_contact.material import Material
 from fe_contact.types import FloatArray
 
-# Contact of a smooth flank with the tip edge of its partner.
-
-
-def wedge_softness(angle: float) -> float:
-    """Return how much more a wedge yields to a force at its edge than a half plane does; 1 at an angle of pi.
-
-    A force p at the apex, normal to a face, moves what is r away by -k_w p ln(r) plus a constant. This is
-    k_w/k, k = 2 (1 - nu^2)/(pi E) that of the half plane, by the radial stresses in a wedge. `angle`: of the
-    material between the faces, rad.
-    """
-    half = 0.5 * angle
-    along, across = half + 0.5 * math.sin(angle), half - 0.5 * math.sin(angle)
-    return 0.5 * math.pi * (math.sin(half) ** 2 / along + math.cos(half) ** 2 / across)
-
-
-def lateral_share(poissons_ratio: float) -> float:
-    """Return the part of k p theta by which a flank gives way to a load whose normal is turned by theta.
-
-    A normal load draws the surface beside it towards itself by (1 - 2 nu)(1 + nu) p/(2 E). Where normals
-    turn, that has a part along the other normal. k = 2 (1 - nu^2)/(pi E), in plane strain; exact for a disc
-    (docs/theory/hertz.md).
-    """
-    return 0.25 * math.pi * (1.0 - 2.0 * poissons_ratio) / (1.0 - poissons_ratio)
-
-
 STRIP_DISTANCE = 64.0 / (9.0 * math.pi**2)
 """Mean distance of a point under a punch from one of the strip's load, over half the strip, 0.72."""
 
@@ -66,3 +41,25 @@ def half_width(line_load: ArrayLike, radius: ArrayLike, modulus: float) -> Float
 def peak_pressure(line_load: ArrayLike, radius: ArrayLike, modulus: float) -> FloatArray:
     """Peak pressure p0 in Pa, p0^2 = p E* / (pi R) [1]_."""
     return np.sqrt(np.asarray(line_load, dtype=float) * modulus / (math.pi * np.asarray(radius)))
+
+
+def wedge_softness(angle: float) -> float:
+    """Return how much more a wedge yields to a force at its edge than a half plane does; 1 at an angle of pi.
+
+    A force p at the apex, normal to a face, moves what is r away by -k_w p ln(r) plus a constant. This is
+    k_w/k, k = 2 (1 - nu^2)/(pi E) that of the half plane, by the radial stresses in a wedge. `angle`: of the
+    material between the faces, rad.
+    """
+    half = 0.5 * angle
+    along, across = half + 0.5 * math.sin(angle), half - 0.5 * math.sin(angle)
+    return 0.5 * math.pi * (math.sin(half) ** 2 / along + math.cos(half) ** 2 / across)
+
+
+def lateral_share(poissons_ratio: float) -> float:
+    """Return the part of k p theta by which a flank gives way to a load whose normal is turned by theta.
+
+    A normal load draws the surface beside it towards itself by (1 - 2 nu)(1 + nu) p/(2 E). Where normals
+    turn, that has a part along the other normal. k = 2 (1 - nu^2)/(pi E), in plane strain; exact for a disc
+    (docs/theory/hertz.md).
+    """
+    return 0.25 * math.pi * (1.0 - 2.0 * poissons_ratio) / (1.0 - poissons_ratio)

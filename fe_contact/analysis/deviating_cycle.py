@@ -10,7 +10,7 @@ from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.checks.cycle_law import check_cycle
 from fe_contact.analysis.checks.table_laws import require_laws
 from fe_contact.analysis.cycle.envelope import CycleContact, chosen
-from fe_contact.analysis.pairs.pair_contact import operating_points
+from fe_contact.analysis.pairs.operating_points import operating_points
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.tables import condensed_bodies

@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 from bounds import engineering
 from fe_contact.analysis.checks.effect_ledger import effect_ledger
-from fe_contact.analysis.request.model_choice import Decided, decide, expected_curves
+from fe_contact.analysis.request.expected_curves import expected_curves
+from fe_contact.analysis.request.model_choice import Decided, decide
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import as_checked
 from fe_contact.errors import positive
@@ -20,6 +21,9 @@ from fe_contact.planning.plan import Plan
 from fe_contact.planning.planned import ExpectedCurves, ExpectedError, MeshChoice, expected_error
 from fe_contact.types import Json
 from model_studies.host_speed import host_slowness
+
+_DESIGN = 0.75
+"""A solution at equally spaced positions over the table of a search: 0.55 to 1.0 in sweeps of two pairs."""
 
 
 @dataclass(frozen=True)
@@ -117,10 +121,6 @@ def plan_run(
     if budget is not None and (options.tolerance is not None or options.level is not None):
         conflict = _conflict(decided, positive("time_budget", budget, "Seconds."), cache)
     return RunPlan(checked, choice, decided.plan, passes, tuple(levels), conflict, cache)
-
-
-_DESIGN = 0.75
-"""A solution at equally spaced positions over the table of a search: 0.55 to 1.0 in sweeps of two pairs."""
 
 
 class PredictedDesigns(NamedTuple):

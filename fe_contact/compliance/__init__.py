@@ -1,16 +1,13 @@
 """Flank compliance by finite elements: assembly, condensation to the flanks, checks, disk cache."""
 
 import host.analysis  # noqa: F401 (says what to install)
-from fe_contact.compliance.cyclic_compliance import (
-    flank_compliance_3d,
-    flank_compliances_3d,
-    predict_cost,
-)
+from fe_contact.compliance.cache_coverage import free_ends_kept, section_kept, solid_kept
+from fe_contact.compliance.condensation_cost import predict_cost
+from fe_contact.compliance.cyclic_compliance import flank_compliance_3d, flank_compliances_3d
 from fe_contact.compliance.finite_width import FiniteWidthCompliance, finite_width_compliances
 from fe_contact.compliance.flank import ComplianceChecks, FlankCompliance, FlankCompliance3D
 from fe_contact.compliance.flank_compliance_2d import flank_compliance, flank_compliances
-from fe_contact.compliance.plane_elasticity import PlaneHypothesis
-from fe_contact.compliance.remote_condensation import free_ends_kept, section_kept, solid_kept
+from fe_contact.compliance.plane_hypothesis import PlaneHypothesis
 from fe_contact.compliance.root_stress import UnitRootStress
 from fe_contact.compliance.unit_root_stress import (
     stress_kept,

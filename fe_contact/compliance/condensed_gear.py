@@ -1,33 +1,27 @@
-"""A gear condensed to its flanks over the face, and the laws that it must keep."""
+"""A gear condensed to its flanks over the face."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
 
 from fe_contact.compliance.cyclic_ring import FreeTurn, HeldSector, RingSolution, close_ring, hold_sector
 from fe_contact.compliance.elimination_tree import sector_tree
-from fe_contact.compliance.flank import ComplianceChecks, left_by_rounding
 from fe_contact.compliance.sector_stiffness import ElementStiffness, sector_stiffness
 from fe_contact.compliance.substructure import Condensation, condense
 from fe_contact.geometry import Toothing, tooth_profile
+from fe_contact.mesh.bore_support import BoreSupport
 from fe_contact.mesh.quad_sector import QuadSector
-from fe_contact.mesh.recipe import SectorRecipe
-from fe_contact.mesh.sector_grid import BoreSupport
+from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.mesh.swept_sector import SweptSector, swept_sector
 from fe_contact.types import FloatArray, IntArray
 from model_studies.stage_clock import StageClock
 
-# Checks of a condensed three-dimensional gear on its uncondensed mesh, by the field of one load.
-
-
 # Share of a uniform pressure that the nodes of an eight-node face carry, by plane and profile node.
 FACE_SHARES = np.array([[-1.0, 4.0, -1.0], [4.0, 0.0, 4.0], [-1.0, 4.0, -1.0]]) / 12.0
-INVERSE_ITERATIONS = 60
 
 
 @dataclass(frozen=True)
@@ -82,124 +76,6 @@ def _probe_loads(s: FloatArray, z: FloatArray, index: IntArray, s_form: float) -
     end = np.zeros_like(on)
     end[-1] = on[-1]
     return np.stack([_pressure_forces(s, z, index, part) for part in (on, end)], axis=1)
-
-
-def gear_checks(gear: CondensedGear, loads: FloatArray, lever: float, bore_radius: float) -> ComplianceChecks:
-    """Check a gear.
-
-    Parameters
-    ----------
-    gear : CondensedGear
-        Solved for the probe loads `loads` (nf, 2), `_probe_loads`.
-    lever : float
-        Moment about the axis per unit force along the involute's inward normal, r_b cos(beta_b), m.
-    bore_radius : float
-        m.
-    """
-    load, ring, sector = loads[:, :1], gear.ring, gear.sector
-    solved = replace(gear, ring=replace(ring, left=ring.solved))
-    everywhere = np.tile(ring.solved.sum(axis=0), (2, 1))[:, :1]
-    turning = gear.held.flank @ load * ring.shares.sum() + gear.held.transmitted.T @ everywhere
-    values = [np.concatenate([each.flank(0, loads)[:, :1], each.cuts(0)[:, :1]]) for each in (gear, solved)]
-    values.append(np.concatenate([turning, everywhere]))
-    fields = gear.condensation.expand(np.concatenate(values, axis=1)).T
-    forces = [element_forces(sector, gear.stiffness, field) for field in fields]
-    cuts = np.concatenate([ring.left, np.roll(ring.left, 1, axis=0)], axis=1)[1:, :, 0]
-    moved = float(np.sum(cuts @ gear.held.cuts * cuts) + np.sum(ring.left[:, :, 0] @ ring.restraining[:, 0]))
-    free = sector.element_freedoms >= 0
-    inside = float(np.sum(fields[0][sector.element_freedoms] * forces[0] * free))
-    works = [inside + moved, float(load[:, 0] @ values[0][: len(load), 0])]
-    works.append(float(load[:, 0] @ ring.blocks[0] @ load[:, 0]))
-    moment = _bore_moment(solved, forces[2], bore_radius)
-    diagonals = np.einsum("mii->mi", gear.stiffness.matrices)[gear.stiffness.of_element]
-    added = np.bincount(sector.element_freedoms[free], diagonals[free], minlength=sector.size)
-    alone = added.astype(float)  # stiffness of each freedom with all others held: the diagonal
-    _, energy = left_by_rounding(alone, fields[0], load, works[0])
-    unbalanced, _ = left_by_rounding(alone, fields[1], load, works[0])
-    return ComplianceChecks(
-        residual=residual(solved, forces[1], load, ring.shares),
-        reciprocity=_reciprocity(gear, loads),
-        bore_moment=abs(moment / (lever * float(load.sum() * ring.shares.sum())) - 1.0),
-        energy=float(np.ptp(works) / works[0]),
-        least_eigenvalue=_least_eigenvalue(ring.blocks[0]),
-        residual_rounding=unbalanced,
-        energy_rounding=energy,
-    )
-
-
-def element_forces(sector: SweptSector, stiffness: ElementStiffness, field: FloatArray) -> FloatArray:
-    """Return the nodal forces (e, 60) of all elements under the displacement `field` (n,)."""
-    local = np.where(sector.element_freedoms >= 0, field[sector.element_freedoms], 0.0)
-    forces = np.empty_like(local)
-    for batch in sector.batches:
-        first = stiffness.of_element[batch.elements[0, 0]]
-        matrices = stiffness.matrices[first : first + len(batch.quads)]
-        forces[batch.elements] = np.einsum("mij,cmj->cmi", matrices, local[batch.elements])
-    return forces
-
-
-def residual(gear: CondensedGear, forces: FloatArray, load: FloatArray, shares: FloatArray) -> float:
-    """Return the norm of f - K u over that of f, on all free freedoms of sector 0 with both cuts.
-
-    `forces` (e, 60) are those of its elements; of the `load` (nf, 1) each tooth has its share. The neighbors
-    act on the cuts by their condensed stiffness.
-    """
-    sector = gear.sector
-    free = sector.element_freedoms >= 0
-    inside = np.bincount(sector.element_freedoms[free], forces[free], minlength=sector.size)
-    out: FloatArray = -inside.astype(float)
-    out[sector.loaded] += shares[0] * load[:, 0]
-    size = gear.held.cut_size
-    out[sector.left] -= gear.cut_forces(1, shares[1] * load)[size:, 0]
-    out[sector.right] -= gear.cut_forces(-1, shares[-1] * load)[:size, 0]
-    for cut in (sector.left, sector.right):
-        out[cut] -= gear.ring.restraining[:, 0]
-    return float(np.linalg.norm(out) / np.linalg.norm(load))
-
-
-def _bore_moment(gear: CondensedGear, forces: FloatArray, bore_radius: float) -> float:
-    """Return the moment about the axis that the bore takes up under the first probe load, N m.
-
-    The load is along the outward normal of the right flank, which turns the gear clockwise; so the reactions
-    turn it counter-clockwise, positive. `forces` (e, 60) of the elements are those of harmonic 0, the sum
-    over all sectors. What a key will take up is here taken by the restraint of the ring.
-    """
-    if gear.ring.restraint:
-        return -len(gear.ring.left) * float(gear.ring.turn @ gear.ring.restraining[:, 0])
-    nodes = gear.sector.nodes[:, gear.sector.grid.bore]
-    on_bore = np.isin(gear.sector.elements, nodes[nodes >= 0])
-    on_bore[gear.sector.bodies :] = False  # an elastic seat takes up what the bodies pass to it
-    return bore_radius * float(forces.reshape(-1, 20, 3)[on_bore][:, 1].sum())
-
-
-def _reciprocity(gear: CondensedGear, loads: FloatArray) -> float:
-    """Return how far the work of one probe load on the other's displacement, tooth to tooth, is not mutual.
-
-    Also the asymmetry of S_0 over its largest entry.
-    """
-    reach = len(gear.ring.blocks) - 1
-    works = {m: loads.T @ gear.flank(m, loads) for m in range(-reach, reach + 1)}
-    scale = float(np.abs(works[0]).max())
-    mutual = max(float(np.abs(works[m] - works[-m].T).max()) for m in range(reach + 1)) / scale
-    own = gear.ring.blocks[0]
-    return max(mutual, float(np.abs(own - own.T).max() / np.abs(own).max()))
-
-
-def _least_eigenvalue(matrix: FloatArray) -> float:
-    """Return the least eigenvalue of a symmetric matrix by inverse iteration, minus its norm if none."""
-    try:
-        factor = cho_factor(matrix, lower=True)
-    except np.linalg.LinAlgError:
-        return -float(np.linalg.norm(matrix))
-    vector = np.cos(np.arange(len(matrix), dtype=float))  # of no particular shape, and the same every time
-    value = np.inf
-    for _ in range(INVERSE_ITERATIONS):
-        vector /= np.linalg.norm(vector)
-        vector = cho_solve(factor, vector)
-        last, value = value, 1.0 / float(np.linalg.norm(vector))
-        if abs(last - value) <= 1e-3 * value:
-            break
-    return value
 
 
 def condensed_gear(

@@ -1,4 +1,4 @@
-"""The elimination of a body by nested dissection, and that of a swept tooth sector."""
+"""Elimination tree of a body: the order of its freedoms by nested bisection, and what elimination costs."""
 
 from __future__ import annotations
 
@@ -9,9 +9,6 @@ import numpy as np
 
 from fe_contact.mesh.swept_sector import SweptSector
 from fe_contact.types import BoolArray, FloatArray, IntArray
-
-# Nested bisection of a structured mesh: in which order freedoms are eliminated, and what that costs.
-
 
 LEAF = 16  # elements gathered in one front: fewer cost more interpreter time, more cost more operations
 OFF_CENTRE = 8.0  # dislike of unequal halves against a short cut

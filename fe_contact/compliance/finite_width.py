@@ -29,7 +29,7 @@ from fe_contact.compliance.flank import FlankCompliance, FlankCompliance3D
 from fe_contact.errors import InputError
 from fe_contact.geometry import Toothing
 from fe_contact.mesh import SectorRecipe
-from fe_contact.mesh.sector_grid import ClampedBore, PlaneStrain
+from fe_contact.mesh.bore_support import ClampedBore, PlaneStrain
 from fe_contact.types import FloatArray, IntArray
 
 

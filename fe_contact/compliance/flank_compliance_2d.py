@@ -18,21 +18,17 @@ from fe_contact.compliance.cache import (
     mesher_version,
     once_each,
 )
+from fe_contact.compliance.condensed_sector import condense_sector
+from fe_contact.compliance.factorization import FACTORIZATION
 from fe_contact.compliance.flank import (
     ComplianceChecks,
     FlankCompliance,
     left_by_rounding,
     refuse_broken_laws,
 )
-from fe_contact.compliance.plane_elasticity import PlaneHypothesis, stiffness_matrix
-from fe_contact.compliance.ring_2d import (
-    FACTORIZATION,
-    Ring,
-    assemble_ring,
-    condense_sector,
-    flank_matrices,
-    rotation,
-)
+from fe_contact.compliance.plane_elasticity import stiffness_matrix
+from fe_contact.compliance.plane_hypothesis import PlaneHypothesis
+from fe_contact.compliance.ring_2d import Ring, assemble_ring, flank_matrices, rotation
 from fe_contact.errors import InputError, integer
 from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.mesh import GearMesh, MeshRecipe, mesh_gear

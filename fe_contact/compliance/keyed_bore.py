@@ -19,10 +19,11 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_contact.body import Key
+from fe_contact.compliance.coarse_face import face_functions
 from fe_contact.compliance.condensed_gear import CondensedGear
-from fe_contact.compliance.sector_stiffness import face_functions
 from fe_contact.geometry import Toothing
-from fe_contact.mesh.swept_sector import LOWER_FACE, SweptSector, between_ends
+from fe_contact.mesh.element_stack import LOWER_FACE
+from fe_contact.mesh.swept_sector import SweptSector, between_ends
 from fe_contact.types import FloatArray, IntArray
 
 POINTS = 3  # of Gauss each way on the part of a face that the key covers: exact along the bore

@@ -1,4 +1,4 @@
-"""What of a compliance is cached, and gears condensed by workers, their results kept in the cache."""
+"""Gears condensed by workers, and their results in the cache of compliances."""
 
 from __future__ import annotations
 
@@ -7,51 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fe_contact.compliance.cache import kept_size, write_compliance
-from fe_contact.compliance.cyclic_compliance import (
-    compliance_key_3d,
-    compute_flank_compliance_3d,
-    usual_reach,
-)
+from fe_contact.compliance.cyclic_compliance import compliance_key_3d, compute_flank_compliance_3d
 from fe_contact.compliance.flank import FlankCompliance3D
-from fe_contact.compliance.flank_compliance_2d import compliance_key, condensed_teeth
-from fe_contact.compliance.plane_elasticity import PlaneHypothesis
+from fe_contact.compliance.tooth_reach import usual_reach
 from fe_contact.geometry import Toothing
-from fe_contact.mesh import MeshRecipe, SectorRecipe
-from fe_contact.mesh.sector_grid import BoreSupport, PlaneStrain, bore_support
+from fe_contact.mesh import SectorRecipe
+from fe_contact.mesh.bore_support import BoreSupport, bore_support
 from model_studies.progress import Report, unreported
 from model_studies.workers import InProcess, Remembering, Workers, kept
-
-# Size of the part of a compliance that is cached: it is not computed, and takes as much memory.
-
-
-def solid_kept(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> int:
-    """Return the bytes of the compliance over the face that is kept, 0 if it is not."""
-    if cache is None:
-        return 0
-    support = bore_support(gear.right_handed())
-    return kept_size(cache, compliance_key_3d(gear, recipe, usual_reach(gear), support))
-
-
-def free_ends_kept(gear: Toothing, recipe: SectorRecipe, teeth: int, cache: Path | None) -> int:
-    """Return the bytes kept of the solids that correct the plane with `teeth` teeth; 0 if one is missing."""
-    if cache is None:
-        return 0
-    reach = min(teeth - 1, gear.teeth // 2)
-    keys = (
-        compliance_key_3d(gear, recipe, reach, support) for support in (bore_support(gear), PlaneStrain())
-    )
-    sizes = [kept_size(cache, key) for key in keys]
-    return sum(sizes) if all(sizes) else 0
-
-
-def section_kept(
-    gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int, cache: Path | None
-) -> int:
-    """Return the bytes of the compliance of `teeth` teeth in the plane that is kept, 0 if it is not."""
-    if cache is None:
-        return 0
-    count = condensed_teeth(gear, recipe, teeth)
-    return kept_size(cache, compliance_key(gear, recipe, hypothesis, count))
 
 
 @dataclass(frozen=True)

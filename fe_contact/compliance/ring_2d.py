@@ -1,144 +1,16 @@
-"""A plane tooth sector condensed to its flanks and cuts, and the ring that its copies close."""
+"""The ring that copies of a condensed plane tooth sector close."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import splu
 
-from fe_contact.errors import SolveError
+from fe_contact.compliance.condensed_sector import CondensedSector, freedoms
+from fe_contact.compliance.factorization import Solve, factorise
 from fe_contact.mesh.gear_mesh import GearMesh
 from fe_contact.types import FloatArray, IntArray
-
-Solve = Callable[[FloatArray], FloatArray]
-FACTORIZATION = "SuperLU on a METIS ordering"
-"""Name of the method, for receipts and cache keys."""
-
-
-def factorise(matrix: sp.csc_array, block: int) -> Solve:
-    """Factorise a symmetric positive definite matrix once, for many right-hand sides.
-
-    SciPy's SuperLU without pivoting, on METIS' nested dissection of the graph of the nodes, which hold
-    `block` consecutive freedoms. Returns x(b) for b (n, m), dense. Raises `SolveError`: the matrix is
-    singular.
-    """
-    order = _nested_dissection(matrix, block)
-    permuted = sp.csc_array(matrix[order][:, order])
-    try:
-        factor = splu(permuted, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    except RuntimeError as error:
-        raise SolveError(f"{FACTORIZATION}: {error}") from error
-
-    def solve(right: FloatArray) -> FloatArray:
-        x = np.empty_like(right)
-        x[order] = factor.solve(right[order])
-        return x
-
-    return solve
-
-
-def _nested_dissection(matrix: sp.csc_array, block: int) -> IntArray:
-    """Return METIS' fill-reducing order of the freedoms, from the graph of their nodes."""
-    import pymetis  # noqa: PLC0415 - a cached result needs no ordering
-
-    graph = sp.csr_array(matrix[::block, ::block])
-    graph.setdiag(0.0)
-    graph.eliminate_zeros()
-    adjacency = pymetis.CSRAdjacency(graph.indptr, graph.indices)
-    order, _ = pymetis.nested_dissection(adjacency)
-    return (block * np.asarray(order, dtype=np.int64)[:, None] + np.arange(block)).ravel()
-
-
-# Static condensation of one tooth sector onto the boundary it shares with the rest of the gear.
-
-
-@dataclass(frozen=True)
-class _CondensedSector:
-    """One tooth sector seen from its boundary, in the tooth frame, per unit face width."""
-
-    boundary: IntArray
-    """Sector nodes on the boundary, clamped ones left out; freedom 2 i + c of the arrays below is component c
-    of its node i. Shape (nb,).
-    """
-    stiffness: FloatArray
-    """Condensed stiffness, Pa. Shape (2 nb, 2 nb)."""
-    transmitted: FloatArray
-    """Boundary force per unit flank force when the boundary is free to move. Shape (2 nb, k)."""
-    flank: FloatArray
-    """Inward flank displacement per unit flank force with the boundary held, 1/Pa. Shape (k, k)."""
-    along: FloatArray
-    along_boundary: FloatArray
-    """`along`, `along_boundary`: Displacement of the flank's nodes along the flank towards the tip: per unit
-    flank force with the boundary held, 1/Pa, and per displacement of the boundary. (k, k) and (k, 2 nb)
-    arrays.
-    """
-    matrix: sp.csc_array
-    """Uncondensed stiffness of the sector. (2n, 2n) sparse array."""
-    loads: sp.csc_array
-    """Unit inward normal forces at the flank nodes. (2n, k) sparse array."""
-    interior: IntArray
-    """Interior freedoms."""
-    solve: Solve
-    """K_ii^-1."""
-
-
-def freedoms(nodes: IntArray) -> IntArray:
-    """Return the two freedoms of each node, node by node."""
-    return (2 * nodes[..., None] + np.arange(2)).reshape(*nodes.shape[:-1], -1)
-
-
-def _inward_loads(size: int, nodes: IntArray, normals: FloatArray) -> sp.csc_array:
-    """Return unit forces against the outward `normals` at `nodes`, (2 size, k)."""
-    rows = freedoms(nodes)
-    columns = np.repeat(np.arange(len(nodes)), 2)
-    return sp.csc_array((-normals.ravel(), (rows, columns)), shape=(2 * size, len(nodes)))
-
-
-def _along_flank(points: FloatArray, normals: FloatArray) -> FloatArray:
-    """Return the unit vectors (k, 2) along a flank towards its tip, which its last node is."""
-    across = np.stack([-normals[:, 1], normals[:, 0]], axis=1)
-    return np.asarray(across * np.sign(across.sum(axis=0) @ (points[-1] - points[0])))
-
-
-def condense_sector(mesh: GearMesh, matrix: sp.csc_array, normals: FloatArray) -> _CondensedSector:
-    """Condense the sector of `mesh`.
-
-    Parameters
-    ----------
-    mesh : GearMesh
-        Its sector and whether the sector's bottom is the clamped bore matter.
-    matrix : (2n, 2n) sparse array
-        Stiffness of the sector, N/m per m.
-    normals : (k, 2) array
-        Outward normals at the flank nodes in the tooth frame.
-    """
-    sector, size = mesh.sector, len(mesh.sector.points)
-    shared = np.unique(np.concatenate([sector.right_side, sector.left_side, sector.bottom]))
-    boundary = shared if mesh.hub is not None else np.setdiff1d(shared, sector.bottom)
-    b, i = freedoms(boundary), freedoms(np.setdiff1d(np.arange(size), shared))
-    loads = _inward_loads(size, sector.flank, normals)
-    k_ib = matrix[i][:, b].toarray()
-    n_i = loads[i].toarray()
-    along = _along_flank(sector.points[sector.flank], normals)
-    t_i = _inward_loads(size, sector.flank, -along)[i]
-    solve = factorise(sp.csc_array(matrix[i][:, i]), block=2)
-    solved = solve(np.concatenate([n_i, k_ib], axis=1))
-    by_load, by_boundary = solved[:, : n_i.shape[1]], solved[:, n_i.shape[1] :]
-    return _CondensedSector(
-        boundary=boundary,
-        stiffness=matrix[b][:, b].toarray() - k_ib.T @ by_boundary,
-        transmitted=-k_ib.T @ by_load,
-        flank=n_i.T @ by_load,
-        along=t_i.T @ by_load,
-        along_boundary=-(t_i.T @ by_boundary),
-        matrix=matrix,
-        loads=loads,
-        interior=i,
-        solve=solve,
-    )
 
 
 @dataclass(frozen=True)
@@ -147,7 +19,7 @@ class Ring:
 
     mesh: GearMesh
     """Its mesh."""
-    sector: _CondensedSector
+    sector: CondensedSector
     """One tooth."""
     hub_matrix: sp.csc_array | None
     """Stiffness of the hub on its own freedoms."""
@@ -175,7 +47,7 @@ def rotation(angle: float) -> FloatArray:
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
-def assemble_ring(mesh: GearMesh, sector: _CondensedSector, hub_matrix: sp.csc_array | None) -> Ring:
+def assemble_ring(mesh: GearMesh, sector: CondensedSector, hub_matrix: sp.csc_array | None) -> Ring:
     """Add up the condensed sectors and the hub, clamp the bore, factorise."""
     kept = np.unique(np.concatenate([mesh.sector_nodes[:, sector.boundary].ravel(), mesh.hub_nodes]))
     kept = np.setdiff1d(kept, mesh.bore_nodes)

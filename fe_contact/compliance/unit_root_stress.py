@@ -20,7 +20,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from fe_contact.compliance.cache import content_hash, kept_or_computed, kept_size, once_each
-from fe_contact.compliance.cyclic_compliance import compliance_key_3d, usual_reach
+from fe_contact.compliance.condensed_sector import freedoms
+from fe_contact.compliance.cyclic_compliance import compliance_key_3d
+from fe_contact.compliance.factorization import FACTORIZATION
 from fe_contact.compliance.flank_compliance_2d import (
     compliance_key,
     condensed_ring,
@@ -30,27 +32,31 @@ from fe_contact.compliance.flank_compliance_2d import (
     tooth_indices,
     uniform_pressure,
 )
-from fe_contact.compliance.plane_elasticity import PlaneHypothesis
-from fe_contact.compliance.ring_2d import FACTORIZATION, Ring, freedoms
+from fe_contact.compliance.plane_hypothesis import PlaneHypothesis
+from fe_contact.compliance.ring_2d import Ring
 from fe_contact.compliance.root_stress import (
-    COMPONENTS,
-    STATIONS,
     RootStressChecks,
-    RootSurface,
     UnitRootStress,
-    between_nodes,
     refuse_broken_stress,
     relative_difference,
+)
+from fe_contact.compliance.root_surface import (
+    COMPONENTS,
+    STATIONS,
+    RootSurface,
+    between_nodes,
     root_coordinate,
 )
+from fe_contact.compliance.tooth_reach import usual_reach
 from fe_contact.errors import InputError
 from fe_contact.geometry import Toothing, tooth_profile
-from fe_contact.geometry.flank_profile import FlankProfile, tangent_angle
+from fe_contact.geometry.flank_profile import FlankProfile
+from fe_contact.geometry.root_tangent import tangent_angle
 from fe_contact.material import Material
 from fe_contact.mesh import MeshRecipe, SectorRecipe, mesh_gear
-from fe_contact.mesh.sector_grid import BoreSupport, bore_support
+from fe_contact.mesh.bore_support import BoreSupport, bore_support
+from fe_contact.mesh.quadratic_mesh import SIDES
 from fe_contact.mesh.tooth_sector import ToothSector
-from fe_contact.mesh.triangulation import SIDES
 from fe_contact.types import FloatArray, IntArray
 from model_studies.stage_clock import StageClock
 

@@ -1,280 +1,27 @@
-"""Contact problems put together: plane, over the face, with what carries the gears, in several pitches."""
+"""Compliance between the contact candidates of gears in the transverse plane."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 
 from fe_contact.compliance import FlankCompliance, FlankCompliance3D
-from fe_contact.contact.candidates import with_gaps
-from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, face_loads
-from fe_contact.contact.flank_slope import rolls_at
-from fe_contact.contact.model import ContactModel
 from fe_contact.contact.patch import Patches, load_vector
-from fe_contact.contact.plain_touch import Touch
 from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices
-from fe_contact.contact.tooth_touch import tooth_touch
-from fe_contact.contact.touch_cache import cached_touch
-from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray
 from host.loops import njit
 
-# The same positions in several base pitches: other teeth, hence other gaps, but the same compliance.
+NEAR = 1e-3
+"""Way over half a patch by which patches are displaced to see how their forces change."""
 
-
-def in_pitches(
-    pair: ParallelAxes, problem: ContactProblem, model: ContactModel, pitch: IntArray
-) -> ContactProblem:
-    """Put the positions of a problem into whole base pitches, and add the gaps of the teeth that meet there.
-
-    Parameters
-    ----------
-    problem : ContactProblem
-        P positions in [0, 1), with all other gaps in it.
-    model : ContactModel
-        Its `tooth_gaps` are added.
-    pitch : ndarray of int, shape (R,)
-        Whole base pitches, R a multiple of P: row r is position r modulo P in this pitch.
-
-    Returns
-    -------
-    ContactProblem
-        R positions; its compliance stays that of the P positions.
-
-    Notes
-    -----
-    Pair j of pitch m is the pair of teeth that meets (m - j)-th: one pitch later each pair has moved on to
-    the place of the next one. Load patches stay those of perfect pitches: micrometers of rolling are nothing
-    to the bodies.
-    """
-    candidates = problem.candidates
-    times = pitch.size // candidates.position.size
-
-    def find() -> Touch:
-        tiled = (np.concatenate([values] * times) for values in vars(candidates.touch).values())
-        touch = Touch(*tiled)
-        if not model.tooth_gaps:
-            return touch
-        return tooth_touch(pair, touch, model, pitch[:, None] - candidates.pair, candidates.face_position)
-
-    common = candidates.touch
-    touch = cached_touch(
-        (pair, model.gaps, model.tooth_gaps, model.corner_contact),
-        (common.roll_1, common.s_1, common.gap, candidates.face_position, candidates.pair, pitch),
-        find,
-    )
-    moved = replace(
-        candidates,
-        position=np.tile(candidates.position, times) + pitch,
-        touch=touch,
-        width=np.concatenate([candidates.width] * times),
-    )
-    return problem.touching(moved)
-
-
-def with_flanks(
-    pair: ParallelAxes, problem: ContactProblem, model: ContactModel, touch: Touch | None = None
-) -> ContactProblem:
-    """Add the gaps of the model to a problem of plain involutes.
-
-    Where patches follow the flanks, the touch says how far the middles of the strips have moved.
-    `touch`: where the flanks touch, if it is known.
-    """
-    plain = problem.candidates
-    modified = with_gaps(pair, plain, model) if touch is None else plain.touching(touch)
-    if problem.tilt.size and model.sloped:
-        modified = problem.candidates.following(modified.touch)
-    return problem.touching(modified)
-
-
-# Compliance of what carries the gears, added to that of the teeth and bodies.
-
-
-def with_compliances(pair: ParallelAxes, problem: ContactProblem, model: ContactModel) -> ContactProblem:
-    """Add the compliance terms of the model, at the touching points of plain involutes.
-
-    They couple all slices of all pairs, whether or not the teeth themselves are coupled. Without terms
-    the problem is returned as it is.
-    """
-    if not model.compliances:
-        return problem
-    slices = problem.candidates.slices
-    touch, face = slices.touch, slices.face_position
-    roll_1, roll_2 = rolls_at(pair, touch.s_1, touch.s_2)
-    added = sum(term(pair, roll_1, roll_2, face) for term in model.compliances)
-    return replace(problem, compliance=problem.compliance + added)
-
-
-# Compliance between the contact candidates of gears of finite width.
-
-
-def face_contact_problem(
-    candidates: Candidates,
-    compliances: tuple[FlankCompliance3D, FlankCompliance3D],
-    axial_offset: float = 0.0,
-    couple_teeth: bool = True,
-) -> ContactProblem:
-    """Assemble the compliance between slices from condensed flanks; pairs, teeth as in `contact_problem`.
-
-    Parameters
-    ----------
-    candidates : Candidates
-        Pressing on n slices of the tooth pairs.
-    compliances : (FlankCompliance3D, FlankCompliance3D)
-        Driving and driven gear.
-    axial_offset : float
-        Distance of the driven gear's mid-face from the driving gear's, m.
-    couple_teeth : bool
-        False drops what the load on one tooth moves on another.
-    """
-    compliance = np.zeros((*candidates.slices.present.shape, candidates.slices.pair.size))
-    diagonals = []
-    for gear in _face_gears(candidates.slices, compliances, axial_offset, couple_teeth):
-        for rows, added in gear.compliances():
-            compliance[rows] += added
-        diagonals.append(np.einsum("pii->pi", compliance).copy())
-    planes, modulus = _half_planes(compliances)
-    return ContactProblem(candidates, compliance, modulus, *planes, share_1=share_of_pinion(*diagonals))
+_STRETCH = 0.25
+"""Part of its length by which a patch at an edge is longer or shorter to see how its forces change."""
 
 
 def share_of_pinion(pinion: FloatArray, both: FloatArray) -> FloatArray:
     """Return the share of gear 1 in compliances (P, n), 0.5 where there is none."""
     return np.asarray(np.divide(pinion, both, out=np.full(both.shape, 0.5), where=both > 0.0))
-
-
-def with_face_tilt(
-    problem: ContactProblem,
-    compliances: tuple[FlankCompliance3D, FlankCompliance3D],
-    axial_offset: float = 0.0,
-    couple_teeth: bool = True,
-) -> ContactProblem:
-    """Add how the compliance changes along the flanks; parameters as of `face_contact_problem`."""
-    tilt = np.zeros(problem.compliance.shape)
-    for gear in _face_gears(problem.candidates.slices, compliances, axial_offset, couple_teeth):
-        for rows, added in gear.displaced().compliances():
-            tilt[rows] += added[:, 1::2, ::2]
-    return replace(problem, tilt=tilt)
-
-
-TOGETHER = 8
-"""Positions that are assembled together, always the same ones: sums round by what is beside them."""
-
-
-class _KeyedFlanks(NamedTuple):
-    """Contribution of a keyed bore: rows (2 s + 1, q, f) by tooth from -s to s, core (q, q)."""
-
-    rows: FloatArray
-    core: FloatArray
-    couple_teeth: bool
-
-    def compliance(self, tooth: IntArray, loads: FaceLoads) -> FloatArray:
-        """Return what is added between patches (n, n) on the teeth (n,)."""
-        rows = self.rows[tooth + len(self.rows) // 2]
-        moved = np.empty((len(tooth), rows.shape[1]))
-        for i, (row, nodes, forces, used) in enumerate(
-            zip(rows, loads.nodes, loads.forces, loads.used, strict=True)
-        ):
-            moved[i] = row[:, nodes[:used]] @ forces[:used]
-        added = moved @ self.core @ moved.T
-        return added if self.couple_teeth else np.where(tooth[:, None] == tooth, added, 0.0)
-
-
-@dataclass(frozen=True)
-class _FaceGear:
-    """One gear over the face; `tip` is +1 on gear 1 and -1 on gear 2, other names as of `add_compliance`."""
-
-    grid: FaceGrid
-    blocks: FloatArray
-    key: _KeyedFlanks
-    patches: Patches
-    lever: FloatArray
-    teeth: IntArray
-    low: FloatArray
-    high: FloatArray
-    tip: float
-    present: BoolArray
-
-    def compliances(self) -> Iterator[tuple[IntArray, FloatArray]]:
-        """Yield positions and its compliance there (P, n, n)."""
-        planes = self.grid.freedom.ravel()
-        order = planes[planes >= 0]
-        for rows in together(len(self.present)):
-            at = np.array(np.nonzero(self.present[rows]))
-            loads, arms = self._loads(rows[at[0]], at[1]), np.ascontiguousarray(self.lever[rows])
-            added = np.zeros((rows.size, self.teeth.size, self.teeth.size))
-            add_compliance(self.blocks, order, self.teeth, loads, at, arms, added)
-            for p in range(rows.size if len(self.key.rows) else 0):
-                here = at[0] == p
-                on = at[1, here]
-                by_key = self.key.compliance(self.teeth[on], loads.rows(here))
-                added[p][np.ix_(on, on)] += by_key * np.outer(arms[p, on], arms[p, on])
-            yield rows, added
-
-    def displaced(self) -> _DisplacedGear:
-        """Return it with two loads on each slice: the patches, and how they change."""
-        doubled = {name: np.repeat(getattr(self, name), 2, axis=-1) for name in _DOUBLED}
-        return _DisplacedGear(**(vars(self) | doubled))
-
-    def _loads(self, position: IntArray, on: IntArray) -> FaceLoads:
-        return face_loads(self.grid, *self.patches.by_slice(position, on), self.low[on], self.high[on])
-
-
-_DOUBLED = ("lever", "teeth", "low", "high", "present")
-_NEAR = 1e-3
-"""Way over half a patch by which patches are displaced to see how their forces change."""
-
-
-class _DisplacedGear(_FaceGear):
-    """The same with loads in turn: of the patches as plain ones, and their change per m towards tip 1.
-
-    Beside an edge patches give way more than a strip there does: here they count as if they were plain.
-    """
-
-    def _loads(self, position: IntArray, on: IntArray) -> FaceLoads:
-        at = position[::2], on[::2] // 2
-        widest = self.patches.half_width.max()
-        near, center = _NEAR * widest, self.patches.by_slice(*at)[0]
-        center = np.minimum(center, self.grid.s[-1] - widest - near)
-        alike = np.full(center.shape, widest), np.zeros(center.shape), self.low[on[::2]], self.high[on[::2]]
-        above, below = (face_loads(self.grid, center + way, *alike) for way in (near, -near))
-        steep = 0.5 * self.tip / near
-        plain, change = above.plus(0.5, below, 0.5), above.plus(steep, below, -steep)
-        in_turn = (np.stack(each, axis=1) for each in zip(plain, change, strict=True))
-        nodes, forces, used = (each.reshape(on.size, *each.shape[2:]) for each in in_turn)
-        return FaceLoads(nodes, forces, used)
-
-
-def _face_gears(
-    slices: LoadedSlices,
-    compliances: tuple[FlankCompliance3D, FlankCompliance3D],
-    axial_offset: float,
-    couple_teeth: bool,
-) -> Iterator[_FaceGear]:
-    """Yield both gears."""
-    touch, face = slices.touch, slices.face_position
-    sides = (
-        (slices.patch_1, touch.lever_1, -slices.pair, face, 1.0),
-        (slices.patch_2, touch.lever_2, slices.pair, face - axial_offset, -1.0),
-    )
-    for flank, (patches, lever, teeth, along, tip) in zip(compliances, sides, strict=True):
-        blocks = flank.blocks if couple_teeth else flank.blocks[:1]
-        grid = FaceGrid(flank.s, flank.z, flank.index)
-        low = np.maximum(along - 0.5 * slices.slice_width, flank.z[0])
-        high = np.minimum(along + 0.5 * slices.slice_width, flank.z[-1])
-        key = _KeyedFlanks(flank.key_rows, flank.key_core, couple_teeth)
-        yield _FaceGear(grid, blocks, key, patches, lever, teeth, low, high, tip, slices.present)
-
-
-def together(count: int) -> list[IntArray]:
-    """Return the rows of so many positions that are assembled together.
-
-    A single row is not left by itself: it cannot be laid out in memory as many are.
-    """
-    return np.split(np.arange(count), np.arange(TOGETHER, count - 1, TOGETHER))
 
 
 def contact_problem(
@@ -324,7 +71,7 @@ def contact_problem(
         levers = rows(lever)
         _add_gear(flank.s, blocks, along, laid, way, levers, slices.present, couple_teeth, compliance, tilt)
         diagonals.append(np.einsum("pii->pi", compliance).copy())
-    planes, modulus = _half_planes(compliances)
+    planes, modulus = half_planes(compliances)
     diagonal = np.arange(slices.pair.size)
     tilt[:, diagonal, diagonal] += _logarithm_at_edges(slices, planes)
     return ContactProblem(
@@ -337,7 +84,7 @@ def contact_problem(
     )
 
 
-def _half_planes(
+def half_planes(
     flanks: tuple[FlankCompliance, FlankCompliance] | tuple[FlankCompliance3D, FlankCompliance3D],
 ) -> tuple[tuple[float, float], float]:
     """Return 2 (1 - nu^2)/(pi E) of both gears in 1/Pa, and the contact modulus in Pa."""
@@ -353,10 +100,6 @@ def _tooth_blocks(flank: FlankCompliance, teeth: IntArray) -> FloatArray:
         raise ValueError(f"teeth {teeth.tolist()} are not all condensed: {flank.teeth.tolist()}")
     blocks = flank.matrix.reshape(flank.teeth.size, k, flank.teeth.size, k)
     return np.ascontiguousarray(blocks[rows][:, :, rows].transpose(0, 2, 1, 3))
-
-
-_STRETCH = 0.25
-"""Part of its length by which a patch at an edge is longer or shorter to see how its forces change."""
 
 
 def _laid(
@@ -380,7 +123,7 @@ def _laid(
     """
     short, long = patch.stretched(-_STRETCH, mate), patch.stretched(_STRETCH, mate)
     widest = patch.half_width.max()
-    near, most = _NEAR * widest, end - widest
+    near, most = NEAR * widest, end - widest
     above = np.minimum(patch.center + near, most)
     plain = np.full(above.shape, widest), np.zeros(above.shape)
     at_edge = side != 0.0

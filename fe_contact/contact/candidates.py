@@ -11,7 +11,8 @@ from fe_contact.contact.free_end import ENDLESS, FreeEnds, end_softness
 from fe_contact.contact.model import ContactModel
 from fe_contact.contact.patch import Patches, tip_patches
 from fe_contact.contact.plain_touch import FLAT, Touch, conjugate_touch, flank_coordinate
-from fe_contact.contact.problem import Candidates, LoadedSlices, Slices
+from fe_contact.contact.problem import Candidates, LoadedSlices
+from fe_contact.contact.slices import Slices
 from fe_contact.contact.touch import modified_touch
 from fe_contact.contact.touch_cache import cached_touch
 from fe_contact.geometry import ParallelAxes, Toothing

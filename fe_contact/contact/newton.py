@@ -24,17 +24,15 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_contact.contact.elimination import dot, eliminate, subtract
+from fe_contact.contact.local_law import approach, plain_approach, width_of
 from fe_contact.contact.point_problem import (
     PointProblem,
     State,
-    approach,
     evaluate,
     motions,
-    plain_approach,
     press,
     pressed_state,
     stiffness,
-    width_of,
 )
 from fe_contact.contact.tilted_bodies import fill_yielding, move, yield_to
 from fe_contact.types import FloatArray, IntArray

@@ -8,90 +8,26 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import scipy
 
 from fe_contact.contact.edge_strip import EDGE_REACH, SIDE, EdgeStrips, edge_motions, edge_table, no_edges
 from fe_contact.contact.free_end import ENDLESS, SMOOTH, FreeEnds, end_excess
 from fe_contact.contact.patch import Patches
 from fe_contact.contact.plain_touch import Touch
 from fe_contact.contact.strip import Gap, StripMiddles, gap_table, rolling_radii, strip_middles
-from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray
 from host.loops import njit
 
-# Slices of the common face width, and the points of the contact line within them.
-
-
 _SMALL_LOAD = 0.01
 """Over the load of `PatchRule.edge_load`: of strips so short that they tell where those of any load are."""
-POINTS = 6
-"""Points of a slice: ten change the ripple of helical pairs by 1 to 2 nm at most."""
 
+_USUAL_STRIP = 0.012
+"""Half strip over the relative radius of curvature; gears under rated loads have 0.01 to 0.04."""
+ALONG_FLANK = 1.1
+"""How far bodies move along a flank over its roll angle and how far they move across it, under a load.
 
-@dataclass(frozen=True)
-class Slices:
-    """Slices of equal width over the common face width."""
-
-    center: FloatArray
-    """Distance of the middle of each slice from the pinion's mid-face, m. Shape (K,)."""
-    width: float
-    """Along the face, m."""
-    points: int = 1
-    """Of the contact line in each slice."""
-
-    @classmethod
-    def of_pair(cls, pair: ParallelAxes, count: int, points: int | None = None) -> Slices:
-        """Divide the common face width of `pair` into `count` slices; one slice is the plane model."""
-        width = pair.face_width / count
-        center = pair.common_face_center + (np.arange(count) - 0.5 * (count - 1)) * width
-        return cls(np.asarray(center, dtype=float), width, points or (1 if count == 1 else POINTS))
-
-    @property
-    def point_width(self) -> float:
-        """Part of the face that a point stands for, m."""
-        return self.width / self.points
-
-    @property
-    def point_center(self) -> FloatArray:
-        """Distance of the points (K Q,) from the pinion's mid-face, m."""
-        within = (np.arange(self.points) - 0.5 * (self.points - 1)) * self.point_width
-        return np.asarray((self.center[:, None] + within).ravel())
-
-    @property
-    def curves(self) -> tuple[FloatArray, FloatArray]:
-        """Curves over the face at each point (K Q, K), and their heights (K, K) for mean motions of slices.
-
-        Their sum is the derivative of the cubic spline through the sums of the slices before each: smooth
-        over the face, with the means of the slices as they are. At a point at most three are not zero.
-        """
-        count = self.center.size
-        degree, knots = min(count - 1, 2), np.arange(count + 1.0)
-        knots = np.concatenate([np.zeros(degree + 1), knots[2:-2], np.full(degree + 1, float(count))])
-        at = (self.point_center - self.center[0]) / self.width + 0.5
-        within = np.arange(count)[:, None] + 0.5 + np.array([-1.0, 1.0]) / math.sqrt(12.0)  # Gauss points
-        curves, means = (
-            scipy.interpolate.BSpline.design_matrix(x, knots, degree).toarray() for x in (at, within.ravel())
-        )
-        return curves, np.linalg.inv(means.reshape(count, 2, count).mean(axis=1))
-
-
-# Condition of the compliance between the candidates.
-
-
-def condition_numbers(compliance: FloatArray) -> FloatArray:
-    """Return the condition numbers (Q,) of compliances (Q, n, n), infinite where one is not definite.
-
-    Candidates that do not exist at a position have no compliance there and are left out.
-    """
-    real = np.einsum("qii->qi", compliance) != 0.0
-    number = np.full(len(compliance), np.inf)
-    for members in {mask.tobytes(): mask for mask in real}.values():
-        alike = np.flatnonzero((real == members).all(axis=1))
-        columns = np.flatnonzero(members)
-        eigenvalues = np.linalg.eigvalsh(compliance[np.ix_(alike, columns, columns)])
-        least, largest = eigenvalues[:, 0], eigenvalues[:, -1]
-        number[alike] = np.divide(largest, least, out=number[alike], where=least > 0.0)
-    return number
+A gear that turned about its axis would have 1, teeth in finite elements have 1.0 to 1.4 (12 to 90 teeth and
+ring gears). Chosen on five pairs: points on reliefs are as far off full contact as those of plain flanks.
+"""
 
 
 @dataclass(frozen=True)
@@ -305,16 +241,6 @@ class Candidates:
         """Return the same candidates with touching points that say how far the middles of strips moved."""
         there = self.touching(touch)
         return self.touching(replace(touch, moved=touch.moved + there.strips.middle - self.strips.middle))
-
-
-_USUAL_STRIP = 0.012
-"""Half strip over the relative radius of curvature; gears under rated loads have 0.01 to 0.04."""
-ALONG_FLANK = 1.1
-"""How far bodies move along a flank over its roll angle and how far they move across it, under a load.
-
-A gear that turned about its axis would have 1, teeth in finite elements have 1.0 to 1.4 (12 to 90 teeth and
-ring gears). Chosen on five pairs: points on reliefs are as far off full contact as those of plain flanks.
-"""
 
 
 @dataclass(frozen=True)

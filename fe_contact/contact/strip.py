@@ -45,6 +45,10 @@ _NEAR = 1e-6
 _BLUNTEST = 0.05
 """Least cosine at a break in derivatives: they are infinite where a break is at the end of the strip."""
 
+_SLOPE, CURVATURE, _LOW, _HIGH, _BREAKS = range(5)
+_PLACE, _JUMP, _BEND, _WIDTH = range(4)
+"""Columns of a table of gaps, and of each of its breaks. A loop passes on one array faster than seven."""
+
 
 class Gap(NamedTuple):
     """Gaps of n contacts about their touching points; x > 0 points one way along the flank."""
@@ -92,11 +96,6 @@ def rounded(gap: Gap, least: FloatArray) -> Gap:
             else:
                 left += bend[i, k]
     return Gap(gap.slope, curvature, gap.low, gap.high, gap.place, gap.jump, bend)
-
-
-_SLOPE, CURVATURE, _LOW, _HIGH, _BREAKS = range(5)
-_PLACE, _JUMP, _BEND, _WIDTH = range(4)
-"""Columns of a table of gaps, and of each of its breaks. A loop passes on one array faster than seven."""
 
 
 def gap_table(gap: Gap) -> FloatArray:

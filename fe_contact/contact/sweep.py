@@ -9,11 +9,10 @@ import numpy as np
 
 from fe_contact.contact.newton import CONVERGED, solve_point
 from fe_contact.contact.point_problem import PointProblems, point_problems, problem_on, row_bodies
-from fe_contact.contact.problem import Candidates, ContactProblem
+from fe_contact.contact.problem import ContactProblem
+from fe_contact.contact.solution_start import Start
 from fe_contact.types import BoolArray, FloatArray, IntArray, Status
 from host.loops import njit
-
-# Solution of the loaded contact over positions and loads.
 
 
 @dataclass(frozen=True)
@@ -46,42 +45,6 @@ class ContactSolution:
     def converged(self) -> bool:
         """Whether every point is a solution."""
         return bool(np.all(self.status == Status.CONVERGED))
-
-
-# The start of a contact solution: the forces of another one that is near it.
-
-
-@dataclass(frozen=True)
-class Start:
-    """Forces of a solution on bodies, slices, gaps or at positions a little different.
-
-    The solution does not depend on them but for rounding: there is one alone. They spare the search for the
-    candidates that carry, half of the iterations and more.
-    """
-
-    candidates: Candidates
-    """Those that the forces act on."""
-    force: FloatArray
-    """In N at the positions and loads to be solved; zeros where there is no solution to start from. Shape (P,
-    L, n).
-    """
-
-    def on(self, candidates: Candidates) -> FloatArray:
-        """Carry the forces over to other candidates (m,) of the same pairs: (P, L, m) in N.
-
-        A candidate takes the line load of the nearest one of its pair; a pair that was not there starts
-        unloaded.
-        """
-        here = self.candidates
-        if np.array_equal(here.pair, candidates.pair) and np.array_equal(
-            here.face_position, candidates.face_position
-        ):
-            return self.force
-        alike = candidates.pair[:, None] == here.pair
-        apart = np.where(alike, np.abs(candidates.face_position[:, None] - here.face_position), np.inf)
-        nearest = alike & (apart == apart.min(axis=1)[:, None])
-        share = nearest / np.maximum(nearest.sum(axis=1), 1)[:, None]
-        return np.asarray(self.force @ share.T * (candidates.point_width / here.point_width))
 
 
 def solve_contact(problem: ContactProblem, loads: FloatArray, start: Start | None = None) -> ContactSolution:

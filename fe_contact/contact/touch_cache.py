@@ -15,6 +15,9 @@ from fe_contact.types import FloatArray, IntArray
 _MOST, _MOST_BYTES = 8, 32_000_000
 """Entries, and bytes of all of them: the last ones of one process."""
 
+_entries: list[_Entry] = []
+_lock = threading.Lock()
+
 
 class _Entry(NamedTuple):
     """Touching points, the digest of the arrays that they follow from, and what else they follow from."""
@@ -23,10 +26,6 @@ class _Entry(NamedTuple):
     origin: tuple[object, ...]
     touch: Touch
     size: int
-
-
-_entries: list[_Entry] = []
-_lock = threading.Lock()
 
 
 def cached_touch(

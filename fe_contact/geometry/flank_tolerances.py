@@ -25,6 +25,8 @@ from fe_contact.geometry.toothing import Toothing
 
 _ADVICE = "ISO 1328-1:2013, 5.2.1 has no tolerances beyond: give your own figures."
 
+NO_CLEARANCE = (0.0, 0.0)
+
 
 def single_pitch_tolerance(gear: Toothing, tolerance_class: int) -> float:
     """f_pT in m: formula (5) of 5.3.2, 0.001 d + 0.4 m_n + 5 um of class 5, d and m_n in mm."""
@@ -162,9 +164,6 @@ class MisalignmentRange:
             f"ISO 1328-1:2013 and ISO/TR 10064-3: {parts} µm, {1e6 * self.likely:.1f} µm by squares, "
             f"{1e6 * self.worst:.1f} µm at worst"
         )
-
-
-NO_CLEARANCE = (0.0, 0.0)
 
 
 def misalignment_range(

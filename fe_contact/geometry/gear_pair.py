@@ -7,13 +7,11 @@ from dataclasses import dataclass, replace
 
 from fe_contact.geometry.backlash import reference_center_distance
 from fe_contact.geometry.gear import Gear
-from fe_contact.geometry.pair_feasibility import (
-    refuse_infeasible_pair,
-    refuse_strangers,
-    refuse_trimming_interference,
-)
+from fe_contact.geometry.pair_feasibility import refuse_infeasible_pair, refuse_strangers
 from fe_contact.geometry.parallel_axes import ParallelAxes
-from fe_contact.geometry.ring_gear import RingGear, radial_clearance
+from fe_contact.geometry.ring_gear import RingGear
+from fe_contact.geometry.ring_pair_feasibility import refuse_trimming_interference
+from fe_contact.geometry.trimming import radial_clearance
 
 
 @dataclass(frozen=True)

@@ -16,50 +16,14 @@ from numpy.typing import ArrayLike
 
 from bounds import LIMIT_SLACK, Declared, Kind, declared, described, up_to
 from fe_contact.geometry.backlash import base_circle_backlash, working_pressure_angle
+from fe_contact.geometry.path_of_contact import PathOfContact
 from fe_contact.geometry.printed_data import backlash_rounding
 from fe_contact.types import FloatArray
 
 if TYPE_CHECKING:
-    from fe_contact.body import Shafts
     from fe_contact.geometry.gear import Gear
     from fe_contact.geometry.toothing import Toothing
-
-
-# The path of contact and its points A to E (ISO 21771-1, clause 5.3).
-
-
-@dataclass(frozen=True)
-class PathOfContact:
-    """Points of the path of contact, as roll lengths on the driving gear in m."""
-
-    start: float
-    """A: the driven gear's tip meets the driving gear's flank."""
-    pitch_point: float
-    """C."""
-    end: float
-    """E: the driving gear's tip leaves."""
-    base_pitch: float
-    """Transverse base pitch, m."""
-
-    @property
-    def inner_single_contact(self) -> float:
-        """B: one base pitch before E (start of single contact if the contact ratio is between 1 and 2)."""
-        return self.end - self.base_pitch
-
-    @property
-    def outer_single_contact(self) -> float:
-        """D: one base pitch after A (end of single contact if the contact ratio is between 1 and 2)."""
-        return self.start + self.base_pitch
-
-    @property
-    def length(self) -> float:
-        """Length g_alpha of the path of contact, m."""
-        return self.end - self.start
-
-    @property
-    def points(self) -> tuple[float, float, float, float, float]:
-        """A, B, C, D, E."""
-        return (self.start, self.inner_single_contact, self.pitch_point, self.outer_single_contact, self.end)
+    from fe_contact.shaft import Shafts
 
 
 _DISTANCE = Declared(Kind.LENGTH, "m", up_to(1000.0), "Center distance a", 0.08)
@@ -291,30 +255,3 @@ class ParallelAxes:
         """F_bx in N (magnitude): the normal force's part along the axes."""
         sine = abs(math.sin(self.base_helix_angle))
         return np.asarray(np.asarray(normal_force, dtype=float) * sine, dtype=float)
-
-
-# Sliding of the flanks along the path of contact (ISO 21771-1, clause 5.6).
-
-
-def sliding_factor(pair: ParallelAxes, roll_length: ArrayLike) -> FloatArray:
-    """Return K_g = v_g / v_t, sliding velocity over pitch-line velocity, at `roll_length` of gear 1 in m.
-
-    It is 0 at the pitch point and > 0 beyond it, where the driving flank is the faster one. With the distance
-    y from the pitch point v_g is (omega_1 + omega_2) y, of an internal pair (omega_1 - omega_2) y.
-    """
-    first = np.asarray(roll_length, dtype=float)
-    second = pair.mating_roll_length(first)
-    return np.asarray((first - second / pair.speed_ratio) / pair.operating_pitch_radii[0], dtype=float)
-
-
-def specific_sliding(pair: ParallelAxes, roll_length: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """Return zeta_1, zeta_2: sliding over each flank's own velocity, at `roll_length` of gear 1 in m.
-
-    The flanks roll at v_1 = omega_1 l_1 and v_2 = omega_2 l_2; zeta_1 = (v_1 - v_2) / v_1 and
-    zeta_2 = (v_2 - v_1) / v_2: at most 1, and most negative near the root. -inf at a base circle.
-    """
-    first = np.asarray(roll_length, dtype=float)
-    second = pair.mating_roll_length(first)
-    with np.errstate(divide="ignore"):
-        ratio = np.divide(second, pair.speed_ratio * first)
-        return np.asarray(1.0 - ratio), np.asarray(1.0 - 1.0 / ratio)

@@ -16,6 +16,17 @@ from fe_contact.types import FloatArray
 _UM = "µm"
 _LARGEST = 1e-3  # m; larger deviations are micrometers stated as meters
 
+_ECCENTRICITY = "Distance of the axis of the teeth from that of rotation: half the run-out of an inspection"
+_TOWARDS = (
+    "Angle by which the gear turns from position 0 until {} points to its mate along the line of action"
+)
+_WOBBLE = "Way by which the tilted axis of the teeth departs from that of rotation over the face width"
+
+_FACE_WAVES = (
+    "Waves over the face width along the axis, their phase growing towards +z; 0: crests along the axis; "
+    "left out: crests lie along the contact lines"
+)
+
 
 def _amount(words: str, example: float) -> Declared:
     return Declared(Kind.LENGTH, "m", between(0.0, _LARGEST), words, example, written=_UM, later=True)
@@ -24,13 +35,6 @@ def _amount(words: str, example: float) -> Declared:
 def _angle(words: str) -> Declared:
     limit = 2.0 * math.pi
     return Declared(Kind.ANGLE, "rad", between(-limit, limit), words, 0.0, later=True)
-
-
-_ECCENTRICITY = "Distance of the axis of the teeth from that of rotation: half the run-out of an inspection"
-_TOWARDS = (
-    "Angle by which the gear turns from position 0 until {} points to its mate along the line of action"
-)
-_WOBBLE = "Way by which the tilted axis of the teeth departs from that of rotation over the face width"
 
 
 @described
@@ -74,12 +78,6 @@ class RunOut:
 
 
 NO_RUN_OUT = RunOut()
-
-
-_FACE_WAVES = (
-    "Waves over the face width along the axis, their phase growing towards +z; 0: crests along the axis; "
-    "left out: crests lie along the contact lines"
-)
 
 
 @described

@@ -25,16 +25,6 @@ MOST_TEETH = 4000
 MOST_NODES = 250_000
 """Nodes of the surfaces of all teeth of a gear."""
 
-
-def _deviation(words: str, example: float) -> Declared:
-    return Declared(Kind.LENGTH, "m", between(-_LARGEST, _LARGEST), words, example, written="µm", later=True)
-
-
-def _waves(along: str) -> Declared:
-    words = f"Waves of the form deviation over the {along}, a crest in its middle; 0: a parabola"
-    return Declared(Kind.COUNT, "", integers(0, 50), words, 0, later=True)
-
-
 _TOOTH = "Number of the tooth in the order of meshing; 1 is that of pair 0 at position 0"
 _SLOPE = "Slope deviation {} over the {}; > 0: half of it in excess at {}, half missing at the other end"
 _FORM = "Form deviation {} over the {}, the height of its shape; > 0: in excess in the middle"
@@ -43,6 +33,15 @@ _GRID = replace(
     description="Surface of this tooth, removed from it alone, besides the amounts and the modifications",
     later=True,
 )
+
+
+def _deviation(words: str, example: float) -> Declared:
+    return Declared(Kind.LENGTH, "m", between(-_LARGEST, _LARGEST), words, example, written="µm", later=True)
+
+
+def _waves(along: str) -> Declared:
+    words = f"Waves of the form deviation over the {along}, a crest in its middle; 0: a parabola"
+    return Declared(Kind.COUNT, "", integers(0, 50), words, 0, later=True)
 
 
 @described

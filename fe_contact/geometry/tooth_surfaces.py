@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from fe_contact.flank.flank_grid import FlankGrid
     from fe_contact.flank.part import Tooth
 
+_IN_CELL = 4
+"""Parts of a cell between the nodes of a surface, and of a wave between its crest and its trough."""
+
 
 class PackedGrids(NamedTuple):
     """Surfaces of several teeth one after the other."""
@@ -100,10 +103,6 @@ class ToothSurfaces:
         teeth = np.broadcast_to(tooth, shape).ravel().astype(np.int64, copy=False)
         excess = surfaces_excess(teeth, roll, along, self.ends, self.face_width, self.amounts, self.grids)
         return np.asarray(excess.reshape(shape))
-
-
-_IN_CELL = 4
-"""Parts of a cell between the nodes of a surface, and of a wave between its crest and its trough."""
 
 
 def profile_nodes(ends: tuple[float, float], waves: float, grid: FlankGrid | None) -> FloatArray:

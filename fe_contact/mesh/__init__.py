@@ -1,11 +1,12 @@
 """Meshes on exact tooth profiles, made by gmsh in a child process, checked for quality."""
 
 import host.analysis  # noqa: F401 (says what to install)
+from fe_contact.mesh.bore_support import ClampedBore, PlaneStrain, bore_support
 from fe_contact.mesh.gear_mesh import GearMesh, mesh_gear
 from fe_contact.mesh.quad_sector import QuadSector, quad_sector
 from fe_contact.mesh.quality import QualityLimits, mesh_quality
-from fe_contact.mesh.recipe import MeshRecipe, SectorRecipe
-from fe_contact.mesh.sector_grid import ClampedBore, PlaneStrain, bore_support
+from fe_contact.mesh.recipe import MeshRecipe
+from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.mesh.swept_sector import SweptSector, swept_sector
 
 __all__ = [

@@ -1,156 +1,23 @@
-"""The mesh of a gear's transverse section: tooth sectors on a hub."""
+"""The finite-element mesh of one gear: identical tooth sectors, and a hub that closes the ring."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
 from fe_contact.geometry import Toothing, ToothProfile, tooth_profile
-from fe_contact.mesh.outline import Outline, Piece, arc, divide, piece
+from fe_contact.mesh.hub import Hub, hub_outline, inner_rings, joined_hub
+from fe_contact.mesh.quadratic_mesh import quadratic_meshes, rotated
 from fe_contact.mesh.quality import QualityLimits
 from fe_contact.mesh.recipe import MeshRecipe
-from fe_contact.mesh.tooth_sector import LARGEST_ARC, ToothSector, tooth_outline, tooth_sector
-from fe_contact.mesh.triangulation import QuadraticMesh, quadratic_meshes, rotated
+from fe_contact.mesh.tooth_outline import tooth_outline
+from fe_contact.mesh.tooth_sector import ToothSector, tooth_sector
 from fe_contact.types import FloatArray, IntArray
 
-# Mesh of what lies below and beside the real teeth: the rest of the ring down to the bore.
-
-
-HALF = 0.5  # largest element of the plain ring, in parts of its thickness
-
-
-@dataclass(frozen=True)
-class _Hub:
-    """The ring without the sectors of the real teeth."""
-
-    points: FloatArray
-    """Nodes, m. Shape (n, 2)."""
-    triangles: IntArray
-    """Six-node triangles. Shape (m, 6)."""
-    bottoms: IntArray
-    """Nodes shared with the bottom of each sector, left to right. Shape (t, b)."""
-    right_side: IntArray
-    left_side: IntArray
-    """`right_side`, `left_side`: Nodes shared with the first sector's right and the last one's left side,
-    from the bottom up; empty if all teeth are real.
-    """
-    bore: IntArray
-    """Nodes on the bore, or on the outside of a ring gear's rim."""
-    thickness: FloatArray
-    """Axial thickness of each element over the face width: below 1 in a web. Shape (m,)."""
-
-
-@dataclass(frozen=True)
-class _InnerRing:
-    """A region between a boundary and the next circle, and its thickness over the face width."""
-
-    circle: Outline
-    thickness: float
-
-
-def _hub_outline(gear: Toothing, sector: ToothSector, teeth: IntArray, recipe: MeshRecipe) -> Outline:
-    """Return the boundary that follows the sectors of `teeth`; that of a ring gear is the inner one."""
-    pitch = 2.0 * np.pi / gear.teeth
-    # From the right end of a bottom to its left: counter-clockwise, as the teeth are numbered.
-    pieces = [Piece(f"bottom {j}", rotated(sector.points[sector.bottom[::-1]], j * pitch)) for j in teeth]
-    if len(teeth) < gear.teeth:
-        left = Piece("left side", rotated(sector.points[sector.left_side], teeth[-1] * pitch))
-        right = Piece("right side", rotated(sector.points[sector.right_side[::-1]], teeth[0] * pitch))
-        rim = _plain_rim(left, gear.teeth - len(teeth), pitch, gear.rim_inside_radius, recipe)
-        pieces += [left, rim, right]
-    return Outline(tuple(pieces))
-
-
-def _plain_rim(side: Piece, missing: int, pitch: float, inside: float, recipe: MeshRecipe) -> Piece:
-    """Return the root circle from the end of `side` counter-clockwise over the missing teeth."""
-    x, y = side.nodes[-1]
-    radius, angle, length = float(np.hypot(x, y)), float(np.arctan2(x, y)), missing * pitch
-    largest = min(HALF * abs(1.0 - inside / radius), LARGEST_ARC)
-
-    def size(turned: FloatArray) -> FloatArray:
-        distance = np.minimum(turned, length - turned)
-        target: FloatArray = side.edge_lengths[-1] / radius + recipe.growth * distance
-        return np.minimum(target, largest)
-
-    circle = arc(radius)
-    return piece("plain rim", lambda turned: circle(angle - turned), divide(0.0, length, size))
-
-
-def _inner_rings(gear: Toothing, bottom_radius: float, recipe: MeshRecipe) -> tuple[_InnerRing, ...]:
-    """Return what lies below the sectors from there on: one ring, or the rim's rest, web and hub."""
-    held, web = gear.held_radius, gear.web
-    radii, thickness = [bottom_radius, held], [1.0]
-    if web is not None:
-        radii = [bottom_radius, web.outer_radius, web.inner_radius]
-        thickness = [1.0, web.thickness / gear.face_width]
-        if web.inner_radius > held:
-            radii, thickness = [*radii, held], [*thickness, 1.0]
-    depths = [*(abs(a - b) for a, b in pairwise(radii)), np.inf]
-    return tuple(
-        _InnerRing(_divided_circle(r, min(near), abs(bottom_radius - r), recipe), part)
-        for r, near, part in zip(radii[1:], pairwise(depths), thickness, strict=True)
-    )
-
-
-def _divided_circle(radius: float, depth: float, distance: float, recipe: MeshRecipe) -> Outline:
-    """Return a circle, clockwise; `depth` of the thinner ring beside it, `distance` from the sectors, m."""
-    size = min(recipe.body_size + recipe.growth * distance, HALF * depth)
-    step = min(size / radius, LARGEST_ARC)
-    ends = divide(0.0, 2.0 * np.pi, lambda angle: np.full_like(angle, step))
-    return Outline((piece("circle", arc(radius), ends),))
-
-
-def _joined_hub(
-    meshes: Sequence[QuadraticMesh],
-    toothed: Outline,
-    thickness: Sequence[float],
-    teeth: IntArray,
-    sign: int = 1,
-) -> _Hub:
-    """Join the meshes of the rings, from the sectors to the circle that the gear is held by.
-
-    Their boundary nodes get names. `toothed` is the outline that follows the sectors of `teeth` (t,), the
-    inner one where `sign` is -1; `thickness` is that of the rings over the face width.
-    """
-    mesh, parts = meshes[0], [np.full(len(meshes[0].triangles), thickness[0])]
-    for ring, thick in zip(meshes[1:], thickness[1:], strict=True):
-        mesh = _joined(mesh, ring)
-        parts.append(np.full(len(ring.triangles), thick))
-    around, held = mesh.boundary[::sign]
-    names = {p.name for p in toothed.pieces}
-
-    def nodes(name: str) -> IntArray:
-        return around[toothed.positions(name)] if name in names else np.empty(0, dtype=np.int64)
-
-    return _Hub(
-        points=mesh.points,
-        triangles=mesh.triangles,
-        bottoms=np.array([nodes(f"bottom {j}")[::-1] for j in teeth]),
-        right_side=nodes("right side")[::-1],
-        left_side=nodes("left side"),
-        bore=held,
-        thickness=np.concatenate(parts),
-    )
-
-
-def _joined(outside: QuadraticMesh, inside: QuadraticMesh) -> QuadraticMesh:
-    """Join two meshes along the inner boundary of one and the outer one of the other, its reverse."""
-    own = np.ones(len(inside.points), dtype=bool)
-    own[inside.boundary[0]] = False
-    number = np.empty(len(own), dtype=np.int64)
-    number[own] = len(outside.points) + np.arange(int(own.sum()))
-    number[inside.boundary[0]] = np.roll(outside.boundary[1][::-1], 1)
-    return QuadraticMesh(
-        points=np.concatenate([outside.points, inside.points[own]]),
-        triangles=np.concatenate([outside.triangles, number[inside.triangles]]),
-        boundary=(outside.boundary[0], number[inside.boundary[1]]),
-    )
-
-
-# The finite-element mesh of one gear: identical tooth sectors, and a hub that closes the ring.
+SLENDER = 3.0  # deepest sector down to the bore, in root circle pitches: beyond it a hub needs fewer elements
+TAPER = 0.35  # least bore of sectors down to it, in root circles: below it a sector is a needle
+RIM_DEPTH = 2.0  # depth of a sector above a hub, in normal modules
 
 
 @dataclass(frozen=True)
@@ -197,7 +64,7 @@ class GearMesh:
     """Node of the gear mesh that each sector node is. Shape (t, n_sector)."""
     hub_nodes: IntArray
     """Node of the gear mesh that each hub node is. Shape (n_hub,)."""
-    hub: _Hub | None
+    hub: Hub | None
     """None if the sectors reach down to that circle."""
 
 
@@ -208,7 +75,7 @@ def real_teeth(teeth: int, modeled: int | None) -> IntArray:
 
 
 def _assemble(
-    sector: ToothSector, hub: _Hub | None, teeth: IntArray, pitch_angle: float, normals: FloatArray
+    sector: ToothSector, hub: Hub | None, teeth: IntArray, pitch_angle: float, normals: FloatArray
 ) -> GearMesh:
     """Join the sectors of `teeth` and the hub; `normals` (k, 2) at `sector.flank` are in the tooth frame."""
     closed = len(teeth) == round(2.0 * np.pi / pitch_angle)
@@ -245,7 +112,7 @@ def _number_sectors(sector: ToothSector, count: int, closed: bool) -> IntArray:
     return nodes
 
 
-def _number_hub(sector: ToothSector, sector_nodes: IntArray, hub: _Hub | None) -> IntArray:
+def _number_hub(sector: ToothSector, sector_nodes: IntArray, hub: Hub | None) -> IntArray:
     """Return the number in the gear of every hub node; shared ones keep the sectors' numbers."""
     if hub is None:
         return np.empty(0, dtype=np.int64)
@@ -257,11 +124,6 @@ def _number_hub(sector: ToothSector, sector_nodes: IntArray, hub: _Hub | None) -
     new = nodes < 0
     nodes[new] = sector_nodes.max() + 1 + np.arange(int(new.sum()))
     return nodes
-
-
-SLENDER = 3.0  # deepest sector down to the bore, in root circle pitches: beyond it a hub needs fewer elements
-TAPER = 0.35  # least bore of sectors down to it, in root circles: below it a sector is a needle
-RIM_DEPTH = 2.0  # depth of a sector above a hub, in normal modules
 
 
 def mesh_gear(
@@ -306,13 +168,13 @@ def _sector_bottom(gear: Toothing, profile: ToothProfile, all_real: bool) -> flo
 
 def _mesh_hub(
     gear: Toothing, sector: ToothSector, teeth: IntArray, recipe: MeshRecipe, limits: QualityLimits
-) -> _Hub:
+) -> Hub:
     """Mesh the rest of the ring: of a solid gear in one piece, else what is left of the rim, web and hub."""
-    toothed = _hub_outline(gear, sector, teeth, recipe)
-    rings = _inner_rings(gear, float(np.linalg.norm(sector.points[sector.bottom[0]])), recipe)
+    toothed = hub_outline(gear, sector, teeth, recipe)
+    rings = inner_rings(gear, float(np.linalg.norm(sector.points[sector.bottom[0]])), recipe)
     meshes, around = [], toothed
     for ring in rings:
         outermost_first = (around, ring.circle)[:: gear.sign]
         meshes += quadratic_meshes({"hub": outermost_first}, gear.normal_module, recipe.growth, limits)
         around = ring.circle.reversed()
-    return _joined_hub(meshes, toothed, [ring.thickness for ring in rings], teeth, gear.sign)
+    return joined_hub(meshes, toothed, [ring.thickness for ring in rings], teeth, gear.sign)

@@ -10,10 +10,11 @@ import numpy as np
 from fe_contact.errors import MeshError
 from fe_contact.types import FloatArray, IntArray
 
-# Quality of six-node triangles, and the limits a mesh must keep.
-
-
 _NODES = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
+
+CORNERS = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+MIDDLES = np.array([(0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0)])
+CENTER = np.array([(0.0, 0.0)])
 
 
 @dataclass(frozen=True)
@@ -70,11 +71,6 @@ def shape_derivatives(at: FloatArray) -> FloatArray:
     in_x = [1.0 - 4.0 * z, 4.0 * x - 1.0, zero, 4.0 * (z - x), 4.0 * y, -4.0 * y]
     in_y = [1.0 - 4.0 * z, zero, 4.0 * y - 1.0, -4.0 * x, 4.0 * x, 4.0 * (z - y)]
     return np.stack([np.stack(in_x, axis=-1), np.stack(in_y, axis=-1)], axis=1)
-
-
-CORNERS = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
-MIDDLES = np.array([(0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0)])
-CENTER = np.array([(0.0, 0.0)])
 
 
 def quad_quality(points: FloatArray, quads: IntArray) -> _MeshQuality:

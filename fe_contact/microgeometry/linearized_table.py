@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_contact.analysis.tables import table_of_solution
+from fe_contact.analysis.table_fields import table_of_solution
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.evaluator import Evaluator, LoadFigures

@@ -13,7 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_contact.analysis.flanks.root_stress import root_meshes, unit_stresses
+from fe_contact.analysis.flanks.root_meshes import root_meshes
+from fe_contact.analysis.flanks.root_stress import unit_stresses
 from fe_contact.analysis.pairs.pair_contact import PairContact
 from fe_contact.compliance import UnitRootStress
 from fe_contact.contact import Candidates, ContactProblem

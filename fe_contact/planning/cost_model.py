@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 from fe_contact.compliance import PlaneHypothesis, free_ends_kept, predict_cost, section_kept, solid_kept
 from fe_contact.contact import ContactModel, teeth_in_reach
-from fe_contact.contact.problem import POINTS
+from fe_contact.contact.slices import POINTS
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.planning.cost_of_derivatives import ContactWork, CycleSeconds, solved_pitches

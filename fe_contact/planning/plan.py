@@ -15,7 +15,7 @@ from fe_contact.errors import increasing
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.hertz import contact_modulus, half_width, relative_radius
 from fe_contact.mesh import MeshRecipe, SectorRecipe
-from fe_contact.mesh.recipe import HELICAL_BODY_LAYERS, wound
+from fe_contact.mesh.sector_recipe import HELICAL_BODY_LAYERS, wound
 from fe_contact.options import AnalysisOptions
 from fe_contact.types import BoolArray, FloatArray, Json
 

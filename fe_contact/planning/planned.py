@@ -12,7 +12,7 @@ from bounds import engineering
 from fe_contact.allowed_error import RELATIVE, AllowedError
 from fe_contact.contact import ContactModel
 from fe_contact.geometry import ParallelAxes
-from fe_contact.geometry.web_compliance import finite_width_excess
+from fe_contact.geometry.finite_width import finite_width_excess
 from fe_contact.options import LEVELS, AnalysisOptions
 from fe_contact.planning.cost_model import effort, predict_run
 from fe_contact.planning.model_error import helical_share, in_small_displacements, model_errors

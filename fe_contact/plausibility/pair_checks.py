@@ -12,7 +12,7 @@ import numpy as np
 from bounds import DEPTHS, Direction, Finding, Kind, engineering
 from fe_contact.flank.modification import FLANK_FIELDS, fields_of
 from fe_contact.geometry import ParallelAxes, Shaft, tooth_profile
-from fe_contact.geometry.flank_profile import critical_section, tangent_angle
+from fe_contact.geometry.root_tangent import critical_section, tangent_angle
 from fe_contact.geometry.toothing import Toothing
 from fe_contact.hertz import contact_modulus, peak_pressure
 from fe_contact.material import STEEL

@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass, replace
 
 from fe_contact.geometry import Gear
-from fe_contact.geometry.backlash import balanced_shifts, reference_center_distance
+from fe_contact.geometry.backlash import reference_center_distance
+from fe_contact.geometry.balanced_shifts import balanced_shifts
 from lineofaction.cli.options import PairWishes
 from lineofaction.gearbox.units import DEGREE, MM
 

@@ -4,7 +4,7 @@ import pytest
 
 from dynamics.shafts import BeamSection
 from fe_contact import STEEL
-from fe_contact.body import Shaft
+from fe_contact.shaft import Shaft
 from lineofaction.gearbox.schemas.bodies import SectionInput
 from lineofaction.gearbox.schemas.gear import MaterialInput
 

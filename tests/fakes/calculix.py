@@ -18,7 +18,7 @@ from fe_contact.full_contact.table import FullContactPoint
 from fe_contact.geometry import ParallelAxes
 from fe_contact.hertz import contact_modulus, peak_pressure
 from fe_contact.material import Material
-from fe_contact.mesh.triangulation import SIDES, rotated
+from fe_contact.mesh.quadratic_mesh import SIDES, rotated
 from fe_contact.types import FloatArray, IntArray, Status
 from host import child_environment, ending_signal
 

@@ -149,7 +149,7 @@ def test_a_table_of_three_workers_one_of_which_is_killed(
     cluster: Cluster, cache: Path, alone: SteDatabase
 ) -> None:
     cluster.at_least(3)
-    workers = Losing(ByDask(cluster.client), lambda: cluster.kill_busy(1), "_solve_block")
+    workers = Losing(ByDask(cluster.client), lambda: cluster.kill_busy(1), "solve_block")
     assert_same(alone, table(cache, workers))
     assert workers.killed and workers.killed[0] < 0.5
     assert len(cluster.alive) == 2
@@ -159,7 +159,7 @@ def test_a_table_of_three_workers_one_of_which_is_killed(
 @pytest.mark.nightly
 def test_a_sensitivity_sweep_of_three_workers_one_of_which_is_killed(cluster: Cluster, cache: Path) -> None:
     cluster.at_least(3)
-    workers = Losing(ByDask(cluster.client), lambda: cluster.kill_busy(1), "_solve_block")
+    workers = Losing(ByDask(cluster.client), lambda: cluster.kill_busy(1), "solve_block")
     asked: dict[str, Any] = {
         "normal_forces": [2000.0], "misalignments": [20e-6], "center_distance_changes": [50e-6],
         "level": "draft", "positions": 16,
@@ -240,7 +240,7 @@ def test_what_a_cluster_leaves_whose_last_worker_is_killed_is_done_here(
     cluster: Cluster, cache: Path, alone: SteDatabase
 ) -> None:
     cluster.at_least(1)
-    losing = Losing(ByDask(cluster.client, patience=1.0), lambda: cluster.kill_busy(9), "_solve_block")
+    losing = Losing(ByDask(cluster.client, patience=1.0), lambda: cluster.kill_busy(9), "solve_block")
     told: list[WorkersLost] = []
     found = table(cache, OrHere(losing, told.append))
     assert losing.killed and not cluster.alive

@@ -15,8 +15,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fe_contact.contact.edge_strip import no_edges
+from fe_contact.contact.local_law import local_law
 from fe_contact.contact.newton import CONVERGED, solve_point
-from fe_contact.contact.point_problem import PointProblem, local_law
+from fe_contact.contact.point_problem import PointProblem
 from fe_contact.contact.strip import Gap, gap_table
 from lineofaction.hardcases.contact.interior_point import GapAbout, Problem, solve
 

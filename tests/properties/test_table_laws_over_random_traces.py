@@ -16,9 +16,10 @@ from spur_gears import gear
 from fe_contact import FlankGrid, GearPair, ToothFlank
 from fe_contact.analysis.checks.law import LawCheck
 from fe_contact.analysis.checks.table_laws import check_laws
-from fe_contact.analysis.pairs.pair_contact import OperatingPoint, PairContact
+from fe_contact.analysis.pairs.operating_points import OperatingPoint
+from fe_contact.analysis.pairs.pair_contact import PairContact
 from fe_contact.analysis.request.request_check import check_request
-from fe_contact.analysis.tables import table_of_solution
+from fe_contact.analysis.table_fields import table_of_solution
 from fe_contact.contact import ContactModel
 from fe_contact.contact.flank_slope import rolls_at
 from fe_contact.contact.model import MeetingTeeth

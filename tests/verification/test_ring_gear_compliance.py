@@ -11,12 +11,13 @@ import scipy.sparse as sp
 
 from fe_contact.compliance import PlaneHypothesis, flank_compliance, flank_compliance_3d
 from fe_contact.compliance.condensed_gear import _pressure_forces
+from fe_contact.compliance.condensed_sector import freedoms
+from fe_contact.compliance.factorization import factorise
 from fe_contact.compliance.flank_compliance_2d import uniform_pressure
 from fe_contact.compliance.plane_elasticity import stiffness_matrix
-from fe_contact.compliance.ring_2d import factorise, freedoms
 from fe_contact.geometry import RingGear, tooth_profile
 from fe_contact.mesh import MeshRecipe, PlaneStrain, SectorRecipe, mesh_gear
-from fe_contact.mesh.triangulation import rotated
+from fe_contact.mesh.quadratic_mesh import rotated
 
 RING = RingGear(
     teeth=41, normal_module=4e-3, face_width=20e-3, rim_diameter=0.204, profile_shift_coefficient=-0.3

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from bounds import engineering
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.pairs.kept_contact import problems_in_parts
-from fe_contact.analysis.pairs.pair_contact import OperatingPoint
+from fe_contact.analysis.pairs.operating_points import OperatingPoint
 from fe_contact.analysis.pairs.tip_edges import edge_depth, handovers
-from fe_contact.analysis.request.request import Checked
-from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.analysis.request.solved_run import SolvedRun
 from fe_contact.analysis.tables import SolvedTable
 from fe_contact.contact import solve_contact
@@ -23,11 +21,9 @@ from fe_contact.effects.effect import across_face
 from fe_contact.effects.influence.estimate import estimate_influence, largest_part
 from fe_contact.effects.misalignment import MisalignmentGap
 from fe_contact.effects.tooth_deviations import sharpest_crest
-from fe_contact.errors import SolveError
 from fe_contact.geometry.printed_data import backlash_rounding
 from fe_contact.planning.plane_bias import plane_bias
 from fe_contact.types import FloatArray, Json
-from model_studies.stage_clock import StageClock
 
 LEAST_BACKLASH = 1e-9
 """m; teeth without a thickness allowance have none but rounding."""
@@ -231,58 +227,3 @@ def _over_nodes(run: SolvedRun, figure: Callable[..., Any]) -> FloatArray:
     curves = [[column[np.isfinite(column)] for column in solution.deflection.T] for _, solution in run.solved]
     figures = [[float(figure(curve)) if curve.size else np.inf for curve in columns] for columns in curves]
     return np.array(figures).T
-
-
-# Repetition of a run that shows that something it took for granted is wrong.
-
-Run = TypeVar("Run", bound=SolvedRun)
-
-
-def settled(
-    run: Run,
-    check: Callable[[Run], tuple[Assumption, ...]],
-    repeat: Callable[[Run, Mapping[str, str]], Run],
-    clock: StageClock,
-) -> tuple[Run, tuple[Assumption, ...], list[Json]]:
-    """Check what a run took for granted; where that is wrong, do as the caller chose.
-
-    An automatic effect that turns out to be needed is switched on and the run made `repeat` with the effects
-    and reasons given. What was requested by name is only reported. Raises `SolveError`: an assumption does
-    not hold and `on_violation` is "fail".
-
-    Returns
-    -------
-    run
-        The last one.
-    assumptions : tuple of Assumption
-        Of the last one.
-    repeated : list of dict
-        What was turned on each time, and the CPU seconds it took.
-    """
-    repeated: list[Json] = []
-    while True:
-        with clock.stage("assumptions"):
-            assumptions = check(run)
-        wrong = tuple(assumption for assumption in assumptions if assumption.holds is False)
-        request = run.checked.request
-        if wrong and request.options.on_violation == "fail":
-            reasons = "; ".join(f"{flaw.what}: {flaw.reason}" for flaw in wrong)
-            raise SolveError(f"violated assumptions: {reasons}")
-        automatic = {entry.name for entry in run.checked.ledger if entry.choice == "auto" and not entry.on}
-        needed = {flaw.effect: f"{flaw.what}: {flaw.reason}" for flaw in wrong if flaw.effect in automatic}
-        if not needed or request.options.on_violation != "repeat":
-            return run, assumptions, repeated
-        before = sum(clock.seconds.values())
-        run = repeat(run, needed)
-        repeated.append({"turned_on": needed, "cpu_seconds": sum(clock.seconds.values()) - before})
-
-
-def with_effects(checked: Checked, needed: Mapping[str, str], *, whole_table: bool = True) -> Checked:
-    """Return the request with effects switched on that a run showed to be needed."""
-    request = checked.request
-    reasons = {name: f"on after a run without it: {reason}" for name, reason in needed.items()}
-    neglected = {name: reason for name, reason in request.neglected.items() if name not in needed}
-    turned_on = {**request.turned_on, **reasons}
-    return checked_request(
-        replace(request, neglected=neglected, turned_on=turned_on), whole_table=whole_table
-    )

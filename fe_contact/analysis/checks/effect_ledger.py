@@ -8,7 +8,8 @@ from pathlib import Path
 
 from bounds import engineering
 from fe_contact.analysis.checks.assumptions import Assumption
-from fe_contact.analysis.request.request import Checked, Influences, estimated_influences
+from fe_contact.analysis.request.influences import Influences, estimated_influences
+from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.effects import LedgerEntry
 from fe_contact.effects.composer import flipped

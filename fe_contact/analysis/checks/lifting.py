@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_contact.analysis.pairs.pair_contact import OperatingPoint
+from fe_contact.analysis.pairs.operating_points import OperatingPoint
 from fe_contact.flank.extent import Extent
 from fe_contact.types import FloatArray, IntArray
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_contact.analysis.pairs.pair_contact import OperatingPoint
+from fe_contact.analysis.pairs.operating_points import OperatingPoint
 from fe_contact.contact import ContactProblem
 from fe_contact.flank.extent import Extent
 from fe_contact.geometry import ParallelAxes, Side, corner_contact

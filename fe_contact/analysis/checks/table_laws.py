@@ -12,7 +12,7 @@ import numpy as np
 from fe_contact.analysis.checks.law import Law, LawCheck, place_words
 from fe_contact.analysis.checks.lifting import deviations_in_mesh
 from fe_contact.analysis.checks.neighbors import approach_steps, largest_steps
-from fe_contact.analysis.pairs.pair_contact import OperatingPoint
+from fe_contact.analysis.pairs.operating_points import OperatingPoint
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.contact.plain_touch import Touch
 from fe_contact.contact.rough_strip import BREAKS, FLATTEST
@@ -36,12 +36,6 @@ LEVERS = 2.0
 FLATTEST_TOUCH = 0.2
 """Least curvature of touching flanks over that of plain ones."""
 
-
-def flattest_touch(touch: Touch) -> float:
-    """Return the least curvature of modified flanks over plain ones; of crests that of their strip."""
-    return FLATTEST if touch.place.shape[-1] >= BREAKS else FLATTEST_TOUCH
-
-
 _RIGID = Law("lifting of rigid gears", "transmission error without load", "µm", 1e6)
 _LOADED = Law("lifting under load", "transmission error", "µm", 1e6)
 _RISING = Law("rise with load", "compliance between this load and the one below", "nm/N", 1e9)
@@ -54,6 +48,11 @@ _ARM = Law("load within the face", "centroid of the load from mid-face", "mm", 1
 _PRESSURE = Law("pressure carries the load", "largest pressure", "MPa", 1e-6)
 _NEIGHBORS = Law("continuity over positions", "step to the next position", "µm", 1e6)
 _NO_LOAD_NEIGHBORS = Law("continuity without load", "step to the next position", "µm", 1e6)
+
+
+def flattest_touch(touch: Touch) -> float:
+    """Return the least curvature of modified flanks over plain ones; of crests that of their strip."""
+    return FLATTEST if touch.place.shape[-1] >= BREAKS else FLATTEST_TOUCH
 
 
 def check_laws(

@@ -16,16 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_contact.analysis.cycle.envelope import CycleContact, Envelope, LeastTangents, chosen, in_parts
-from fe_contact.analysis.cycle.tangents import SolvedState, ToothGaps
-from fe_contact.analysis.pairs.contact_lines import curves_of_point
-from fe_contact.analysis.pairs.kept_contact import (
-    OF_SUPPORT,
-    KeptContact,
-    contact_fields,
-    largest_by_pair,
-    solved_in_parts,
-)
-from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoints
+from fe_contact.analysis.cycle.load_monotonicity import rising_deflection
+from fe_contact.analysis.cycle.tangents import SolvedState
+from fe_contact.analysis.pairs.contact_block import curves_of_point
+from fe_contact.analysis.pairs.contact_fields import OF_SUPPORT, contact_fields, largest_by_pair
+from fe_contact.analysis.pairs.kept_contact import KeptContact, solved_in_parts
+from fe_contact.analysis.pairs.operating_points import OperatingPoint, OperatingPoints
 from fe_contact.analysis.pairs.tip_edges import edge_depth
 from fe_contact.contact import Candidates, ContactSolution, contact_pressure
 from fe_contact.contact.load_weights import load_sums
@@ -40,8 +36,10 @@ PART_OF_TOLERANCE = 0.4
 MOST_GROWN = 1.25
 """Of the pressure of a pair of teeth over that in the state whose tangent counts."""
 _MOST_POINTS = 0.99
-_LEAST_COMPLIANCE = 0.1
-"""Of the smallest that is stored: what loads stay apart by."""
+
+_ARM, _CENTROID, _SHARES = 0, 1, 2
+_EDGE_OF_PAIR = "edge pressure of pair"
+_CURVES = "static_transmission_error", "load_arm"
 
 
 def _arm_row(pair: ParallelAxes, c: Candidates) -> FloatArray:
@@ -54,11 +52,6 @@ def _table_rows(pair: ParallelAxes, c: Candidates) -> FloatArray:
     of_pair = (c.pair == np.unique(c.pair)[:, None]).astype(float)
     rows = np.concatenate([c.face_position[None], of_pair])
     return np.concatenate([_arm_row(pair, c), np.broadcast_to(rows[:, None], (len(rows), *c.gap.shape))])
-
-
-_ARM, _CENTROID, _SHARES = 0, 1, 2
-_EDGE_OF_PAIR = "edge pressure of pair"
-_CURVES = "static_transmission_error", "load_arm"
 
 
 def _keep(point: OperatingPoint, edges: bool, state: SolvedState) -> Mapping[str, NDArray[Any]]:
@@ -193,7 +186,7 @@ def derived_table(
         beside = Envelope.about_all(light, envelope.pitches, partial(_keep_support, point))
     except SolveError as error:
         return str(error)
-    levels = _rising(envelope, beside)
+    levels = rising_deflection(envelope, beside)
     if levels is None:
         return "by derivatives the transmission error would not rise with load"
     begun = solved_in_parts(point, position, sets, first, edges=False)
@@ -362,62 +355,3 @@ def _kept(
 def _flat(values: NDArray[Any]) -> NDArray[Any]:
     """Return arrays (T, P, ...) row by row."""
     return values.reshape(-1, *values.shape[2:])
-
-
-# The transmission error rises with load, from that without any.
-
-
-def _rising(envelope: Envelope, beside: Envelope) -> tuple[FloatArray, FloatArray, FloatArray] | None:
-    """Return the transmission error (T, P, ...) without load, at the loads, and at the support loads, m.
-
-    In pitches that were not solved support loads yield to the loads of the table, as far as their errors
-    let them cross. None where these do not rise.
-    """
-    loads, support = envelope.contact.load, beside.contact.load
-    force = np.concatenate([[0.0], loads, support])
-    kind = np.repeat([0, 1, 2], [1, loads.size, support.size])
-    order = np.argsort(force)
-    unloaded = _unloaded(envelope)
-    levels = np.concatenate([unloaded[..., None], envelope.ste, beside.ste], axis=2)[..., order]
-    tangents = [
-        each.kept["tangent_compliance"].min() for each in (envelope, beside) if each.contact.load.size
-    ]
-    step = _LEAST_COMPLIANCE * min(tangents) * np.diff(force[order])
-    tables = np.flatnonzero(kind[order] == 1)
-    rising = levels.copy()
-    for k in range(tables[0] - 1, -1, -1):
-        rising[..., k] = np.minimum(rising[..., k], rising[..., k + 1] - step[k])
-    for k in range(tables[0] + 1, order.size):
-        if kind[order[k]] == 2:
-            rising[..., k] = np.maximum(rising[..., k], rising[..., k - 1] + step[k - 1])
-    if not np.all(np.diff(rising, axis=2) > 0.0):
-        return None
-    rising = np.where(envelope.solved[:, None, None], levels, rising)
-    back = rising[..., np.argsort(order)]
-    return back[..., 0], back[..., 1 : 1 + loads.size], back[..., 1 + loads.size :]
-
-
-def _unloaded(envelope: Envelope) -> FloatArray:
-    """Return the transmission error without load (T, P), m: of most pitches by the gaps of their teeth.
-
-    Flanks that slope touch a little beside; what that is in the pitches solved is taken off in the mean.
-    """
-    contact = envelope.contact
-    model, own = contact.point.model, envelope.gaps
-    plain = contact.nominal()[1].problem.candidates.gap
-    by_pair = np.transpose(plain.reshape(len(plain), own.pair.size, -1), (1, 0, 2))
-    found = np.empty((model.period, len(plain)))
-    for pitch in range(model.period):
-        found[pitch] = _least_gap(by_pair, own, pitch)
-    exact = envelope.kept["no_load"][1:, :, 0]
-    missed = (found[envelope.pitches] - exact).mean(axis=0)
-    return envelope.exact_in(found - missed, exact)
-
-
-def _least_gap(plain: FloatArray, gaps: ToothGaps, pitch: int) -> FloatArray:
-    """Return the least gap (P,) of the teeth that meet in a base pitch, m."""
-    first, second = (teeth[0] for teeth in gaps.teeth(np.array([pitch])))
-    pairs = np.arange(gaps.pair.size)
-    return np.asarray(
-        (plain + gaps.gears[0][pairs, :, first] + gaps.gears[1][pairs, :, second]).min(axis=(0, 2))
-    )

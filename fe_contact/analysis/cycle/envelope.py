@@ -19,7 +19,7 @@ from fe_contact.analysis.cycle.tangents import (
     pitch_tangents,
 )
 from fe_contact.analysis.pairs.kept_contact import problems_in_parts
-from fe_contact.analysis.pairs.pair_contact import OperatingPoint
+from fe_contact.analysis.pairs.operating_points import OperatingPoint
 from fe_contact.contact import Candidates, ContactProblem, ContactSolution, solve_contact
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
@@ -36,6 +36,9 @@ WHOLE = 4
 
 Rows = Callable[[ParallelAxes, Candidates], FloatArray]
 """Quantities (Q, P, m) of candidates of which the means over the load are followed."""
+
+Keep = Callable[[SolvedState], Mapping[str, NDArray[Any]]]
+"""Arrays (P, L, ...) that are kept of states, row by row."""
 
 
 def no_rows(_pair: ParallelAxes, c: Candidates) -> FloatArray:
@@ -103,10 +106,6 @@ def _converged(solution: ContactSolution) -> ContactSolution:
         failed = int(np.count_nonzero(solution.status))
         raise SolveError(f"contact of {failed} points of a cycle was not solved", solution)
     return solution
-
-
-Keep = Callable[[SolvedState], Mapping[str, NDArray[Any]]]
-"""Arrays (P, L, ...) that are kept of states, row by row."""
 
 
 def keep_nothing(_state: SolvedState) -> Mapping[str, NDArray[Any]]:

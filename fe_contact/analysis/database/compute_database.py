@@ -2,89 +2,34 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 
-import numpy as np
-
 from bounds import Finding
-from fe_contact.analysis.checks.assumptions import check_assumptions, settled, with_effects
+from fe_contact.analysis.checks.assumptions import check_assumptions
 from fe_contact.analysis.checks.effect_ledger import effect_ledger
 from fe_contact.analysis.checks.law import LawCheck
+from fe_contact.analysis.checks.repetition import settled, with_effects
 from fe_contact.analysis.checks.table_laws import check_laws, require_laws
-from fe_contact.analysis.estimates.assessed_table import (
-    AssessedTable,
-    assessed_table,
-    unassessed_table,
-    worst_residual,
-)
+from fe_contact.analysis.database.contact_receipt import contact_receipt
+from fe_contact.analysis.estimates.assessed_table import AssessedTable, assessed_table, unassessed_table
 from fe_contact.analysis.estimates.tolerance_shares import tolerance_receipt
+from fe_contact.analysis.request.influences import Influences, estimated_influences
 from fe_contact.analysis.request.model_choice import Decided
-from fe_contact.analysis.request.request import Checked, Influences, Request, estimated_influences
-from fe_contact.analysis.request.solved_run import Solved
+from fe_contact.analysis.request.request import Checked, Request
 from fe_contact.analysis.tables import SolvedTable, condensed_bodies, solve_table
-from fe_contact.contact import ContactSolution
-from fe_contact.contact.problem import condition_numbers
 from fe_contact.options import Run
 from fe_contact.planning.cost_model import log_name
 from fe_contact.plausibility import merged, table_findings
 from fe_contact.solver_version import SOLVER_VERSION, software_versions
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
-from fe_contact.types import FloatArray, Json, Status
+from fe_contact.types import Json
 from model_studies.progress import by_cost
 from model_studies.run_log import record
 from model_studies.stage_clock import StageClock
 from model_studies.workers import InProcess, RunCost
-
-# The contact solver in the receipt: how hard the points were, and which failed.
-
-FEW_ITERATIONS = 40
-"""Iterations that a point is expected to need at most; those beyond are counted."""
-
-
-def _contact_receipt(
-    solved: Solved, support: Solved, *, condition: bool = True, known: FloatArray | None = None
-) -> Json:
-    """Return figures over all places of a table, at its own loads and at the support loads.
-
-    Support loads that failed anywhere are not in the table, and are named here. Without `condition` the
-    condition number is None: it takes some per cent of the contact, unless it was `known` with the
-    solutions.
-    """
-    solutions = [solution for _, solution in solved]
-    iterations = np.concatenate([solution.iterations.ravel() for solution in solutions])
-    left_out = ~np.all([s.status == Status.CONVERGED for _, s in support], axis=(0, 1))
-    return {
-        "newton_iterations_max": int(iterations.max()),
-        "newton_iterations_mean": float(iterations.mean()),
-        f"newton_points_over_{FEW_ITERATIONS}": int(np.count_nonzero(iterations > FEW_ITERATIONS)),
-        "residuals_max": max(worst_residual(solution) for solution in solutions),
-        "condition_number_max": _worst_condition(solved, known) if condition else None,
-        "patch_outgrown_points": sum(int(solution.beyond.sum()) for solution in solutions),
-        "failed_points": failed_points(solutions),
-        "support_loads_left_out": support[0][1].load[left_out].tolist(),
-    }
-
-
-def failed_points(solutions: Sequence[ContactSolution]) -> dict[str, int]:
-    """Return how many points failed, by the name of their status; empty if none did."""
-    codes = Counter(int(code) for solution in solutions for code in solution.status.ravel() if code)
-    return {Status(code).name: count for code, count in sorted(codes.items())}
-
-
-def _worst_condition(solved: Solved, known: FloatArray | None = None) -> float | None:
-    """Return the largest condition number of the compliance between candidates; None if one is not definite.
-
-    Operating points of one center distance share their compliance, which is assessed once.
-    """
-    if known is None:
-        shared = {id(problem.compliance): problem.compliance for problem, _ in solved}
-        known = np.array([condition_numbers(compliance).max() for compliance in shared.values()])
-    worst = float(known.max())
-    return worst if np.isfinite(worst) else None
 
 
 @dataclass(frozen=True)
@@ -193,7 +138,7 @@ def _contact(made: SolvedTable, clock: StageClock) -> Json:
     """Return what the receipt of a table says of its contact."""
     with clock.stage("contact"):
         support = [(each.problem, each.solution) for each in made.support]
-        return _contact_receipt(made.solved, support, condition=_full(made), known=made.condition)
+        return contact_receipt(made.solved, support, condition=_full(made), known=made.condition)
 
 
 def _assessed(made: SolvedTable, clock: StageClock, run: Run) -> tuple[AssessedTable, SolvedTable]:

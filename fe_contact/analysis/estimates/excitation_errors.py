@@ -7,7 +7,7 @@ from itertools import product
 
 import numpy as np
 
-from fe_contact.analysis.estimates.position_errors import errors_by_halves
+from fe_contact.analysis.estimates.half_position_errors import errors_by_halves
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve import AT_NODES, METHOD, OperatingPoint, all_sources, errors_by_source
 from fe_contact.ste.curve_quantities import BESIDE_MESH, FIRST_HARMONIC, HARMONICS, MEAN, mean_of_curves

@@ -13,11 +13,11 @@ from itertools import pairwise
 import numpy as np
 
 from fe_contact.analysis.estimates.interval_goal import IntervalGoal
+from fe_contact.analysis.pairs.contact_fields import carrying_pairs
 from fe_contact.analysis.pairs.contact_lines import solve_operating_points
-from fe_contact.analysis.pairs.kept_contact import carrying_pairs
-from fe_contact.analysis.pairs.pair_contact import OperatingPoints
+from fe_contact.analysis.pairs.operating_points import OperatingPoints
 from fe_contact.analysis.request.solved_run import Solved
-from fe_contact.analysis.tables import table_support
+from fe_contact.analysis.table_fields import table_support
 from fe_contact.contact import Start
 from fe_contact.sampled import WIDE_INTERVALS, WIDE_PROBES
 from fe_contact.ste import SteDatabase

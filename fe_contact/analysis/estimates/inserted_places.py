@@ -11,7 +11,7 @@ import numpy as np
 
 from fe_contact.analysis.pairs.contact_lines import solve_operating_points
 from fe_contact.analysis.pairs.kept_contact import KeptContact
-from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoints, operating_points
+from fe_contact.analysis.pairs.operating_points import OperatingPoint, OperatingPoints, operating_points
 from fe_contact.analysis.request.solved_run import edges_left_out
 from fe_contact.analysis.tables import SolvedTable, assembled_table
 from fe_contact.contact import ContactProblem

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_contact.analysis.pairs.contact_lines import deflected_operating_points
-from fe_contact.analysis.pairs.pair_contact import OperatingPoints
-from fe_contact.analysis.tables import PositionNodes
+from fe_contact.analysis.pairs.operating_points import OperatingPoints
+from fe_contact.analysis.position_nodes import PositionNodes
 from fe_contact.contact import ContactSolution
 from fe_contact.planning.plan import NodeRule, Plan
 from fe_contact.sampled import sample_of, spread
@@ -90,7 +90,7 @@ def _left_of_difference(nodes: PositionNodes, left: FloatArray, period: int) -> 
     """Return the same of what pitches differ by from their mean: no other error is beside the mesh orders."""
     by_pitch = nodes.value.reshape(period, nodes.position.size, -1)
     difference = (by_pitch - by_pitch.mean(axis=0)).reshape(left.shape)
-    failed = NEXT_SPACING * _predicted_failure(Axis(_knots(nodes, period), float(period)), difference)
+    failed = NEXT_SPACING * predicted_failure(Axis(_knots(nodes, period), float(period)), difference)
     return np.where(left > 0.0, np.maximum(failed, np.roll(failed, -1, axis=0)), 0.0)
 
 
@@ -132,7 +132,7 @@ def _measured_nodes(
     axis = Axis((np.arange(period)[:, None] + position).ravel(), float(period))
     middle = axis.knots + 0.5 * axis.spacing
     between = interpolate(axis, value, middle)
-    failed = NEXT_SPACING * _predicted_failure(axis, value)
+    failed = NEXT_SPACING * predicted_failure(axis, value)
     error = np.maximum(failed, np.roll(failed, -1, axis=0))
     left = error.copy()
     worst = np.nan_to_num(error / rule.ripple(value)).max(axis=1).reshape(period, count).max(axis=0)
@@ -146,7 +146,7 @@ def _measured_nodes(
     return PositionNodes(position, error, value, between), left
 
 
-def _predicted_failure(axis: Axis, value: FloatArray) -> FloatArray:
+def predicted_failure(axis: Axis, value: FloatArray) -> FloatArray:
     """Return by how much values (K, C) at the knots of a closed axis differ from what the others predict, m.
 
     Every second knot is predicted from the rest, then the rest from those.
@@ -180,46 +180,3 @@ def _told(nodes: PositionNodes, curves: FloatArray, loads: int) -> PositionError
 
 def _knots(nodes: PositionNodes, period: int) -> FloatArray:
     return (np.arange(period)[:, None] + nodes.position).ravel()
-
-
-# Errors between even positions, measured by half of them: nothing is solved for it.
-#
-# Curves through every second position are held against those through all. What the second half changed is
-# carried on to what a third would; corners between the positions, which it may have passed by, are looked for
-# by themselves.
-
-LEFT_BY_HALF = 0.75
-"""Error of all positions over what half of them changes: 1/3 for second order, and more for kinks, which may
-stand anywhere in an interval."""
-PASSED_BY = 1.25
-"""Peak-to-peak that is missed over the corners at which chords beside an interval meet: flanks bend towards
-them. Both parts were set on the pairs of docs/lab/accuracy.md ("Constants"), against eight times as many
-positions on the same meshes."""
-
-
-def errors_by_halves(knots: FloatArray, values: FloatArray, period: int) -> PositionErrors:
-    """Assess even positions by themselves.
-
-    Parameters
-    ----------
-    knots : ndarray, shape (K,)
-        Base pitches, equally spaced in [0, period).
-    values : ndarray, shape (K, F)
-        STE in m; NaN where a solution failed.
-    period : int
-        Base pitches.
-
-    Returns
-    -------
-    PositionErrors
-        Bands (K, F) from what each position's neighbors miss of it; of the curves (23, F) the larger change
-        of the two halves.
-    """
-    halves = slice(0, None, 2), slice(1, None, 2)
-    changes = (quantity_changes(knots[half], values[half], values, period, knots) for half in halves)
-    change = np.maximum(*changes)
-    curves = LEFT_BY_HALF * change
-    curves[PEAK_TO_PEAK] = np.maximum(curves[PEAK_TO_PEAK], PASSED_BY * missed_peaks(knots, values, period))
-    missed = NEXT_SPACING * _predicted_failure(Axis(knots, float(period)), values)
-    beside = np.maximum(missed, np.maximum(np.roll(missed, 1, axis=0), np.roll(missed, -1, axis=0)))
-    return PositionErrors(beside, curves)

@@ -8,14 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_contact.analysis.pairs.contact_lines import deflected_operating_points
-from fe_contact.analysis.pairs.pair_contact import OperatingPoint, OperatingPoints
+from fe_contact.analysis.pairs.operating_points import OperatingPoint, OperatingPoints
 from fe_contact.contact import Candidates, ContactProblem, ContactSolution, Start
 from fe_contact.sampled import ALIGNMENTS, LOADS, sample_of, some_positions, spread, spread_around
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray, IntArray
-
-# Bodies, slices and corrections change; where teeth touch does not, so that the candidates of the run serve
-# again unless the slices are others.
 
 Axes = tuple[FloatArray, FloatArray, FloatArray]
 """Loads in N, misalignments and changes of the center distance in m of a table."""

@@ -17,7 +17,8 @@ from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import as_checked
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
 from fe_contact.compliance.deformation_3d import deformed_solids
-from fe_contact.compliance.deformed_gear import DeformedGear, deformed_sections
+from fe_contact.compliance.deformed_gear import DeformedGear
+from fe_contact.compliance.deformed_section import deformed_sections
 from fe_contact.contact import face_flank_forces, plane_flank_forces
 from fe_contact.errors import integer
 from fe_contact.geometry import ParallelAxes, tooth_profile

@@ -1,87 +1,25 @@
-"""Flank results as netCDF-4 files, with the contact patterns for other readers."""
+"""Files of flank results in netCDF-4, with the contact patterns for other readers."""
 
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from bounds import Finding, warn_of
-from fe_contact.analysis.checks.table_laws import require_laws
-from fe_contact.analysis.flanks.flank_errors import with_errors
-from fe_contact.analysis.flanks.flank_laws import check_flank_laws
-from fe_contact.analysis.flanks.load_distribution import (
-    FlankErrors,
-    FlankScene,
-    LoadDistribution,
-    load_distribution,
-)
-from fe_contact.analysis.flanks.solved_operating_point import solved_point
-from fe_contact.analysis.request.request import Checked
-from fe_contact.analysis.request.request_check import as_checked
+from fe_contact.analysis.flanks.contact_pattern import contact_pattern
+from fe_contact.analysis.flanks.flank_scene import FlankScene
+from fe_contact.analysis.flanks.load_distribution import FlankErrors, LoadDistribution
 from fe_contact.errors import DatabaseError
-from fe_contact.geometry import ParallelAxes
-from fe_contact.options import AnalysisOptions, OperatingPoint, Run
-from fe_contact.plausibility import flank_findings, merged, unexpected
-from fe_contact.solver_version import SOLVER_VERSION, software_versions
 from fe_contact.ste import Metadata
-from fe_contact.ste.facts import content_hash
 from fe_contact.ste.netcdf import FileFormat, digest, json_attribute
-from fe_contact.types import FloatArray, Json
+from fe_contact.types import Json
 from model_studies.netcdf import NetcdfContent, Variable
-from model_studies.stage_clock import StageClock
 
 if TYPE_CHECKING:
     from fe_contact.analysis.flanks.load_distribution import LoadDistribution
-
-
-# Contact pattern: the largest pressure that each point of the unrolled flank meets over the mesh cycle.
-
-
-@dataclass(frozen=True)
-class ContactPattern:
-    """Largest pressure over one flank."""
-
-    roll_length: FloatArray
-    """Middles of equal cells along the profile, m. Shape (R,)."""
-    face_position: FloatArray
-    """Middles of the slices, as distances from the pinion's mid-face, m. Shape (K,)."""
-    pressure: FloatArray
-    """Largest Hertz pressure in Pa of any pair at any position; 0 where nothing touches. Shape (R, K)."""
-
-
-def contact_pattern(
-    distribution: LoadDistribution, gear: Literal["pinion", "wheel"] = "pinion"
-) -> ContactPattern:
-    """Collect the pressures of all positions and pairs on one flank.
-
-    The cells are as long as the flanks roll between two positions, so that over a whole cycle of equally
-    spaced positions the contact line meets every cell.
-
-    Parameters
-    ----------
-    distribution : LoadDistribution
-        At equally spaced positions over one base pitch.
-    gear : str
-        "pinion" or "wheel": whose flank.
-    """
-    roll = distribution.roll_length_1 if gear == "pinion" else distribution.roll_length_2
-    touched = distribution.on_path | (distribution.force > 0.0)
-    low, high = float(roll[touched].min()), float(roll[touched].max())
-    span = high - low or 1.0  # a single point is a cell of its own
-    both = distribution.on_path[1:] & distribution.on_path[:-1]
-    steps = np.abs(np.diff(roll, axis=0))[both]
-    count = max(int(span / float(steps.max())), 1) if steps.size else 1
-    cell = np.clip(((roll - low) * (count / span)).astype(int), 0, count - 1)
-    pressure = np.zeros((count, distribution.face_position.size))
-    index = np.nonzero(touched)
-    np.maximum.at(pressure, (cell[index], index[2]), distribution.pressure[index])
-    middles = np.asarray(low + (np.arange(count) + 0.5) * (span / count), dtype=np.float64)
-    return ContactPattern(middles, distribution.face_position, pressure)
 
 
 FORMAT = "lineofaction flank results"
@@ -195,80 +133,3 @@ def _attributes(results: LoadDistribution, arrays: dict[str, Any]) -> Json:
         **{name: getattr(results, name) for name in _SCALARS},
         "data_sha256": digest(arrays),
     }
-
-
-# Flank results: what happens on the flanks of a gear pair at one load and one alignment.
-
-
-def flank_results(
-    pair: ParallelAxes | Checked,
-    point: OperatingPoint | None = None,
-    options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
-    run: Run = Run(),  # noqa: B008 (frozen)
-    *,
-    at: ArrayLike | None = None,
-    case: Json | None = None,
-) -> LoadDistribution:
-    """Solve the contact of one load and alignment, and return load, pressure and gap on the flanks.
-
-    Raises `InputError`: a value that cannot be used, by field name; `MeshError`, `SolveError`: no acceptable
-    mesh, positions without a solution, results that break a law of mechanics (`partial` has them), or a
-    violated assumption if `on_violation` is "fail".
-
-    Parameters
-    ----------
-    pair : GearPair, InternalGearPair or Checked
-        A request that is checked already stands for pair, point and options.
-    point : OperatingPoint, optional
-    options : AnalysisOptions
-        `positions` and `receipt` are ignored.
-    run : Run
-        Workers are not used.
-    at : array_like, optional
-        Positions in base pitches; default: 64 over one mesh cycle, as `contact_pattern` needs them. Teeth
-        with pitch deviations are those that mesh there: the first ones of the lists in 0 to 1.
-    case : dict, optional
-        The case as the caller phrased it, echoed and hashed; default: the request in SI units.
-    """
-    clock = StageClock(run.workers.cost)
-    solved, receipt = solved_point(as_checked(pair, point, options), at, clock, run)
-    checked, request = solved.checked, solved.checked.request
-    results = load_distribution(
-        solved.contact.pair,
-        solved.problem,
-        solved.solution,
-        misalignment=float(request.misalignment[0]),
-        center_distance_change=float(request.center_distance_change[0]),
-    )
-    laws = check_flank_laws(results, solved.problem)
-    require_laws(laws, results, "load distribution")
-    with clock.stage("error estimate"):
-        results = with_errors(results, solved, run.cache)
-    receipt = receipt | clock.to_json() | {"laws": [law.to_json() for law in laws]}
-    results = replace(results, metadata=Metadata(receipt=receipt))
-    warn_of(unexpected(request.findings, _findings(results)))
-    return replace(results, metadata=_metadata(checked, results, case))
-
-
-def _findings(results: LoadDistribution) -> tuple[Finding, ...]:
-    return flank_findings(float(np.max(results.clear_pressure, initial=0.0)))
-
-
-def _metadata(checked: Checked, results: LoadDistribution, case: Json | None) -> Metadata:
-    """Everything about the making; the hash is of all that decides the result."""
-    scene = results.scene
-    request: Json = {
-        "case": case or checked.request.to_json(),
-        "normal_force": scene.normal_force,
-        "misalignment": scene.misalignment,
-        "center_distance_change": scene.center_distance_change,
-        "position": results.position.tolist(),
-    }
-    return replace(
-        results.metadata,
-        case=request["case"],
-        effect_ledger=[entry.to_json() for entry in checked.ledger],
-        content_hash=content_hash({"flank_results": request}, SOLVER_VERSION, SCHEMA_VERSION),
-        software_versions=software_versions(),
-        warnings=[finding.to_json() for finding in merged(checked.request.findings, _findings(results))],
-    )

@@ -3,92 +3,29 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from fe_contact.analysis.flanks.flank_scene import FlankScene, flank_scene
 from fe_contact.contact import ContactProblem, ContactSolution, contact_pressure
 from fe_contact.contact.flank_slope import rolls_at
-from fe_contact.errors import DatabaseError
 from fe_contact.geometry import ParallelAxes
-from fe_contact.ste import Metadata, PairFacts
-from fe_contact.types import BoolArray, Estimate, FloatArray, IntArray, Json
-from host.loops import njit
+from fe_contact.ste import Metadata
+from fe_contact.types import BoolArray, Estimate, FloatArray, IntArray
 
 if TYPE_CHECKING:
     import xarray
 
 
-# The scene of flank results: the load, the alignment, and the marks on both flanks.
-
-Both = tuple[float, float]
-
-
-@dataclass(frozen=True)
-class FlankScene:
-    """One load and one alignment of one pair. Roll lengths are of (pinion, wheel), each on its own flank."""
-
-    normal_force: float
-    torque: float
-    """`normal_force`, `torque`: F_bn in N and the torque on the driving gear in N m."""
-    misalignment: float
-    center_distance_change: float
-    """`misalignment`, `center_distance_change`: m."""
-    start_of_active_profile: Both
-    pitch_point: Both
-    tip: Both
-    """`start_of_active_profile`, `pitch_point`, `tip`: Roll lengths where the mating tip meets the flank, at
-    the pitch point and at the own tip, m.
-    """
-    path_of_contact: tuple[float, float, float, float, float]
-    """Points A, B, C, D, E as roll lengths of the driving gear, m."""
-    common_face: Both
-    """Ends of the common face, as distances from the pinion's mid-face, m."""
-    facts: PairFacts
-
-    def to_json(self) -> Json:
-        """Return plain JSON with the same names."""
-        return asdict(self)
-
-    @classmethod
-    def from_json(cls, content: Json) -> FlankScene:
-        """Read back what `to_json` wrote; `DatabaseError` if it is something else."""
-        try:
-            plain: Json = {name: tuple(v) if isinstance(v, list) else v for name, v in content.items()}
-            plain["facts"] = PairFacts.from_json(content["facts"])
-            return cls(**plain)
-        except (TypeError, ValueError, KeyError, AttributeError) as error:
-            raise DatabaseError("the scene of the flank results is not readable") from error
-
-
-def _flank_scene(
-    pair: ParallelAxes, normal_force: float, misalignment: float = 0.0, center_distance_change: float = 0.0
-) -> FlankScene:
-    """Describe a pair that stands at its changed center distance, under a normal force in N."""
-    path = pair.path_of_contact
-    start, pitch, end = (
-        (rolled, float(pair.roll_lengths(pair.position(rolled))[1]))
-        for rolled in (path.start, path.pitch_point, path.end)
-    )
-    return FlankScene(
-        normal_force=float(normal_force),
-        torque=float(pair.torque(normal_force)),
-        misalignment=float(misalignment),
-        center_distance_change=float(center_distance_change),
-        start_of_active_profile=(start[0], end[1]),
-        pitch_point=pitch,
-        tip=(pair.pinion.tip_roll_length, pair.wheel.tip_roll_length),
-        path_of_contact=path.points,
-        common_face=pair.common_face,
-        facts=PairFacts.of(pair),
-    )
-
-
 EDGE_STRETCHES = 6
 """Stretches of the face over which a line load at an edge is averaged: a slice of the usual ones."""
 Stretches = TypeVar("Stretches", FloatArray, BoolArray)
+
+_PER_POSITION = ("position", "deflection", "roll_length_1", "roll_length_2", "on_path", "force", "lever",
+                 "pressure", "gap")  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -284,10 +221,6 @@ class LoadDistribution:
         return np.asarray(self.on_path | (self.force > 0.0))
 
 
-_PER_POSITION = ("position", "deflection", "roll_length_1", "roll_length_2", "on_path", "force", "lever",
-                 "pressure", "gap")  # fmt: skip
-
-
 def load_distribution(
     pair: ParallelAxes,
     problem: ContactProblem,
@@ -340,7 +273,7 @@ def load_distribution(
         gap=gap.reshape(shape),
         slice_width=candidates.point_width,
         base_helix_angle=candidates.base_helix_angle,
-        scene=_flank_scene(pair, solution.load[load], misalignment, center_distance_change),
+        scene=flank_scene(pair, solution.load[load], misalignment, center_distance_change),
         metadata=metadata or Metadata(),
     )
 
@@ -372,64 +305,3 @@ def _over_mean_of(values: FloatArray, among: BoolArray) -> FloatArray:
     total = values.sum(axis=-1)
     scale = np.where(total > 0.0, total, np.nan)
     return np.asarray(values.max(axis=-1) * among.sum(axis=-1) / scale)
-
-
-# Pressure over the unrolled flank, between what was computed.
-
-ROWS = 96  # along the profile
-_SAME = 0.01  # of the mean distance of contacts; nearer ones, as on a tip edge, stand on one place
-
-
-def pressure_map(flanks: LoadDistribution, roll: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return roll lengths (R,), m, and the largest pressure (R, K), Pa, that passes over a flank there.
-
-    Along the profile the pressure is interpolated between the contacts at neighboring positions, at every
-    face position by itself. Contacts on the path and those of either tip edge pass one after the other.
-    `roll`: roll lengths on this flank, m.
-    """
-    on_path, edge = flanks.on_path, ~flanks.on_path & (flanks.force > 0.0)
-    touched = roll[on_path | edge]
-    low, high = float(touched.min()), float(touched.max())
-    lower = roll < 0.5 * (low + high)
-    rows = np.linspace(low, high, ROWS if high > low else 1)
-    pressure = np.zeros((rows.size, flanks.face_position.size))
-    for part in (on_path, edge & lower, edge & ~lower):
-        if part.any():
-            ends = float(roll[part].min()), float(roll[part].max())
-            passing = np.zeros(pressure.shape)
-            _pass_between(rows, roll, flanks.pressure, part, ends, passing)
-            np.maximum(pressure, passing, out=pressure)
-    return rows, pressure
-
-
-@njit(cache=True)
-def _pass_between(
-    rows: FloatArray,
-    roll: FloatArray,
-    pressure: FloatArray,
-    part: BoolArray,
-    ends: tuple[float, float],
-    out: FloatArray,
-) -> None:
-    """Interpolate the pressures (P, N, K) of a part of the contacts at `rows` into `out` (R, K).
-
-    Between the places where it is known, the largest of those on one place; held to both ends, 0 beyond.
-    """
-    for k in range(out.shape[1]):
-        here = np.flatnonzero(part[:, :, k].copy().ravel())
-        if here.size == 0:
-            continue
-        at, known = roll[:, :, k].copy().ravel()[here], pressure[:, :, k].copy().ravel()[here]
-        place = _SAME * (ends[1] - ends[0]) / here.size
-        place = place if place > 0.0 else 1.0
-        number = np.rint((at - ends[0]) / place)
-        order = np.argsort(number)
-        knots, largest, last = np.empty(here.size), np.empty(here.size), -1
-        for i in order:
-            if last < 0 or number[i] != knots[last]:
-                last += 1
-                knots[last], largest[last] = number[i], known[i]
-            largest[last] = max(largest[last], known[i])
-        passing = np.interp(rows, ends[0] + place * knots[: last + 1], largest[: last + 1])
-        reached = (rows >= ends[0]) & (rows <= ends[1])
-        out[:, k] = np.where(reached, passing, 0.0)

@@ -9,8 +9,9 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_contact.analysis.checks.assumptions import check_one_place, settled, with_effects
-from fe_contact.analysis.pairs.pair_contact import operating_points
+from fe_contact.analysis.checks.assumptions import check_one_place
+from fe_contact.analysis.checks.repetition import settled, with_effects
+from fe_contact.analysis.pairs.operating_points import operating_points
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint

@@ -8,154 +8,38 @@ elements; and its errors about as much again.
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
 
 from bounds import at_most
-from fe_contact.analysis.checks.assumptions import Assumption, check_cheaply
+from fe_contact.analysis.checks.assumptions import check_cheaply
 from fe_contact.analysis.checks.table_laws import check_laws, require_laws
-from fe_contact.analysis.database.compute_database import failed_points
-from fe_contact.analysis.estimates.assessed_table import (
-    AssessedTable,
-    curve_errors,
-    estimate_errors,
-    interval_errors,
-    load_arm_errors,
-    table_bias,
-    unassessed_table,
-    worst_residual,
-)
-from fe_contact.analysis.estimates.position_errors import errors_by_halves
-from fe_contact.analysis.estimates.table_sample import Nested, TableSample
+from fe_contact.analysis.estimates.assessed_table import unassessed_table
+from fe_contact.analysis.estimates.table_sample import TableSample
+from fe_contact.analysis.live.condensed_assumptions import edge_assumptions, neglected_assumptions
 from fe_contact.analysis.live.condensed_contacts import CondensedContacts
+from fe_contact.analysis.live.condensed_errors import condensed_errors
+from fe_contact.analysis.live.condensed_receipt import condensed_receipt
 from fe_contact.analysis.pairs.kept_contact import KeptContact
-from fe_contact.analysis.pairs.pair_contact import OperatingPoints, PairContact, operating_points
+from fe_contact.analysis.pairs.operating_points import OperatingPoints, operating_points
+from fe_contact.analysis.pairs.pair_contact import PairContact
+from fe_contact.analysis.position_nodes import PositionNodes, unmeasured_nodes
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import checked_request
-from fe_contact.analysis.request.solved_run import SolvedOperatingPoint, SolvedRun
-from fe_contact.analysis.tables import PositionNodes, assembled_table, unmeasured_nodes
+from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
+from fe_contact.analysis.tables import assembled_table
 from fe_contact.contact import Start
 from fe_contact.errors import InputError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import TableAxes
 from fe_contact.planning.cost_model import condensed_teeth
 from fe_contact.planning.plan import LARGEST_SUPPORT, Plan
-from fe_contact.planning.planned import usual_mesh_error
 from fe_contact.ste import Metadata, SteDatabase
-from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES
-from fe_contact.ste.curve_quantities import MEAN, QUANTITIES
-from fe_contact.types import FloatArray, Json
+from fe_contact.types import FloatArray
 from model_studies.stage_clock import StageClock
-
-# Errors of a table that was solved on a condensed pair, at a part of the cost of solving it.
-#
-# The rougher discretizations are those of an analysis, at half of the positions or fewer, and the parts of
-# their changes that are left are the same. What is between the positions is told by half of them. Coarse
-# meshes that are not at hand are no reason to compute any: the error known of the level stands in.
-
-OVER_MEDIAN = 2.0
-"""Factor on the median error of a level: nine runs of ten state less."""
-BY_MESH = AT_NODES.index("discretisation")
-
-
-def _condensed_errors(
-    table: SteDatabase, run: SolvedOperatingPoint, contacts: CondensedContacts, sample: TableSample
-) -> AssessedTable:
-    """Estimate the errors of a table of one alignment.
-
-    `contacts` have the same flanks on rougher discretizations, assembled at the `sample`, whose points are
-    solved again. Between the loads nothing is estimated (NaN): the table is of the loads asked.
-    """
-    points, solution, plan = run.places, run.solution, run.plan
-    start = sample.start(run.problem, solution)
-    starts = None if start is None else [start]
-
-    def solved(rougher: PairContact | None, otherwise: FloatArray) -> FloatArray:
-        if rougher is None:
-            return otherwise
-        return sample.solved(points.on(rougher), points, starts)
-
-    own = sample.taken(table)
-    plane = solved(contacts.plane, own)
-    patched = solved(contacts.patched, own)
-    coarse = solved(contacts.coarse, patched)
-    nested = Nested(sample, own, plane, patched, coarse, solved(contacts.sliced, own))
-    positions = errors_by_halves(table.position, solution.deflection, points.period)
-    ste, arms = nested.parts
-    measured = points, [(run.problem, solution)], ste, positions, plan
-    sources, errors = estimate_errors(*measured), curve_errors(*measured)
-    if contacts.coarse is None:
-        errors[BY_MESH], band = _expected(table, plan, contacts.own)
-        sources = replace(sources, discretization=np.broadcast_to(band, sources.contact.shape))
-    bias = table_bias(table, points, plan)
-    of_arm = load_arm_errors(points, table, arms, plan)
-    _, between = interval_errors(errors.shape[2:], {})
-    every = np.concatenate([errors, between])
-    nowhere = np.empty((0,) * 4)  # no point between nodes is assessed
-    return AssessedTable(sources.total, every, of_arm, nowhere, None, sources.to_json(), {}, bias)
-
-
-def _expected(table: SteDatabase, plan: Plan, contact: PairContact) -> tuple[FloatArray, FloatArray]:
-    """Return what the level of the meshes is known to leave, (23, F, 1, 1), and its band (1, F, 1, 1), m.
-
-    A harmonic may be wrong by as much as peak-to-peak. A misaligned pair leads at no load, and so may its
-    mean: what the meshes are wrong by then hangs on what the load adds.
-    """
-    ste = np.nan_to_num(table.static_transmission_error)
-    added = (ste - np.nan_to_num(table.no_load_transmission_error)[:, None]).mean(axis=0)
-    mean = np.maximum(ste.mean(axis=0), added)
-    errors = np.empty((QUANTITIES, *mean.shape))
-    of_mean, of_ripple = usual_mesh_error(contact.pair, plan)
-    errors[:] = OVER_MEDIAN * of_ripple * mean
-    errors[MEAN] = OVER_MEDIAN * of_mean * mean
-    return errors, errors[MEAN][None] + 0.5 * errors[MEAN + 1][None]
-
-
-# Assumptions of a condensed pair's table: what can be checked on the solution alone is, the rest is named and
-# has no verdict (`holds` None).
-
-
-def _edges(run: SolvedRun) -> Iterator[Assumption]:
-    """Without corner contact: edges would have to be laid out, which assembles another compliance."""
-    if not run.checked.model.corner_contact:
-        reason = "not checked: corner contact is switched off by the case"
-        effect = run.checked.request.named("corner_contact")
-        yield Assumption(effect, "tip edges stay clear", None, float("nan"), reason)
-
-
-def _neglected(neglected: Mapping[str, str]) -> Iterator[Assumption]:
-    """Effects of the bodies that were neglected for a tolerance, assessed by the flanks of the case."""
-    for name, why in neglected.items():
-        reason = f"not checked on these flanks: {why}"
-        yield Assumption(name, "neglected effects are negligible", None, float("nan"), reason)
-
-
-# The receipt of a condensed pair's table: errors by source, cost by stage, assumptions.
-
-
-def _condensed_receipt(
-    run: SolvedOperatingPoint, assessed: AssessedTable, assumptions: Sequence[Assumption], clock: StageClock
-) -> Json:
-    errors = assessed.to_json()
-    missing = [name for name in errors["not_estimated"] if name not in BETWEEN_NODES]
-    known = {name: value for name, value in errors["curve_error"].items() if name not in BETWEEN_NODES}
-    return (
-        clock.to_json()
-        | errors
-        | {
-            "curve_error": known,
-            "not_estimated": missing,
-            "plan": run.plan.to_json(),
-            "beyond_load_patches": int(run.solution.beyond.sum()),
-            "residuals_max": worst_residual(run.solution),
-            "failed_points": failed_points([run.solution]),
-            "assumptions": [assumption.to_json() for assumption in assumptions],
-        }
-    )
-
 
 PLANE_POSITIONS, FACE_POSITIONS = 192, 64
 """Of a base pitch, equally spaced: the compliance at them is assembled once for all flanks. In the plane
@@ -267,9 +151,9 @@ class CondensedPair:
             require_laws(laws, table)
         with clock.stage("error estimate"):
             stated = unassessed_table(table, points, plan) if preview else None
-            assessed = stated or _condensed_errors(table, solved, contacts, sample)
-        checks = (*check_cheaply(solved), *_edges(solved), *_neglected(self.neglected))
-        receipt = _condensed_receipt(solved, assessed, checks, clock)
+            assessed = stated or condensed_errors(table, solved, contacts, sample)
+        checks = (*check_cheaply(solved), *edge_assumptions(solved), *neglected_assumptions(self.neglected))
+        receipt = condensed_receipt(solved, assessed, checks, clock)
         origin = "expected" if contacts.coarse is None else "measured"
         receipt["discretisation_error"] = None if preview else origin
         ledger = [{"name": entry.name, "on": entry.on} for entry in checked.ledger]

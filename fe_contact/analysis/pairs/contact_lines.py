@@ -1,7 +1,7 @@
-"""Lines of a table, cut into blocks for workers and put together again.
+"""Contact at many operating points, line by line: in this process or by workers, to the same bits.
 
 A line is one center distance at some misalignments: they share the compliance between the candidates, which
-costs most. It is cut between positions (see `_ContactBlock`), by what its blocks are predicted to cost: by
+costs most. It is cut between positions (see `ContactBlock`), by what its blocks are predicted to cost: by
 the case alone, not by who works.
 """
 
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import partial
 from itertools import groupby
 from typing import Any, TypeVar
@@ -17,127 +17,29 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from fe_contact.analysis.pairs.kept_contact import KeptContact, problems_in_parts, solved_in_parts
-from fe_contact.analysis.pairs.pair_contact import Bodies, OperatingPoint, OperatingPoints, PairContact
-from fe_contact.contact import (
-    Candidates,
-    ContactModel,
-    ContactProblem,
-    Start,
-    load_arm,
-    solve_contact,
+from fe_contact.analysis.pairs.array_layout import Arrays, laid_out_alike
+from fe_contact.analysis.pairs.contact_block import (
+    ContactBlock,
+    SolvedBlock,
+    curves_of_point,
+    deflect_block,
+    solve_block,
 )
-from fe_contact.contact.assembly import together
+from fe_contact.analysis.pairs.kept_contact import KeptContact, solved_in_parts
+from fe_contact.analysis.pairs.operating_points import OperatingPoint, OperatingPoints
+from fe_contact.analysis.pairs.pair_contact import Bodies, PairContact
+from fe_contact.contact import Candidates, ContactProblem, Start
+from fe_contact.contact.face_assembly import together
 from fe_contact.contact.plain_touch import Touch
-from fe_contact.contact.problem import condition_numbers
-from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.cost_model import unit_work
-from fe_contact.planning.plan import Plan
 from fe_contact.types import FloatArray, IntArray
 from model_studies.progress import Report, unreported
 from model_studies.workers import InProcess, Workers
-
-# Some positions of a line of the table: the task that workers are given.
-
-
-@dataclass(frozen=True)
-class _ContactBlock:
-    """One block."""
-
-    pair: ParallelAxes
-    """At the center distance of the line."""
-    plan: Plan
-    candidates: Candidates
-    """Of plain involutes at the positions of the block."""
-    models: tuple[ContactModel, ...]
-    """Of the misalignments; they share one compliance."""
-    pitches: IntArray | None
-    """Whole base pitches to put the positions into, as `PairContact.solve` takes them. Ndarray of int, shape
-    (T,),.
-    """
-    loads: tuple[FloatArray, ...]
-    """Sets of normal forces in N; each is solved by itself."""
-    conditioned: bool = False
-    """Whether condition numbers are wanted."""
-    edges: bool = False
-    """Whether the depth of tip edges under the first set of loads is wanted."""
-    starts: tuple[FloatArray, ...] | None = None
-    """Forces in N on the candidates that each model starts from; default: each load from the one below it.
-    Tuple of ndarray, shape (rows, L, n).
-    """
-    assembled: ContactProblem | None = None
-    """Of the candidates, with the compliance between them, where that is known: it need not be assembled."""
-
-    def start(self, model: int) -> Start | None:
-        """Return what the solution of a model is started from."""
-        return None if self.starts is None else Start(self.candidates, self.starts[model])
-
-
-@dataclass(frozen=True)
-class _SolvedBlock:
-    """What is kept of each model of a block for each set of loads, and condition numbers.
-
-    The latter are of the compliance at the positions, if they were wanted.
-    """
-
-    kept: tuple[tuple[KeptContact, ...], ...]
-    condition: FloatArray | None
-
-
-def _points(bodies: Bodies, block: _ContactBlock) -> list[OperatingPoint]:
-    """Return the operating points of a block, its compliance assembled."""
-    contact = PairContact.of_bodies(block.pair, block.plan, bodies)
-    if block.assembled is None:
-        contact.assemble(block.models[0], block.candidates)
-    else:
-        contact.take(block.models[0], block.assembled)
-    return [OperatingPoint(contact, model) for model in block.models]
-
-
-def _solve_block(bodies: Bodies, block: _ContactBlock) -> _SolvedBlock:
-    """Assemble and solve a block: one task."""
-    where = block.candidates.position
-    kept = tuple(
-        solved_in_parts(point, where, block.loads, block.pitches, edges=block.edges)
-        for point in _points(bodies, block)
-    )
-    condition = condition_numbers(kept[0][0].problem.compliance) if block.conditioned else None
-    return _SolvedBlock(kept, condition)
-
-
-def _deflect_block(bodies: Bodies, block: _ContactBlock) -> tuple[FloatArray, ...]:
-    """Return the curves (rows, L, 2) of each model alone, of one set of loads: one task."""
-    where, (load,) = block.candidates.position, block.loads
-    return tuple(
-        curves_of_point(point, where, load, block.pitches, block.start(k))
-        for k, point in enumerate(_points(bodies, block))
-    )
-
-
-def curves_of_point(
-    point: OperatingPoint,
-    position: FloatArray,
-    load: FloatArray,
-    pitches: IntArray | None,
-    start: Start | None = None,
-) -> FloatArray:
-    """Return transmission error and load arm of an operating point, (rows, L, 2) in m.
-
-    `start` is for positions in the first base pitch.
-    """
-    parts = []
-    for problem in problems_in_parts(point, position, pitches):
-        solution = solve_contact(problem, load, start)
-        arm = load_arm(point.contact.pair, problem, solution)
-        parts.append(np.stack([solution.deflection, arm], axis=-1))
-    return np.concatenate(parts)
-
 
 TASK_SECONDS = 0.1
 """CPU seconds that a block is predicted to take: five times what it costs Dask to hand it out."""
 
 R = TypeVar("R")
-Arrays = TypeVar("Arrays", bound=Any)
 
 
 @dataclass(frozen=True)
@@ -145,7 +47,7 @@ class _Line:
     """Places of one compliance: their contact, and all positions as one block without its bodies."""
 
     contact: PairContact
-    whole: _ContactBlock
+    whole: ContactBlock
 
     @property
     def pitches(self) -> int:
@@ -159,14 +61,14 @@ class _Line:
         work = unit_work(whole.pair, whole.plan, whole.plan.discretization.slices)
         return work.of(1, len(whole.models) * self.pitches * sum(load.size for load in whole.loads))
 
-    def blocks(self) -> Iterator[_ContactBlock]:
+    def blocks(self) -> Iterator[ContactBlock]:
         """Cut it."""
         whole, count = self.whole, self.whole.candidates.position.size
         chunks = together(count)
         parts = min(math.ceil(count * self.seconds_a_position / TASK_SECONDS), len(chunks))
         for numbers in np.array_split(np.arange(len(chunks)), max(parts, 1)):
             rows = np.concatenate([chunks[k] for k in numbers])
-            candidates = _laid_out_alike(whole.candidates.rows(rows), whole.candidates)
+            candidates = laid_out_alike(whole.candidates.rows(rows), whole.candidates)
             starts, assembled = whole.starts, whole.assembled
             yield replace(
                 whole,
@@ -176,12 +78,10 @@ class _Line:
             )
 
 
-def _solved_lines(
-    lines: Sequence[_Line], workers: Workers, report: Report = unreported
-) -> list[_SolvedBlock]:
+def _solved_lines(lines: Sequence[_Line], workers: Workers, report: Report = unreported) -> list[SolvedBlock]:
     """Solve lines; their contacts keep what was assembled for them. `report` is called after each line."""
-    solved: list[_SolvedBlock] = []
-    for line, blocks in zip(lines, _by_line(lines, workers, _solve_block), strict=True):
+    solved: list[SolvedBlock] = []
+    for line, blocks in zip(lines, _by_line(lines, workers, solve_block), strict=True):
         joined = _joined(line, blocks)
         plain = replace(joined.kept[0][0].problem, candidates=line.whole.candidates)
         line.contact.take(line.whole.models[0], plain)
@@ -194,12 +94,12 @@ def _deflections(lines: Sequence[_Line], workers: Workers) -> list[list[FloatArr
     """Solve lines of one set of loads; of each line the curves (T P, L, 2) in m of every model."""
     return [
         [_rows([block[k] for block in blocks], line.pitches) for k in range(len(line.whole.models))]
-        for line, blocks in zip(lines, _by_line(lines, workers, _deflect_block), strict=True)
+        for line, blocks in zip(lines, _by_line(lines, workers, deflect_block), strict=True)
     ]
 
 
 def _by_line(
-    lines: Sequence[_Line], workers: Workers, function: Callable[[Bodies, _ContactBlock], R]
+    lines: Sequence[_Line], workers: Workers, function: Callable[[Bodies, ContactBlock], R]
 ) -> Iterator[list[R]]:
     """Yield the results of the blocks of every line; lines of the same bodies go out together."""
     for _, group in groupby(lines, key=lambda line: id(line.contact.bodies)):
@@ -212,31 +112,7 @@ def _by_line(
             yield [next(results) for _ in blocks]
 
 
-def _laid_out_alike(part: Arrays, whole: Arrays) -> Arrays:
-    """Return a dataclass of arrays and of such, its arrays in memory as those they are rows of.
-
-    Compiled sums along a row round otherwise where its numbers stand apart.
-    """
-    alike: Arrays = replace(
-        part,
-        **{
-            field.name: _alike(getattr(part, field.name), getattr(whole, field.name))
-            for field in fields(part)
-        },
-    )
-    return alike
-
-
-def _alike(part: Any, whole: Any) -> Any:
-    """Lay out one value as another."""
-    if is_dataclass(part):
-        return _laid_out_alike(part, whole)
-    if not isinstance(part, np.ndarray):
-        return part
-    return np.ascontiguousarray(part) if whole.flags.c_contiguous else np.asfortranarray(part)
-
-
-def _joined(line: _Line, blocks: list[_SolvedBlock]) -> _SolvedBlock:
+def _joined(line: _Line, blocks: list[SolvedBlock]) -> SolvedBlock:
     """Put the blocks of a line together; all models share one compliance."""
     problems = [[kept[0].problem for kept in block.kept] for block in blocks]
     compliance = np.concatenate([parts[0].compliance for parts in problems])
@@ -250,7 +126,7 @@ def _joined(line: _Line, blocks: list[_SolvedBlock]) -> _SolvedBlock:
         sets = zip(*(block.kept[k] for block in blocks), strict=True)
         kept.append(tuple(_joined_contact(list(each), problem, line.pitches) for each in sets))
     known = [block.condition for block in blocks if block.condition is not None]
-    return _SolvedBlock(tuple(kept), np.concatenate(known) if known else None)
+    return SolvedBlock(tuple(kept), np.concatenate(known) if known else None)
 
 
 def _joined_contact(parts: list[KeptContact], problem: ContactProblem, pitches: int) -> KeptContact:
@@ -306,9 +182,6 @@ def _rows(parts: list[NDArray[Any]], pitches: int) -> NDArray[Any]:
     by_pitch = [part.reshape(pitches, len(part) // pitches, *part.shape[1:]) for part in parts]
     joined = np.concatenate(by_pitch, axis=1)
     return joined.reshape(len(joined) * joined.shape[1], *joined.shape[2:])
-
-
-# Contact at many places at once: here, or line by line by workers, to the same bits.
 
 
 Lines = dict[tuple[object, ...], tuple[_Line, list[int]]]
@@ -466,7 +339,7 @@ def _sent_lines(
         models = tuple(points[k].model for k in numbers)
         kept = contact.kept(first, position[numbers[0]])
         turned = pitches if first.period > 1 else None
-        whole = _ContactBlock(contact.pair, contact.plan, candidates, models, turned, loads, assembled=kept)
+        whole = ContactBlock(contact.pair, contact.plan, candidates, models, turned, loads, assembled=kept)
         lines[key] = (_Line(contact, whole), numbers)
     seconds = sum(line.seconds_a_position * line.whole.candidates.position.size for line, _ in lines.values())
     return lines if seconds > TASK_SECONDS else {}

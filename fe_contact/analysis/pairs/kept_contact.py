@@ -13,13 +13,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fe_contact.analysis.pairs.pair_contact import OperatingPoint
+from fe_contact.analysis.pairs.contact_fields import contact_fields, support_fields
+from fe_contact.analysis.pairs.operating_points import OperatingPoint
 from fe_contact.analysis.pairs.tip_edges import edge_depth
-from fe_contact.contact import Candidates, ContactProblem, ContactSolution, contact_pressure
+from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.contact.sweep import solve_sets
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.cost_model import POINTS_AT_ONCE
-from fe_contact.types import BoolArray, FloatArray, IntArray, Status
+from fe_contact.types import FloatArray, IntArray
 from model_studies.progress import Report, unreported
 
 
@@ -93,7 +94,7 @@ def solved_in_parts(
         kept = 0 if parts else first.candidates.position.size
         part = []
         for number, solution in enumerate(solutions):
-            stored = (_support_fields if number else contact_fields)(point.contact.pair, problem, solution)
+            stored = (support_fields if number else contact_fields)(point.contact.pair, problem, solution)
             forces = replace(solution, force=solution.force[:kept].copy())
             part.append(KeptContact(first, forces, stored, depth))
         parts.append(part)
@@ -126,68 +127,3 @@ def _one_after_another(parts: Sequence[KeptContact]) -> KeptContact:
     stored = {name: np.concatenate([part.stored[name] for part in parts]) for name in first.stored}
     depth: FloatArray = np.max([part.edge_depth for part in parts], axis=0)
     return KeptContact(first.problem, solution, stored, depth)
-
-
-# From contact solutions to the arrays of the STE database.
-
-
-def contact_fields(
-    pair: ParallelAxes,
-    problem: ContactProblem,
-    solution: ContactSolution,
-    pressed: tuple[FloatArray, BoolArray] | None = None,
-) -> dict[str, NDArray[Any]]:
-    """Arrays (P, F, ...) of one operating point by name in the database; `OF_PAIRS` by its own pairs.
-
-    `pressed`: the `contact_pressure` of its forces, if it is known.
-    """
-    candidates = problem.candidates
-    good = solution.status == Status.CONVERGED
-    loaded = solution.force * candidates.torque_share[:, None, :]
-    total = np.where(good, loaded.sum(axis=2), 1.0)
-    pressure, edge = pressed or contact_pressure(problem, solution.force)
-    of_pair = candidates.pair[:, None] == np.unique(candidates.pair)
-    largest = largest_by_pair(candidates, np.where(edge, 0.0, pressure))
-    centroid = (loaded @ candidates.face_position) / total
-    along_path = pair.tilt_arm(candidates.touch.roll_1, 0.0)
-    return {
-        "static_transmission_error": solution.deflection,
-        "tangent_compliance": solution.tangent,
-        "load_share": (loaded @ of_pair) / total[..., None],
-        "face_centroid": centroid,
-        "load_arm": centroid + np.einsum("pfm,pm->pf", loaded, along_path) / total,
-        "max_pressure": np.where(good, largest.max(axis=2), np.nan),
-        "pair_pressure": np.where(good[..., None], largest, np.nan),
-        "edge_pressure": np.where(good, np.where(edge, pressure, 0.0).max(axis=2), np.nan),
-        "pairs_in_contact": carrying_pairs(solution.force, candidates),
-        "status": solution.status,
-        "residuals": solution.residuals,
-    }
-
-
-OF_PAIRS = ("load_share", "pair_pressure")
-"""Those with an axis of pairs."""
-
-
-def largest_by_pair(candidates: Candidates, values: FloatArray) -> FloatArray:
-    """Return the largest of values (P, F, m) of the candidates of each pair, (P, F, N)."""
-    pairs = np.unique(candidates.pair).size
-    return np.asarray(values.reshape(*values.shape[:2], pairs, -1).max(axis=3))
-
-
-OF_SUPPORT = ("static_transmission_error", "tangent_compliance", "pairs_in_contact")
-"""What is stored of support loads."""
-
-
-def _support_fields(
-    _pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution
-) -> dict[str, NDArray[Any]]:
-    """Arrays (P, S) of one place at the support loads."""
-    carrying = carrying_pairs(solution.force, problem.candidates)
-    return dict(zip(OF_SUPPORT, (solution.deflection, solution.tangent, carrying), strict=True))
-
-
-def carrying_pairs(force: FloatArray, candidates: Candidates) -> IntArray:
-    """Count the pairs (P, F) of which any candidate carries load, by their forces (P, F, m) in N."""
-    of_pair = candidates.pair[:, None] == np.unique(candidates.pair)
-    return np.asarray((((force > 0.0).astype(float) @ of_pair) > 0.0).sum(axis=2))

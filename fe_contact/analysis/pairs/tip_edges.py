@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fe_contact.analysis.pairs.pair_contact import OperatingPoint
+from fe_contact.analysis.pairs.operating_points import OperatingPoint
 from fe_contact.contact import Candidates, ContactProblem, ContactSolution
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray

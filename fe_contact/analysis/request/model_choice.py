@@ -11,11 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
 from bounds import engineering
-from fe_contact.analysis.pairs.pair_contact import operating_points
-from fe_contact.analysis.pairs.slice_springs import SliceLaw, SpringContact, parabolic_stiffness
+from fe_contact.analysis.request.expected_curves import expected_curves
 from fe_contact.analysis.request.request import Checked, Request
 from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.effects.influence.estimate import estimate_influence
@@ -30,56 +27,15 @@ from fe_contact.planning.planned import (
     expected_error,
     mesh_options,
 )
-from fe_contact.sampled import ALIGNMENTS, LOADS, sample_of
-from fe_contact.types import FloatArray, Json
+from fe_contact.types import Json
 
-# Expected mean and ripple of the transmission error, before anything is computed.
-#
-# Errors of meshes and slices are parts of the mean transmission error; requested is a part of peak-to-peak,
-# which may be half of the mean or a thousandth. Uncoupled slices tell which in hundredths of a second.
-# Without the coupling of the teeth and the bodies their mean is 0.55 to 0.94 of that of finite elements
-# (median 0.78), their ripple 0.8 to 1.4 times it where it is above 5 % of the mean (docs/accuracy.md,
-# "Plan").
-
-LAW = SliceLaw(parabolic_stiffness, with_gaps=True)
-POSITIONS = 32
-COUPLED_MEAN, COUPLED_RIPPLE = 1.3, 0.85
-"""Mean under load and ripple of coupled teeth over those of uncoupled slices."""
-UNSEEN_RIPPLE = 0.007
-"""Ripple in parts of the mean that uncoupled slices do not see: they cancel where coupled teeth do not."""
+WIDTH_SHARE = 0.8
+"""Part of the tolerance that the estimated change by the finite width may reach: estimates for
+peak-to-peak are 0.8 of the measured change in the median (docs/lab/influence.md)."""
 
 
-def expected_curves(checked: Checked) -> ExpectedCurves | None:
-    """Solve some loads and alignments of a request by thin slices, in its first base pitch.
-
-    None for internal pairs, which the stiffness of the slices does not know, and where shafts couple them.
-    """
-    request, model = checked.request, checked.model
-    if request.pair.internal or model.compliances:
-        return None
-    plan = checked.plan()
-    scene = replace(
-        request.scene,
-        misalignment=_some(request.misalignment, ALIGNMENTS),
-        center_distance_change=_some(request.center_distance_change, ALIGNMENTS),
-    )
-    points = operating_points(scene, checked.decided, SpringContact(request.pair, plan, law=LAW)).places
-    position, load = np.arange(POSITIONS) / POSITIONS, _some(request.load, LOADS)
-    solved = [point.solve(position, load)[1] for point in points]
-    # errors grow with what the load adds: a misaligned pair leads at no load
-    unloaded = np.concatenate([np.full(load.size, np.mean(thin.no_load)) for thin in solved])
-    added = COUPLED_MEAN * (np.concatenate([np.mean(thin.deflection, axis=0) for thin in solved]) - unloaded)
-    slices = np.concatenate([np.ptp(thin.deflection, axis=0) for thin in solved])
-    mean = np.abs(unloaded + added)
-    ripple = np.hypot(COUPLED_RIPPLE * slices, UNSEEN_RIPPLE * added)
-    return ExpectedCurves(np.tile(load, len(solved)), added, mean, ripple, request.options.allowed)
-
-
-def _some(axis: FloatArray, most: int) -> FloatArray:
-    return axis[sample_of(axis.size, most)]
-
-
-# A request with the model and the mesh that were decided for it.
+TRIED_WORK = 0.1
+"""Work over that of the expected mesh up to which another one is tried first."""
 
 
 @dataclass(frozen=True)
@@ -129,15 +85,6 @@ class Decided:
     def to_json(self) -> Json:
         """Return what was chosen, as plain JSON."""
         return {"model": self.checked.model_name} | self.mesh.to_json()
-
-
-WIDTH_SHARE = 0.8
-"""Part of the tolerance that the estimated change by the finite width may reach: estimates for
-peak-to-peak are 0.8 of the measured change in the median (docs/lab/influence.md)."""
-
-
-TRIED_WORK = 0.1
-"""Work over that of the expected mesh up to which another one is tried first."""
 
 
 def decide(

@@ -2,27 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
 from bounds import Finding, written
 from fe_contact.contact import ContactModel
-from fe_contact.effects import (
-    EFFECTS,
-    ContactScene,
-    Effect,
-    LedgerEntry,
-    compose,
-    named,
-)
-from fe_contact.effects.influence.estimate import (
-    EstimatedInfluence,
-    Influence,
-    estimate_influence,
-    estimate_influences,
-)
+from fe_contact.effects import EFFECTS, ContactScene, Effect, LedgerEntry, compose, named
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning.cost_model import Prediction, predict_run
@@ -191,42 +178,3 @@ class Checked:
             return request.scene, self.decided
         _, ledger = compose(request.whole_scene, request.asked_choices)
         return request.whole_scene, {entry.name: "on" if entry.on else "off" for entry in ledger}
-
-
-# The influence of every effect of a request at its nominal load: the one source of their sizes.
-
-Influences = Mapping[str, Influence | None]
-
-
-def estimated_influences(checked: Checked, names: Iterable[str] | None = None) -> dict[str, Influence | None]:
-    """Estimate what leaving each effect out of a request's model changes at its nominal load.
-
-    Parameters
-    ----------
-    names : iterable of str, optional
-        Effects; default all.
-
-    Returns
-    -------
-    dict of str to Influence
-        At the highest load and the largest misalignment in size. None where one of the two states cannot be
-        had, as a plane with what acts across the face, or the springs do not know it.
-    """
-    chosen = [effect.name for effect in checked.request.registry] if names is None else list(names)
-    neglected = [name for name in chosen if name in checked.request.neglected]
-    own = [name for name in chosen if name not in neglected]
-    influences = estimate_influences(checked.request.scene.at_nominal_load, checked.decided, own)
-    for name in neglected:
-        scene, decided = checked.assessing(name)
-        influences[name] = estimate_influence(scene.at_nominal_load, decided, name)
-    whole = checked.request.whole_scene
-    return {
-        name: None if influence is None else _influence(influence, whole)
-        for name, influence in influences.items()
-    }
-
-
-def _influence(influence: EstimatedInfluence, scene: ContactScene) -> Influence:
-    changes = (influence.mean, influence.peak_to_peak, influence.whole.mean, influence.whole.peak_to_peak)
-    torque, misalignment = float(scene.torque[-1]), scene.largest_misalignment
-    return Influence(torque, misalignment, *(float(values[-1]) for values in changes))

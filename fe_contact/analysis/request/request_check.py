@@ -2,101 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
-from bounds import DEPTHS, Text, at_least, warn_of
-from fe_contact.allowed_error import AllowedError
+from bounds import Text, at_least, warn_of
+from fe_contact.analysis.request.neglected_effects import neglected_effects
+from fe_contact.analysis.request.plane_limits import refuse_beyond_plane
 from fe_contact.analysis.request.request import Checked, Request
 from fe_contact.compliance.flank import LARGEST_ROUNDING, least_face_width
 from fe_contact.contact import ContactModel
-from fe_contact.effects import ContactScene, LedgerEntry, compose
-from fe_contact.effects.influence.estimate import estimate_influences, largest_part
+from fe_contact.effects import LedgerEntry, compose
 from fe_contact.errors import InputError
-from fe_contact.flank.modification import fields_of
-from fe_contact.geometry import FlankModification, ParallelAxes
+from fe_contact.geometry import ParallelAxes
 from fe_contact.mesh import SectorRecipe
 from fe_contact.options import AnalysisOptions, OperatingPoint, TableAxes
 from fe_contact.planning.cycle_cost import CycleCost
 from fe_contact.planning.plan import make_plan
-
-# Automatic effects that a requested tolerance does not need.
-
-SHARE = 0.1
-"""Part of the tolerance that all neglected effects together may change by their estimates, which are right
-within a factor of two in most cases (docs/accuracy.md): what is neglected stays below it."""
-LARGEST_PART = 0.5
-"""Part of the tolerance that their gaps together may change at most, by their bounds over estimated sizes."""
-
-
-def _neglected_effects(
-    scene: ContactScene, ledger: Sequence[LedgerEntry], tolerance: AllowedError | None
-) -> dict[str, str]:
-    """Return the automatic effects whose estimated influence is below the tolerance's share, and why.
-
-    The smallest come first, until their sum would exceed the share of mean and peak-to-peak; none without
-    a tolerance. An estimate passes single places by: gaps that could change more there stay. The ledger is
-    as the scene alone decides.
-    """
-    if tolerance is None:
-        return {}
-    automatic = [entry.name for entry in ledger if entry.on and entry.choice == "auto"]
-    able = [name for name in automatic if scene.effect(name).without(scene) is not None]
-    decided = {entry.name: "on" if entry.on else "off" for entry in ledger}
-    estimates = estimate_influences(scene, decided, able, tolerance.least_scale)
-    neglected: dict[str, str] = {}
-    total, bounded = 0.0, 0.0
-    influences = [(name, influence) for name, influence in estimates.items() if influence is not None]
-    for name, influence in sorted(influences, key=lambda item: item[1].largest):
-        total += influence.largest
-        if total > SHARE * tolerance.relative:
-            break
-        bound = largest_part(
-            scene.effect(name).extent(scene), influence.whole.mean, influence.whole.peak_to_peak, tolerance
-        )
-        if bounded + bound > LARGEST_PART * tolerance.relative:
-            total -= influence.largest
-            continue
-        bounded += bound
-        # an estimate of another size than the tolerance bounds nothing
-        estimated = f"within a factor of two in most cases, at {tolerance.part_words(influence.largest)}"
-        neglected[name] = f"neglected: estimated, {estimated} where it is largest"
-    return neglected
-
-
-# Limits of a plane model: all that acts across the face.
-
-
-def _refuse_beyond_plane(scene: ContactScene, model: ContactModel, ledger: Sequence[LedgerEntry]) -> None:
-    """Refuse what acts across the face, and what effects that are on have there, where the model is a plane.
-
-    That is helix, flanks that vary along the face, shafts, misalignment; and what effects refuse.
-    """
-    if model.across_face:
-        return
-    pair, advice = scene.pair, "Use the 3-D model for it."
-    if pair.pinion.helix_angle != 0.0:
-        raise InputError("pinion.helix_angle", pair.pinion.helix_angle, "0 for a plane model", advice)
-    for name, gear in scene.gears.items():
-        _refuse_varying_flanks(f"{name}.modification", gear.modification.along_face, advice)
-        if pair.shafts[name == "wheel"] is not None:
-            raise InputError(f"{name}.shaft", "given", "left out for a plane model", advice)
-    if np.any(scene.misalignment != 0.0):
-        raise InputError("misalignments", scene.misalignment.tolist(), "[0.0] for a plane model", advice)
-    for entry in ledger:
-        if entry.on:
-            scene.effect(entry.name).refuse_plane(scene)
-
-
-def _refuse_varying_flanks(field: str, along_face: FlankModification, advice: str) -> None:
-    bound = "constant along the face for a plane model"
-    for name in fields_of(*DEPTHS):
-        if amount := getattr(along_face, name):
-            raise InputError(f"{field}.{name}", amount, f"0: {bound}", advice)
-    if along_face.flank_grid is not None:
-        raise InputError(f"{field}.flank_grid.removed", along_face.flank_grid.removed, bound, advice)
 
 
 def check_request(
@@ -156,7 +76,7 @@ def checked_request(request: Request, *, whole_table: bool = True, neglect: bool
     With a tolerance, automatic effects that it does not need are then neglected.
     """
     composed, ledger = _composed(request)
-    _refuse_beyond_plane(request.scene, composed, ledger)
+    refuse_beyond_plane(request.scene, composed, ledger)
     if neglect:
         request, composed, ledger = _without_neglected(request, composed, ledger)
     return _held(request, composed, ledger, whole_table=whole_table)
@@ -173,7 +93,7 @@ def _without_neglected(
 ) -> tuple[Request, ContactModel, tuple[LedgerEntry, ...]]:
     """Neglect what the tolerance does not need, unless that is decided, and compose what is left."""
     if not (request.neglected or request.turned_on):
-        neglected = _neglected_effects(request.scene, ledger, request.options.tolerance)
+        neglected = neglected_effects(request.scene, ledger, request.options.tolerance)
         if neglected:
             request = replace(request, neglected=neglected)
             return request, *_composed(request)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fe_contact.analysis.pairs.pair_contact import OperatingPoints, PairContact
+from fe_contact.analysis.pairs.operating_points import OperatingPoints
+from fe_contact.analysis.pairs.pair_contact import PairContact
 from fe_contact.analysis.pairs.tip_edges import edge_depth
 from fe_contact.analysis.request.request import Checked
 from fe_contact.contact import ContactProblem, ContactSolution

@@ -14,8 +14,9 @@ import numpy as np
 import model_studies
 from fe_contact.analysis.checks.effect_ledger import toggled
 from fe_contact.analysis.database.compute_database import compute_database
+from fe_contact.analysis.request.influences import estimated_influences
 from fe_contact.analysis.request.model_choice import decide
-from fe_contact.analysis.request.request import Checked, estimated_influences
+from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import as_checked, checked_request
 from fe_contact.effects import EFFECTS, LedgerEntry
 from fe_contact.effects.influence.estimate import Influence

@@ -29,12 +29,8 @@ from fe_contact.geometry import (
     tooth_profile,
     web_compliance,
 )
-from fe_contact.geometry.web_compliance import (
-    finite_width_excess,
-    shear_modulus,
-    shift_compliance,
-    torsion_compliance,
-)
+from fe_contact.geometry.finite_width import finite_width_excess
+from fe_contact.geometry.web_compliance import shear_modulus, shift_compliance, torsion_compliance
 from fe_contact.types import FloatArray
 
 # Compliance of a gear under the axial part of the force of a helical tooth, in closed form.

@@ -18,11 +18,13 @@ from fe_contact.full_contact.condensation.sites import (
     material_removed,
 )
 from fe_contact.geometry import ParallelAxes, Toothing, tooth_profile
+from fe_contact.mesh.curve_division import divide, middles, spread
 from fe_contact.mesh.gear_mesh import real_teeth
-from fe_contact.mesh.outline import Outline, Piece, arc, divide, middles, piece, spread
+from fe_contact.mesh.outline import Outline, Piece, arc, piece
+from fe_contact.mesh.quadratic_mesh import QuadraticMesh, quadratic_meshes, rotated
 from fe_contact.mesh.quality import QualityLimits
-from fe_contact.mesh.tooth_sector import LARGEST_ARC, MIRRORED
-from fe_contact.mesh.triangulation import QuadraticMesh, quadratic_meshes, rotated
+from fe_contact.mesh.tooth_outline import LARGEST_ARC
+from fe_contact.mesh.tooth_sector import MIRRORED
 from fe_contact.types import FloatArray, IntArray
 
 # Boundary of one gear divided for one position: real teeth, plain ring, held circle.

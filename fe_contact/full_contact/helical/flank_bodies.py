@@ -27,8 +27,8 @@ from fe_contact.full_contact.over_face.extruded_stiffness import Layers
 from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.material import Material
 from fe_contact.mesh.gear_mesh import real_teeth
+from fe_contact.mesh.quadratic_mesh import quadratic_meshes
 from fe_contact.mesh.quality import QualityLimits
-from fe_contact.mesh.triangulation import quadratic_meshes
 from fe_contact.types import FloatArray, IntArray
 
 TEETH = 7

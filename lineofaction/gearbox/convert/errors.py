@@ -28,7 +28,6 @@ from dynamics.shafts.shaft import Shaft as TurningShaft
 from dynamics.solid_housing import Material as HousingMaterial
 from dynamics.solid_housing import ReductionSettings, SeatWall
 from dynamics.temperatures import Temperatures
-from fe_contact.body import Shaft
 from fe_contact.errors import FeContactError, InfeasibleGeometry
 from fe_contact.errors import InputError as ContactInputError
 from fe_contact.flank.modification import FlankModification
@@ -36,6 +35,7 @@ from fe_contact.flank.stated_start import StatedStarts
 from fe_contact.geometry import Gear, GearPair, RingGear
 from fe_contact.geometry.toothing import MATING
 from fe_contact.material import Material
+from fe_contact.shaft import Shaft
 from host import Unavailable, missing_extra
 from lineofaction.gearbox.problems import BadInput, Fault, JobFailed, ServiceError
 from lineofaction.gearbox.schemas import Case

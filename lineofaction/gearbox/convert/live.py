@@ -14,9 +14,10 @@ import numpy as np
 
 from bounds.types import Json
 from fe_contact.analysis.flanks.deformed_pair import mesh_angles
-from fe_contact.analysis.flanks.load_distribution import LoadDistribution, load_distribution, pressure_map
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution, load_distribution
+from fe_contact.analysis.flanks.pressure_map import pressure_map
 from fe_contact.analysis.live.condensed_pair import CondensedPair
-from fe_contact.analysis.live.condensed_request import condensed_pair
+from fe_contact.analysis.live.stored_bodies import condensed_pair
 from fe_contact.analysis.request.model_choice import Decided, decide
 from fe_contact.analysis.run_plan import RunPlan, plan_run
 from fe_contact.geometry import ParallelAxes, Toothing, tooth_profile

@@ -7,13 +7,13 @@ from typing import Annotated, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from fe_contact.body import Shaft
 from fe_contact.flank.modification import FlankModification
 from fe_contact.flank.stated_start import RELIEFS, StatedStarts, starts_of
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.tooth_flank import MOST_NODES
 from fe_contact.geometry.toothing import MATING, Toothing
 from fe_contact.material import Material
+from fe_contact.shaft import Shaft
 from lineofaction.gearbox.schemas.declared import (
     Figure,
     as_fields,

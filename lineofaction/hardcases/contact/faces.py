@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fe_contact.contact import ContactProblem, ContactSolution
-from fe_contact.contact.problem import POINTS
+from fe_contact.contact.slices import POINTS
 from fe_contact.types import FloatArray
 from lineofaction.hardcases.contact.laws import soundness
 from lineofaction.hardcases.contact.posed_pair import (

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_contact.analysis.pairs.pair_contact import PairContact, operating_points, pair_contact
+from fe_contact.analysis.pairs.operating_points import operating_points
+from fe_contact.analysis.pairs.pair_contact import PairContact, pair_contact
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact import ContactModel, ContactProblem, ContactSolution
 from fe_contact.geometry import Gear, GearPair, ParallelAxes

@@ -10,7 +10,8 @@ import numpy as np
 
 from dynamics.accuracy import Frontier as SceneFrontier
 from fe_contact.analysis.studies.frontier import Frontier
-from fe_contact.analysis.studies.measured_full_contact import ORIGIN, PLANE, PROGRAM
+from fe_contact.analysis.studies.full_contact_cost import ORIGIN
+from fe_contact.analysis.studies.measured_full_contact import PLANE, PROGRAM
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, FloatArray, Line, Note, Panel, Table, number
 from lineofaction.report.drawing.page import Headline, Page, Section

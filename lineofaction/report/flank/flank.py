@@ -9,7 +9,8 @@ from typing import Literal
 import numpy as np
 
 from bounds import engineering
-from fe_contact.analysis.flanks.load_distribution import LoadDistribution, pressure_map
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution
+from fe_contact.analysis.flanks.pressure_map import pressure_map
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate, IntArray
 from lineofaction.gearbox.convert.effects import assumption_lines

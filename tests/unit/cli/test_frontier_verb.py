@@ -10,14 +10,10 @@ from command_line import loa
 
 from dynamics.accuracy import FidelityResult as SceneResult
 from dynamics.accuracy import Frontier as SceneFrontier
-from fe_contact.analysis.studies.frontier import FidelityResult, Frontier
-from fe_contact.analysis.studies.measured_full_contact import (
-    FULL_CONTACT,
-    MEASURED_GEAR,
-    PLANE,
-    MeasuredFullContact,
-    known_full_contact,
-)
+from fe_contact.analysis.studies.fidelity_result import FidelityResult
+from fe_contact.analysis.studies.frontier import Frontier
+from fe_contact.analysis.studies.full_contact_cost import FULL_CONTACT, MEASURED_GEAR, known_full_contact
+from fe_contact.analysis.studies.measured_full_contact import PLANE, MeasuredFullContact
 from fe_contact.full_contact import FullContactPoint, FullContactTable
 from fe_contact.geometry import FlankModification, GearPair
 from fe_contact.types import Status

@@ -14,7 +14,8 @@ from own_directories import own_directories
 
 from dynamics.results import EnergyAudit, RunResult, StepStatistics
 from dynamics.types import RunStatus
-from fe_contact.analysis.flanks.load_distribution import LoadDistribution, _flank_scene
+from fe_contact.analysis.flanks.flank_scene import flank_scene
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.effects.influence.estimate import Influence
 from fe_contact.geometry import Gear, GearPair
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
@@ -144,7 +145,7 @@ def closed_form_flanks(slices: int = 5, positions: int = 16) -> LoadDistribution
         gap=gap,
         slice_width=width,
         base_helix_angle=pair.base_helix_angle,
-        scene=_flank_scene(pair, 1000.0, misalignment=30e-6),
+        scene=flank_scene(pair, 1000.0, misalignment=30e-6),
         metadata=Metadata(receipt={"cpu_seconds": 0.5}, content_hash="1" * 64, case={"load": 1.0}),
     )
 

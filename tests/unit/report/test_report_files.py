@@ -16,7 +16,8 @@ from command_line import loa
 
 from dynamics.orders import highest_valid_order, order_frequency
 from dynamics.results import RunResult
-from fe_contact.analysis.studies.frontier import FidelityResult, Frontier
+from fe_contact.analysis.studies.fidelity_result import FidelityResult
+from fe_contact.analysis.studies.frontier import Frontier
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.problems import BadInput, DamagedFile
 from lineofaction.gearbox.studies.frontier.run import RUN

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from matplotlib.contour import ContourSet
 
-from fe_contact.analysis.flanks.load_distribution import FlankErrors, LoadDistribution, pressure_map
+from fe_contact.analysis.flanks.load_distribution import FlankErrors, LoadDistribution
+from fe_contact.analysis.flanks.pressure_map import pressure_map
 from fe_contact.ste import SteDatabase
 from lineofaction.report.document import write_report
 from lineofaction.report.drawing.figure import HeatMap, Panel, Strokes, number

@@ -90,11 +90,11 @@ class Recording:
 @pytest.mark.parametrize(
     ("process", "further", "task"),
     [
-        (ANALYZE, {}, "_solve_block"),
-        (default_registry()["sensitivity"], DEVIATIONS, "_solve_block"),
+        (ANALYZE, {}, "solve_block"),
+        (default_registry()["sensitivity"], DEVIATIONS, "solve_block"),
         (default_registry()["optimize"], SEARCH, "_search_one"),
         (default_registry()["scatter"], {"samples": 30}, "curves_of_samples"),
-        (default_registry()["ablate"], {"only": ["profile_modification"]}, "_solve_block"),
+        (default_registry()["ablate"], {"only": ["profile_modification"]}, "solve_block"),
         (default_registry()["flank"], OVER_FACE, "condense"),
         (default_registry()["root-stress"], OVER_FACE, "condense"),
     ],

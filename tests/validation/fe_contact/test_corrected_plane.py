@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair, SteDatabase, analyze
-from fe_contact.analysis.estimates import assessed_table
-from fe_contact.analysis.estimates.assessed_table import CORRECTION_ERROR
+from fe_contact.analysis.estimates import curve_errors, error_sources
+from fe_contact.analysis.estimates.error_sources import CORRECTION_ERROR
 from fe_contact.analysis.pairs.pair_contact import PairContact, pair_contact
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.compliance import FlankCompliance3D, flank_compliances_3d
@@ -149,7 +149,8 @@ def test_switched_off_it_is_plane_strain_and_on_its_error_is_stated_by_source(mo
     stated = corrected.metadata.receipt["error_by_source"]
     assert stated["finite_width_m"][0] == pytest.approx(CORRECTION_ERROR * change.max(), rel=1e-9, abs=0.0)
     assert stated["discretisation_m"] == plain.metadata.receipt["error_by_source"]["discretisation_m"]
-    monkeypatch.setattr(assessed_table, "CORRECTION_ERROR", 0.0)
+    monkeypatch.setattr(error_sources, "CORRECTION_ERROR", 0.0)
+    monkeypatch.setattr(curve_errors, "CORRECTION_ERROR", 0.0)
     exact = table(SIX, **options)
     part = corrected.error_estimate - exact.error_estimate
     assert part == pytest.approx(CORRECTION_ERROR * change, rel=1e-9, abs=0.0)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair, analyze
-from fe_contact.geometry.web_compliance import finite_width_excess
+from fe_contact.geometry.finite_width import finite_width_excess
 
 STUDY = "study with resolved contact in 3-D"
 PAPER = "Palermo et al., ISMA 2010, Fig. 7"

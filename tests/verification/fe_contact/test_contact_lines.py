@@ -11,7 +11,7 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair
-from fe_contact.analysis.pairs.pair_contact import OperatingPoint, operating_points
+from fe_contact.analysis.pairs.operating_points import OperatingPoint, operating_points
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.tables import condensed_bodies

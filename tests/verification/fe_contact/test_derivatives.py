@@ -11,7 +11,7 @@ import pytest
 
 from fe_contact import FlankModification, Gear, GearPair, analyze
 from fe_contact.analysis.live.condensed_pair import CondensedPair
-from fe_contact.analysis.live.condensed_request import condensed_pair
+from fe_contact.analysis.live.stored_bodies import condensed_pair
 from fe_contact.contact import adjoint, force_changes, load_arm, solve_contact
 from fe_contact.errors import InputError
 from fe_contact.geometry import InternalGearPair, ParallelAxes, RingGear

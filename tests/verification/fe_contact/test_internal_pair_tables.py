@@ -12,7 +12,7 @@ import pytest
 from analysis_requests import point_request
 
 from fe_contact.analysis.analyze import analyze
-from fe_contact.analysis.flanks.flank_file import flank_results
+from fe_contact.analysis.flanks.flank_results import flank_results
 from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.contact import ContactModel
 from fe_contact.effects.misalignment import MisalignmentGap

@@ -12,7 +12,8 @@ from analysis_requests import point_request
 from spur_gears import GEAR
 
 from fe_contact import GearPair, root_stress
-from fe_contact.analysis.flanks.root_stress import _crest_values, _finer_root
+from fe_contact.analysis.flanks.root_meshes import _finer_root
+from fe_contact.analysis.flanks.root_stress_history import _crest_values
 from fe_contact.compliance import UnitRootStress, unit_root_stress, unit_root_stress_3d
 from fe_contact.contact.face_patch import FaceGrid, face_loads
 from fe_contact.contact.patch import load_vector

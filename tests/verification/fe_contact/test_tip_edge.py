@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fe_contact import FlankModification, Gear, GearPair
-from fe_contact.contact.flank_forces import contact_pressure
+from fe_contact.contact.contact_pressure import contact_pressure
 from fe_contact.geometry import InternalGearPair, ParallelAxes, RingGear
 from lineofaction.hardcases.contact.posed_pair import Posed, even_positions, nominal_pair, posed
 

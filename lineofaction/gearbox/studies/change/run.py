@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from bounds.types import Json
-from fe_contact.analysis.live.condensed_request import condensed_pair
+from fe_contact.analysis.live.stored_bodies import condensed_pair
 from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes

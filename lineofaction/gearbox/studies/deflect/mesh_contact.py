@@ -12,7 +12,7 @@ from dynamics.meshes import MeshTable
 from fe_contact.analysis.analyze import ste_database
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution, load_distribution
 from fe_contact.analysis.live.condensed_pair import CondensedPair
-from fe_contact.analysis.live.condensed_request import condensed_pair
+from fe_contact.analysis.live.stored_bodies import condensed_pair
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import Run, TableAxes
 from fe_contact.ste import SteDatabase

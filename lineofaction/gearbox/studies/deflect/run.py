@@ -11,7 +11,8 @@ import numpy as np
 from bounds import engineering, leftover
 from bounds.types import Json
 from dynamics.deflection import CaseDeflection, MeshAlignment, deflect
-from fe_contact.analysis.flanks.load_distribution import LoadDistribution, pressure_map
+from fe_contact.analysis.flanks.load_distribution import LoadDistribution
+from fe_contact.analysis.flanks.pressure_map import pressure_map
 from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.case import PLANE, across_face, boundary_errors

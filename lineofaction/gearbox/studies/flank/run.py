@@ -6,7 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from bounds.types import Json
-from fe_contact.analysis.flanks.flank_file import FORMAT, flank_results
+from fe_contact.analysis.flanks.flank_file import FORMAT
+from fe_contact.analysis.flanks.flank_results import flank_results
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.options import Run

@@ -12,7 +12,7 @@ from dynamics.accuracy import frontier as frontier_of_scene
 from dynamics.accuracy import runs_of_frontier
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.studies.frontier import FIDELITIES, Frontier, frontier, predicted_frontier
-from fe_contact.analysis.studies.measured_full_contact import ORIGIN
+from fe_contact.analysis.studies.full_contact_cost import ORIGIN
 from fe_contact.errors import chosen
 from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, study_options
 from lineofaction.gearbox.convert.scene import TabledScene

@@ -14,9 +14,9 @@ from dynamics.assembly.assemble import assemble
 from dynamics.deflection.loaded_scene import with_loads
 from dynamics.linearize.steady_vibration import excited
 from fe_contact.analysis.live.condensed_pair import CondensedPair
-from fe_contact.analysis.live.condensed_request import condensed_pair
+from fe_contact.analysis.live.stored_bodies import condensed_pair
 from fe_contact.analysis.run_plan import predicted_designs
-from fe_contact.analysis.tables import table_of_solution
+from fe_contact.analysis.table_fields import table_of_solution
 from fe_contact.effects import EFFECTS, named
 from fe_contact.errors import InputError, SolveError
 from fe_contact.geometry import ParallelAxes

@@ -6,14 +6,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from bounds.types import Json
-from fe_contact.analysis.flanks.root_stress import (
-    ROOTS,
-    RootPassage,
-    RootPeak,
-    RootStressHistory,
-    root_stress,
-    stress_seconds,
-)
+from fe_contact.analysis.flanks.root_stress import root_stress, stress_seconds
+from fe_contact.analysis.flanks.root_stress_history import ROOTS, RootPassage, RootPeak, RootStressHistory
 from fe_contact.plausibility.pair_checks import nominal_root_stresses
 from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
 from lineofaction.gearbox.convert.plausibility import phrased_for

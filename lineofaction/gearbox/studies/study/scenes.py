@@ -17,7 +17,7 @@ from pydantic import BaseModel, ValidationError
 from bounds.types import Json
 from dynamics.scene import Scene
 from fe_contact.analysis.live.condensed_pair import CondensedPair
-from fe_contact.analysis.live.condensed_request import condensed_pair
+from fe_contact.analysis.live.stored_bodies import condensed_pair
 from fe_contact.errors import FeContactError
 from fe_contact.flank.modification import FlankModification
 from fe_contact.flank.stated_start import StatedStarts

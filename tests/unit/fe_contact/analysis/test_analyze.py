@@ -10,9 +10,10 @@ from analysis_requests import table_request
 from spur_gears import PAIR
 
 from fe_contact import FlankModification, Gear, GearPair, SteDatabase, analyze
-from fe_contact.analysis.pairs.pair_contact import OperatingPoints, PairContact, operating_points
+from fe_contact.analysis.pairs.operating_points import OperatingPoints, operating_points
+from fe_contact.analysis.pairs.pair_contact import PairContact
 from fe_contact.analysis.request.request_check import check_request
-from fe_contact.contact.problem import condition_numbers
+from fe_contact.contact.condition_number import condition_numbers
 from fe_contact.errors import DatabaseError
 from fe_contact.planning.plan import make_plan
 from fe_contact.ste import Validity

@@ -15,11 +15,12 @@ from compliance_gears import HELICAL, SPUR, coarse, moved, whole_gear
 import fe_contact.compliance.cyclic_compliance as flow
 from fe_contact.compliance import FlankCompliance3D, flank_compliance_3d
 from fe_contact.compliance.deformation_3d import deformed_solids
+from fe_contact.compliance.factorization import factorise
 from fe_contact.compliance.keyed_bore import _key_points
-from fe_contact.compliance.ring_2d import factorise
-from fe_contact.compliance.sector_stiffness import _face_mass, twist
+from fe_contact.compliance.seat_stiffness import _face_mass
+from fe_contact.compliance.sector_stiffness import twist
 from fe_contact.compliance.unit_root_stress import unit_root_stress_3d
-from fe_contact.contact.assembly import _KeyedFlanks
+from fe_contact.contact.face_assembly import _KeyedFlanks
 from fe_contact.contact.face_patch import FaceGrid, add_compliance, face_loads
 from fe_contact.errors import InfeasibleGeometry, InputError
 from fe_contact.geometry import BoreSeat, Gear, Key, seat_compliance

@@ -10,12 +10,12 @@ from compliance_gears import HELICAL, SPUR, coarse, relative
 
 from fe_contact.compliance import flank_compliance_3d
 from fe_contact.compliance.condensed_gear import CondensedTooth, condensed_tooth, free_turn
-from fe_contact.compliance.cyclic_compliance import usual_reach
 from fe_contact.compliance.cyclic_harmonics import TurningLoads
 from fe_contact.compliance.cyclic_ring import FreeTurn, RingSolution, close_ring
+from fe_contact.compliance.tooth_reach import usual_reach
 from fe_contact.geometry import BoreSeat, Gear, GearBlank, Key, RingGear, Toothing
 from fe_contact.mesh import quad_sector
-from fe_contact.mesh.sector_grid import bore_support
+from fe_contact.mesh.bore_support import bore_support
 from model_studies.stage_clock import StageClock
 
 MANY = replace(SPUR, teeth=120, bore_diameter=380e-3)

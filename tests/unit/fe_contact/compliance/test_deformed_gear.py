@@ -11,9 +11,11 @@ from compliance_gears import HELICAL, SPUR, coarse, coarse_plane
 from spur_gears import gear as make_gear
 
 from fe_contact.compliance import PlaneHypothesis, flank_compliance, flank_compliance_3d
-from fe_contact.compliance.deformation_3d import _sector_elements, _SectorElements, deformed_solids
-from fe_contact.compliance.deformed_gear import DeformedGear, _element_stress, deformed_sections, stress_of
-from fe_contact.compliance.sector_stiffness import REFERENCE, determinants, hexahedra
+from fe_contact.compliance.deformation_3d import deformed_solids
+from fe_contact.compliance.deformed_gear import DeformedGear, stress_of
+from fe_contact.compliance.deformed_section import _element_stress, deformed_sections
+from fe_contact.compliance.hexahedron_stiffness import REFERENCE, determinants, hexahedra
+from fe_contact.compliance.sector_elements import SectorElements, sector_elements
 from fe_contact.errors import InputError
 from fe_contact.geometry import BoreSeat, Gear, GearBlank, Key, RingGear, Toothing, tooth_profile
 from fe_contact.mesh import mesh_gear, quad_sector, swept_sector
@@ -96,11 +98,11 @@ def test_elements_agree_and_a_linear_displacement_gives_its_constant_stress(gear
         assert np.abs(first[elements.numbers] - values).max() < 1e-12 * np.abs(values).max()
 
 
-def sector_of(gear: Toothing) -> _SectorElements:
+def sector_of(gear: Toothing) -> SectorElements:
     right = gear.right_handed()
     recipe = coarse(gear)
     section = quad_sector(right, recipe)
-    return _sector_elements(
+    return sector_elements(
         right, section, swept_sector(section.grid, right.face_width, recipe, None, right.web)
     )
 

@@ -17,9 +17,10 @@ from fe_contact.compliance import (
     flank_compliance_3d,
     flank_compliances_3d,
 )
-from fe_contact.compliance.condensed_gear import _least_eigenvalue, _pressure_forces
+from fe_contact.compliance.condensed_gear import _pressure_forces
+from fe_contact.compliance.factorization import factorise
 from fe_contact.compliance.flank import ComplianceChecks, refuse_broken_laws
-from fe_contact.compliance.ring_2d import factorise
+from fe_contact.compliance.gear_checks import _least_eigenvalue
 from fe_contact.compliance.sector_stiffness import twist
 from fe_contact.errors import InputError, SolveError
 from fe_contact.geometry import Gear, RingGear, Toothing

@@ -21,10 +21,10 @@ from fe_contact.compliance import (
     flank_compliances,
     ring_2d,
 )
+from fe_contact.compliance.condensed_sector import _inward_loads, freedoms
 from fe_contact.compliance.flank import refuse_broken_laws
 from fe_contact.compliance.flank_compliance_2d import uniform_pressure
 from fe_contact.compliance.plane_elasticity import stiffness_matrix
-from fe_contact.compliance.ring_2d import _inward_loads, freedoms
 from fe_contact.errors import InputError, SolveError
 from fe_contact.geometry import Gear, RingGear, Toothing
 from fe_contact.material import Material

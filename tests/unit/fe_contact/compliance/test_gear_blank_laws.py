@@ -19,8 +19,8 @@ from fe_contact.compliance import (
     flank_compliance_3d,
 )
 from fe_contact.compliance.condensed_gear import _probe_loads, condensed_gear
+from fe_contact.compliance.condensed_sector import freedoms
 from fe_contact.compliance.flank_compliance_2d import compliance_key, condensed_ring, uniform_pressure
-from fe_contact.compliance.ring_2d import freedoms
 from fe_contact.compliance.unit_root_stress import unit_root_stress_3d
 from fe_contact.geometry import Gear, GearBlank
 from fe_contact.geometry.web_compliance import torsion_compliance

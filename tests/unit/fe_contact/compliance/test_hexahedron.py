@@ -9,20 +9,17 @@ import pytest
 from skfem import Basis, ElementHex2, ElementHexS2, ElementVector, MeshHex, MeshHex2
 from skfem.models.elasticity import linear_elasticity
 
-from fe_contact.compliance.sector_stiffness import (
+from fe_contact.compliance.hexahedron_stiffness import (
     REFERENCE,
-    _flank_frames,
-    _layer_nodes,
-    _stiffness_of,
     cylindrical_frames,
-    placed_layer,
-    sector_stiffness,
-    twist,
+    layer_nodes,
+    stiffness_of,
 )
+from fe_contact.compliance.sector_stiffness import _flank_frames, placed_layer, sector_stiffness, twist
 from fe_contact.errors import MeshError
 from fe_contact.geometry import BoreSeat, Gear
 from fe_contact.mesh import QuadSector, SectorRecipe, SweptSector, quad_sector, swept_sector
-from fe_contact.mesh.swept_sector import Batch
+from fe_contact.mesh.element_stack import Batch
 
 LAME = (121e9, 81e9)
 GEAR = Gear(17, 4e-3, 25e-3, 30e-3, helix_angle=0.5, profile_shift_coefficient=0.1)
@@ -37,7 +34,7 @@ def section() -> QuadSector:
 @pytest.fixture(scope="module")
 def nodes(section: QuadSector) -> np.ndarray:
     """Nodes (m, 20, 3) of one strongly turned layer."""
-    return _layer_nodes(section.points[section.grid.quads], 5e-3, 0.1)
+    return layer_nodes(section.points[section.grid.quads], 5e-3, 0.1)
 
 
 def serendipity(at: np.ndarray) -> np.ndarray:
@@ -67,14 +64,14 @@ def test_equals_the_assembly_of_scikit_fem(nodes: np.ndarray) -> None:
     matrix = linear_elasticity(*LAME).assemble(basis).toarray()
     here = [int(np.abs(ElementHexS2.doflocs - 0.5 * (x + 1)).sum(axis=1).argmin()) for x in REFERENCE]
     order = (3 * np.array(here)[:, None] + np.arange(3)).ravel()
-    found = _stiffness_of(some, LAME)
+    found = stiffness_of(some, LAME)
     for e in range(count):
         dofs = basis.element_dofs[order, e]
         assert found[e] == pytest.approx(matrix[np.ix_(dofs, dofs)], abs=1e-12 * np.abs(found[e]).max())
 
 
 def test_only_the_six_rigid_motions_are_free(nodes: np.ndarray) -> None:
-    for stiffness in _stiffness_of(nodes[::20], LAME):
+    for stiffness in stiffness_of(nodes[::20], LAME):
         assert (
             np.array_equal(stiffness, stiffness.T)
             or np.abs(stiffness - stiffness.T).max() < 1e-13 * np.abs(stiffness).max()
@@ -89,7 +86,7 @@ def test_a_rotation_about_the_axis_is_tangential(section: QuadSector) -> None:
     batch = Batch(quads, 5e-3, 0, np.arange(len(quads))[None])
     nodes, transform = placed_layer(section, batch, np.tile(np.eye(3), (section.grid.nodes, 1, 1)), 20.0)
     assert nodes == pytest.approx(
-        _layer_nodes(section.points[section.grid.quads[quads]], 5e-3, 0.1), abs=1e-16
+        layer_nodes(section.points[section.grid.quads[quads]], 5e-3, 0.1), abs=1e-16
     )
     motion = np.zeros_like(nodes)
     motion[..., 1] = np.hypot(nodes[..., 0], nodes[..., 1])
@@ -101,7 +98,7 @@ def test_a_folded_element_is_named(section: QuadSector) -> None:
     squares = section.points[section.grid.quads]
     squares[2] = squares[2][[1, 0, 3, 2, 4, 7, 6, 5]]  # clockwise
     with pytest.raises(MeshError, match=r"element 2 at .* is folded"):
-        _stiffness_of(_layer_nodes(squares, 1e-3, 0.1), LAME)
+        stiffness_of(layer_nodes(squares, 1e-3, 0.1), LAME)
 
 
 def node_positions(section: QuadSector, sector: SweptSector) -> np.ndarray:

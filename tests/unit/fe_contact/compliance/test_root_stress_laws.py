@@ -17,10 +17,12 @@ import fe_contact.compliance.root_stress_3d as face_module
 import fe_contact.compliance.sector_stiffness as stiffness_module
 from fe_contact.compliance import PlaneHypothesis
 from fe_contact.compliance.condensed_gear import _pressure_forces
+from fe_contact.compliance.condensed_sector import _inward_loads, freedoms
+from fe_contact.compliance.factorization import factorise
 from fe_contact.compliance.plane_elasticity import stiffness_matrix
-from fe_contact.compliance.ring_2d import _inward_loads, factorise, freedoms
 from fe_contact.compliance.root_stress import UnitRootStress, refuse_broken_stress
-from fe_contact.compliance.root_stress_3d import _quad_root, _root_functionals, compute_root_stress_3d
+from fe_contact.compliance.root_stress_3d import _root_functionals, compute_root_stress_3d
+from fe_contact.compliance.root_surface_3d import quad_root
 from fe_contact.compliance.unit_root_stress import (
     _edge_stress,
     _triangle_root,
@@ -33,7 +35,7 @@ from fe_contact.contact.face_patch import FaceGrid, face_loads
 from fe_contact.contact.patch import load_vector
 from fe_contact.errors import SolveError
 from fe_contact.geometry import Gear, RingGear, Toothing, tooth_profile
-from fe_contact.geometry.flank_profile import critical_section, tangent_angle
+from fe_contact.geometry.root_tangent import critical_section, tangent_angle
 from fe_contact.material import Material
 from fe_contact.mesh import (
     ClampedBore,
@@ -114,7 +116,7 @@ def whole_gear_stress(gear: Gear, recipe: SectorRecipe) -> np.ndarray:
     loads = np.zeros((matrix.shape[0], 3))
     loads[number[0, sector.flank]] = -some_forces(len(sector.flank))  # inwards
     moved = factorise(matrix, block=1)(loads)
-    rows = _root_functionals(gear, section, sector, _quad_root(section, tooth_profile(gear)))
+    rows = _root_functionals(gear, section, sector, quad_root(section, tooth_profile(gear)))
     return np.stack([rows @ moved[each[:-1]] for each in number])
 
 
@@ -249,7 +251,7 @@ def test_nodes_of_the_root_have_their_flank_coordinates(gear: Toothing) -> None:
     section = quad_sector(gear, SectorRecipe.draft(gear))
     sector = mesh_gear(gear, MeshRecipe.standard(gear)).sector
     for points, root in (
-        (section.points, _quad_root(section, profile)),
+        (section.points, quad_root(section, profile)),
         (sector.points, _triangle_root(sector, profile)),
     ):
         right, left = points[root.nodes[0]], points[root.nodes[1]]

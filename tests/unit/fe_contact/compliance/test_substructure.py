@@ -17,6 +17,7 @@ from fe_contact.analysis.request.request_check import check_request
 from fe_contact.compliance import flank_compliance_3d
 from fe_contact.compliance.cyclic_ring import close_ring, hold_sector
 from fe_contact.compliance.elimination_tree import EliminationTree, _elimination_tree
+from fe_contact.compliance.factorization import _nested_dissection, factorise
 from fe_contact.compliance.flank import (
     EPSILON,
     LARGEST_ROUNDING,
@@ -24,7 +25,6 @@ from fe_contact.compliance.flank import (
     least_face_width,
     left_by_rounding,
 )
-from fe_contact.compliance.ring_2d import _nested_dissection, factorise
 from fe_contact.compliance.sector_stiffness import ElementStiffness
 from fe_contact.compliance.substructure import condense
 from fe_contact.errors import InputError, SolveError

@@ -11,8 +11,8 @@ from scipy.sparse.linalg import splu
 
 from fe_contact.compliance import PlaneHypothesis
 from fe_contact.compliance.plane_elasticity import stiffness_matrix
-from fe_contact.compliance.root_stress import STATIONS, between_nodes
-from fe_contact.compliance.root_stress_3d import ACROSS, ALONG, _face_stress, _SurfaceElements
+from fe_contact.compliance.root_surface import STATIONS, between_nodes
+from fe_contact.compliance.root_surface_3d import ACROSS, ALONG, _SurfaceElements, face_stress
 from fe_contact.compliance.unit_root_stress import _edge_stress
 from fe_contact.material import Material
 
@@ -153,7 +153,7 @@ def shaft(layers: int, radius: float, skew: float) -> _SurfaceElements:
 def stress_of(elements: _SurfaceElements, field: Displacement) -> np.ndarray:
     """Stresses (3, stations) where the nodes move by `field`, given and taken in Cartesian components."""
     moved = np.einsum("miab,mia->mib", elements.frames, field(elements.nodes))
-    rows = _face_stress(elements, STEEL, elements.freedoms.size)
+    rows = face_stress(elements, STEEL, elements.freedoms.size)
     return np.asarray(rows @ moved.ravel()).reshape(3, -1)
 
 
@@ -182,7 +182,7 @@ def test_neither_a_turn_nor_a_held_freedom_gives_stress() -> None:
     assert np.abs(found).max() < 1e-12  # a stretch of that size gives 3
     elements = shaft(1, 0.8, 0.0)
     held = elements._replace(freedoms=np.where(np.arange(3) == 2, -1, elements.freedoms))
-    all_rows, rows = (_face_stress(e, STEEL, elements.freedoms.size) for e in (elements, held))
+    all_rows, rows = (face_stress(e, STEEL, elements.freedoms.size) for e in (elements, held))
     kept = elements.freedoms[..., :2].ravel()
     assert (rows - all_rows)[:, kept].nnz == 0 or np.abs((rows - all_rows)[:, kept]).max() == 0.0
     assert abs(rows[:, elements.freedoms[..., 2].ravel()]).sum() == 0.0

@@ -12,7 +12,7 @@ from fe_contact.contact import ContactModel, ContactProblem
 from fe_contact.contact import problem as contact_problem
 from fe_contact.contact.candidates import PatchRule, contact_candidates
 from fe_contact.contact.free_end import ENDLESS, end_softness
-from fe_contact.contact.problem import Slices
+from fe_contact.contact.slices import Slices
 from fe_contact.geometry import Gear, GearPair
 
 MODULE, FACE = 3e-3, 24e-3

@@ -8,18 +8,18 @@ import numpy as np
 import pytest
 from hertz_laws import edge_contact_length, edge_half_width, line_load_at_half_width, local_approach
 
-from fe_contact.contact.point_problem import (
+from fe_contact.contact.local_law import (
     _HALF,
     _MIDDLE,
     _MODULUS,
     LARGEST_STRIP,
     SMALLEST_STRIP,
     LocalLaw,
-    _force_at,
     _plain_load,
     _plain_strip,
     _strip_at,
     approach,
+    force_at,
     local_law,
 )
 from fe_contact.contact.strip import Gap, free_strip, gap_table, strip_at, strip_load
@@ -135,10 +135,10 @@ def test_the_force_at_an_approach_is_its_inverse(slope):
     law = law_of(slope)
     for p in np.geomspace(1e-3 * low(law), 1e2 * high(law), 200):
         value, stiffness, _ = approach(law, 0, p * WIDTH)
-        force, per_approach = _force_at(law, 0, value)
+        force, per_approach = force_at(law, 0, value)
         assert force == pytest.approx(p * WIDTH, rel=1e-11, abs=0.0)
         assert per_approach * stiffness == pytest.approx(1.0, rel=1e-6, abs=0.0)
-    assert _force_at(law, 0, -1e-9) == (0.0, 0.0)
+    assert force_at(law, 0, -1e-9) == (0.0, 0.0)
 
 
 @pytest.mark.law
@@ -150,7 +150,7 @@ def test_a_parabola_needs_no_search():
         value = approach(law, 0, p * WIDTH)[0]
         half = _plain_strip(curvature, LENGTH, value, 0.0)
         load, stiffness = _plain_load(curvature, LENGTH, law.strip[0, _MODULUS], half, value)
-        found, from_the_last = _force_at(law_of(math.nan), 0, value), _force_at(law, 0, value)
+        found, from_the_last = force_at(law_of(math.nan), 0, value), force_at(law, 0, value)
         assert (WIDTH * load, WIDTH * stiffness) == pytest.approx(found, rel=1e-12)
         assert from_the_last == pytest.approx(found, rel=1e-11)
     assert free_strip(gap_table(gap), 0) == math.inf
@@ -230,8 +230,8 @@ def test_a_strip_that_an_edge_holds_follows_from_any_other(slope):
         for share in (0.1, 0.7, 1.0, 1.4, 10.0):
             before = approach(law_of(slope), 0, share * p * WIDTH)[0]
             other = law_of(slope)
-            _force_at(other, 0, before)
-            found = _force_at(other, 0, expected)
+            force_at(other, 0, before)
+            found = force_at(other, 0, expected)
             assert found == pytest.approx((p * WIDTH, 1.0 / stiffness), rel=1e-7, abs=0.0)
             middle, half, *_ = strip_at(law.gap, 0, expected, LENGTH, *other.strip[0, [_MIDDLE, _HALF]])
             if half > SMALLEST_STRIP * LENGTH and middle <= law.gap[0, 2] + 1.001 * half:

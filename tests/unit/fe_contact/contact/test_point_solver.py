@@ -24,16 +24,10 @@ from fe_contact.contact import (
 )
 from fe_contact.contact.edge_strip import no_edges
 from fe_contact.contact.elimination import eliminate
+from fe_contact.contact.local_law import approach, local_law
 from fe_contact.contact.newton import _residuals, solve_point
 from fe_contact.contact.patch import Patches
-from fe_contact.contact.point_problem import (
-    PointProblem,
-    State,
-    approach,
-    local_law,
-    point_problems,
-    problem_at,
-)
+from fe_contact.contact.point_problem import PointProblem, State, point_problems, problem_at
 from fe_contact.contact.strip import Gap, gap_table
 from fe_contact.effects.influence.deflection_budget import Springs
 from fe_contact.types import Status

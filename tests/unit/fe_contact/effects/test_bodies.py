@@ -20,7 +20,7 @@ from fe_contact.effects.finite_width import FiniteWidth
 from fe_contact.effects.thin_rim import ThinRim
 from fe_contact.errors import InputError
 from fe_contact.geometry import web_compliance
-from fe_contact.geometry.web_compliance import finite_width_excess
+from fe_contact.geometry.finite_width import finite_width_excess
 from fe_contact.material import Material
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning.plan import make_plan

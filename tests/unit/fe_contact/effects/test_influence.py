@@ -13,7 +13,6 @@ from analysis_requests import table_request
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.analysis.request.request_check import check_request
-from fe_contact.body import Shaft, Shafts
 from fe_contact.compliance import flank_compliance
 from fe_contact.contact import ContactModel, PatchRule, Slices, contact_candidates, contact_problem
 from fe_contact.effects import EFFECTS, ContactScene, compose
@@ -23,6 +22,7 @@ from fe_contact.effects.influence.slice_compliance import _bent, _tooth_bending,
 from fe_contact.hertz import contact_modulus, half_width, relative_radius
 from fe_contact.options import TableAxes
 from fe_contact.planning.plan import make_plan
+from fe_contact.shaft import Shaft, Shafts
 from fe_contact.types import FloatArray
 
 M = 3e-3

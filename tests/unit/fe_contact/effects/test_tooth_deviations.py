@@ -10,7 +10,8 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import analyze
-from fe_contact.analysis.pairs.pair_contact import operating_points, pair_contact
+from fe_contact.analysis.pairs.operating_points import operating_points
+from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact.model import ContactModel, MeetingTeeth
 from fe_contact.effects import EFFECTS, ContactScene, compose

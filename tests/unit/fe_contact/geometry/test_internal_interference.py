@@ -14,14 +14,15 @@ from fe_contact.flank.involute import involute_function
 from fe_contact.geometry import Gear, gear_pair
 from fe_contact.geometry.flank_profile import ToothProfile, tooth_profile
 from fe_contact.geometry.gear_pair import InternalGearPair
-from fe_contact.geometry.pair_feasibility import (
+from fe_contact.geometry.ring_gear import RingGear
+from fe_contact.geometry.tip_interference import (
     _flank_angle,
     _pinion_edge_path,
     _ring_edge_path,
-    _tip_interference,
-    _trochoidal_interference,
+    tip_interference,
+    trochoidal_interference,
 )
-from fe_contact.geometry.ring_gear import RingGear, radial_clearance
+from fe_contact.geometry.trimming import radial_clearance
 from fe_contact.types import FloatArray
 
 MODULE = 4e-3
@@ -130,7 +131,7 @@ def test_feasible_pair_touches_and_never_overlaps(
 @pytest.mark.parametrize("difference", [7, 6, 5])
 def test_tip_interference_is_the_overlap_of_the_turning_outlines(difference: int) -> None:
     pair = make_pair((80 - difference, 80), {}, {})
-    depth = _tip_interference(pair)
+    depth = tip_interference(pair)
     assert depth > 1e-5
     assert worst(pair) == pytest.approx(depth, rel=0.05, abs=0.0)
 
@@ -139,12 +140,12 @@ def test_tip_interference_is_the_overlap_of_the_turning_outlines(difference: int
 def test_trochoidal_interference_is_the_overlap_of_the_turning_outlines() -> None:
     # the ring's tip reaches the pinion's fillet, cut by a rack with a large rounding
     pair = make_pair((30, 80), {"dedendum_coefficient": 1.1}, {"addendum_coefficient": 1.02})
-    depth = _trochoidal_interference(pair)
+    depth = trochoidal_interference(pair)
     assert depth > 1e-5
     assert worst(pair) == pytest.approx(depth, rel=0.05, abs=0.0)
     # the pinion's tip reaches the ring's fillet
     pair = make_pair((60, 80), {"addendum_coefficient": 1.2}, {"root_radius_coefficient": 0.3})
-    depth = _trochoidal_interference(pair)
+    depth = trochoidal_interference(pair)
     assert depth > 1e-5
     assert worst(pair) == pytest.approx(depth, rel=0.05, abs=0.0)
 
@@ -189,8 +190,8 @@ def test_a_tip_that_clears_the_form_circle_but_cuts_the_fillet_is_refused(
     assert caught.value.name == "trochoidal interference"
     monkeypatch.setattr(gear_pair, "refuse_infeasible_pair", lambda pair: None)
     pair = make_pair(teeth, pinion, wheel)
-    assert _tip_interference(pair) < SLACK
-    assert worst(pair) == pytest.approx(_trochoidal_interference(pair), rel=0.1, abs=0.0)
+    assert tip_interference(pair) < SLACK
+    assert worst(pair) == pytest.approx(trochoidal_interference(pair), rel=0.1, abs=0.0)
 
 
 @pytest.mark.usefixtures("unchecked")

@@ -10,7 +10,7 @@ import pytest
 
 from fe_contact.geometry import Gear, Toothing, ToothProfile, tooth_profile
 from fe_contact.mesh import GearMesh, MeshRecipe, mesh_gear, mesh_quality
-from fe_contact.mesh.triangulation import rotated
+from fe_contact.mesh.quadratic_mesh import rotated
 
 GearAndMesh = tuple[Toothing, GearMesh]
 

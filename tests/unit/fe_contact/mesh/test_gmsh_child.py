@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from fe_contact.errors import MeshError
-from fe_contact.mesh.quad_sector import _Block, _fill_blocks
-from fe_contact.mesh.triangulation import WORKER, _Region, _triangulate
+from fe_contact.mesh.gmsh_process import WORKER
+from fe_contact.mesh.quad_blocks import Block, fill_blocks
+from fe_contact.mesh.quadratic_mesh import _Region, _triangulate
 
 SQUARE = _Region((np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]),))
 RING = _Region(
@@ -134,8 +135,8 @@ def bent(u: np.ndarray, v: np.ndarray) -> np.ndarray:
     return np.stack([u + 0.2 * v**2, v + 0.3 * u * (1.0 - u)], axis=-1)
 
 
-BENT = _Block(bent(U, 0.0 * U), bent(1.0 + 0.0 * V, V), bent(U, 1.0 + 0.0 * U), bent(0.0 * V, V))
-SQUARE_BLOCK = _Block(
+BENT = Block(bent(U, 0.0 * U), bent(1.0 + 0.0 * V, V), bent(U, 1.0 + 0.0 * U), bent(0.0 * V, V))
+SQUARE_BLOCK = Block(
     *(
         np.array(side, float)
         for side in ([[0, 0], [1, 0]], [[1, 0], [1, 1]], [[0, 1], [1, 1]], [[0, 0], [0, 1]])
@@ -149,7 +150,7 @@ def arc_share(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 
 def test_is_the_transfinite_interpolation_of_the_sides_bit_for_bit() -> None:
-    (found,) = _fill_blocks([BENT], 1.0)
+    (found,) = fill_blocks([BENT], 1.0)
     u = arc_share(BENT.bottom, BENT.top)[None, :, None]
     v = arc_share(BENT.left, BENT.right)[:, None, None]
     low = (1 - u) * BENT.bottom[0] + u * BENT.bottom[-1]
@@ -159,18 +160,18 @@ def test_is_the_transfinite_interpolation_of_the_sides_bit_for_bit() -> None:
         (1 - u) * BENT.left[:, None] + u * BENT.right[:, None],
     )
     assert found == pytest.approx(rows + columns - (1 - v) * low - v * high, abs=1e-14)
-    found, small = _fill_blocks([BENT, SQUARE_BLOCK], 0.7)
+    found, small = fill_blocks([BENT, SQUARE_BLOCK], 0.7)
     assert np.array_equal(found[0], BENT.bottom)
     assert np.array_equal(found[-1], BENT.top)
     assert np.array_equal(found[:, 0], BENT.left)
     assert np.array_equal(found[:, -1], BENT.right)
     assert small.shape == (2, 2, 2)
-    turned = _Block(BENT.bottom[::-1], BENT.left, BENT.top[::-1], BENT.right)
-    one, other = _fill_blocks([BENT, turned], 1.0)
+    turned = Block(BENT.bottom[::-1], BENT.left, BENT.top[::-1], BENT.right)
+    one, other = fill_blocks([BENT, turned], 1.0)
     assert other == pytest.approx(one[:, ::-1], abs=1e-14)
-    uneven = _Block(BENT.bottom, BENT.right, BENT.top[[0, -1]], BENT.left)
+    uneven = Block(BENT.bottom, BENT.right, BENT.top[[0, -1]], BENT.left)
     with pytest.raises(MeshError):
-        _fill_blocks([uneven], 1.0)
+        fill_blocks([uneven], 1.0)
 
 
 @pytest.mark.parametrize(
@@ -184,4 +185,4 @@ def test_is_the_transfinite_interpolation_of_the_sides_bit_for_bit() -> None:
 )
 def test_a_useless_answer_is_a_mesh_error(answer: str, cause: str) -> None:
     with pytest.raises(MeshError, match=cause):
-        _fill_blocks([SQUARE_BLOCK], 1.0, command=(sys.executable, "-c", f"print('{answer}')"))
+        fill_blocks([SQUARE_BLOCK], 1.0, command=(sys.executable, "-c", f"print('{answer}')"))

@@ -16,9 +16,10 @@ from fe_contact.compliance.cache import content_hash
 from fe_contact.errors import InputError, MeshError
 from fe_contact.geometry import Gear
 from fe_contact.mesh import GearMesh, MeshRecipe, QualityLimits, mesh_gear, mesh_quality
+from fe_contact.mesh.curve_division import divide, middles, spread
 from fe_contact.mesh.export import HUB, cell_teeth, write_cells
-from fe_contact.mesh.outline import Outline, Piece, divide, middles, spread
-from fe_contact.mesh.triangulation import _quadratic_mesh, _Triangulation
+from fe_contact.mesh.outline import Outline, Piece
+from fe_contact.mesh.quadratic_mesh import _quadratic_mesh, _Triangulation
 
 STRAIGHT = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
 ELEMENT = np.arange(6)[None, :]

@@ -20,8 +20,9 @@ from fe_contact.mesh import (
     quad_sector,
     swept_sector,
 )
+from fe_contact.mesh.face_layers import layers_across, layers_to_mid_face
 from fe_contact.mesh.sector_grid import SectorGrid
-from fe_contact.mesh.swept_sector import SweptSector, _inner_breaks, _layers_across, _layers_to_mid_face
+from fe_contact.mesh.swept_sector import SweptSector, _inner_breaks
 
 SPUR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 GRID = SectorGrid(body_rows=4, tooth_rows=3, land=1, across=2)
@@ -32,7 +33,7 @@ DRAFT = SectorRecipe.draft(SPUR)
     ("count", "group", "growth"), [(1, 1, 1.5), (2, 2, 1.5), (8, 2, 1.5), (18, 2, 1.5), (12, 4, 2.0)]
 )
 def test_layers_fill_the_face_symmetrically(count: int, group: int, growth: float) -> None:
-    layers = _layers_across(25e-3, count, group, growth)
+    layers = layers_across(25e-3, count, group, growth)
     assert (layers.ends[0], layers.ends[-1]) == (-12.5e-3, 12.5e-3)
     assert np.array_equal(layers.ends, -layers.ends[::-1])
     assert np.diff(layers.ends) == pytest.approx(layers.thickness[layers.kind], rel=1e-12)
@@ -44,7 +45,7 @@ def test_layers_fill_the_face_symmetrically(count: int, group: int, growth: floa
 
 
 def test_half_a_face_slides_on_mid_face_and_is_finest_at_its_end() -> None:
-    layers = _layers_to_mid_face(25e-3, 3, 8.0)
+    layers = layers_to_mid_face(25e-3, 3, 8.0)
     assert (layers.ends[0], layers.ends[-1]) == (0.0, 12.5e-3)
     thickness = np.diff(layers.ends)
     assert thickness == pytest.approx(layers.thickness[layers.kind], rel=1e-12)
@@ -139,16 +140,16 @@ WEB_DRAFT = SectorRecipe.draft(SOLID)
 @pytest.mark.parametrize("breaks", [(-3e-3,), (-10e-3, 10e-3), (3e-3, 4e-3), (-19.9e-3, 1e-3)])
 @pytest.mark.parametrize("group", [1, 2])
 def test_groups_of_layers_end_at_the_breaks(breaks: tuple[float, ...], group: int) -> None:
-    layers = _layers_across(40e-3, 8, group, 1.5, breaks)
+    layers = layers_across(40e-3, 8, group, 1.5, breaks)
     assert (layers.ends[0], layers.ends[-1]) == (-20e-3, 20e-3)
     assert np.diff(layers.ends) == pytest.approx(layers.thickness[layers.kind], rel=1e-9)
     for z in breaks:
         assert np.abs(layers.ends[::group] - z).min() < 1e-15
     assert (layers.kind.reshape(-1, group) == layers.kind[::group, None]).all()
-    mirrored = _layers_across(40e-3, 8, group, 1.5, [-z for z in breaks[::-1]])
+    mirrored = layers_across(40e-3, 8, group, 1.5, [-z for z in breaks[::-1]])
     assert mirrored.ends == pytest.approx(-layers.ends[::-1], abs=1e-15)
     # Nowhere coarser than without breaks.
-    assert np.diff(layers.ends).max() < 1.3 * np.diff(_layers_across(40e-3, 8, group, 1.5).ends).max()
+    assert np.diff(layers.ends).max() < 1.3 * np.diff(layers_across(40e-3, 8, group, 1.5).ends).max()
 
 
 def test_half_a_face_is_half_of_the_web() -> None:

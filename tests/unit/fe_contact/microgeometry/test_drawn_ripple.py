@@ -10,7 +10,7 @@ import pytest
 
 from fe_contact import Gear, GearPair, analyze
 from fe_contact.analysis.live.condensed_pair import CondensedPair
-from fe_contact.analysis.live.condensed_request import condensed_pair
+from fe_contact.analysis.live.stored_bodies import condensed_pair
 from fe_contact.errors import InputError
 from fe_contact.geometry import FlankModification, PitchDeviation
 from fe_contact.microgeometry.drawn_ripple import SOLVED, DrawnRipple, RippleBand

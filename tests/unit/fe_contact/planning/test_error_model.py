@@ -10,10 +10,10 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, Material, SteDatabase, analyze
+from fe_contact.analysis.position_nodes import _adaptive_nodes
 from fe_contact.analysis.request.model_choice import TRIED_WORK, Decided, decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.run_plan import plan_run, predicted_designs
-from fe_contact.analysis.tables import _adaptive_nodes
 from fe_contact.geometry import InternalGearPair
 from fe_contact.geometry.ring_gear import RingGear
 from fe_contact.options import AnalysisOptions, TableAxes

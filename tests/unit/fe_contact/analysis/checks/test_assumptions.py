@@ -12,10 +12,10 @@ from analysis_requests import point_request, table_request
 from spur_gears import GEAR, PAIR
 
 from fe_contact import FlankModification, GearPair, Shaft, analyze
-from fe_contact.analysis.flanks.flank_file import flank_results
+from fe_contact.analysis.flanks.flank_results import flank_results
 from fe_contact.analysis.flanks.root_stress import root_stress
 from fe_contact.analysis.pairs.tip_edges import OUTSIDE, handovers
-from fe_contact.analysis.request import request_check as neglected_effects
+from fe_contact.analysis.request import neglected_effects
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.errors import SolveError
 from fe_contact.options import Run, TableAxes

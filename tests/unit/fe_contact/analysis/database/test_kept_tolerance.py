@@ -193,9 +193,9 @@ def refine_positions(monkeypatch) -> None:
     def closer(decided, _shares):
         plan = decided.plan
         finer = decided.refined("draft", 1, dataclasses.replace(plan.nodes, tolerance=1e-4), "closer")
-        return kept_tolerance._Refinement(finer, "position", ("positions",), 0.5)
+        return kept_tolerance.Refinement(finer, "position", ("positions",), 0.5)
 
-    monkeypatch.setattr(kept_tolerance, "_next_pass", closer)
+    monkeypatch.setattr(kept_tolerance, "next_pass", closer)
 
 
 @pytest.mark.parametrize(

@@ -7,11 +7,12 @@ import pytest
 from analysis_requests import point_request, table_request
 
 from fe_contact import Gear, GearPair, PitchDeviation, analyze, flank_results
-from fe_contact.analysis import tables
+from fe_contact.analysis import position_nodes
 from fe_contact.analysis.estimates.position_errors import _measured_nodes
 from fe_contact.analysis.pairs import kept_contact
+from fe_contact.analysis.position_nodes import _adaptive_nodes, _assessed_pitches
 from fe_contact.analysis.request.request_check import check_request
-from fe_contact.analysis.tables import _adaptive_nodes, _assessed_pitches, solve_table
+from fe_contact.analysis.tables import solve_table
 from fe_contact.contact.sweep import solve_sets
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.errors import InputError
@@ -194,7 +195,7 @@ def test_pitches_beside_count_where_interpolants_reach(kinks):
 def test_the_prediction_counts_the_pitches_that_the_search_solves(pair, monkeypatch):
     """The assessed ones at all positions that are tried, those beside at the ends."""
     tried, solved = [], []
-    place, curves = tables._adaptive_nodes, tables._curves
+    place, curves = position_nodes._adaptive_nodes, position_nodes._curves
 
     def placed(rule, solve):
         return place(rule, lambda position: tried.append(position.size) or solve(position))
@@ -203,8 +204,8 @@ def test_the_prediction_counts_the_pitches_that_the_search_solves(pair, monkeypa
         solved.append(position.size * pitches.size)
         return curves(points, load, position, pitches)
 
-    monkeypatch.setattr(tables, "_adaptive_nodes", placed)
-    monkeypatch.setattr(tables, "_curves", solved_curves)
+    monkeypatch.setattr(position_nodes, "_adaptive_nodes", placed)
+    monkeypatch.setattr(position_nodes, "_curves", solved_curves)
     checked = check_request(pair, *table_request(torques=[100.0], level="draft", model="plane_strain"))
     solve_table(checked, StageClock(), Run())
     plan = checked.plan("draft")

@@ -10,7 +10,7 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, Material
-from fe_contact.analysis.database.kept_tolerance import AIM, MESH_STEP, _next_pass, _Refinement
+from fe_contact.analysis.database.refinement import AIM, MESH_STEP, Refinement, next_pass
 from fe_contact.analysis.request.model_choice import Decided, decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.planning.plan import SLICE_ORDER
@@ -38,13 +38,13 @@ def shares(**by_source: float) -> np.ndarray:
     return found
 
 
-def refined(decided: Decided, **by_source: float) -> _Refinement:
-    made = _next_pass(decided, shares(**by_source))
-    assert isinstance(made, _Refinement), made
+def refined(decided: Decided, **by_source: float) -> Refinement:
+    made = next_pass(decided, shares(**by_source))
+    assert isinstance(made, Refinement), made
     return made
 
 
-def told(made: _Refinement | str) -> object:
+def told(made: Refinement | str) -> object:
     """What is decided, without its arrays."""
     return made if isinstance(made, str) else (made.source, made.steps, made.expected, made.decided.mesh)
 
@@ -124,7 +124,7 @@ def test_a_pass_goes_up_one_mesh_level_for_elements_or_layers():
     ],
 )
 def test_what_no_refinement_brings_ends_with_its_reason(helical, by_source, said):
-    reason = _next_pass(helical, shares(**by_source))
+    reason = next_pass(helical, shares(**by_source))
     assert isinstance(reason, str)
     assert said in reason
 
@@ -133,15 +133,15 @@ def test_the_finest_is_tried_where_it_may_be_enough(helical):
     """Predictions are right within a factor 2: 1.3 predicted is worth a pass, 1.3 measured is the end."""
     assert refined(helical, discretisation=2.9).expected == pytest.approx(2.9 * 0.45)
     fine = ran(pair(0.3), "fine", 31)
-    assert "mesh fine is the finest" in _next_pass(fine, shares(discretisation=1.3))
+    assert "mesh fine is the finest" in next_pass(fine, shares(discretisation=1.3))
     # 0.97 measured and 0.6 left of the mesh, at best 0.3, are too much; 0.9 and 0.3 may do.
-    assert "no refinement reduces" in _next_pass(helical, shares(contact_solver=0.97, discretisation=1.34))
+    assert "no refinement reduces" in next_pass(helical, shares(contact_solver=0.97, discretisation=1.34))
     assert refined(helical, contact_solver=0.9, discretisation=1.34).steps == ("mesh standard -> fine",)
 
 
 def test_positions_that_were_asked_for_stay():
     fixed = ran(pair(0.3), "standard", 15, positions=16)
-    reason = _next_pass(fixed, shares(position=3.0, discretisation=0.5))
+    reason = next_pass(fixed, shares(position=3.0, discretisation=0.5))
     assert "16 positions were requested" in reason
 
 
@@ -158,7 +158,7 @@ def test_three_dimensions_replace_a_correction_only_where_they_are_expected_to_e
         ran(steel, "standard", **tight),
         ran(narrow, "standard", **tight, effects={"finite_width": "on"}),
     ):
-        assert "no other model for this request" in _next_pass(plain, shares(finite_width=1.2))
+        assert "no other model for this request" in next_pass(plain, shares(finite_width=1.2))
 
 
 def test_a_width_that_was_left_out_is_corrected_for():
@@ -175,6 +175,6 @@ def test_every_source_has_its_way_or_its_reason(helical):
     """None is left without an answer, whichever work lowers and however large."""
     for name in set(AT_NODES) - {METHOD}:
         for share in (1.05, 2.0, 1e3):
-            made = _next_pass(helical, shares(**{name: share}))
-            assert (made.words if isinstance(made, _Refinement) else made) != ""
-            assert told(made) == told(_next_pass(helical, shares(**{name: share})))
+            made = next_pass(helical, shares(**{name: share}))
+            assert (made.words if isinstance(made, Refinement) else made) != ""
+            assert told(made) == told(next_pass(helical, shares(**{name: share})))

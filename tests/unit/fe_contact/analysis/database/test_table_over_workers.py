@@ -15,7 +15,7 @@ from analysis_requests import table_request
 
 from fe_contact import Gear, GearPair, PitchDeviation, SteDatabase, analyze, study_sensitivity
 from fe_contact.analysis.pairs import contact_lines
-from fe_contact.analysis.pairs.contact_lines import _ContactBlock
+from fe_contact.analysis.pairs.contact_block import ContactBlock
 from fe_contact.geometry import FlankModification, Shaft
 from fe_contact.options import Run
 from model_studies.workers import InProcess, RunCost, executor
@@ -32,13 +32,13 @@ class Elsewhere:
 
     cost: RunCost = field(default_factory=RunCost)
     tasks: list[str] = field(default_factory=list)
-    blocks: list[_ContactBlock] = field(default_factory=list)
+    blocks: list[ContactBlock] = field(default_factory=list)
 
     def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
         received = pickle.loads(pickle.dumps(shared))
         for item in items:
             self.tasks.append(function.__name__)
-            if isinstance(item, _ContactBlock):
+            if isinstance(item, ContactBlock):
                 self.blocks.append(item)
             result = function(received, pickle.loads(pickle.dumps(item)))
             self.cost.tasks, self.cost.cpu_seconds = self.cost.tasks + 1, self.cost.cpu_seconds + 100.0
@@ -102,7 +102,7 @@ def test_a_table_cut_into_blocks_keeps_its_bits(case: str, cache: Path) -> None:
     asked = {"torques": [60.0, 150.0], "level": "draft", "cache": cache} | asked
     workers = Elsewhere()
     whole, cut = analyze(pair(), **asked), analyze(pair(), **asked, workers=workers)
-    assert workers.tasks.count("_solve_block") > 2 and "condense" not in workers.tasks
+    assert workers.tasks.count("solve_block") > 2 and "condense" not in workers.tasks
     assert_same(whole, cut)
     assert whole.inserted_misalignment.size == (1 if case == "inserted alignments" else 0)
 
@@ -113,7 +113,7 @@ def test_errors_and_influences_are_tasks_too(cache: Path) -> None:
     workers = Elsewhere()
     table = analyze(helical(), **asked, positions=12, workers=workers)
     begun = workers.tasks.index("_influences_of_request")
-    assert workers.tasks[:begun].count("_solve_block") == workers.tasks.count("_solve_block")
+    assert workers.tasks[:begun].count("solve_block") == workers.tasks.count("solve_block")
     held_out = [block for block in workers.blocks if block.starts is not None]
     # the quarters and the middle between two misalignments share a compliance
     assert {len(block.models) for block in held_out} == {3} and len(held_out) == 2
@@ -146,7 +146,7 @@ def test_the_receipt_counts_the_time_of_all(cache: Path) -> None:
     workers = Elsewhere(RunCost(tasks=7, cpu_seconds=900.0))  # what other runs spent before
     asked: dict[str, Any] = {"torques": [60.0, 150.0], "level": "draft", "positions": 16, "cache": cache}
     receipt = analyze(helical(), **asked, workers=workers).metadata.receipt
-    in_contact = 100.0 * workers.tasks.count("_solve_block")
+    in_contact = 100.0 * workers.tasks.count("solve_block")
     assert receipt["elsewhere"]["tasks"] == len(workers.tasks)
     assert receipt["elsewhere"]["cpu_seconds"] == pytest.approx(100.0 * len(workers.tasks))
     assert in_contact <= receipt["stages"]["contact"]["cpu_seconds"] < in_contact + 100.0
@@ -185,4 +185,4 @@ def test_sensitivity_over_workers_keeps_its_bits(cache: Path) -> None:
             first, second = getattr(one, name), getattr(other, name)
             assert first.peak_to_peak.tolist() == second.peak_to_peak.tolist()
             assert first.error.tolist() == second.error.tolist()
-    assert workers.tasks.count("_solve_block") > 8  # four tables as tasks would be four
+    assert workers.tasks.count("solve_block") > 8  # four tables as tasks would be four

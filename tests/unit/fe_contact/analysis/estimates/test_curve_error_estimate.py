@@ -11,7 +11,7 @@ from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair, RunOut, Wave, analyze
 from fe_contact.analysis.database.compute_database import compute_database
-from fe_contact.analysis.estimates.assessed_table import HARMONIC_SHARE
+from fe_contact.analysis.estimates.curve_errors import HARMONIC_SHARE
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.options import LEVELS, Run

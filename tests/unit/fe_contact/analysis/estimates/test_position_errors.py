@@ -5,12 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fe_contact.analysis.estimates.position_errors import (
-    _measured_nodes,
-    _predicted_failure,
-    errors_by_halves,
-)
-from fe_contact.analysis.tables import _adaptive_nodes
+from fe_contact.analysis.estimates.half_position_errors import errors_by_halves
+from fe_contact.analysis.estimates.position_errors import _measured_nodes, predicted_failure
+from fe_contact.analysis.position_nodes import _adaptive_nodes
 from fe_contact.planning.plan import NodeRule
 from fe_contact.ste.curve_quantities import FIRST_HARMONIC, MEAN, PEAK_TO_PEAK, quantity_changes
 from fe_contact.ste.interpolation import Axis, interpolate
@@ -78,12 +75,12 @@ def test_smooth_curves_are_assessed_without_a_solution(count):
 
 def test_the_prediction_fails_with_the_square_of_the_spacing_or_faster():
     few, many = (
-        _predicted_failure(Axis(nodes, 1.0), waves(nodes)).max(axis=0)
+        predicted_failure(Axis(nodes, 1.0), waves(nodes)).max(axis=0)
         for nodes in (np.arange(n) / n for n in (32, 64))
     )
     assert np.all(many < 0.3 * few)
     even = np.arange(7) / 7  # an odd number closes with two neighbors of the same set
-    assert _predicted_failure(Axis(even, 1.0), np.ones((7, 2))).max() < 1e-15
+    assert predicted_failure(Axis(even, 1.0), np.ones((7, 2))).max() < 1e-15
 
 
 def test_fixed_positions_state_a_larger_error_than_placed_ones():

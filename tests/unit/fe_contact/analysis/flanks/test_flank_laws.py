@@ -11,7 +11,7 @@ import pytest
 
 from fe_contact import AnalysisOptions, FlankModification, Gear, GearPair, OperatingPoint, flank_results
 from fe_contact.analysis.checks.table_laws import require_laws
-from fe_contact.analysis.flanks import flank_file
+from fe_contact.analysis.flanks import flank_results as flank_analysis
 from fe_contact.analysis.flanks.flank_laws import check_flank_laws
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.analysis.flanks.solved_operating_point import solved_point
@@ -45,7 +45,7 @@ def solved(pair: GearPair, model: str, misalignment: float) -> Solved:
     point = OperatingPoint(torque=90.0, misalignment=misalignment)
     checked = as_checked(pair, point, AnalysisOptions(level="draft", model=model))
     found, _ = solved_point(checked, AT, StageClock(), Run())
-    made = flank_file.load_distribution(
+    made = flank_analysis.load_distribution(
         found.contact.pair, found.problem, found.solution, misalignment=misalignment
     )
     return made, found.problem
@@ -148,12 +148,12 @@ def test_sound_results_take_little_of_the_room_of_balances(
 
 
 def test_flank_results_that_break_a_law_are_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    original = flank_file.load_distribution
+    original = flank_analysis.load_distribution
 
     def faulty(*args: object, **kwargs: object) -> LoadDistribution:
         return BREAKS["forces beyond the torque"].plant(original(*args, **kwargs))  # type: ignore[arg-type]
 
-    monkeypatch.setattr(flank_file, "load_distribution", faulty)
+    monkeypatch.setattr(flank_analysis, "load_distribution", faulty)
     point, options = OperatingPoint(torque=90.0), AnalysisOptions(level="draft", model="plane_strain")
     with pytest.raises(SolveError, match=r"balance of moments: .* at position 0\.375, bound"):
         flank_results(spur(), point, options, at=AT)

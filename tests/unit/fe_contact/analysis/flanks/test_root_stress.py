@@ -14,13 +14,9 @@ from spur_gears import GEAR
 
 from fe_contact import Gear, GearPair, RootStress, root_stress
 from fe_contact.analysis.flanks import root_stress as root_module
-from fe_contact.analysis.flanks.root_stress import (
-    _crest_values,
-    _finer_root,
-    _pair_histories,
-    stress_seconds,
-    unit_stresses,
-)
+from fe_contact.analysis.flanks.root_meshes import _finer_root
+from fe_contact.analysis.flanks.root_stress import _pair_histories, stress_seconds, unit_stresses
+from fe_contact.analysis.flanks.root_stress_history import _crest_values
 from fe_contact.analysis.flanks.solved_operating_point import solve_operating_point
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint

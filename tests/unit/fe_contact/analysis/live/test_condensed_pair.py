@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair, analyze
-from fe_contact.analysis.flanks.flank_file import flank_results
+from fe_contact.analysis.flanks.flank_results import flank_results
 from fe_contact.analysis.flanks.load_distribution import load_distribution
 from fe_contact.analysis.live.condensed_pair import CondensedPair
-from fe_contact.analysis.live.condensed_request import condensed_pair
+from fe_contact.analysis.live.stored_bodies import condensed_pair
 from fe_contact.errors import InputError
 from fe_contact.geometry import FlankModification, PitchDeviation
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run

@@ -12,9 +12,10 @@ from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair, Material, analyze
 from fe_contact.allowed_error import AllowedError
-from fe_contact.analysis.request.model_choice import _alternatives, decide, expected_curves
+from fe_contact.analysis.request.expected_curves import expected_curves
+from fe_contact.analysis.request.model_choice import _alternatives, decide
 from fe_contact.analysis.request.request_check import check_request
-from fe_contact.geometry.web_compliance import finite_width_excess
+from fe_contact.geometry.finite_width import finite_width_excess
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.ste.curve import SOURCES
 

@@ -17,10 +17,9 @@ from fe_contact.analysis.pairs.slice_springs import SpringContact, _slice_stiffn
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.studies import measured_full_contact as measuring
+from fe_contact.analysis.studies.closed_form_fidelity import ISO6336, THIN_SLICES
 from fe_contact.analysis.studies.frontier import (
     FIDELITIES,
-    ISO6336,
-    THIN_SLICES,
     Frontier,
     _chosen_fidelity,
     frontier,

@@ -1,0 +1,70 @@
+"""Monotonicity of the transmission error in the load, from that without any."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fe_contact.analysis.cycle.envelope import Envelope
+from fe_contact.analysis.cycle.tangents import ToothGaps
+from fe_contact.types import FloatArray
+
+_LEAST_COMPLIANCE = 0.1
+"""Of the smallest that is stored: what loads stay apart by."""
+
+
+def rising_deflection(
+    envelope: Envelope, beside: Envelope
+) -> tuple[FloatArray, FloatArray, FloatArray] | None:
+    """Return the transmission error (T, P, ...) without load, at the loads, and at the support loads, m.
+
+    In pitches that were not solved support loads yield to the loads of the table, as far as their errors
+    let them cross. None where these do not rise.
+    """
+    loads, support = envelope.contact.load, beside.contact.load
+    force = np.concatenate([[0.0], loads, support])
+    kind = np.repeat([0, 1, 2], [1, loads.size, support.size])
+    order = np.argsort(force)
+    unloaded = _unloaded(envelope)
+    levels = np.concatenate([unloaded[..., None], envelope.ste, beside.ste], axis=2)[..., order]
+    tangents = [
+        each.kept["tangent_compliance"].min() for each in (envelope, beside) if each.contact.load.size
+    ]
+    step = _LEAST_COMPLIANCE * min(tangents) * np.diff(force[order])
+    tables = np.flatnonzero(kind[order] == 1)
+    rising = levels.copy()
+    for k in range(tables[0] - 1, -1, -1):
+        rising[..., k] = np.minimum(rising[..., k], rising[..., k + 1] - step[k])
+    for k in range(tables[0] + 1, order.size):
+        if kind[order[k]] == 2:
+            rising[..., k] = np.maximum(rising[..., k], rising[..., k - 1] + step[k - 1])
+    if not np.all(np.diff(rising, axis=2) > 0.0):
+        return None
+    rising = np.where(envelope.solved[:, None, None], levels, rising)
+    back = rising[..., np.argsort(order)]
+    return back[..., 0], back[..., 1 : 1 + loads.size], back[..., 1 + loads.size :]
+
+
+def _unloaded(envelope: Envelope) -> FloatArray:
+    """Return the transmission error without load (T, P), m: of most pitches by the gaps of their teeth.
+
+    Flanks that slope touch a little beside; what that is in the pitches solved is taken off in the mean.
+    """
+    contact = envelope.contact
+    model, own = contact.point.model, envelope.gaps
+    plain = contact.nominal()[1].problem.candidates.gap
+    by_pair = np.transpose(plain.reshape(len(plain), own.pair.size, -1), (1, 0, 2))
+    found = np.empty((model.period, len(plain)))
+    for pitch in range(model.period):
+        found[pitch] = _least_gap(by_pair, own, pitch)
+    exact = envelope.kept["no_load"][1:, :, 0]
+    missed = (found[envelope.pitches] - exact).mean(axis=0)
+    return envelope.exact_in(found - missed, exact)
+
+
+def _least_gap(plain: FloatArray, gaps: ToothGaps, pitch: int) -> FloatArray:
+    """Return the least gap (P,) of the teeth that meet in a base pitch, m."""
+    first, second = (teeth[0] for teeth in gaps.teeth(np.array([pitch])))
+    pairs = np.arange(gaps.pair.size)
+    return np.asarray(
+        (plain + gaps.gears[0][pairs, :, first] + gaps.gears[1][pairs, :, second]).min(axis=(0, 2))
+    )

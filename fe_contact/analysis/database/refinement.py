@@ -1,0 +1,223 @@
+"""The refinement of the next pass, decided by the errors that a pass has measured.
+
+A source of error is refined by what it comes from: the mesh by the next level, slices by more of them,
+positions by a closer search, the correction for a finite width by three dimensions. How far a step takes its
+source down is predicted; what comes of it is measured by the pass itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from bounds import engineering
+from fe_contact.analysis.request.model_choice import Decided, next_model
+from fe_contact.options import LEVELS
+from fe_contact.planning.plan import (
+    CLOSEST,
+    FINER_SLICES,
+    SLICE_ORDER,
+    SLICES,
+    FaceDiscretization,
+    NodeRule,
+    face_discretization,
+)
+from fe_contact.ste.curve import AT_NODES, all_sources
+from fe_contact.types import FloatArray
+
+AIM = 0.9
+"""Part of the tolerance that a pass is planned to use; the rest is for what predictions miss."""
+
+DOUBT = 2.0
+"""Factor within which predictions are right: no pass begins where even the finest is too far off by it."""
+
+SMALL = 0.3
+"""Part of the tolerance, a tenth of what may be used, that is refined only where it decides."""
+
+MESH_STEP = {"plane": {"draft": 0.45, "standard": 0.2}, "face": {"draft": 0.4, "standard": 0.45}}
+"""Error of the next level over that of a level, from the pairs of docs/lab/accuracy.md, "Constants"."""
+
+CLOSER = 0.25
+"""Error between positions that a step allows over that before it."""
+
+_MESH, _SLICES, _SOLVER, _WIDTH, _POSITION, _ = range(len(AT_NODES))
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """The next pass.
+
+    `source` takes most of the tolerance where most of it is used, `steps` say in words what is refined,
+    and `expected` is the part of the tolerance that the pass is predicted to use.
+    """
+
+    decided: Decided
+    source: str
+    steps: tuple[str, ...]
+    expected: float
+
+    @property
+    def words(self) -> str:
+        """The refinement in one line."""
+        return ", ".join(self.steps)
+
+
+@dataclass(frozen=True)
+class _Resolution:
+    """Mesh, slices and search of positions, the errors predicted of them, and the steps that led there.
+
+    `shares` (6, ...) are parts of the tolerance by source, `level_left` mesh levels may yet be gone up.
+    """
+
+    decided: Decided
+    level: str
+    slices: int
+    nodes: NodeRule
+    shares: FloatArray
+    level_left: int
+    steps: tuple[str, ...] = ()
+
+    @property
+    def used(self) -> float:
+        """Largest part of the tolerance that is used."""
+        return float(all_sources(self.shares).max())
+
+    @property
+    def sources(self) -> FloatArray:
+        """Shares (6,) where most of the tolerance is used."""
+        return self.shares.reshape(len(AT_NODES), -1)[:, int(np.argmax(all_sources(self.shares)))]
+
+    def step(self, source: int) -> _Resolution | None:
+        """Return the next finer resolution of a source; None if there is none."""
+        plan = self.decided.plan
+        across_face = isinstance(plan.discretization, FaceDiscretization)
+        if source == _MESH:
+            return self._next_level(across_face=across_face)
+        if source == _SLICES and across_face:
+            return self._more_slices()
+        if source == _POSITION and plan.positions is None:
+            usual = self.decided.usual_nodes.tolerance
+            if self.nodes.tolerance * CLOSER < usual * CLOSEST:
+                return None
+            nodes = replace(self.nodes, tolerance=CLOSER * self.nodes.tolerance, most=2 * self.nodes.most)
+            step = (
+                f"positions {engineering(100 * self.nodes.tolerance, 2)} "
+                f"-> {engineering(100 * nodes.tolerance, 2)} % of the ripple"
+            )
+            return replace(self._with(_POSITION, CLOSER, step), nodes=nodes)
+        return None
+
+    def _next_level(self, *, across_face: bool) -> _Resolution | None:
+        if self.level == LEVELS[-1] or not self.level_left:
+            return None
+        higher = LEVELS[LEVELS.index(self.level) + 1]
+        part = MESH_STEP["face" if across_face else "plane"][self.level]
+        finer = self._with(_MESH, part, f"mesh {self.level} -> {higher}")
+        finer = replace(finer, level=higher, level_left=self.level_left - 1)
+        fits = self._slices_that_fit(max(self.slices, SLICES), higher) if across_face else self.slices
+        return finer._in_slices(fits)
+
+    def _more_slices(self) -> _Resolution | None:
+        """Take the next number of slices that the layers of the mesh resolve, or else a mesh with more."""
+        for slices in (SLICES, *FINER_SLICES):
+            count = self._slices_that_fit(slices, self.level)
+            if count > self.slices:
+                return self._in_slices(count)
+        if self.slices >= FINER_SLICES[-1]:
+            return None
+        finer = self._next_level(across_face=True)
+        return finer and (finer if finer.slices > self.slices else finer._more_slices())
+
+    def _slices_that_fit(self, slices: int, level: str) -> int:
+        return face_discretization(self.decided.checked.request.pair, level, slices).slices
+
+    def _in_slices(self, count: int) -> _Resolution:
+        if count == self.slices:
+            return self
+        part = (self.slices / count) ** SLICE_ORDER
+        return replace(self._with(_SLICES, part, f"slices {self.slices} -> {count}"), slices=count)
+
+    def _with(self, source: int, part: float, step: str) -> _Resolution:
+        factors = np.ones(len(AT_NODES))
+        factors[source] = part
+        shares = self.shares * _by_source(factors, self.shares)
+        return replace(self, shares=shares, steps=(*self.steps, step))
+
+
+def next_pass(decided: Decided, shares: FloatArray) -> Refinement | str:
+    """Choose what to refine, of the sources that dominate, to keep the tolerance; or say why no pass pays.
+
+    A pass goes up one mesh level at most, since the level between costs a third of the finer one.
+    `shares` (6 or more, ...) are the errors by source `AT_NODES` in parts of what is allowed, of every
+    quantity at every node, without those that no run lowers; more sources are not looked at.
+    """
+    plan = decided.plan
+    begun = _Resolution(
+        decided,
+        plan.level,
+        plan.discretization.slices,
+        plan.nodes,
+        np.nan_to_num(shares[: len(AT_NODES)]),
+        len(LEVELS),
+    )
+    source = int(np.argmax(begun.sources))
+    finest = _settled(begun)
+    barrier = _barrier(begun, finest)
+    if barrier is not None:
+        if barrier == _WIDTH and (model := next_model(decided.checked)):
+            return _of_model(model, begun)
+        return _no_way(finest, barrier)
+    finer = _settled(replace(begun, level_left=1))
+    reason = f"{AT_NODES[source]} takes {engineering(begun.sources[source], 2)} of the tolerance"
+    refined = decided.refined(finer.level, finer.slices, finer.nodes, reason)
+    return Refinement(refined, AT_NODES[source], finer.steps, finer.used)
+
+
+def _settled(resolution: _Resolution) -> _Resolution:
+    """Refine what dominates until the tolerance is predicted to be kept, or nothing is left to refine."""
+    while resolution.used > AIM:
+        used, sources = resolution.used, resolution.sources
+        decides = (used > 1.0) & (used**2 - sources**2 <= 1.0)
+        order = [k for k in np.argsort(-sources, kind="stable") if sources[k] > SMALL or decides[k]]
+        finer = next((step for source in order if (step := resolution.step(int(source)))), None)
+        if finer is None:
+            break
+        resolution = finer
+    return resolution
+
+
+def _barrier(begun: _Resolution, finest: _Resolution) -> int | None:
+    """Return the source that keeps even the finest resolution from the tolerance; None if it may be kept.
+
+    What is measured stands as it is; what is predicted may turn out less by a factor `DOUBT`.
+    """
+    changed = np.array([not np.array_equal(*both) for both in zip(begun.shares, finest.shares, strict=True)])
+    hoped = replace(finest, shares=finest.shares / _by_source(np.where(changed, DOUBT, 1.0), finest.shares))
+    return int(np.argmax(hoped.sources)) if hoped.used > 1.0 else None
+
+
+def _by_source(values: FloatArray, shares: FloatArray) -> FloatArray:
+    return values.reshape(-1, *[1] * (shares.ndim - 1))
+
+
+def _of_model(model: Decided, begun: _Resolution) -> Refinement:
+    """Return the pass of a more exact model; what lies between positions stays, the rest is expected."""
+    step = f"model {begun.decided.checked.model_name} -> {model.checked.model_name}"
+    tolerance = model.checked.request.options.allowed.relative
+    expected = float(np.hypot(model.mesh.option.error.bought / tolerance, begun.shares[_POSITION].max()))
+    return Refinement(model, AT_NODES[_WIDTH], (step,), expected)
+
+
+def _no_way(finest: _Resolution, source: int) -> str:
+    plan = finest.decided.plan
+    fixed = f"{plan.positions} positions were requested; leave positions out or request more"
+    why = {
+        _MESH: f"mesh {finest.level} is the finest",
+        _SLICES: f"{finest.slices} slices are the limit",
+        _SOLVER: "no refinement reduces the residuals of the contact",
+        _WIDTH: "no other model for this request has a smaller expected error",
+        _POSITION: fixed if plan.positions else "positions have the closest spacing of the search",
+    }[source]
+    share = finest.sources[source]
+    return f"{AT_NODES[source]} would still take {engineering(share, 2)} of the tolerance: {why}"

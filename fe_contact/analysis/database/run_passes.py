@@ -1,0 +1,91 @@
+"""Passes of a run under a tolerance, and what all of them cost."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from fe_contact.analysis.database.refinement import Refinement
+from fe_contact.analysis.request.model_choice import Decided
+from fe_contact.ste import SteDatabase
+from fe_contact.types import Json
+
+
+@dataclass(frozen=True)
+class Pass:
+    """One run of the table on one discretization."""
+
+    decided: Decided
+    """Model and discretization."""
+    cost: Json
+    """Times by stage and memory, as in a receipt."""
+    table: SteDatabase | None
+    """None: the pass failed."""
+    refinement: Refinement | None = None
+    """What was refined before it; None: the first one."""
+    failure: str = ""
+    """Why there is no table."""
+
+    @property
+    def used(self) -> float:
+        """Part of the tolerance that the measured errors use; infinite where that is not known."""
+        used = None if self.table is None else self.table.metadata.receipt["tolerance"]["used"]
+        return float("inf") if used is None else float(used)
+
+    @property
+    def name(self) -> str:
+        """Model, mesh and slices in words."""
+        return f"{self.decided.checked.model_name}, {self.decided.mesh.option.name}"
+
+    def to_json(self) -> Json:
+        """Return what ran, what it cost, what it used, and what was refined before it and why."""
+        mesh, made, table = self.decided.mesh, self.refinement, self.table
+        failed = {"failure": self.failure} if self.failure else {}
+        return failed | {
+            "model": self.decided.checked.model_name,
+            "level": mesh.level,
+            "slices": mesh.slices,
+            "positions": None if table is None else int(table.position.size),
+            "cpu_seconds": self.cost["cpu_seconds"],
+            "used": None if table is None else table.metadata.receipt["tolerance"]["used"],
+            "refined": [] if made is None else list(made.steps),
+            "because": mesh.reason,
+            "expected_used": None if made is None else made.expected,
+        }
+
+
+def of_all_passes(passes: Sequence[Pass], kept: SteDatabase, reason: str) -> SteDatabase:
+    """Return the table of one pass with the receipt of all, and the reason why there was no further one."""
+    receipt = kept.metadata.receipt | _summed([done.cost for done in passes])
+    receipt["tolerance"] = receipt["tolerance"] | {"reason": reason}
+    receipt["prediction"] = receipt["prediction"] | _predicted(passes)
+    receipt["passes"] = [done.to_json() | {"kept": done.table is kept} for done in passes]
+    return replace(kept, metadata=replace(kept.metadata, receipt=receipt))
+
+
+def _predicted(passes: Sequence[Pass]) -> Json:
+    """Add up what was predicted of every pass before it began; memory is the largest."""
+    predictions = [done.table.metadata.receipt["prediction"] for done in passes if done.table is not None]
+    stages = {
+        name: sum(prediction["stages"][name] for prediction in predictions)
+        for name in predictions[0]["stages"]
+    }
+    memory = max(prediction["memory_bytes"] for prediction in predictions)
+    return {"stages": stages, "cpu_seconds": sum(stages.values()), "memory_bytes": memory}
+
+
+def _summed(costs: Sequence[Json]) -> Json:
+    """Add up times by stage; memory is the largest."""
+    kinds = ("cpu_seconds", "wall_seconds")
+    names = dict.fromkeys(name for cost in costs for name in cost["stages"])
+    times = {name: [cost["stages"][name] for cost in costs if name in cost["stages"]] for name in names}
+    stages = {
+        name: {kind: sum(time[kind] for time in each) for kind in kinds} for name, each in times.items()
+    }
+    total: Json = {kind: sum(cost[kind] for cost in costs) for kind in kinds}
+    total |= {"stages": stages, "peak_memory_bytes": max(cost["peak_memory_bytes"] for cost in costs)}
+    others = [cost["elsewhere"] for cost in costs if "elsewhere" in cost]
+    if others:  # the peak and the loss of workers are those of all passes so far
+        sums = {name: sum(remote[name] for remote in others) for name in ("tasks", "cpu_seconds")}
+        total["elsewhere"] = others[-1] | sums
+    return total

@@ -1,0 +1,203 @@
+"""Errors of mean, peak-to-peak and harmonics, by source.
+
+Each quantity is computed from nested discretizations, the run's own and a rougher one, and the change between
+the two is carried on to the error that is left by the order known, as the point bands are (`error_estimate`).
+Errors common to all positions so count in the mean alone, and what bends the curve in peak-to-peak and
+harmonics. Between the nodes of an axis the changes at held-out points count.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from fe_contact.analysis.estimates.error_sources import CORRECTION_ERROR, contact_error
+from fe_contact.analysis.estimates.half_position_errors import errors_by_halves
+from fe_contact.analysis.estimates.position_errors import PositionErrors
+from fe_contact.analysis.estimates.rough_flank_errors import of_quantities, rough_flank_errors
+from fe_contact.analysis.estimates.table_sample import Nested, TableSample
+from fe_contact.analysis.pairs.operating_points import OperatingPoints
+from fe_contact.analysis.request.solved_run import Solved
+from fe_contact.contact import ContactSolution
+from fe_contact.geometry import ParallelAxes
+from fe_contact.planning.model_error import helical_share, model_errors
+from fe_contact.planning.plan import FaceDiscretization, Plan
+from fe_contact.ste import SteDatabase
+from fe_contact.ste.curve import AT_NODES, METHOD, OF_LOAD_ARM, PLANE
+from fe_contact.ste.curve_quantities import (
+    BESIDE_MESH,
+    FIRST_HARMONIC,
+    MEAN,
+    PEAK_TO_PEAK,
+    QUANTITIES,
+    error_bound,
+    mean_of_curves,
+    quantity_changes,
+)
+from fe_contact.types import FloatArray
+
+LEFT_BY_MESH = {
+    "plane": {"draft": (0.20, 0.20, 0.22), "standard": (0.35, 0.45, 0.45)},
+    "spur": {"draft": (0.8, 0.8, 2.9), "standard": (0.8, 0.8, 2.2)},
+    "thin": {"draft": (1.4, 3.6, 2.9), "standard": (1.4, 1.4, 2.2)},
+    "helical": {"draft": (1.1, 2.0, 2.0), "standard": (0.7, 1.3, 1.8)},
+}
+"""Error left of mean, peak-to-peak and harmonics over the change to the coarse mesh: in the plane, of
+elements half as large; over the face of a spur pair of solid gears, what second order leaves of elements of
+two thirds; of one with a thin rim, more; of a helical pair, over what second order leaves of that change
+(`FaceDiscretization.remaining`). Coarse meshes are not in the range yet in which errors fall with a power of
+the size: a draft in the plane leaves less of its change than a finer mesh, one over the face more. Set on the
+pairs of docs/lab/accuracy.md ("Constants"); the level fine has the parts of standard."""
+
+HARMONIC_SHARE = 0.3
+"""Least change of harmonic k of a helical pair over that of peak-to-peak, times the root of k: half the
+slices and coarse meshes err in other harmonics than the table, whose own may hardly change."""
+
+LEFT_OF_ARM = (1.75, 1.0, 1.25)
+"""What meshes leave of mean, peak-to-peak and harmonics of the load arm, over the same parts of the
+transmission error: where the load lies follows from differences of compliance along the face."""
+
+BALANCE = 0.5
+"""Least change of the mean arm over the mean size of the change about it. An arm balances one end of the
+face against the other, so that the change of its mean may cross zero by accident. Both were set on the pairs
+over the face of docs/lab/accuracy.md, three loads on two meshes, against 31 slices on the mesh fine."""
+
+
+def curve_errors(
+    points: OperatingPoints,
+    solved: Solved,
+    nested: Nested,
+    positions: PositionErrors,
+    plan: Plan,
+) -> FloatArray:
+    """Return the errors at the nodes of the table, (6, 23, F, M, D) in m: sources `AT_NODES`.
+
+    Parameters are those of `estimate_errors`. Errors of the discretization are those at the loads and
+    alignments that were solved again, and interpolated between them.
+    """
+    made, sample, pair = plan.discretization, nested.sample, points.nominal.pair
+    solutions = [solution for _, solution in solved]
+    own, by_mesh, by_patches, by_slices, free_ends = _measured(points, nested, plan)
+    if points.period > 1:
+        own[BESIDE_MESH] = _beside_by_load(points, solutions, sample)
+    by_source = {
+        "discretisation": np.hypot(by_mesh, by_patches),
+        "slices": by_slices,
+        "contact_solver": _by_solver(points, solutions, sample),
+        PLANE: free_ends,
+        "position": np.broadcast_to(
+            positions.curves[:, :, None, None], (*positions.curves.shape, *points.shape)
+        ),
+        METHOD: model_errors(pair, plan.load, own, over_face=isinstance(made, FaceDiscretization))
+        + points.gathered([of_quantities(rough_flank_errors(*each)) for each in solved]),
+    }
+    return np.stack([by_source[name] for name in AT_NODES])
+
+
+def load_arm_errors(points: OperatingPoints, table: SteDatabase, nested: Nested, plan: Plan) -> FloatArray:
+    """Return the errors of the arm of the load at the nodes, (3, 23, F, M, D) in m: sources `OF_LOAD_ARM`.
+
+    As those of the transmission error (`curve_errors`), of a mesh with more left of the change
+    (`LEFT_OF_ARM`); between the positions half of them are held against all. `nested` are load arms.
+    """
+    _, by_mesh, by_patches, by_slices, _ = _measured(points, nested, plan, BALANCE)
+    mean, ripple, harmonics = LEFT_OF_ARM
+    part = np.array([mean, ripple, *[harmonics] * (QUANTITIES - BESIDE_MESH)])
+    by_mesh = part[:, None, None, None] * by_mesh
+    arms = table.load_arm.reshape(table.position.size, -1)
+    by_positions = errors_by_halves(table.position, arms, table.period).curves
+    by_source = {
+        "discretisation": np.hypot(by_mesh, by_patches),
+        "slices": by_slices,
+        "position": by_positions.reshape(by_slices.shape),
+    }
+    return np.stack([by_source[name] for name in OF_LOAD_ARM])
+
+
+def _measured(points: OperatingPoints, nested: Nested, plan: Plan, balance: float = 0.0) -> FloatArray:
+    """Return quantities, and what meshes, patches, slices and free ends leave, (5, 23, F, M, D) in m.
+
+    `balance` is the least change of a mean over the mean size of the change about it.
+    """
+    made, pair = plan.discretization, points.nominal.pair
+    helical = helical_share(pair) if isinstance(made, FaceDiscretization) else 0.0
+    # on the curve: half the slices may multiply a small ripple, and no part of that is what many change
+    many_slices = nested.table + made.remaining_slices * (nested.table - nested.sliced)
+    parts = 1.0, _left_by_mesh(pair, plan, helical), plan.remaining_patches, 1.0, CORRECTION_ERROR
+    return _changes(
+        nested.sample,
+        (nested.table, nested.patched, nested.plane, nested.table, nested.table),
+        (np.zeros_like(nested.table), nested.coarse, nested.patched, many_slices, nested.plane),
+        np.stack(np.broadcast_arrays(*parts)),
+        balance,
+        helical,
+    )
+
+
+def _changes(
+    sample: TableSample,
+    these: Sequence[FloatArray],
+    those: Sequence[FloatArray],
+    parts: FloatArray,
+    balance: float,
+    helical: float,
+) -> FloatArray:
+    """Return parts (k, 23) of the changes of k sets of curves (T R, f, m, d), (k, 23, F, M, D) in m."""
+    first, second = np.stack(these, axis=1), np.stack(those, axis=1)
+    rows = sample.knots.size
+    change = quantity_changes(sample.knots, first.reshape(rows, -1), second.reshape(rows, -1), sample.period)
+    if balance:
+        about = np.nan_to_num(first - second).reshape(rows, -1)
+        about = np.abs(about - mean_of_curves(sample.knots, about, sample.period))
+        least = balance * mean_of_curves(sample.knots, about, sample.period)
+        change[MEAN] = np.maximum(change[MEAN], least)
+    change = parts.T[:, :, None, None, None] * change.reshape(QUANTITIES, *first.shape[1:])
+    return sample.spread(np.moveaxis(_shared(change, helical), 1, 0))
+
+
+def _beside_by_load(
+    points: OperatingPoints, solutions: list[ContactSolution], sample: TableSample
+) -> FloatArray:
+    """Return what load adds to the order beside the mesh to which it adds most, (F, M, D) in m.
+
+    What gears do without load, as the eccentricity of one, no model of teeth that bend has wrong.
+    """
+    knots = (np.arange(points.period)[:, None] + sample.position).ravel()
+
+    def added(solution: ContactSolution) -> FloatArray:
+        unloaded = np.broadcast_to(solution.no_load[:, None], solution.deflection.shape)
+        return quantity_changes(knots, solution.deflection, unloaded, points.period)[[BESIDE_MESH]]
+
+    return np.asarray(points.gathered([added(solution) for solution in solutions])[0])
+
+
+def _by_solver(points: OperatingPoints, solutions: list[ContactSolution], sample: TableSample) -> FloatArray:
+    """Errors (23, F, M, D) that the residuals of the contact can make."""
+    knots = (np.arange(points.period)[:, None] + sample.position).ravel()
+    return points.gathered(
+        [
+            error_bound(knots, contact_error(solution), solution.deflection, points.period)
+            for solution in solutions
+        ]
+    )
+
+
+def _left_by_mesh(pair: ParallelAxes, plan: Plan, helical: float) -> FloatArray:
+    """Error left over the change to the coarse mesh, (23,); `helical`: the part of helical constants."""
+    made = plan.discretization
+    straight = "spur" if all(gear.web is None for gear in plan.bodies(pair)) else "thin"
+    level = "draft" if plan.level == "draft" else "standard"
+    if isinstance(made, FaceDiscretization):
+        spur, wound = (np.array(LEFT_BY_MESH[kind][level]) for kind in (straight, "helical"))
+        mean, ripple, harmonics = (1.0 - helical) * spur + helical * made.remaining * wound
+    else:
+        mean, ripple, harmonics = LEFT_BY_MESH["plane"][level]
+    return np.array([mean, ripple, *[harmonics] * (QUANTITIES - BESIDE_MESH)])
+
+
+def _shared(change: FloatArray, helical: float) -> FloatArray:
+    """Let every harmonic of a helical pair change (23, ...) by its share of peak-to-peak at least."""
+    number = np.arange(1, QUANTITIES - FIRST_HARMONIC + 1).reshape(-1, *[1] * (change.ndim - 1))
+    least = helical * HARMONIC_SHARE * change[PEAK_TO_PEAK] / np.sqrt(number)
+    return np.concatenate([change[:FIRST_HARMONIC], np.maximum(change[FIRST_HARMONIC:], least)])

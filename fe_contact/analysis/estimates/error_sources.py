@@ -1,0 +1,122 @@
+"""Errors of a table, by source.
+
+The finite-element error comes from a second, coarser discretization solved at the same points; with quadratic
+elements and Galerkin patches the error falls at least with the square of the element size, which bounds what
+is left of the difference (`Discretization.remaining`). The table's error is measured at the middles between
+its nodes. Where the plane stands in for three dimensions, a part of what it was corrected by is its error; it
+is measured against three-dimensional solutions (docs/effects.md#finite_width). The errors of a plane that is
+not corrected are those of its model: what it leaves out of the finite width has a sign, and is a correction
+(`ste.plane_bias`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.analysis.estimates.position_errors import PositionErrors
+from fe_contact.analysis.estimates.rough_flank_errors import rough_flank_errors
+from fe_contact.analysis.estimates.table_sample import Nested
+from fe_contact.analysis.pairs.operating_points import OperatingPoints
+from fe_contact.analysis.request.solved_run import Solved
+from fe_contact.contact import ContactSolution
+from fe_contact.planning.model_error import point_error
+from fe_contact.planning.plan import FaceDiscretization, Plan
+from fe_contact.ste.curve import METHOD, PLANE
+from fe_contact.types import FloatArray, Json, Status
+
+CORRECTION_ERROR = 0.03
+"""Error of the correction for a finite width in parts of the correction itself. The largest seen of mean,
+peak-to-peak and harmonics on its pairs (docs/lab/accuracy.md, "Constants") is 0.033, of peak-to-peak at a
+face of 1.2 modules, of which the mesh covers its part."""
+
+
+@dataclass(frozen=True)
+class _ErrorSources:
+    """Error of STE in m by source; arrays (P, F, M, D)."""
+
+    discretization: FloatArray
+    slices: FloatArray
+    interpolation: FloatArray
+    contact: FloatArray
+    plane: FloatArray
+    method: FloatArray
+    """`discretization`, `slices`, `interpolation`, `contact`, `plane`, `method`: Finite elements, slices of
+    the face, table beside the node, contact, the plane for a finite width, and what the method leaves out.
+    """
+
+    @property
+    def total(self) -> FloatArray:
+        """Sum of the sources at each point, m."""
+        parts = self.discretization, self.slices, self.interpolation, self.contact, self.plane
+        return np.asarray(sum(parts) + self.method)
+
+    def to_json(self) -> Json:
+        """Return the largest of each source by load, m.
+
+        Beside a failed point errors are unknown and left out; None where that leaves none.
+        """
+        sources = {
+            "discretisation_m": self.discretization,
+            "slices_m": self.slices,
+            "table_interpolation_m": self.interpolation,
+            "contact_solver_m": self.contact,
+            f"{PLANE}_m": self.plane,
+            f"{METHOD}_m": self.method,
+        }
+        return {name: largest_known(values) for name, values in sources.items()}
+
+
+def largest_known(errors: FloatArray) -> list[float | None]:
+    """Return the largest number of errors (P, F, M, D) at each load; None if there is none."""
+    worst = np.where(np.isnan(errors), -np.inf, errors).max(axis=(0, 2, 3))
+    return [float(value) if np.isfinite(value) else None for value in worst]
+
+
+def estimate_errors(
+    points: OperatingPoints,
+    solved: Solved,
+    nested: Nested,
+    positions: PositionErrors,
+    plan: Plan,
+) -> _ErrorSources:
+    """Combine the measured differences.
+
+    Parameters
+    ----------
+    solved : list of (ContactProblem, ContactSolution)
+        The table's.
+    positions : PositionErrors
+        The largest of the assessed operating points stand for every place.
+    """
+    made, nominal = plan.discretization, points.nominal.pair
+    solutions = [solution for _, solution in solved]
+
+    def left(these: FloatArray, those: FloatArray, part: float) -> FloatArray:
+        """Return a part of the differences of STE, at all points."""
+        return nested.sample.spread_points(part * np.nan_to_num(np.abs(these - those)))
+
+    face, lags = isinstance(made, FaceDiscretization), [np.nan_to_num(each.deflection) for each in solutions]
+    return _ErrorSources(
+        left(nested.patched, nested.coarse, made.remaining)
+        + left(nested.plane, nested.patched, plan.remaining_patches),
+        left(nested.table, nested.sliced, made.remaining_slices),
+        np.broadcast_to(positions.band[:, :, None, None], (*positions.band.shape, *points.shape)),
+        points.gathered([contact_error(solution) for solution in solutions]),
+        left(nested.table, nested.plane, CORRECTION_ERROR),
+        points.gathered([point_error(nominal, plan.load, lag, over_face=face) for lag in lags])
+        + points.gathered([rough_flank_errors(*each) for each in solved]),
+    )
+
+
+def contact_error(solution: ContactSolution) -> FloatArray:
+    """Return the contact solver's error (P, F): its largest relative residual times the STE, m."""
+    worst = np.nan_to_num(solution.residuals.max(axis=2), posinf=0.0)
+    return np.asarray(np.nan_to_num(np.abs(solution.deflection)) * worst)
+
+
+def worst_residual(solution: ContactSolution) -> float:
+    """Return the largest of the four residuals over all converged points."""
+    good = (solution.status == Status.CONVERGED) & np.isfinite(solution.residuals[..., 0])
+    return float(solution.residuals[good].max()) if good.any() else 0.0

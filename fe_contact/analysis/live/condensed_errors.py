@@ -1,0 +1,85 @@
+"""Errors of a table that was solved on a condensed pair, at a part of the cost of solving it.
+
+The rougher discretizations are those of an analysis, at half of the positions or fewer, and the parts of
+their changes that are left are the same. What is between the positions is told by half of them. Coarse meshes
+that are not at hand are no reason to compute any: the error known of the level stands in.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from fe_contact.analysis.estimates.assessed_table import AssessedTable, interval_errors, table_bias
+from fe_contact.analysis.estimates.curve_errors import curve_errors, load_arm_errors
+from fe_contact.analysis.estimates.error_sources import estimate_errors
+from fe_contact.analysis.estimates.half_position_errors import errors_by_halves
+from fe_contact.analysis.estimates.table_sample import Nested, TableSample
+from fe_contact.analysis.live.condensed_contacts import CondensedContacts
+from fe_contact.analysis.pairs.pair_contact import PairContact
+from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
+from fe_contact.planning.plan import Plan
+from fe_contact.planning.planned import usual_mesh_error
+from fe_contact.ste import SteDatabase
+from fe_contact.ste.curve import AT_NODES
+from fe_contact.ste.curve_quantities import MEAN, QUANTITIES
+from fe_contact.types import FloatArray
+
+OVER_MEDIAN = 2.0
+"""Factor on the median error of a level: nine runs of ten state less."""
+
+BY_MESH = AT_NODES.index("discretisation")
+
+
+def condensed_errors(
+    table: SteDatabase, run: SolvedOperatingPoint, contacts: CondensedContacts, sample: TableSample
+) -> AssessedTable:
+    """Estimate the errors of a table of one alignment.
+
+    `contacts` have the same flanks on rougher discretizations, assembled at the `sample`, whose points are
+    solved again. Between the loads nothing is estimated (NaN): the table is of the loads asked.
+    """
+    points, solution, plan = run.places, run.solution, run.plan
+    start = sample.start(run.problem, solution)
+    starts = None if start is None else [start]
+
+    def solved(rougher: PairContact | None, otherwise: FloatArray) -> FloatArray:
+        if rougher is None:
+            return otherwise
+        return sample.solved(points.on(rougher), points, starts)
+
+    own = sample.taken(table)
+    plane = solved(contacts.plane, own)
+    patched = solved(contacts.patched, own)
+    coarse = solved(contacts.coarse, patched)
+    nested = Nested(sample, own, plane, patched, coarse, solved(contacts.sliced, own))
+    positions = errors_by_halves(table.position, solution.deflection, points.period)
+    ste, arms = nested.parts
+    measured = points, [(run.problem, solution)], ste, positions, plan
+    sources, errors = estimate_errors(*measured), curve_errors(*measured)
+    if contacts.coarse is None:
+        errors[BY_MESH], band = _expected(table, plan, contacts.own)
+        sources = replace(sources, discretization=np.broadcast_to(band, sources.contact.shape))
+    bias = table_bias(table, points, plan)
+    of_arm = load_arm_errors(points, table, arms, plan)
+    _, between = interval_errors(errors.shape[2:], {})
+    every = np.concatenate([errors, between])
+    nowhere = np.empty((0,) * 4)  # no point between nodes is assessed
+    return AssessedTable(sources.total, every, of_arm, nowhere, None, sources.to_json(), {}, bias)
+
+
+def _expected(table: SteDatabase, plan: Plan, contact: PairContact) -> tuple[FloatArray, FloatArray]:
+    """Return what the level of the meshes is known to leave, (23, F, 1, 1), and its band (1, F, 1, 1), m.
+
+    A harmonic may be wrong by as much as peak-to-peak. A misaligned pair leads at no load, and so may its
+    mean: what the meshes are wrong by then hangs on what the load adds.
+    """
+    ste = np.nan_to_num(table.static_transmission_error)
+    added = (ste - np.nan_to_num(table.no_load_transmission_error)[:, None]).mean(axis=0)
+    mean = np.maximum(ste.mean(axis=0), added)
+    errors = np.empty((QUANTITIES, *mean.shape))
+    of_mean, of_ripple = usual_mesh_error(contact.pair, plan)
+    errors[:] = OVER_MEDIAN * of_ripple * mean
+    errors[MEAN] = OVER_MEDIAN * of_mean * mean
+    return errors, errors[MEAN][None] + 0.5 * errors[MEAN + 1][None]

@@ -1,0 +1,109 @@
+"""Block of positions of a line of the table: the task that workers solve."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.analysis.pairs.kept_contact import KeptContact, problems_in_parts, solved_in_parts
+from fe_contact.analysis.pairs.operating_points import OperatingPoint
+from fe_contact.analysis.pairs.pair_contact import Bodies, PairContact
+from fe_contact.contact import Candidates, ContactModel, ContactProblem, Start, load_arm, solve_contact
+from fe_contact.contact.condition_number import condition_numbers
+from fe_contact.geometry import ParallelAxes
+from fe_contact.planning.plan import Plan
+from fe_contact.types import FloatArray, IntArray
+
+
+@dataclass(frozen=True)
+class ContactBlock:
+    """One block."""
+
+    pair: ParallelAxes
+    """At the center distance of the line."""
+    plan: Plan
+    candidates: Candidates
+    """Of plain involutes at the positions of the block."""
+    models: tuple[ContactModel, ...]
+    """Of the misalignments; they share one compliance."""
+    pitches: IntArray | None
+    """Whole base pitches to put the positions into, as `PairContact.solve` takes them. Ndarray of int, shape
+    (T,),.
+    """
+    loads: tuple[FloatArray, ...]
+    """Sets of normal forces in N; each is solved by itself."""
+    conditioned: bool = False
+    """Whether condition numbers are wanted."""
+    edges: bool = False
+    """Whether the depth of tip edges under the first set of loads is wanted."""
+    starts: tuple[FloatArray, ...] | None = None
+    """Forces in N on the candidates that each model starts from; default: each load from the one below it.
+    Tuple of ndarray, shape (rows, L, n).
+    """
+    assembled: ContactProblem | None = None
+    """Of the candidates, with the compliance between them, where that is known: it need not be assembled."""
+
+    def start(self, model: int) -> Start | None:
+        """Return what the solution of a model is started from."""
+        return None if self.starts is None else Start(self.candidates, self.starts[model])
+
+
+@dataclass(frozen=True)
+class SolvedBlock:
+    """What is kept of each model of a block for each set of loads, and condition numbers.
+
+    The latter are of the compliance at the positions, if they were wanted.
+    """
+
+    kept: tuple[tuple[KeptContact, ...], ...]
+    condition: FloatArray | None
+
+
+def _points(bodies: Bodies, block: ContactBlock) -> list[OperatingPoint]:
+    """Return the operating points of a block, its compliance assembled."""
+    contact = PairContact.of_bodies(block.pair, block.plan, bodies)
+    if block.assembled is None:
+        contact.assemble(block.models[0], block.candidates)
+    else:
+        contact.take(block.models[0], block.assembled)
+    return [OperatingPoint(contact, model) for model in block.models]
+
+
+def solve_block(bodies: Bodies, block: ContactBlock) -> SolvedBlock:
+    """Assemble and solve a block: one task."""
+    where = block.candidates.position
+    kept = tuple(
+        solved_in_parts(point, where, block.loads, block.pitches, edges=block.edges)
+        for point in _points(bodies, block)
+    )
+    condition = condition_numbers(kept[0][0].problem.compliance) if block.conditioned else None
+    return SolvedBlock(kept, condition)
+
+
+def deflect_block(bodies: Bodies, block: ContactBlock) -> tuple[FloatArray, ...]:
+    """Return the curves (rows, L, 2) of each model alone, of one set of loads: one task."""
+    where, (load,) = block.candidates.position, block.loads
+    return tuple(
+        curves_of_point(point, where, load, block.pitches, block.start(k))
+        for k, point in enumerate(_points(bodies, block))
+    )
+
+
+def curves_of_point(
+    point: OperatingPoint,
+    position: FloatArray,
+    load: FloatArray,
+    pitches: IntArray | None,
+    start: Start | None = None,
+) -> FloatArray:
+    """Return transmission error and load arm of an operating point, (rows, L, 2) in m.
+
+    `start` is for positions in the first base pitch.
+    """
+    parts = []
+    for problem in problems_in_parts(point, position, pitches):
+        solution = solve_contact(problem, load, start)
+        arm = load_arm(point.contact.pair, problem, solution)
+        parts.append(np.stack([solution.deflection, arm], axis=-1))
+    return np.concatenate(parts)

@@ -1,0 +1,44 @@
+"""Limits of a plane model: all that acts across the face."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from bounds import DEPTHS
+from fe_contact.contact import ContactModel
+from fe_contact.effects import ContactScene, LedgerEntry
+from fe_contact.errors import InputError
+from fe_contact.flank.modification import fields_of
+from fe_contact.geometry import FlankModification
+
+
+def refuse_beyond_plane(scene: ContactScene, model: ContactModel, ledger: Sequence[LedgerEntry]) -> None:
+    """Refuse what acts across the face, and what effects that are on have there, where the model is a plane.
+
+    That is helix, flanks that vary along the face, shafts, misalignment; and what effects refuse.
+    """
+    if model.across_face:
+        return
+    pair, advice = scene.pair, "Use the 3-D model for it."
+    if pair.pinion.helix_angle != 0.0:
+        raise InputError("pinion.helix_angle", pair.pinion.helix_angle, "0 for a plane model", advice)
+    for name, gear in scene.gears.items():
+        _refuse_varying_flanks(f"{name}.modification", gear.modification.along_face, advice)
+        if pair.shafts[name == "wheel"] is not None:
+            raise InputError(f"{name}.shaft", "given", "left out for a plane model", advice)
+    if np.any(scene.misalignment != 0.0):
+        raise InputError("misalignments", scene.misalignment.tolist(), "[0.0] for a plane model", advice)
+    for entry in ledger:
+        if entry.on:
+            scene.effect(entry.name).refuse_plane(scene)
+
+
+def _refuse_varying_flanks(field: str, along_face: FlankModification, advice: str) -> None:
+    bound = "constant along the face for a plane model"
+    for name in fields_of(*DEPTHS):
+        if amount := getattr(along_face, name):
+            raise InputError(f"{field}.{name}", amount, f"0: {bound}", advice)
+    if along_face.flank_grid is not None:
+        raise InputError(f"{field}.flank_grid.removed", along_face.flank_grid.removed, bound, advice)

@@ -1,0 +1,89 @@
+"""The result of a fidelity of the accuracy study on a case, and its distance from the finest one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import product
+
+import numpy as np
+
+import model_studies
+from fe_contact.analysis.studies.fidelity import Fidelity
+from fe_contact.ste import SteDatabase
+from fe_contact.types import FloatArray
+from model_studies import Outcome, in_unit
+from model_studies.frontier import Errors
+
+FIGURES = ("mean_error", "peak_to_peak_error")
+
+NAN = float("nan")
+
+
+@dataclass(frozen=True)
+class FidelityResult(model_studies.FidelityResult):
+    """The result of one fidelity on a case.
+
+    Attributes
+    ----------
+    cpu_seconds : float
+        Of the whole run, its error estimate included.
+    """
+
+    FIGURES = FIGURES
+
+    mean: FloatArray = field(metadata=in_unit("m", "curve"))
+    peak_to_peak: FloatArray = field(metadata=in_unit("m", "curve"))
+    """`mean`, `peak_to_peak`: Of each curve (loads, then alignments), m. Shape (C,) each."""
+    stated_error: float
+    """The error its table states: of mean and peak-to-peak, relative, the worst over the curves. That of the
+    positions is in it, which is the same for all fidelities.
+    """
+    stages: dict[str, float]
+    """CPU seconds by stage."""
+    peak_memory_bytes: int
+    """Of the process by the end of the fidelity."""
+    mean_error: float = NAN
+    peak_to_peak_error: float = NAN
+    """`mean_error`, `peak_to_peak_error`: Relative difference to the reference, the worst over the curves; of
+    the reference what its mesh leaves, by the difference of the next coarser mesh and the second order of
+    convergence (NaN if none was run).
+    """
+
+
+def fidelity_errors(result: FidelityResult, reference: FidelityResult) -> Errors:
+    """Return the relative differences, the worst over the curves."""
+    pairs = (result.mean, reference.mean), (result.peak_to_peak, reference.peak_to_peak)
+    worst = (float(np.max(np.abs(coarse / finest - 1.0))) for coarse, finest in pairs)
+    return dict(zip(FIGURES, worst, strict=True))
+
+
+def remaining_errors(coarser: Sequence[tuple[Fidelity, Errors]], finest: Fidelity) -> Errors:
+    """Return the part of the difference to the next coarser mesh that the finest one leaves: second order."""
+    if not coarser:
+        return dict.fromkeys(FIGURES, NAN)
+    fidelity, errors = coarser[-1]
+    part = 1.0 / ((fidelity.element_size / finest.element_size) ** 2 - 1.0)
+    return {name: part * error for name, error in errors.items()}
+
+
+def fidelity_result(outcome: Outcome[Fidelity, SteDatabase]) -> FidelityResult:
+    """Read a table; time and memory are those of its receipt, which has those of child processes too."""
+    fidelity, table = outcome.fidelity, outcome.result
+    axes = (table.force, table.misalignment, table.center_distance_change)
+    curves = [
+        table.curve(force=float(force), misalignment=float(skew), center_distance_change=float(change))
+        for force, skew, change in product(*axes)
+    ]
+    figures = [(curve.mean, curve.peak_to_peak) for curve in curves]
+    receipt = table.metadata.receipt
+    return FidelityResult(
+        name=fidelity.name,
+        title=fidelity.title,
+        cpu_seconds=float(receipt["cpu_seconds"]),
+        mean=np.array([mean.value for mean, _ in figures]),
+        peak_to_peak=np.array([swing.value for _, swing in figures]),
+        stated_error=max(abs(each.error / each.value) for pair in figures for each in pair),
+        stages={name: stage["cpu_seconds"] for name, stage in receipt["stages"].items()},
+        peak_memory_bytes=int(receipt["peak_memory_bytes"]),
+    )

@@ -1,0 +1,79 @@
+"""Arrays of the STE database from what a table keeps of the contact."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fe_contact.analysis.pairs.contact_fields import OF_PAIRS, OF_SUPPORT, contact_fields
+from fe_contact.analysis.pairs.kept_contact import KeptContact
+from fe_contact.analysis.pairs.operating_points import OperatingPoints
+from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.geometry import ParallelAxes
+from fe_contact.ste import Metadata, PairFacts, SteDatabase
+from fe_contact.types import FloatArray, Status
+
+
+def table_of_solution(
+    pair: ParallelAxes,
+    problem: ContactProblem,
+    solution: ContactSolution,
+    position: FloatArray,
+    misalignment: float,
+) -> SteDatabase:
+    """Return a solution of one alignment, at the center distance of `pair`, as a table without errors.
+
+    Parameters
+    ----------
+    position : ndarray, shape (P,)
+        Those of one base pitch, which the solution may repeat.
+    misalignment : float
+        m.
+    """
+    period = len(solution.deflection) // position.size
+    fields = contact_fields(pair, problem, solution)
+    if period == 1:
+        del fields["pair_pressure"]
+    return SteDatabase(
+        position=(np.arange(period)[:, None] + position).ravel(),
+        force=solution.load,
+        torque=pair.torque(solution.load),
+        misalignment=np.array([misalignment]),
+        center_distance_change=np.zeros(1),
+        facts=PairFacts.of(pair),
+        period=period,
+        error_estimate=np.full((*solution.deflection.shape, 1, 1), np.nan),
+        metadata=Metadata(),
+        pair=np.unique(problem.candidates.pair),
+        no_load_transmission_error=solution.no_load[:, None, None],
+        **{name: values[:, :, None, None] for name, values in fields.items()},
+    )
+
+
+def table_fields(points: OperatingPoints, kept: Sequence[KeptContact]) -> dict[str, NDArray[Any]]:
+    """Arrays of the database at the requested loads, (P, F, M, D, ...), and its pair axis."""
+    seen = np.concatenate([each.problem.candidates.pair for each in kept])
+    pairs = np.arange(seen.min(), seen.max() + 1)
+    stored = [dict(each.stored) for each in kept]
+    for arrays, each in zip(stored, kept, strict=True):
+        own = np.unique(each.problem.candidates.pair)
+        if points.period == 1:
+            del arrays["pair_pressure"]
+        for name in arrays.keys() & OF_PAIRS:
+            values = arrays[name]
+            arrays[name] = np.zeros((*values.shape[:2], pairs.size))
+            arrays[name][..., own - pairs[0]] = values
+    no_load = points.gathered([each.solution.no_load[:, None] for each in kept])[:, 0]
+    gathered = {name: points.gathered([arrays[name] for arrays in stored]) for name in stored[0]}
+    return gathered | {"pair": pairs, "no_load_transmission_error": no_load}
+
+
+def table_support(points: OperatingPoints, kept: Sequence[KeptContact]) -> dict[str, NDArray[Any]]:
+    """Support loads that converged everywhere, and their arrays (P, S, M, D)."""
+    good = np.all([each.solution.status == Status.CONVERGED for each in kept], axis=(0, 1))
+    arrays = {name: points.gathered([each.stored[name][:, good] for each in kept]) for name in OF_SUPPORT}
+    support = {f"support_{name.removeprefix('static_')}": values for name, values in arrays.items()}
+    return support | {"support_force": kept[0].solution.load[good]}

@@ -1,0 +1,71 @@
+"""Elements whose lower face is half of a face of a twice as thick layer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.compliance.hexahedron_stiffness import above, cylindrical_frames
+from fe_contact.mesh.element_stack import LOWER_FACE
+from fe_contact.types import FloatArray
+
+# Nodes of a face in the order of LOWER_FACE: position along the side 0-1, and across the layer.
+ALONG = np.array([-1.0, 1.0, -1.0, 1.0, 0.0, 0.0, -1.0, 1.0])
+
+ACROSS = np.array([-1.0, -1.0, 1.0, 1.0, -1.0, 1.0, 0.0, 0.0])
+
+SIDE = [0, 1, 0, 1, 4, 4, 0, 1]
+"""Node of the quadrilateral that each of them stands above."""
+
+
+@dataclass(frozen=True)
+class _CoarseFace:
+    """The face that hanging nodes lie on."""
+
+    nodes: FloatArray
+    """Its nodes, m. Shape (m, 8, 3)."""
+    weights: FloatArray
+    """Value of each of its functions (column) at each hanging node (row). Shape (8, 8)."""
+
+    def attach(self, nodes: FloatArray) -> FloatArray:
+        """Return element nodes (m, 20, 3) with the hanging ones placed on this face."""
+        attached = nodes.copy()
+        attached[:, LOWER_FACE] = self.weights @ self.nodes
+        return attached
+
+    def transform(self, frames: FloatArray) -> FloatArray:
+        """Return the Cartesian displacements (m, 60, 60) per freedom of the nodes that exist.
+
+        `frames` (m, 20, 3, 3) are the axes of the nodes above; those of this face are cylindrical.
+        """
+        transform = np.zeros((len(frames), 20, 3, 20, 3))
+        own = np.setdiff1d(np.arange(20), LOWER_FACE)
+        transform[:, own, :, own] = frames[:, own].transpose(1, 0, 2, 3)
+        moved = self.weights[:, None, :, None] * cylindrical_frames(self.nodes).transpose(0, 2, 1, 3)[:, None]
+        hanging = np.array(LOWER_FACE)
+        transform[:, hanging[:, None], :, hanging] = moved.transpose(1, 3, 0, 2, 4)
+        return transform.reshape(len(frames), 60, 60)
+
+
+def coarse_face(section: FloatArray, thickness: float, turn: float, half: int) -> _CoarseFace:
+    """Return the face that elements hang on, on its lower half (`half` -1) or its upper one (+1).
+
+    `section` (m, 8, 2) are their section nodes at the middle of the thin layer, which turns by `turn` in
+    rad, m.
+    """
+    nodes = above(section[:, SIDE], ACROSS - 0.5 * half, thickness, turn)
+    return _CoarseFace(nodes, face_functions(ALONG, 0.5 * (ACROSS + half)))
+
+
+def face_functions(x: FloatArray, y: FloatArray) -> FloatArray:
+    """Return the eight-node serendipity functions at points (n,) of -1 .. 1, (n, 8)."""
+    functions = []
+    for a, b in zip(ALONG, ACROSS, strict=True):
+        if a and b:
+            functions.append(0.25 * (1 + a * x) * (1 + b * y) * (a * x + b * y - 1))
+        elif a:
+            functions.append(0.5 * (1 + a * x) * (1 - y * y))
+        else:
+            functions.append(0.5 * (1 - x * x) * (1 + b * y))
+    return np.stack(functions, axis=-1)

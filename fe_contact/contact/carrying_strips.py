@@ -1,0 +1,176 @@
+"""The strips of a contact that carry: their pressures and edge loads under changes of the flanks."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.contact.adjoint import adjoint
+from fe_contact.contact.model import GapTerm
+from fe_contact.contact.problem import Candidates, ContactProblem
+from fe_contact.contact.strip_changes import ClosingLag, FollowingPatches, Strips, TurnedForces
+from fe_contact.contact.sweep import ContactSolution
+from fe_contact.geometry import ParallelAxes
+from fe_contact.types import FloatArray, IntArray
+
+_POINTS = 8
+"""Of a strip at which a change is spread over the flank."""
+
+
+@dataclass(frozen=True)
+class CarryingStrips:
+    """The k strips that carry, of all positions, loads and candidates."""
+
+    shape: tuple[int, int, int]
+    """Numbers of positions, loads and candidates."""
+    index: IntArray
+    """Of each among all of these, flattened. Shape (k,)."""
+    strips: Strips
+    closing: ClosingLag
+    turned: TurnedForces
+    """Of all candidates."""
+    following: FollowingPatches | None
+    """Of all candidates; None where patches stay."""
+    normal: float
+    """Normal approach taken away per depth removed in the transverse section."""
+    weight: FloatArray
+    arm_weight: FloatArray
+    """`weight`, `arm_weight`: dSTE, and change of the load arm, per normal approach taken away. Shape (k,)
+    each.
+    """
+    added_arm: FloatArray
+    """Arm of a little more load, m. Shape (P, L)."""
+
+    @classmethod
+    def of(cls, pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> CarryingStrips:
+        """Gather them from a solution of a problem."""
+        found = adjoint(pair, problem, solution)
+        at = np.nonzero(found.weight)
+        turned = TurnedForces.of(pair, problem, solution.force)
+        following = FollowingPatches.of(pair, problem, solution.force) if problem.tilt.size else None
+        strips = found.middle[at], found.half[at], found.weight[at], found.arm_weight[at], found.added_arm
+        return cls._at(pair, problem.candidates, at, (turned, following), *strips)
+
+    def at_edges(self, candidates: Candidates, at: tuple[IntArray, ...], half: float) -> CarryingStrips:
+        """Return strips without weight, `half` m long, at positions, loads and candidates of the same."""
+        zero = np.zeros(at[0].size)
+        strips = zero, zero + half, zero, zero, self.added_arm
+        return self._at(self.strips.pair, candidates, at, (self.turned, self.following), *strips)
+
+    @classmethod
+    def _at(
+        cls,
+        pair: ParallelAxes,
+        candidates: Candidates,
+        at: tuple[IntArray, ...],
+        bodies: tuple[TurnedForces, FollowingPatches | None],
+        middle: FloatArray,
+        half: FloatArray,
+        weight: FloatArray,
+        arm_weight: FloatArray,
+        added_arm: FloatArray,
+    ) -> CarryingStrips:
+        p, _, m = at
+        touch, shape = candidates.touch, (*added_arm.shape, candidates.pair.size)
+        places = touch.s_1[p, m], touch.s_2[p, m], touch.roll_1[p, m], candidates.face_position[m]
+        under = Strips(pair, *places, middle, half)
+        return cls(
+            shape,
+            np.ravel_multi_index(at, shape),
+            under,
+            ClosingLag.of(under, candidates, (p, m)),
+            *bodies,
+            math.cos(candidates.base_helix_angle),
+            weight,
+            arm_weight,
+            added_arm,
+        )
+
+    @property
+    def row(self) -> IntArray:
+        """Position and load of each strip, flattened."""
+        return self.index // self.shape[2]
+
+    def opened(self, gap: GapTerm, over: GapTerm) -> FloatArray:
+        """Return the normal approach (k,) in m that a gap takes away over another near it.
+
+        Linear in their difference. Between its breaks a gap counts as a parabola over each strip.
+        """
+        mean, under = self.strips.removed(gap), self.strips.removed(over)
+        opened = self.normal * (mean - under) + self.closing.opened(gap, over)
+        if gap.along_profile or over.along_profile:
+            opened = opened + self.turned.opened(gap, over).ravel()[self.index]
+        if self.following is not None and (gap.along_profile or over.along_profile):
+            at_rest = self.following.at_rest
+            slopes = at_rest.slopes(gap) - at_rest.slopes(over)
+            opened = opened + self.following.opened(slopes).ravel()[self.index]
+        return np.asarray(opened)
+
+    def change(self, opened: FloatArray) -> FloatArray:
+        """Return what normal approach taken away (k,) in m adds to the transmission error, (P, L) in m."""
+        return self._by_row(self.weight * opened)
+
+    def arm_change(self, opened: FloatArray) -> FloatArray:
+        """Return the same of the load arm, (P, L) in m; places and shares of the contacts stay."""
+        return self._by_row(self.arm_weight * opened)
+
+    def _by_row(self, values: FloatArray) -> FloatArray:
+        rows = self.shape[:2]
+        return np.asarray(np.bincount(self.row, values, math.prod(rows)).reshape(rows))
+
+    def on_flank(
+        self, gear: int, roll_length: FloatArray, face_position: FloatArray, rows: FloatArray
+    ) -> FloatArray:
+        """Return what material removed at each node of a grid on a flank does, bilinear between nodes.
+
+        Parameters
+        ----------
+        gear : int
+            0 is the pinion, 1 the wheel.
+        roll_length, face_position : ndarray, shapes (R,), (Z,)
+            Increasing, m; face positions count from the gear's own mid-face. What is beyond the outer nodes
+            counts to them.
+        rows : ndarray, shape (Q, P, L)
+            Quantities as sums over positions and loads of the transmission error.
+
+        Returns
+        -------
+        ndarray, shape (Q, R, Z)
+            Change of each quantity per m removed at a node.
+
+        Notes
+        -----
+        Material removed at a place opens the gap there, and tilts it to either side. Patches follow the
+        tilt: this part is a dipole, of either sign.
+        """
+        angle = np.pi * ((np.arange(_POINTS) + 0.5) / _POINTS - 0.5)
+        x = self.strips.middle + self.strips.half * np.sin(angle)[:, None]
+        by_node = np.zeros((len(rows), roll_length.size * face_position.size))
+        weight = rows.reshape(len(rows), -1)[:, self.row] * (self.weight * self.normal / _POINTS)
+        for node, part in self.strips.nodes(gear, roll_length, face_position, x):
+            _spread(weight, node, part, by_node)
+        weight = rows.reshape(len(rows), -1)[:, self.row] * self.weight
+        for node, part in self.closing.nodes(gear, roll_length, face_position):
+            _spread(weight, node, part, by_node)
+        by_point = np.zeros(self.shape)
+        by_point.flat[self.index] = self.weight
+        for of in (0, 1):
+            by_slope, closing = self.turned.by_slope(of, by_point, rows), self.turned.closing
+            for node, slope in closing.slope_nodes(of, gear, roll_length, face_position):
+                _spread(by_slope, node, slope, by_node)
+        if self.following is not None:
+            rest = self.following.at_rest
+            dipole = self.following.by_slope(by_point, rows) / (2.0 * rest.half)
+            for side in (1.0, -1.0):
+                x = rest.middle + side * rest.half
+                for node, part in rest.nodes(gear, roll_length, face_position, x):
+                    _spread(side * dipole, node, part, by_node)
+        return by_node.reshape(len(rows), roll_length.size, face_position.size)
+
+
+def _spread(values: FloatArray, node: IntArray, part: FloatArray, by_node: FloatArray) -> None:
+    """Add `part` (..., k) of values (Q, k) to nodes (..., k) of Q grids, flattened."""
+    for k, value in enumerate(values):
+        by_node[k] += np.bincount(node.ravel(), (value * part).ravel(), by_node.shape[1])

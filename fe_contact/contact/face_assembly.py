@@ -1,0 +1,172 @@
+"""Compliance between the contact candidates of gears of finite width."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from fe_contact.compliance import FlankCompliance3D
+from fe_contact.contact.assembly import NEAR, half_planes, share_of_pinion
+from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, face_loads
+from fe_contact.contact.patch import Patches
+from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices
+from fe_contact.types import BoolArray, FloatArray, IntArray
+
+TOGETHER = 8
+"""Positions that are assembled together, always the same ones: sums round by what is beside them."""
+
+_DOUBLED = ("lever", "teeth", "low", "high", "present")
+
+
+def face_contact_problem(
+    candidates: Candidates,
+    compliances: tuple[FlankCompliance3D, FlankCompliance3D],
+    axial_offset: float = 0.0,
+    couple_teeth: bool = True,
+) -> ContactProblem:
+    """Assemble the compliance between slices from condensed flanks; pairs, teeth as in `contact_problem`.
+
+    Parameters
+    ----------
+    candidates : Candidates
+        Pressing on n slices of the tooth pairs.
+    compliances : (FlankCompliance3D, FlankCompliance3D)
+        Driving and driven gear.
+    axial_offset : float
+        Distance of the driven gear's mid-face from the driving gear's, m.
+    couple_teeth : bool
+        False drops what the load on one tooth moves on another.
+    """
+    compliance = np.zeros((*candidates.slices.present.shape, candidates.slices.pair.size))
+    diagonals = []
+    for gear in _face_gears(candidates.slices, compliances, axial_offset, couple_teeth):
+        for rows, added in gear.compliances():
+            compliance[rows] += added
+        diagonals.append(np.einsum("pii->pi", compliance).copy())
+    planes, modulus = half_planes(compliances)
+    return ContactProblem(candidates, compliance, modulus, *planes, share_1=share_of_pinion(*diagonals))
+
+
+def with_face_tilt(
+    problem: ContactProblem,
+    compliances: tuple[FlankCompliance3D, FlankCompliance3D],
+    axial_offset: float = 0.0,
+    couple_teeth: bool = True,
+) -> ContactProblem:
+    """Add how the compliance changes along the flanks; parameters as of `face_contact_problem`."""
+    tilt = np.zeros(problem.compliance.shape)
+    for gear in _face_gears(problem.candidates.slices, compliances, axial_offset, couple_teeth):
+        for rows, added in gear.displaced().compliances():
+            tilt[rows] += added[:, 1::2, ::2]
+    return replace(problem, tilt=tilt)
+
+
+class _KeyedFlanks(NamedTuple):
+    """Contribution of a keyed bore: rows (2 s + 1, q, f) by tooth from -s to s, core (q, q)."""
+
+    rows: FloatArray
+    core: FloatArray
+    couple_teeth: bool
+
+    def compliance(self, tooth: IntArray, loads: FaceLoads) -> FloatArray:
+        """Return what is added between patches (n, n) on the teeth (n,)."""
+        rows = self.rows[tooth + len(self.rows) // 2]
+        moved = np.empty((len(tooth), rows.shape[1]))
+        for i, (row, nodes, forces, used) in enumerate(
+            zip(rows, loads.nodes, loads.forces, loads.used, strict=True)
+        ):
+            moved[i] = row[:, nodes[:used]] @ forces[:used]
+        added = moved @ self.core @ moved.T
+        return added if self.couple_teeth else np.where(tooth[:, None] == tooth, added, 0.0)
+
+
+@dataclass(frozen=True)
+class _FaceGear:
+    """One gear over the face; `tip` is +1 on gear 1 and -1 on gear 2, other names as of `add_compliance`."""
+
+    grid: FaceGrid
+    blocks: FloatArray
+    key: _KeyedFlanks
+    patches: Patches
+    lever: FloatArray
+    teeth: IntArray
+    low: FloatArray
+    high: FloatArray
+    tip: float
+    present: BoolArray
+
+    def compliances(self) -> Iterator[tuple[IntArray, FloatArray]]:
+        """Yield positions and its compliance there (P, n, n)."""
+        planes = self.grid.freedom.ravel()
+        order = planes[planes >= 0]
+        for rows in together(len(self.present)):
+            at = np.array(np.nonzero(self.present[rows]))
+            loads, arms = self._loads(rows[at[0]], at[1]), np.ascontiguousarray(self.lever[rows])
+            added = np.zeros((rows.size, self.teeth.size, self.teeth.size))
+            add_compliance(self.blocks, order, self.teeth, loads, at, arms, added)
+            for p in range(rows.size if len(self.key.rows) else 0):
+                here = at[0] == p
+                on = at[1, here]
+                by_key = self.key.compliance(self.teeth[on], loads.rows(here))
+                added[p][np.ix_(on, on)] += by_key * np.outer(arms[p, on], arms[p, on])
+            yield rows, added
+
+    def displaced(self) -> _DisplacedGear:
+        """Return it with two loads on each slice: the patches, and how they change."""
+        doubled = {name: np.repeat(getattr(self, name), 2, axis=-1) for name in _DOUBLED}
+        return _DisplacedGear(**(vars(self) | doubled))
+
+    def _loads(self, position: IntArray, on: IntArray) -> FaceLoads:
+        return face_loads(self.grid, *self.patches.by_slice(position, on), self.low[on], self.high[on])
+
+
+class _DisplacedGear(_FaceGear):
+    """The same with loads in turn: of the patches as plain ones, and their change per m towards tip 1.
+
+    Beside an edge patches give way more than a strip there does: here they count as if they were plain.
+    """
+
+    def _loads(self, position: IntArray, on: IntArray) -> FaceLoads:
+        at = position[::2], on[::2] // 2
+        widest = self.patches.half_width.max()
+        near, center = NEAR * widest, self.patches.by_slice(*at)[0]
+        center = np.minimum(center, self.grid.s[-1] - widest - near)
+        alike = np.full(center.shape, widest), np.zeros(center.shape), self.low[on[::2]], self.high[on[::2]]
+        above, below = (face_loads(self.grid, center + way, *alike) for way in (near, -near))
+        steep = 0.5 * self.tip / near
+        plain, change = above.plus(0.5, below, 0.5), above.plus(steep, below, -steep)
+        in_turn = (np.stack(each, axis=1) for each in zip(plain, change, strict=True))
+        nodes, forces, used = (each.reshape(on.size, *each.shape[2:]) for each in in_turn)
+        return FaceLoads(nodes, forces, used)
+
+
+def _face_gears(
+    slices: LoadedSlices,
+    compliances: tuple[FlankCompliance3D, FlankCompliance3D],
+    axial_offset: float,
+    couple_teeth: bool,
+) -> Iterator[_FaceGear]:
+    """Yield both gears."""
+    touch, face = slices.touch, slices.face_position
+    sides = (
+        (slices.patch_1, touch.lever_1, -slices.pair, face, 1.0),
+        (slices.patch_2, touch.lever_2, slices.pair, face - axial_offset, -1.0),
+    )
+    for flank, (patches, lever, teeth, along, tip) in zip(compliances, sides, strict=True):
+        blocks = flank.blocks if couple_teeth else flank.blocks[:1]
+        grid = FaceGrid(flank.s, flank.z, flank.index)
+        low = np.maximum(along - 0.5 * slices.slice_width, flank.z[0])
+        high = np.minimum(along + 0.5 * slices.slice_width, flank.z[-1])
+        key = _KeyedFlanks(flank.key_rows, flank.key_core, couple_teeth)
+        yield _FaceGear(grid, blocks, key, patches, lever, teeth, low, high, tip, slices.present)
+
+
+def together(count: int) -> list[IntArray]:
+    """Return the rows of so many positions that are assembled together.
+
+    A single row is not left by itself: it cannot be laid out in memory as many are.
+    """
+    return np.split(np.arange(count), np.arange(TOGETHER, count - 1, TOGETHER))

@@ -1,0 +1,38 @@
+"""Deflection of a gear of finite width relative to its section in plane strain and plane stress."""
+
+from __future__ import annotations
+
+from fe_contact.geometry.parallel_axes import ParallelAxes
+
+BENDING_SHARE = 0.72
+"""Excess of the mean in plane stress over plane strain, in parts of that of the moduli, nu^2/(1 - nu^2):
+contact has none."""
+
+TOOTH_DECAY, BODY_DECAY = 3.2, 0.42
+"""Face width in modules at which half is left: of teeth; of teeth with bodies over z^0.75, z the geometric
+mean of the teeth."""
+
+
+def finite_width_excess(pair: ParallelAxes) -> tuple[float, float]:
+    """Estimate the relative excess of mean and peak-to-peak STE of a spur pair over those in plane strain.
+
+    The ends of the face are free, so a narrow gear is in plane stress and a very wide one in plane strain.
+    The mean has the bodies, too, which are larger than the teeth; peak-to-peak, that of usual flanks, has the
+    teeth alone. Within 15 and 20 % of finite elements on 30 pairs, faces of 1.25 to 30 modules, internal
+    ones included; what a result is corrected by is computed (docs/effects.md#finite_width).
+    """
+    modules, moduli = pair.face_width / pair.pinion.normal_module, _moduli(pair)
+    body = BODY_DECAY * (pair.pinion.teeth * abs(pair.wheel.teeth)) ** 0.375
+    return BENDING_SHARE * moduli / (1.0 + modules / body), moduli / (1.0 + modules / TOOTH_DECAY)
+
+
+def plane_stress_excess(pair: ParallelAxes) -> tuple[float, float]:
+    """Estimate the relative excess of mean and peak-to-peak STE in plane stress over the finite width."""
+    (mean, ripple), moduli = finite_width_excess(pair), _moduli(pair)
+    return (1.0 + BENDING_SHARE * moduli) / (1.0 + mean) - 1.0, (1.0 + moduli) / (1.0 + ripple) - 1.0
+
+
+def _moduli(pair: ParallelAxes) -> float:
+    """Return the relative excess of the modulus of plane strain over that of plane stress."""
+    ratio = 0.5 * (pair.pinion.material.poissons_ratio + pair.wheel.material.poissons_ratio)
+    return ratio**2 / (1.0 - ratio**2)

@@ -1,0 +1,87 @@
+"""Refusal of gears that cannot exist, by the standard term for what is wrong."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from bounds import LIMIT_SLACK, Quantity, Text, above, at_least, below, from_to
+from fe_contact.body import GearBlank
+from fe_contact.errors import InfeasibleGeometry
+from fe_contact.geometry.toothing import Toothing
+
+THINNEST_RIM = 0.5  # in normal modules
+
+THINNEST_WEB = 0.02  # in face widths
+
+
+def refuse_bore(gear: Toothing) -> None:
+    """Refuse a bore that leaves no rim under the teeth."""
+    bore = 2.0 * gear.held_radius
+    if bore >= 2.0 * gear.root_radius:
+        bound = below(2.0 * gear.root_radius, "m", "the root diameter")
+        advice = "Lower the bore or add teeth."
+        raise InfeasibleGeometry("bore", "bore_diameter", bore, bound, advice)
+
+
+def refuse_rim(gear: Toothing, blank: GearBlank) -> None:
+    """Refuse a hub inside the bore, a rim that leaves no web, and one that carries no teeth."""
+    bore = 2.0 * gear.held_radius
+    hub = bore if blank.hub_diameter is None else blank.hub_diameter
+    if hub < bore:
+        bound = at_least(bore, "m", "the bore diameter")
+        raise InfeasibleGeometry("hub", "blank.hub_diameter", hub, bound, "Raise it or leave it out.")
+    least, deepest = THINNEST_RIM * gear.normal_module, gear.root_radius - 0.5 * hub
+    if deepest <= least:
+        field = "bore_diameter" if blank.hub_diameter is None else "blank.hub_diameter"
+        widest = 2.0 * (gear.root_radius - least)
+        bound = below(widest, "m", note=f", which leaves a rim of {THINNEST_RIM:g} normal modules")
+        raise InfeasibleGeometry("rim", field, hub, bound, "Leave the blank out for a solid gear.")
+    if not blank.rim_thickness < deepest:
+        bound = below(deepest, "m", note=", the depth between root circle and hub (or bore)")
+        advice = "Lower the rim thickness or the hub diameter; leave the blank out for a solid gear."
+        raise InfeasibleGeometry("rim", "blank.rim_thickness", blank.rim_thickness, bound, advice)
+    if blank.rim_thickness < least * (1.0 - LIMIT_SLACK):
+        bound = at_least(least, "m", note=f", {THINNEST_RIM:g} normal modules")
+        raise InfeasibleGeometry(
+            "rim", "blank.rim_thickness", blank.rim_thickness, bound, "Raise the rim thickness."
+        )
+
+
+def refuse_web(gear: Toothing, blank: GearBlank) -> None:
+    """Refuse a web that is a foil, or that leaves the face."""
+    least = THINNEST_WEB * gear.face_width
+    if not least * (1.0 - LIMIT_SLACK) <= blank.web_thickness <= (1.0 + 1e-9) * gear.face_width:
+        bound = from_to(least, gear.face_width, "m", "the face width")
+        advice = "A web as thick as the face is wide is a solid gear."
+        raise InfeasibleGeometry("web", "blank.web_thickness", blank.web_thickness, bound, advice)
+    room = 0.5 * (gear.face_width - blank.web_thickness)
+    if abs(blank.web_offset) > room + 1e-9 * gear.face_width:
+        bound = from_to(-room, room, "m", note=", so that the web stays within the face")
+        advice = "Lower the offset or the web thickness."
+        raise InfeasibleGeometry("web", "blank.web_offset", blank.web_offset, bound, advice)
+
+
+def refuse_undercut(gear: Toothing) -> None:
+    """Refuse a tip circle or a fillet that leaves no involute, or no material in the tooth's root."""
+    advice = "Raise the tip diameter, the profile shift or the number of teeth, or lower the dedendum."
+    if gear.form_radius >= gear.tip_radius:
+        name = "undercut" if gear.form_point.undercut else "tip diameter"
+        bound = above(2.0 * gear.form_radius, "m", "the form diameter", ", where the fillet ends")
+        raise InfeasibleGeometry(name, "tip_diameter", 2.0 * gear.tip_radius, bound, advice)
+    angles = np.linspace(gear.form_point.tool_angle, 0.5 * math.pi, 65)
+    if gear.form_point.undercut and np.min(gear.trochoid.point(angles)[:, 0]) <= 0.0:
+        larger = "larger: the fillets of both flanks cut the tooth off"
+        raise InfeasibleGeometry(
+            "undercut", "profile_shift_coefficient", gear.profile_shift_coefficient, larger, advice
+        )
+
+
+def refuse_pointed_tooth(gear: Toothing) -> None:
+    """Refuse a tooth whose flanks meet below its tip circle."""
+    if gear.tip_tooth_thickness <= 0.0:
+        thickness = Quantity(gear.tip_tooth_thickness, "m", digits=3)
+        bound = Text.of("smaller: the transverse tip thickness is ", thickness)
+        advice = "Lower the tip diameter, the addendum or the profile shift."
+        raise InfeasibleGeometry("pointed tooth", "tip_diameter", 2.0 * gear.tip_radius, bound, advice)

@@ -1,0 +1,84 @@
+"""Supports of the bore of a gear."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from fe_contact.body import CLAMPED, ROUNDING, BoreSeat
+from fe_contact.geometry import Toothing
+from fe_contact.mesh.sector_grid import SectorGrid
+from fe_contact.types import BoolArray, FloatArray
+
+
+class BoreSupport(Protocol):
+    """Decides which freedoms of a sector are held, and on what the bore rests; alike in all."""
+
+    @property
+    def name(self) -> str:
+        """Name for cache keys and the receipt."""
+
+    @property
+    def seat(self) -> BoreSeat:
+        """Its finite stiffnesses are elements on the bore; groups of layers end where it ends."""
+
+    def held(self, grid: SectorGrid, z: FloatArray) -> BoolArray:
+        """Return which components (radial, tangential, axial) are held, (planes, n, 3); `z` (planes,), m."""
+
+
+@dataclass(frozen=True)
+class ClampedBore:
+    """The whole bore is fixed."""
+
+    name: str = "clamped bore"
+    seat: BoreSeat = CLAMPED
+
+    def held(self, grid: SectorGrid, z: FloatArray) -> BoolArray:
+        """Hold all components on the bore."""
+        held = np.zeros((len(z), grid.nodes, 3), dtype=bool)
+        held[:, grid.bore] = True
+        return held
+
+
+@dataclass(frozen=True)
+class PlaneStrain:
+    """The whole bore is fixed, and no point of the gear moves along the axis; for spur gears."""
+
+    name: str = "clamped bore, plane strain"
+    seat: BoreSeat = CLAMPED
+
+    def held(self, grid: SectorGrid, z: FloatArray) -> BoolArray:
+        """Hold all components on the bore and the axial one everywhere."""
+        held = ClampedBore().held(grid, z)
+        held[..., 2] = True
+        return held
+
+
+@dataclass(frozen=True)
+class _SeatedBore:
+    """The bore is held where its seat is, in the directions in which that is rigid; `face_width` in m."""
+
+    seat: BoreSeat
+    face_width: float
+
+    @property
+    def name(self) -> str:
+        """All that decides the seat."""
+        return f"seat {json.dumps(self.seat.content(), sort_keys=True)}"
+
+    def held(self, grid: SectorGrid, z: FloatArray) -> BoolArray:
+        """Hold the rigid directions on the planes from one end of the seat to the other."""
+        low, high = self.seat.ends(self.face_width)
+        close = ROUNDING * self.face_width
+        planes = np.flatnonzero((z > low - close) & (z < high + close))
+        held = np.zeros((len(z), grid.nodes, 3), dtype=bool)
+        held[planes[:, None], grid.bore] = np.isinf(self.seat.stiffness)
+        return held
+
+
+def bore_support(gear: Toothing) -> BoreSupport:
+    """Return how a gear is held: clamped, or by its seat."""
+    return ClampedBore() if gear.seat == CLAMPED else _SeatedBore(gear.seat, gear.face_width)

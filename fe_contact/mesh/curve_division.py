@@ -1,0 +1,73 @@
+"""Division of curves into edges whose length follows a size function."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from fe_contact.types import FloatArray
+
+SizeFunction = Callable[[FloatArray], FloatArray]
+
+
+def divide(start: float, end: float, size: SizeFunction, samples: int = 2001) -> FloatArray:
+    """Divide an interval so that every part is as long as `size` asks, within the rounding of their number.
+
+    Parameters
+    ----------
+    start, end : float
+        Ends of the interval; `end` may be below `start`.
+    size : callable
+        Wanted length of a part at the coordinates given, > 0, in the unit of the coordinate.
+    samples : int
+        Points at which `size` is evaluated.
+
+    Returns
+    -------
+    (n + 1,) array
+        Ends of the n >= 1 parts from `start` to `end`, both exact.
+    """
+    t = np.linspace(start, end, samples)
+    density = 1.0 / size(t)
+    parts = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.abs(np.diff(t)))])
+    count = max(1, int(np.ceil(parts[-1] - 1e-9)))
+    # Interpolation needs an increasing abscissa: `parts` is one in either direction of the interval.
+    ends = np.interp(np.linspace(0.0, parts[-1], count + 1), parts, t)
+    ends[0], ends[-1] = start, end
+    return ends
+
+
+def middles(ends: FloatArray) -> FloatArray:
+    """Return the middle of each part."""
+    return 0.5 * (ends[1:] + ends[:-1])
+
+
+def spread(
+    points: FloatArray, sizes: FloatArray, growth: float, largest: float
+) -> Callable[[FloatArray], FloatArray]:
+    """Return the size at a distance from sources of known size: min(largest, size_p + growth |x - p|).
+
+    Parameters
+    ----------
+    points : (n, 2) array
+        Sources, m.
+    sizes : (n,) array
+        Size at each, m.
+    growth : float
+        Growth per unit distance.
+    largest : float
+        Upper bound, m.
+
+    Returns
+    -------
+    callable
+        Maps (k, 2) points to (k,) sizes.
+    """
+    from scipy.spatial.distance import cdist  # noqa: PLC0415 (start-up time)
+
+    def size(at: FloatArray) -> FloatArray:
+        nearest: FloatArray = np.min(sizes + growth * cdist(at, points), axis=1)
+        return np.minimum(nearest, largest)
+
+    return size

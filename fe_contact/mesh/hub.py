@@ -1,0 +1,148 @@
+"""The hub of a gear's mesh: the ring below and beside the real teeth, down to the bore."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from fe_contact.geometry import Toothing
+from fe_contact.mesh.curve_division import divide
+from fe_contact.mesh.outline import Outline, Piece, arc, piece
+from fe_contact.mesh.quadratic_mesh import QuadraticMesh, rotated
+from fe_contact.mesh.recipe import MeshRecipe
+from fe_contact.mesh.tooth_outline import LARGEST_ARC
+from fe_contact.mesh.tooth_sector import ToothSector
+from fe_contact.types import FloatArray, IntArray
+
+HALF = 0.5  # largest element of the plain ring, in parts of its thickness
+
+
+@dataclass(frozen=True)
+class Hub:
+    """The ring without the sectors of the real teeth."""
+
+    points: FloatArray
+    """Nodes, m. Shape (n, 2)."""
+    triangles: IntArray
+    """Six-node triangles. Shape (m, 6)."""
+    bottoms: IntArray
+    """Nodes shared with the bottom of each sector, left to right. Shape (t, b)."""
+    right_side: IntArray
+    left_side: IntArray
+    """`right_side`, `left_side`: Nodes shared with the first sector's right and the last one's left side,
+    from the bottom up; empty if all teeth are real.
+    """
+    bore: IntArray
+    """Nodes on the bore, or on the outside of a ring gear's rim."""
+    thickness: FloatArray
+    """Axial thickness of each element over the face width: below 1 in a web. Shape (m,)."""
+
+
+@dataclass(frozen=True)
+class _InnerRing:
+    """A region between a boundary and the next circle, and its thickness over the face width."""
+
+    circle: Outline
+    thickness: float
+
+
+def hub_outline(gear: Toothing, sector: ToothSector, teeth: IntArray, recipe: MeshRecipe) -> Outline:
+    """Return the boundary that follows the sectors of `teeth`; that of a ring gear is the inner one."""
+    pitch = 2.0 * np.pi / gear.teeth
+    # From the right end of a bottom to its left: counter-clockwise, as the teeth are numbered.
+    pieces = [Piece(f"bottom {j}", rotated(sector.points[sector.bottom[::-1]], j * pitch)) for j in teeth]
+    if len(teeth) < gear.teeth:
+        left = Piece("left side", rotated(sector.points[sector.left_side], teeth[-1] * pitch))
+        right = Piece("right side", rotated(sector.points[sector.right_side[::-1]], teeth[0] * pitch))
+        rim = _plain_rim(left, gear.teeth - len(teeth), pitch, gear.rim_inside_radius, recipe)
+        pieces += [left, rim, right]
+    return Outline(tuple(pieces))
+
+
+def _plain_rim(side: Piece, missing: int, pitch: float, inside: float, recipe: MeshRecipe) -> Piece:
+    """Return the root circle from the end of `side` counter-clockwise over the missing teeth."""
+    x, y = side.nodes[-1]
+    radius, angle, length = float(np.hypot(x, y)), float(np.arctan2(x, y)), missing * pitch
+    largest = min(HALF * abs(1.0 - inside / radius), LARGEST_ARC)
+
+    def size(turned: FloatArray) -> FloatArray:
+        distance = np.minimum(turned, length - turned)
+        target: FloatArray = side.edge_lengths[-1] / radius + recipe.growth * distance
+        return np.minimum(target, largest)
+
+    circle = arc(radius)
+    return piece("plain rim", lambda turned: circle(angle - turned), divide(0.0, length, size))
+
+
+def inner_rings(gear: Toothing, bottom_radius: float, recipe: MeshRecipe) -> tuple[_InnerRing, ...]:
+    """Return what lies below the sectors from there on: one ring, or the rim's rest, web and hub."""
+    held, web = gear.held_radius, gear.web
+    radii, thickness = [bottom_radius, held], [1.0]
+    if web is not None:
+        radii = [bottom_radius, web.outer_radius, web.inner_radius]
+        thickness = [1.0, web.thickness / gear.face_width]
+        if web.inner_radius > held:
+            radii, thickness = [*radii, held], [*thickness, 1.0]
+    depths = [*(abs(a - b) for a, b in pairwise(radii)), np.inf]
+    return tuple(
+        _InnerRing(_divided_circle(r, min(near), abs(bottom_radius - r), recipe), part)
+        for r, near, part in zip(radii[1:], pairwise(depths), thickness, strict=True)
+    )
+
+
+def _divided_circle(radius: float, depth: float, distance: float, recipe: MeshRecipe) -> Outline:
+    """Return a circle, clockwise; `depth` of the thinner ring beside it, `distance` from the sectors, m."""
+    size = min(recipe.body_size + recipe.growth * distance, HALF * depth)
+    step = min(size / radius, LARGEST_ARC)
+    ends = divide(0.0, 2.0 * np.pi, lambda angle: np.full_like(angle, step))
+    return Outline((piece("circle", arc(radius), ends),))
+
+
+def joined_hub(
+    meshes: Sequence[QuadraticMesh],
+    toothed: Outline,
+    thickness: Sequence[float],
+    teeth: IntArray,
+    sign: int = 1,
+) -> Hub:
+    """Join the meshes of the rings, from the sectors to the circle that the gear is held by.
+
+    Their boundary nodes get names. `toothed` is the outline that follows the sectors of `teeth` (t,), the
+    inner one where `sign` is -1; `thickness` is that of the rings over the face width.
+    """
+    mesh, parts = meshes[0], [np.full(len(meshes[0].triangles), thickness[0])]
+    for ring, thick in zip(meshes[1:], thickness[1:], strict=True):
+        mesh = _joined(mesh, ring)
+        parts.append(np.full(len(ring.triangles), thick))
+    around, held = mesh.boundary[::sign]
+    names = {p.name for p in toothed.pieces}
+
+    def nodes(name: str) -> IntArray:
+        return around[toothed.positions(name)] if name in names else np.empty(0, dtype=np.int64)
+
+    return Hub(
+        points=mesh.points,
+        triangles=mesh.triangles,
+        bottoms=np.array([nodes(f"bottom {j}")[::-1] for j in teeth]),
+        right_side=nodes("right side")[::-1],
+        left_side=nodes("left side"),
+        bore=held,
+        thickness=np.concatenate(parts),
+    )
+
+
+def _joined(outside: QuadraticMesh, inside: QuadraticMesh) -> QuadraticMesh:
+    """Join two meshes along the inner boundary of one and the outer one of the other, its reverse."""
+    own = np.ones(len(inside.points), dtype=bool)
+    own[inside.boundary[0]] = False
+    number = np.empty(len(own), dtype=np.int64)
+    number[own] = len(outside.points) + np.arange(int(own.sum()))
+    number[inside.boundary[0]] = np.roll(outside.boundary[1][::-1], 1)
+    return QuadraticMesh(
+        points=np.concatenate([outside.points, inside.points[own]]),
+        triangles=np.concatenate([outside.triangles, number[inside.triangles]]),
+        boundary=(outside.boundary[0], number[inside.boundary[1]]),
+    )
