@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 import model_studies
+from bounds.brief import brief
 from dynamics.assembly.assemble import assemble
 from dynamics.checks import chosen
 from dynamics.effects import EFFECTS
@@ -138,6 +139,7 @@ class EffectAblation(model_studies.EffectAblation[RunFigures, Influence]):
         return self.change("bearing_orders")
 
 
+@brief
 @dataclass(frozen=True)
 class Ablation(model_studies.Ablation[RunFigures, EffectAblation]):
     """All effects of a scene, each toggled by itself.

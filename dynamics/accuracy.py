@@ -12,6 +12,7 @@ from typing import Protocol
 import numpy as np
 
 import model_studies
+from bounds.brief import brief
 from dynamics.assembly.assemble import System, assemble
 from dynamics.assembly.varied import with_decimated_tables
 from dynamics.checks import chosen
@@ -316,6 +317,7 @@ class FidelityResult(model_studies.FidelityResult):
     """`transmission_error_orders`, `bearing_force_orders`: Likewise of the amplitudes at the orders."""
 
 
+@brief
 @dataclass(frozen=True)
 class Frontier(model_studies.Frontier[FidelityResult]):
     """The accuracy study of one scene.

@@ -7,6 +7,7 @@ from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
+from bounds.brief import brief
 from bounds.types import FloatArray, Json
 from model_studies.record import in_unit
 
@@ -87,6 +88,7 @@ class EffectAblation(Generic[F, E]):
 A = TypeVar("A", bound=EffectAblation[Any, Any])
 
 
+@brief
 @dataclass(frozen=True)
 class Ablation(Generic[F, A]):
     """All effects of a request, each toggled by itself."""

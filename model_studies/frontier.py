@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import numpy as np
 
+from bounds.brief import brief
 from host import cpu_seconds
 from model_studies.progress import Progress
 from model_studies.workers import InProcess, Workers, divided
@@ -233,6 +234,7 @@ class FidelityResult:
 R_co = TypeVar("R_co", bound=FidelityResult, covariant=True)
 
 
+@brief
 @dataclass(frozen=True)
 class Frontier(Generic[R_co]):
     """An accuracy study."""

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.io import wavfile
 
 from bounds import above, at_least, at_most
+from bounds.brief import brief
 from dynamics.checks import increasing, integer, one_of, positive
 from dynamics.errors import InputError
 from dynamics.orders.resampling import resampled
@@ -26,6 +27,7 @@ PASSED = 0.45
 """Highest frequency over the sample rate: the resampling filter passes it unchanged."""
 
 
+@brief
 @dataclass(frozen=True)
 class Recording:
     """A signal over time.

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds.brief import brief
 from dynamics.assembly.assemble import System
 from dynamics.assembly.references import drive_springs
 from dynamics.bearings.seat import SEAT
@@ -238,6 +239,7 @@ def _power(force: ComplexArray, rate: ComplexArray) -> FloatArray:
     return np.asarray(0.5 * np.real(np.sum(force * rate.conj(), axis=-1)))
 
 
+@brief
 @dataclass(frozen=True)
 class ForcedResponse(HarmonicResponse, ArrayFile):
     """Harmonic response over S speeds with a measure of its validity."""

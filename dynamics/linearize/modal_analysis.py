@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from bounds.brief import brief
 from dynamics.assembly.assemble import System, assemble
 from dynamics.checks import integer, positive
 from dynamics.linearize.campbell import WhirlBranches, whirl_branches
@@ -53,6 +54,7 @@ AT_REST = ("frequency", "damping_ratio", "shape", "strain_energy", "kinetic_ener
 """What an analysis keeps of `Modes`."""
 
 
+@brief
 @dataclass(frozen=True)
 class ModalAnalysis(ArrayFile):
     """Modes of a system about its static equilibrium; fields state unit, meaning and dimensions of arrays.

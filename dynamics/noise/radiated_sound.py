@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from bounds import at_least
+from bounds.brief import brief
 from dynamics.acoustics import Hull, OrderPower, sound_power_level
 from dynamics.acoustics.levels import a_weighting
 from dynamics.errors import InputError
@@ -67,6 +68,7 @@ def _no_bins() -> FloatArray:
     return np.empty((0, 0))
 
 
+@brief
 @dataclass(frozen=True)
 class RadiatedSound(ArrayFile):
     """Sound power at S speeds in H orders, each as in a steady state; b bearings and m modes of housings.

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cache, partial
 
+from bounds.brief import brief
 from dynamics.acoustics import OrderPower
 from dynamics.assembly.assemble import assemble
 from dynamics.checks import finite
@@ -44,6 +45,7 @@ class DesignFigure:
             raise InputError("step", self.step, "a number other than zero")
 
 
+@brief
 @dataclass(frozen=True)
 class Sensitivity:
     """The change of a level with a figure, from two steps of it."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bounds.brief import brief
 from dynamics.checks import integer, one_of, positive
 from dynamics.errors import InputError
 from dynamics.orders.resampling import checked_order, resample_to_position, unit_of
@@ -17,6 +18,7 @@ WINDOWS = ("hann", "rectangular", "flat_top")
 FLAT_TOP = (0.21557895, -0.41663158, 0.277263158, -0.083578947, 0.006947368)  # ISO 18431-2
 
 
+@brief
 @dataclass(frozen=True)
 class Spectrum:
     """One-sided amplitude spectrum."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bounds import Bound, at_least, at_most, from_to
+from bounds.brief import brief
 from dynamics.checks import integer
 from dynamics.errors import InputError
 from dynamics.orders.resampling import checked_order, resample_to_position, unit_of
@@ -17,6 +18,7 @@ from dynamics.types import FloatArray, IntArray
 ON_LINE = 1e-6  # of a line's distance
 
 
+@brief
 @dataclass(frozen=True)
 class Waterfall:
     """Spectra of B blocks along a run."""

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import scipy
 
+from bounds.brief import brief
 from dynamics.assembly.assemble import System
 from dynamics.errors import InputError
 from dynamics.linearize.operating_speeds import checked_speeds, leading_law
@@ -200,6 +201,7 @@ SAME = 0.02  # of the rms of the transmission error: motions nearer than that ar
 MESH = ("point", "mesh")
 
 
+@brief
 @dataclass(frozen=True)
 class SteadyStates(ArrayFile):
     """P periodic motions on three curves: at rising speeds, at falling ones, and along the branch.

@@ -11,6 +11,7 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 
+from bounds.brief import brief
 from dynamics.checks import integer, within
 from dynamics.errors import DynamicsError, InputError
 from dynamics.results.array_file import ArrayFile, stored
@@ -46,6 +47,7 @@ class _Spread:
     """
 
 
+@brief
 @dataclass(frozen=True)
 class Study(ArrayFile):
     """The figures of N runs: f factors, r responses."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from bounds.brief import brief
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.checks.cycle_law import check_cycle
 from fe_contact.analysis.checks.table_laws import require_laws
@@ -34,6 +35,7 @@ POSITIONS = 64
 """In a base pitch where none are requested."""
 
 
+@brief
 @dataclass(frozen=True)
 class DeviatingCycle:
     """Transmission error over T base pitches, P even positions in each, at L loads."""

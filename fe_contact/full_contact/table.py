@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from bounds.brief import brief
 from fe_contact.types import FloatArray, IntArray, Json, Status
 
 # The transmission error of a pair at one position under one torque, by full finite-element contact.
@@ -110,6 +111,7 @@ class FullContactPoint:
         return facts
 
 
+@brief
 @dataclass(frozen=True)
 class FullContactTable:
     """Solved positions x torques; each point has its own status."""

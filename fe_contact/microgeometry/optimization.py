@@ -10,6 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from bounds import engineering
+from bounds.brief import brief
 from fe_contact.analysis.request.request import Checked
 from fe_contact.errors import increasing
 from fe_contact.geometry import ParallelAxes
@@ -177,6 +178,7 @@ class Perturbation:
     """`change_low`, `change_high`: Of the objective there, m."""
 
 
+@brief
 @dataclass(frozen=True)
 class Optimization:
     """Result of `optimize`."""

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from bounds import MOST_BYTES, at_most
+from bounds.brief import brief
 from fe_contact.analysis.request.request import Checked
 from fe_contact.errors import InputError, SolveError, integer, within
 from fe_contact.geometry import ParallelAxes
@@ -112,6 +113,7 @@ ACTING = SobolSample(1)
 """Two pairs that deviate in everything: by them the effects are decided."""
 
 
+@brief
 @dataclass(frozen=True)
 class ToleranceStudy:
     """Peak-to-peak of N pairs at L torques."""

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bounds import Text, at_most, from_to
+from bounds.brief import brief
 from fe_contact.errors import InputError, positive, within
 from fe_contact.ste.curve_quantities import BESIDE_MESH, QUANTITIES, Spectrum, even_positions, spectrum
 from fe_contact.ste.fields import SteFields
@@ -217,6 +218,7 @@ def _knot_after(database: SteFields, teeth: int) -> float:
 _FARTHEST = 1000  # periods from the reference; load shares get a column per pair passed on the way
 
 
+@brief
 @dataclass(frozen=True, eq=False)
 class Curve:
     """Transmission error over position at one load and alignment."""

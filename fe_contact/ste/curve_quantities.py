@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bounds import order_name
+from bounds.brief import brief
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import ComplexArray, FloatArray
 
@@ -20,6 +21,7 @@ HARMONICS = 20
 _SPECTRUM_PER_PITCH, _SPECTRUM_PER_PERIOD, _SPECTRUM_FEWEST = 4096, 2**18, 256
 
 
+@brief
 @dataclass(frozen=True, eq=False)
 class Spectrum:
     """Amplitudes of ste(x) = mean + sum A_k cos(2 pi o_k x + phi_k), x in base pitches."""

@@ -10,6 +10,7 @@ from math import comb, prod
 import numpy as np
 from numpy.typing import NDArray
 
+from bounds.brief import brief
 from fe_contact.ste.interpolation import Axis, Stencil
 from fe_contact.types import FloatArray, IntArray
 
@@ -262,6 +263,7 @@ class ForceCubic:
         return t
 
 
+@brief
 @dataclass(frozen=True, eq=False)
 class ForceTable:
     """Levels of constant mesh force over position; read-only arrays."""

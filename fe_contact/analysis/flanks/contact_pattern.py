@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from bounds.brief import brief
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.types import FloatArray
 
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 
 
+@brief
 @dataclass(frozen=True)
 class ContactPattern:
     """Largest pressure over one flank."""

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bounds.brief import brief
 from fe_contact.analysis.flanks.solved_operating_point import (
     checked_positions,
     solve_operating_point,
@@ -31,6 +32,7 @@ from model_studies.stage_clock import StageClock
 Both = tuple[DeformedGear, DeformedGear]
 
 
+@brief
 @dataclass(frozen=True)
 class DeformedPair:
     """Both gears at one position, placed as they mesh.

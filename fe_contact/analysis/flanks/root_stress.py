@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bounds import warn_of
+from bounds.brief import brief
 from fe_contact.analysis.flanks.root_meshes import FaceRootMeshes, root_meshes
 from fe_contact.analysis.flanks.root_stress_history import ROOTS, RootStressHistory
 from fe_contact.analysis.flanks.rougher_solutions import halves, rougher_solutions
@@ -65,6 +66,7 @@ def stress_seconds(pair: ParallelAxes, plan: Plan, cache: Path | None) -> float:
     )
 
 
+@brief
 @dataclass(frozen=True)
 class RootStress:
     """Tooth-root stress of both gears at one load and one alignment."""

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import model_studies
+from bounds.brief import brief
 from fe_contact.analysis.checks.effect_ledger import toggled
 from fe_contact.analysis.database.compute_database import compute_database
 from fe_contact.analysis.request.influences import estimated_influences
@@ -76,6 +77,7 @@ class EffectAblation(model_studies.EffectAblation[Figures, Influence]):
         return self.peak_to_peak_change / self.with_effect.peak_to_peak
 
 
+@brief
 @dataclass(frozen=True)
 class Ablation(model_studies.Ablation[Figures, EffectAblation]):
     """All effects of a case, each toggled by itself.

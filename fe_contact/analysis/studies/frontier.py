@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import model_studies
+from bounds.brief import brief
 from fe_contact.analysis.analyze import analyze
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request import Checked
@@ -63,6 +64,7 @@ def warm_up(*, across_face: bool) -> None:
         analyze(pair, normal_forces=[10.0], level="draft", model=model, positions=8)
 
 
+@brief
 @dataclass(frozen=True)
 class Frontier(model_studies.Frontier[FidelityResult]):
     """The accuracy study of one case.

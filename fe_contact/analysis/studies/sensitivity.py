@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from bounds.brief import brief
 from fe_contact.analysis.analyze import ste_database
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import as_checked, checked_request
@@ -38,6 +39,7 @@ class RippleCurve:
         return self.peak_to_peak / nominal - 1.0
 
 
+@brief
 @dataclass(frozen=True)
 class Sensitivity:
     """Both curves of one pair at one load, with or without corner contact."""

@@ -12,8 +12,8 @@ from dynamics.joints.housing import DEFINITE
 from lineofaction.gearbox.from_rexs.bearing_location import Table
 from lineofaction.gearbox.from_rexs.gear_unit import Part
 from lineofaction.gearbox.from_rexs.layout import Layout
+from lineofaction.gearbox.from_rexs.part_names import Names
 from lineofaction.gearbox.from_rexs.placement import FIXED, Placement
-from lineofaction.gearbox.from_rexs.scene_shafts import Names
 
 _MATRIX = "reduced_static_stiffness_matrix"
 

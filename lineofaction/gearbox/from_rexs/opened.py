@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from bounds.brief import brief
 from lineofaction.gearbox.from_rexs.account import Line
 from lineofaction.gearbox.from_rexs.assumptions import Assumption, assumed
 from lineofaction.gearbox.from_rexs.gear_train import Train
@@ -43,6 +44,7 @@ _DIGITS = 9
 """Of torques: those of equal planets agree to the rounding of the statics."""
 
 
+@brief
 @dataclass(frozen=True)
 class OpenedUnit:
     """A gear unit as cases and a scene."""

@@ -12,8 +12,9 @@ from bounds.types import FloatArray
 from lineofaction.gearbox.from_rexs.gear_unit import Part, rounded
 from lineofaction.gearbox.from_rexs.layout import Layout
 from lineofaction.gearbox.from_rexs.operating_points import FORCES, OperatingPoint
+from lineofaction.gearbox.from_rexs.part_names import Names
 from lineofaction.gearbox.from_rexs.placed_shafts import SAME_PLACE, PlacedShaft
-from lineofaction.gearbox.from_rexs.scene_shafts import Names, SceneShafts
+from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
 from lineofaction.gearbox.units import MM
 
 ROUNDING = 1e-12

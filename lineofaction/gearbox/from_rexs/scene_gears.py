@@ -11,7 +11,8 @@ from lineofaction.gearbox.from_rexs.carrier_body import inertia_table
 from lineofaction.gearbox.from_rexs.gear_body import RIM
 from lineofaction.gearbox.from_rexs.gear_unit import GearStage, Part
 from lineofaction.gearbox.from_rexs.layout import Layout
-from lineofaction.gearbox.from_rexs.scene_shafts import Names, SceneShaft, SceneShafts
+from lineofaction.gearbox.from_rexs.part_names import Names
+from lineofaction.gearbox.from_rexs.scene_shafts import SceneShaft, SceneShafts
 from lineofaction.gearbox.from_rexs.stage_case import StageCase
 from lineofaction.gearbox.units import MM
 

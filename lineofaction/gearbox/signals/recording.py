@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds.brief import brief
 from host import ChildFailed, ask_child
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.signals.channel import Channel
@@ -42,6 +43,7 @@ _LISTED = 12  # names in a message
 _OVER, _DIRECTIONS = ("time", "order", "frequency", ""), ("x", "y", "z", "")
 
 
+@brief
 @dataclass(frozen=True)
 class Recording:
     """The channels of a file; `name` is the file's."""

@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from bounds.brief import brief
 from bounds.types import Json
 from fe_contact.types import FloatArray
 from model_studies import in_unit
@@ -51,6 +52,7 @@ def _banded(levels: FloatArray, below: FloatArray, above: FloatArray) -> FloatAr
     return np.stack([median - np.hypot(median - low, below), median, median + np.hypot(high - median, above)])
 
 
+@brief
 @dataclass(frozen=True)
 class FlankChange:
     """Levels of N pairs with the flanks before and after a change, pair by pair with the same deviations."""

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from bounds.brief import brief
 from bounds.types import Json
 from dynamics.assembly.assemble import System, assemble
 from dynamics.errors import InputError, SolveError
@@ -73,6 +74,7 @@ class OrderForce:
     force: float = field(metadata=in_unit("n"))
 
 
+@brief
 @dataclass(frozen=True)
 class AnsweredComplaint:
     """The answer."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from bounds.brief import brief
 from bounds.types import FloatArray, IntArray, Json
 from dynamics.deflection import Deflection
 from dynamics.effects.ledger import mechanism_of
@@ -98,6 +99,7 @@ class Outline:
         )
 
 
+@brief
 @dataclass(frozen=True)
 class GearboxDeflection:
     """The deflection of a gearbox and what it makes of its meshes."""

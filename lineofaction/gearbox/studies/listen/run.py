@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from bounds.brief import brief
 from bounds.types import Json
 from dynamics.acoustics import Recording, loudness_over_time, sound_pressure_level, sound_quality
 from dynamics.acoustics.sound_quality import SHORTEST
@@ -169,6 +170,7 @@ class Receiver:
         return replace(self, microphone_mm=tuple(scene.complaint.microphone_mm))
 
 
+@brief
 @dataclass(frozen=True)
 class HeardRun:
     """A run through the housings of a scene."""

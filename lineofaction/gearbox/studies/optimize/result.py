@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bounds import engineering
+from bounds.brief import brief
 from bounds.types import Json
 from fe_contact.microgeometry.optimization import Outcome, excess, gain_of, outcome_of
 from fe_contact.microgeometry.search import SearchRun
@@ -64,6 +65,7 @@ class HeardDesign:
     """
 
 
+@brief
 @dataclass(frozen=True)
 class HeardOptimization:
     """The start and the optimum of a search by what is heard."""

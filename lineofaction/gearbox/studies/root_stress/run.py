@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from bounds.brief import brief
 from bounds.types import Json
 from fe_contact.analysis.flanks.root_stress import root_stress, stress_seconds
 from fe_contact.analysis.flanks.root_stress_history import ROOTS, RootPassage, RootPeak, RootStressHistory
@@ -34,6 +35,7 @@ class _GearRoots:
     nominal: float | None = field(default=None, metadata=in_unit("pa"))
 
 
+@brief
 @dataclass(frozen=True)
 class Roots:
     """Tooth-root stress of both gears at one load and one alignment, in SI units."""

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds.brief import brief
 from bounds.types import Json
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.run_plan import predicted_designs
@@ -28,6 +29,7 @@ from model_studies.record_file import read_record, write_record
 SCHEMA = "lineofaction sensitivity study"
 
 
+@brief
 @dataclass(frozen=True)
 class PairStudy:
     """The study of one pair."""

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from bounds import Kind
+from bounds.brief import brief
 from bounds.types import Json
 from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.flank.modification import FlankModification
@@ -188,6 +189,7 @@ QUANTITIES = {
 """By name in `fe_contact.microgeometry.sweep.SWEPT`."""
 
 
+@brief
 @dataclass(frozen=True)
 class SweepResult:
     """A sweep, and which of its quantities are shown.

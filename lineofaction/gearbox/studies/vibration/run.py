@@ -11,6 +11,7 @@ from typing import TypeAlias
 import numpy as np
 
 from bounds import engineering
+from bounds.brief import brief
 from bounds.types import FloatArray, Json
 from dynamics.housings import ReducedHousing, write_surface
 from dynamics.vibration import (
@@ -49,6 +50,7 @@ MM_PER_S = 1e-3
 _ADVICE = "Give a housing by step_file, mesh_file, modes_file or frf_file: see docs/how-to/vibration.md."
 
 
+@brief
 @dataclass(frozen=True)
 class HousingVibrationResult:
     """The analysis, and a mode to draw in place of the operating deflection."""
