@@ -11,8 +11,8 @@ import numpy as np
 from fe_contact.geometry import FlankGrid
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.from_rexs.flank_modification import FlankPlace, Modification
 from lineofaction.gearbox.from_rexs.gear_unit import rounded
-from lineofaction.gearbox.from_rexs.modifications import FlankPlace, Modification
 from lineofaction.gearbox.units import MM, UM
 
 COUNTS = (17, 33, 65, 129)
