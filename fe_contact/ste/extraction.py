@@ -110,21 +110,40 @@ def _inserted_counts(levels: _LoadLevels, kinked: BoolArray) -> dict[int, int]:
 
 
 def _smooth(levels: _LoadLevels, k: int, force: FloatArray) -> Pair:
-    """Deflection and stiffness at `force` on the cubic of step k in F^`_POWER`, monotone."""
-    axis = levels.force[k : k + 2] ** _POWER
-    lag, stiff = levels.deflection[..., k : k + 2], levels.stiffness[..., k : k + 2]
+    """Deflection and stiffness at `force` on the smooth curve of step k, monotone.
+
+    The curve is a straight line and, for what the deflection has beyond it, a cubic in F^`_POWER`: a linear
+    law stays linear.
+    """
+    ends = levels.force[k : k + 2]
+    lag, compliance = levels.deflection[..., k : k + 2], 1.0 / levels.stiffness[..., k : k + 2]
+    straight = _straight_compliance(compliance, np.diff(lag, axis=-1) / (ends[1] - ends[0]))
+    axis = ends**_POWER
     width = axis[1] - axis[0]
-    chord = np.diff(lag, axis=-1) / width
+    beyond = lag - straight * ends
+    rise = np.diff(beyond, axis=-1)
     # d lag / d F^p = (d lag / dF) F^(1 - p) / p
-    slope = np.minimum(levels.force[k : k + 2] ** (1.0 - _POWER) / (_POWER * stiff), 3.0 * chord)
+    slope = np.minimum((compliance - straight) * ends ** (1.0 - _POWER) / _POWER, 3.0 * rise / width)
     t = (force**_POWER - axis[0]) / width
     s = 1.0 - t
-    ends = (s * slope[..., :1] - t * slope[..., 1:]) * width
-    deflection = lag[..., :1] + t * t * (3.0 - 2.0 * t) * np.diff(lag, axis=-1) + t * s * ends
-    tangent = s * (1.0 - 3.0 * t) * slope[..., :1] + t * (3.0 * t - 2.0) * slope[..., 1:]
-    compliance = (6.0 * t * s * chord + tangent) * _POWER * force ** (_POWER - 1.0)
-    least = _LEAST_COMPLIANCE * np.diff(lag, axis=-1) / (levels.force[k + 1] - levels.force[k])
-    return deflection, 1.0 / np.maximum(compliance, least)
+    tangents = (s * slope[..., :1] - t * slope[..., 1:]) * width
+    deflection = beyond[..., :1] + t * t * (3.0 - 2.0 * t) * rise + t * s * tangents + straight * force
+    growth = 6.0 * t * s * rise / width
+    growth += s * (1.0 - 3.0 * t) * slope[..., :1] + t * (3.0 * t - 2.0) * slope[..., 1:]
+    softness = straight + growth * _POWER * force ** (_POWER - 1.0)
+    least = _LEAST_COMPLIANCE * np.diff(lag, axis=-1) / (ends[1] - ends[0])
+    return deflection, 1.0 / np.maximum(softness, least)
+
+
+def _straight_compliance(compliance: FloatArray, secant: FloatArray) -> FloatArray:
+    """Return the compliance (..., 1) of the straight part of a step, m/N, >= 0.
+
+    That of the stiffer end, and less where the other end is soft: what is left rises by a third of its
+    largest slope at least, which a monotone cubic needs.
+    """
+    largest = compliance.max(axis=-1, keepdims=True)
+    part = np.minimum(compliance.min(axis=-1, keepdims=True), 1.5 * secant - 0.5 * largest)
+    return np.maximum(part, 0.0)
 
 
 def _on_branches(levels: _LoadLevels, pairs: IntArray, k: int, force: FloatArray) -> Pair:

@@ -51,16 +51,46 @@ def test_a_helical_pair_comes_into_contact_gradually(make):
     assert gradual_contact(straight) == 0.0
     assert gradual_contact(steep) == 1.0
     assert gradual_contact(slight) < 0.05
+    force, lag, _ = smooth_law(0.9)
+    assert force.size == 4 + 2 * 3
+    assert lag == pytest.approx(1e-8 * force**0.9, rel=8e-4)
+
+
+def smooth_law(exponent: float):
+    """Return force, deflection and stiffness on the smooth curve of 1e-8 F^n at loads five times apart."""
     force = np.array([0.0, 100.0, 500.0, 2500.0])
-    lag = 1e-8 * force**0.75 * np.ones((6, 1, 1, 1))
-    stiff = 1.0 / (0.75e-8 * np.maximum(force, 1.0) ** -0.25) * (force > 0.0) * np.ones((6, 1, 1, 1))
-    levels = _LoadLevels(force, lag, stiff)
-    pairs = np.array([0, 1, 1, 2]) * np.ones((6, 1, 1, 1), dtype=int)
-    smooth = _refined(levels, pairs, 1.0)
-    exact = 1e-8 * smooth.force**0.75
-    assert np.allclose(smooth.deflection[0, 0, 0], exact, rtol=1e-12)
-    assert np.allclose(smooth.stiffness[0, 0, 0, 1:], smooth.force[1:] ** 0.25 / 0.75e-8, rtol=1e-9)
-    assert smooth.force.size == 4 + 2 * 3
+    one = np.ones((6, 1, 1, 1))
+    compliance = exponent * 1e-8 * np.maximum(force, 1.0) ** (exponent - 1.0)
+    levels = _LoadLevels(force, 1e-8 * force**exponent * one, (force > 0.0) / compliance * one)
+    smooth = _refined(levels, np.array([0, 1, 1, 2]) * np.ones((6, 1, 1, 1), dtype=int), 1.0)
+    return smooth.force, smooth.deflection[0, 0, 0], smooth.stiffness[0, 0, 0]
+
+
+def test_a_linear_law_stays_linear():
+    """A cubic in F^(1/4) alone is 1.6e-3 off between loads five times apart."""
+    force, lag, stiffness = smooth_law(1.0)
+    assert lag == pytest.approx(1e-8 * force, rel=1e-12)
+    assert stiffness[1:] == pytest.approx(1e8, rel=1e-12)
+
+
+@pytest.mark.parametrize("exponent", [0.6, 0.75, 0.9])
+def test_laws_that_stiffen_are_followed(exponent):
+    """Line contact is near 0.9; a triangle of contact that grows is near 0.6."""
+    force, lag, stiffness = smooth_law(exponent)
+    assert lag[1:] == pytest.approx(1e-8 * force[1:] ** exponent, rel=1.1e-3)
+    compliance = exponent * 1e-8 * force[1:] ** (exponent - 1.0)
+    assert stiffness[1:] == pytest.approx(1.0 / compliance, rel=3.5e-3)
+
+
+@pytest.mark.parametrize("stiff", [(0.2, 1.0), (1.0, 0.2), (3.0, 3.0), (0.4, 0.4), (50.0, 1.0), (1e-3, 1e3)])
+def test_the_smooth_curve_rises_whatever_the_stiffness_at_its_ends(stiff):
+    """Stiffness at the ends in parts of that of the step's secant."""
+    force = np.array([0.0, 100.0, 500.0, 2500.0])
+    lag = 1e-8 * force * np.ones((6, 1, 1, 1))
+    ends = 1e8 * np.array([1.0, 1.0, *stiff]) * np.ones((6, 1, 1, 1))
+    smooth = _refined(_LoadLevels(force, lag, ends), np.ones((6, 1, 1, 4), dtype=int), 1.0)
+    assert np.all(np.diff(smooth.deflection, axis=-1) > 0.0)
+    assert np.all(smooth.stiffness[..., 1:] > 0.0)
 
 
 def test_two_straight_branches_are_found(make):
