@@ -42,6 +42,7 @@ MODULES = {
         "fastapi",
         "fastapi_swagger",
         "httptools",
+        "opentelemetry",
         "prometheus_client",
         "pydantic_settings",
         "sqlalchemy",

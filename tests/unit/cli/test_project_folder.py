@@ -170,7 +170,7 @@ def unit(rotor: Path) -> Path:
 
 
 VERBS = {
-    "plan": ("analyze.run_plan", ["first.toml", "second.toml"]),
+    "plan": ("plan.run_plan", ["first.toml", "second.toml"]),
     "geometry": ("pages.run_geometry", ["first.toml", "second.toml"]),
     "analyze": ("analyze.run_analyze", ["first.toml", "second.toml"]),
     "simulate": ("simulate.run_simulate", ["jeffcott.toml"]),

@@ -65,7 +65,8 @@ def test_a_text_with_its_files_is_read_as_beside_it_on_disk(tmp_path: Path) -> N
     sent = [FileContentInput.of(tmp_path / "gearcase.uff").model_dump(mode="json")]
     empty = tmp_path / "empty"
     empty.mkdir()
-    scene = scene_of_toml({"toml": file.read_text("utf-8"), "files": sent}, empty)["scene"]
+    fields: list[str] = []
+    scene = scene_of_toml({"toml": file.read_text("utf-8"), "files": sent}, empty, fields.append)["scene"]
     assert validated(SceneInput, scene).housings == scene_of(file)[0].housings
 
 

@@ -15,7 +15,7 @@ from host.extras import MODULES, MissingExtra, missing_extra, require
 
 ROOT = Path(__file__).parents[3]
 EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
-IMPORTED_AS = {"scikit-fem": "skfem"}
+IMPORTED_AS = {"scikit-fem": "skfem", "opentelemetry-api": "opentelemetry"}
 ANALYSIS_ADVICE = "It comes with the extra analysis: pip install 'lineofaction[analysis]'"
 
 
