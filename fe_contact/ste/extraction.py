@@ -143,7 +143,7 @@ def _straight_compliance(compliance: FloatArray, secant: FloatArray) -> FloatArr
     """
     largest = compliance.max(axis=-1, keepdims=True)
     part = np.minimum(compliance.min(axis=-1, keepdims=True), 1.5 * secant - 0.5 * largest)
-    return np.maximum(part, 0.0)
+    return np.asarray(np.maximum(part, 0.0))
 
 
 def _on_branches(levels: _LoadLevels, pairs: IntArray, k: int, force: FloatArray) -> Pair:
