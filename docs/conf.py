@@ -1,11 +1,16 @@
 """The documentation site: Sphinx with MyST pages. `scripts/docs` builds it."""
 
+import inspect
 import shutil
+from functools import cached_property
 from importlib.metadata import version as installed
 from importlib.resources import as_file, files
 from pathlib import Path
+from typing import Any
 
 from sphinx.application import Sphinx
+from sphinx.errors import PycodeError
+from sphinx.pycode import ModuleAnalyzer
 
 project = "lineofaction"
 author = "the lineofaction authors"
@@ -42,8 +47,35 @@ mathjax_path = "mathjax/tex-chtml.js"
 
 
 def setup(app: Sphinx) -> None:
-    """Let the site bring MathJax along."""
+    """Let the site bring MathJax along, and list fields in the text of their class."""
     app.connect("build-finished", _bring_mathjax)
+    app.connect("autodoc-process-docstring", _list_fields, priority=400)  # before napoleon reads the list
+    app.connect("autodoc-skip-member", _is_field)
+
+
+def _list_fields(
+    _app: Sphinx, what: str, _name: str, described: Any, _options: Any, lines: list[str]
+) -> None:
+    """Append the texts below the fields of a class to its own, as a list of attributes."""
+    if what != "class":
+        return
+    try:
+        texts = ModuleAnalyzer.for_module(described.__module__).find_attr_docs()
+    except PycodeError:
+        return
+    entries = [(field, text) for (kind, field), text in texts.items() if kind == described.__qualname__]
+    if entries and "Attributes" not in lines:
+        lines += ["", "Attributes", "----------"]
+        for field, text in entries:
+            lines += [field, *(f"    {line}".rstrip() for line in text), ""]
+
+
+def _is_field(_app: Sphinx, what: str, _name: str, member: Any, _skip: bool, _options: Any) -> bool | None:
+    """Leave fields out of the entries of a class: its text lists them."""
+    method = inspect.isroutine(member) or isinstance(
+        member, property | cached_property | classmethod | staticmethod
+    )
+    return True if what == "class" and not method and not inspect.isclass(member) else None
 
 
 def _bring_mathjax(app: Sphinx, failure: Exception | None) -> None:
