@@ -2,35 +2,60 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
+from typing import Protocol
 
 import numpy as np
 
 from bounds import engineering
 from bounds.brief import Row
-
-if TYPE_CHECKING:
-    from dynamics.results.run_result import RunResult
+from dynamics.types import FloatArray, Json, RunStatus
 
 MOST_PARTS = 3
 """Meshes and bearings that are listed, those of the largest forces."""
 
 
-def headlines(run: RunResult) -> tuple[str, list[Row]]:
+class Run(Protocol):
+    """What is shown of a run, as `RunResult` has it."""
+
+    @property
+    def time(self) -> FloatArray: ...  # noqa: D102
+    @property
+    def status(self) -> RunStatus: ...  # noqa: D102
+    @property
+    def receipt(self) -> Json: ...  # noqa: D102
+    @property
+    def mesh(self) -> Sequence[str]: ...  # noqa: D102
+    @property
+    def bearing(self) -> Sequence[str]: ...  # noqa: D102
+    @property
+    def mesh_force(self) -> FloatArray: ...  # noqa: D102
+    @property
+    def dynamic_transmission_error(self) -> FloatArray: ...  # noqa: D102
+    @property
+    def bearing_force(self) -> FloatArray: ...  # noqa: D102
+
+
+def headlines(run: Run) -> tuple[str, list[Row]]:
     """Return the title of a run and its rows."""
     duration = float(run.time[-1] - run.time[0]) if run.time.size else 0.0
     title = f"RunResult, {engineering(duration, 4)} s in {run.time.size} samples, {run.status.name.lower()}"
     parts = ("shaft", "mesh", "bearing", "drive", "coupling")
-    counts = (f"{len(getattr(run, part))} {part}" for part in parts if getattr(run, part))
-    rows = [("parts", ", ".join(counts)), *_meshes(run), *_bearings(run)]
+    counts = ((len(getattr(run, part)), part) for part in parts)
+    listed = ", ".join(_counted(count, part) for count, part in counts if count)
+    rows = [("parts", listed), *_meshes(run), *_bearings(run)]
     cost = run.receipt.get("cpu_seconds")
     if cost is not None:
         rows.append(("made", f"{engineering(float(cost), 3)} CPU s"))
     return title, rows
 
 
-def _meshes(run: RunResult) -> Iterator[Row]:
+def _counted(count: int, part: str) -> str:
+    ending = "" if count == 1 else "es" if part.endswith("sh") else "s"
+    return f"{count} {part}{ending}"
+
+
+def _meshes(run: Run) -> Iterator[Row]:
     """Yield transverse force and dynamic transmission error of meshes."""
     if not run.time.size:
         return
@@ -45,7 +70,7 @@ def _meshes(run: RunResult) -> Iterator[Row]:
         )
 
 
-def _bearings(run: RunResult) -> Iterator[Row]:
+def _bearings(run: Run) -> Iterator[Row]:
     """Yield the largest radial force on bearings."""
     if not run.bearing_force.size:
         return
@@ -54,5 +79,5 @@ def _bearings(run: RunResult) -> Iterator[Row]:
         yield f"bearing {run.bearing[at]}", f"radial force up to {engineering(float(radial[at]), 4)} N"
 
 
-def _range(values: np.ndarray[tuple[int], np.dtype[np.float64]]) -> str:
+def _range(values: FloatArray) -> str:
     return f"{engineering(float(values.min()), 3)} to {engineering(float(values.max()), 4)}"

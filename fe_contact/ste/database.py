@@ -290,7 +290,7 @@ class SteDatabase(SteFields):
 
     def headlines(self) -> tuple[str, list[Row]]:
         """Return what a Python prompt shows: title, and rows of loads, figures, effects and cost."""
-        return headlines(self)
+        return headlines(self, self.curve)
 
     def force_table(self, *, allow_failed: bool = False) -> ForceTable:
         """Return the table of plain arrays for dynamics; raises as `extraction.force_table`."""

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 from bounds import engineering
 from bounds.brief import Row
 from fe_contact.errors import FeContactError
+from fe_contact.ste.curve import Curve
+from fe_contact.ste.fields import SteFields
 from fe_contact.types import FloatArray
-
-if TYPE_CHECKING:
-    from fe_contact.ste.database import SteDatabase
 
 MOST_LOADS = 4
 """Loads whose figures are listed: spread over those of the table."""
@@ -21,8 +21,8 @@ LONGEST_PERIOD = 32
 """Base pitches up to which the figures of all listed loads are computed; of longer tables one load's are."""
 
 
-def headlines(table: SteDatabase) -> tuple[str, list[Row]]:
-    """Return the title of a database and its rows."""
+def headlines(table: SteFields, curve_at: Callable[..., Curve]) -> tuple[str, list[Row]]:
+    """Return the title of a database and its rows; `curve_at` gives its curves, as `SteDatabase.curve`."""
     facts = table.facts
     ring = " (ring)" if facts.internal else ""
     helix = (
@@ -41,7 +41,7 @@ def headlines(table: SteDatabase) -> tuple[str, list[Row]]:
         )
         if axis.size > 1 or axis.any()
     ]
-    return title, [*rows, *_figures(table), *_making(table)]
+    return title, [*rows, *_figures(table, curve_at), *_making(table)]
 
 
 def _numbers(values: FloatArray) -> str:
@@ -49,13 +49,13 @@ def _numbers(values: FloatArray) -> str:
     return ", ".join(listed) if len(listed) <= 8 else f"{listed[0]} to {listed[-1]} ({len(listed)})"
 
 
-def _positions(table: SteDatabase) -> str:
+def _positions(table: SteFields) -> str:
     pitches = "a base pitch" if table.period == 1 else f"over {table.period} base pitches"
     failed = f", {table.n_failed} points failed" if table.n_failed else ""
     return f"{table.position.size} {pitches}{failed}"
 
 
-def _figures(table: SteDatabase) -> list[Row]:
+def _figures(table: SteFields, curve_at: Callable[..., Curve]) -> list[Row]:
     """Return mean, peak-to-peak and first harmonic at some of the loads, aligned or nearest to it."""
     most = MOST_LOADS if table.period <= LONGEST_PERIOD else 1
     chosen = np.unique(
@@ -65,7 +65,7 @@ def _figures(table: SteDatabase) -> list[Row]:
     for torque in table.torque[chosen]:
         name = f"at {engineering(float(torque), 4)} N m"
         try:
-            curve = table.curve(torque=float(torque), allow_failed=True, **_alignment(table))
+            curve = curve_at(torque=float(torque), allow_failed=True, **_alignment(table))
         except FeContactError as error:
             rows.append((name, str(error)))
             continue
@@ -73,13 +73,13 @@ def _figures(table: SteDatabase) -> list[Row]:
     return rows
 
 
-def _alignment(table: SteDatabase) -> dict[str, float]:
+def _alignment(table: SteFields) -> dict[str, float]:
     """Return the stored alignment that is nearest to none."""
     axes = (("misalignment", table.misalignment), ("center_distance_change", table.center_distance_change))
     return {name: float(axis[np.abs(axis).argmin()]) for name, axis in axes}
 
 
-def _making(table: SteDatabase) -> list[Row]:
+def _making(table: SteFields) -> list[Row]:
     made = table.metadata
     rows: list[Row] = []
     ledger: list[Any] = made.effect_ledger if isinstance(made.effect_ledger, list) else []

@@ -135,6 +135,33 @@ class _RecordingOptions:
     ] = 1.0
 
 
+@dataclass(frozen=True)
+class _ChangeOptions:
+    """Where two flanks are heard, and within what."""
+
+    scene: Annotated[
+        Path | None, typer.Option(help="Scene file in which two flanks are heard: what a change brings.")
+    ] = None
+    tolerances: Annotated[
+        Path | None, typer.Option(help="Of the flanks: file with the options of loa scatter (TOML).")
+    ] = None
+    load_cases: Annotated[
+        Path | None, typer.Option(help="Of the scene: file with [[load_cases]] (TOML), as of loa deflect.")
+    ] = None
+    speed_rpm: Annotated[
+        str | None, typer.Option(help="Of the scene: speeds in rpm, FIRST:LAST:STEP or a list.")
+    ] = None
+    requirement_db: Annotated[
+        float | None, typer.Option(help="Highest level of all orders that 95 % of the pairs may have.")
+    ] = None
+
+    def question(self, scene: Path, mesh: str) -> pages.FlankQuestion:
+        """Return the question of a change of flanks of a mesh in a scene."""
+        return pages.FlankQuestion(
+            scene, mesh or None, self.tolerances, self.load_cases, self.speed_rpm, self.requirement_db
+        )
+
+
 @verbs.command(
     "compare",
     rich_help_panel="design",
@@ -158,31 +185,14 @@ def _compare(
         float | None,
         typer.Option(help="Torque of the ripples shown, N m.", show_default="the middle one"),
     ] = None,
-    scene: Annotated[
-        Path | None, typer.Option(help="Scene file in which two flanks are heard: what a change brings.")
-    ] = None,
-    tolerances: Annotated[
-        Path | None, typer.Option(help="Of the flanks: file with the options of loa scatter (TOML).")
-    ] = None,
-    load_cases: Annotated[
-        Path | None, typer.Option(help="Of the scene: file with [[load_cases]] (TOML), as of loa deflect.")
-    ] = None,
-    speed_rpm: Annotated[
-        str | None, typer.Option(help="Of the scene: speeds in rpm, FIRST:LAST:STEP or a list.")
-    ] = None,
-    requirement_db: Annotated[
-        float | None, typer.Option(help="Highest level of all orders that 95 % of the pairs may have.")
-    ] = None,
+    change: _ChangeOptions,
     view: _ViewOptions,
     recorded: _RecordingOptions,
     json: AsJson = False,
 ) -> None:
     """Compare two tables, two runs, two flanks in a scene, or one with a measurement: differences."""
-    if scene is not None:
-        question = pages.FlankQuestion(
-            scene, view.mesh or None, tolerances, load_cases, speed_rpm, requirement_db
-        )
-        pages.run_compare_flanks(files, question, output, as_json=json)
+    if change.scene is not None:
+        pages.run_compare_flanks(files, change.question(change.scene, view.mesh), output, as_json=json)
         return
     measurement = recordings.Measurement(**asdict(recorded))
     pages.run_compare(files, output, view.view, (torque, measurement), as_json=json)

@@ -14,6 +14,7 @@ from fe_contact.geometry.ring_gear import RingGear
 from lineofaction.gearbox.schemas.complaint import ComplaintInput
 from lineofaction.gearbox.schemas.declared import as_fields, figures, with_fields
 from lineofaction.gearbox.schemas.gear import SHARED, GearInput, MaterialInput, ToothingInput
+from lineofaction.gearbox.schemas.headlines import in_brief
 from lineofaction.gearbox.schemas.model import (
     BoundaryModel,
     Listed,
@@ -207,6 +208,7 @@ class ErrorsInput(BoundaryModel):
         return self
 
 
+@in_brief
 class Case(BoundaryModel):
     """A gear pair and what is to be computed for it."""
 

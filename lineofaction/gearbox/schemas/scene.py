@@ -21,6 +21,7 @@ from lineofaction.gearbox.schemas.case import EffectName, Switch
 from lineofaction.gearbox.schemas.complaint import ComplaintInput
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.faults import model_in
+from lineofaction.gearbox.schemas.headlines import in_brief
 from lineofaction.gearbox.schemas.housings import HousingInput, TemperaturesInput
 from lineofaction.gearbox.schemas.loads import (
     DriveInput,
@@ -45,6 +46,7 @@ class IntegrationInput(BoundaryModel):
     """Method and tolerances of the time integration."""
 
 
+@in_brief
 class SceneInput(BoundaryModel):
     """A geared system and the run to make with it."""
 

@@ -13,6 +13,7 @@ import pytest
 from faulty_units import LEFT_OUT, TWO_STAGE
 
 import lineofaction as loa
+from bounds.brief import MOST_LINES, WIDTH
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, validated
 
@@ -71,6 +72,22 @@ def test_every_file_is_read_by_one_function(tmp_path: Path) -> None:
             loa.read(tmp_path / name)
     with pytest.raises(loa.BadInput, match="overrides"):
         loa.read(tmp_path / "modes.nc", {"duration": 1})
+
+
+SUBJECTS = sorted(
+    file.name
+    for file in EXAMPLES.glob("*.toml")
+    if re.search(r"^\[(pair|\[shafts)\]", file.read_text("utf-8"), re.MULTILINE)
+)
+
+
+@pytest.mark.parametrize("name", SUBJECTS)
+def test_cases_and_scenes_show_what_they_state_in_a_dozen_lines(name: str) -> None:
+    subject = loa.read(EXAMPLES / name)
+    lines = str(subject).split("\n")
+    assert lines[0] in ("Case", "Scene")
+    assert 3 < len(lines) <= MOST_LINES and max(map(len, lines)) <= WIDTH
+    assert lines == repr(subject).split("\n") and "<table>" in subject._repr_html_()
 
 
 def test_modes_of_a_scene_equal_those_of_dynamics(tmp_path: Path) -> None:

@@ -57,7 +57,7 @@ def test_the_text_of_a_run_says_its_parts_and_forces_in_a_dozen_lines(result):
     lines = repr(result).split("\n")
     assert lines[0] == f"RunResult, 0.2 s in {result.time.size} samples, completed"
     assert len(lines) <= MOST_LINES and max(map(len, lines)) <= WIDTH
-    assert "2 shaft, 1 mesh, 4 bearing, 1 drive" in lines[1]
+    assert "2 shafts, 1 mesh, 4 bearings, 1 drive" in lines[1]
     assert f"{result.mesh_force.max():.4g} N" in lines[2]
 
 
