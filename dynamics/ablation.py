@@ -36,6 +36,11 @@ PITCHES = 16
 SETTLED = 0.5
 """Part of the run after which start-up transients are taken to have died out."""
 
+WARM_UP = 0.01
+"""Part of the duration that a scene runs for before it is timed."""
+_FIGURE = 2e-6
+"""CPU seconds of the figures of a run by sample, and by mesh or bearing."""
+
 
 def _no_lines() -> FloatArray:
     return np.empty(0)
@@ -102,10 +107,6 @@ def _largest(result: RunResult, series: str, pitches: int) -> FloatArray:
     amplitude = order_track(result, series, pitches, HIGHEST).amplitude
     first = int(SETTLED * amplitude.shape[-2])
     return np.asarray(np.max(amplitude[..., first:, 1:], axis=-2))
-
-
-WARM_UP = 0.01
-"""Part of the duration that a scene runs for before it is timed."""
 
 
 @dataclass(frozen=True)
@@ -210,10 +211,6 @@ def ablate(
         seconds * sum(any(part["possible"] for part in own) for own in parts.values()),
     )
     return Ablation(nominal, tuple(effects.values()), left_out, result.mesh, result.bearing)
-
-
-_FIGURE = 2e-6
-"""CPU seconds of the figures of a run by sample, and by mesh or bearing."""
 
 
 def runs_of_ablation(scene: Scene, only: Sequence[str] | None = None) -> tuple[list[float], float]:

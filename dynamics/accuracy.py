@@ -32,6 +32,18 @@ from model_studies.frontier import Errors
 MOST_BLOCKS, ORDERS = 6, 5
 LEAST_SAMPLES = 32
 LEAST_PITCHES = 2.0
+BY_TORSION = (COAST_FLANKS, TEETH_AS_MADE)
+IN_PLANE = (*BY_TORSION, "x", "y")
+ORDER_MATCH = 1e-6
+NM = 1e-9
+FIGURES = ("rms_error", "transmission_error_orders", "bearing_force_orders")
+NAN = float("nan")
+WARM_UP = 1e-4  # s: what a run before the measured ones lasts, so that everything is compiled
+HALF, TABLE_REST = "table_half", 1.0 / 3.0
+"""The fidelity of every second position node, and what of its error the whole table leaves: second order."""
+LEAST_RATE = 1.5  # by which errors must fall from fidelity to fidelity to say what is left
+STEPS = 0.2
+"""Power of the tolerance with which the steps of a run fall: errors of the fifth order."""
 
 
 @dataclass(frozen=True)
@@ -120,10 +132,6 @@ class _Fidelity(model_studies.Fidelity[Scene], Protocol):
         """
 
 
-BY_TORSION = (COAST_FLANKS, TEETH_AS_MADE)
-IN_PLANE = (*BY_TORSION, "x", "y")
-
-
 @dataclass(frozen=True)
 class _TimeIntegration:
     """A run of the scene with changes."""
@@ -185,9 +193,6 @@ def _series(system: System, trajectory: Trajectory) -> tuple[FloatArray, FloatAr
     if system.freedoms.column.size and not elastic:
         force = np.full_like(force, np.nan)  # bearings hold nothing here: no freedom moves them
     return observed.coordinate[system.driving_rows], force
-
-
-ORDER_MATCH = 1e-6
 
 
 @dataclass(frozen=True)
@@ -269,8 +274,6 @@ def _at(order: FloatArray, amplitude: FloatArray, ratio: float, orders: int) -> 
     return np.asarray(np.sum(np.where(match, amplitude[None, :], 0.0), axis=1))
 
 
-NM = 1e-9
-
 FIDELITIES: tuple[_Fidelity, ...] = (
     _QuasiStatic(),
     _LinearResponse(),
@@ -284,14 +287,6 @@ FIDELITIES: tuple[_Fidelity, ...] = (
     _TimeIntegration("0.1_nm", "tolerance 0.1 nm", "steps", tolerance=0.1 * NM),
     _TimeIntegration("0.01_nm", "tolerance 0.01 nm", "steps", tolerance=0.01 * NM),
 )
-
-
-FIGURES = ("rms_error", "transmission_error_orders", "bearing_force_orders")
-NAN = float("nan")
-WARM_UP = 1e-4  # s: what a run before the measured ones lasts, so that everything is compiled
-HALF, TABLE_REST = "table_half", 1.0 / 3.0
-"""The fidelity of every second position node, and what of its error the whole table leaves: second order."""
-LEAST_RATE = 1.5  # by which errors must fall from fidelity to fidelity to say what is left
 
 
 @dataclass(frozen=True)
@@ -387,10 +382,6 @@ def frontier(
         len(blocks.bounds),
         outcomes[-1].result.rms,
     )
-
-
-STEPS = 0.2
-"""Power of the tolerance with which the steps of a run fall: errors of the fifth order."""
 
 
 def runs_of_frontier(scene: Scene, names: Sequence[str]) -> tuple[list[float], float]:

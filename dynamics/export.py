@@ -24,6 +24,13 @@ from host.directories import whole_file
 DOUBLE = 4  # ordinates are real, double precision
 EVEN = 1  # abscissa by its first value and its increment
 NO_AXIS = (0, 0, 0, "NONE", "NONE")
+FUNCTIONS = ("time", "spectrum", "orders")
+FIRST_MESH_NODE = 1001
+"""Bearings are nodes 1, 2 ... in the order of the run, meshes 1001, 1002 ..."""
+HIGHEST_ORDER = 20
+ROTATIONS = ("bearing_moment",)
+SPECTRUM = "amplitude (peak), Hann window"
+TEXT = {"time": "time series", "spectrum": SPECTRUM, "orders": f"{SPECTRUM}, power mean of all blocks"}
 
 
 class _FunctionType(IntEnum):
@@ -122,10 +129,6 @@ def _dataset(number: int, records: list[str]) -> str:
     return "\n".join([f"{-1:6d}", f"{number:6d}", *records, f"{-1:6d}"]) + "\n"
 
 
-FUNCTIONS = ("time", "spectrum", "orders")
-FIRST_MESH_NODE = 1001
-"""Bearings are nodes 1, 2 ... in the order of the run, meshes 1001, 1002 ..."""
-HIGHEST_ORDER = 20
 ORDINATES = {
     "bearing_force": _Quantity(9, 0, 1, "Force", "N"),
     "bearing_moment": _Quantity(9, 1, 1, "Moment", "N m"),
@@ -134,9 +137,6 @@ ORDINATES = {
     "dynamic_transmission_error": _Quantity(8, 1, 0, "Transmission error", "m"),
 }
 TACHO = _Quantity(19, 0, 0, "Speed", "rpm")
-ROTATIONS = ("bearing_moment",)
-SPECTRUM = "amplitude (peak), Hann window"
-TEXT = {"time": "time series", "spectrum": SPECTRUM, "orders": f"{SPECTRUM}, power mean of all blocks"}
 ABSCISSAE = {
     "time": (_FunctionType.TIME_RESPONSE, _Quantity(17, 0, 0, "Time", "s")),
     "spectrum": (_FunctionType.SPECTRUM, _Quantity(18, 0, 0, "Frequency", "Hz")),

@@ -13,6 +13,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 Parts = Callable[[Any], tuple[Any, ...]]
+_BY_VALUE = (tuple, str)
 
 
 def _itself(data: Any) -> tuple[Any, ...]:
@@ -25,9 +26,6 @@ def _key(part: Any) -> Any:
     if kind is tuple:
         return tuple([_key(each) if type(each) in _BY_VALUE else id(each) for each in part])
     return part if kind is str else id(part)
-
-
-_BY_VALUE = (tuple, str)
 
 
 class _Identity:

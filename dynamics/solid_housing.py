@@ -42,6 +42,37 @@ _EXPANSION = Declared(
     21e-6,
     later=True,
 )
+FIELD = "mesh_file"
+_ALONE = "Write all nodes and elements into one file."
+_PART = 4096  # bytes
+Fault = tuple[str, str] | None
+"""The bound that a content breaks, and what to do."""
+MODES = Declared(
+    Kind.COUNT,
+    "",
+    integers(1, 2000),
+    "Modes to keep; responses hold to 0.7 of the highest frequency",
+    80,
+    later=True,
+)
+ELEMENT_SIZE = Declared(
+    Kind.LENGTH,
+    "m",
+    up_to(20.0),
+    "Edge of an element of a STEP file's mesh; left out: the mean wall thickness over 0.7",
+    0.014,
+    later=True,
+)
+LOSS_FACTOR = Declared(
+    Kind.RATIO,
+    "",
+    between(0.0, 1.0),
+    "Loss factor of the material and its joints",
+    0.01,
+    later=True,
+)
+BORE_DIAMETER = Declared(Kind.LENGTH, "m", up_to(20.0), "Diameter of the bore", 0.062)
+BORE_LENGTH = Declared(Kind.LENGTH, "m", up_to(20.0), "Length of the bore along its axis", 0.025)
 
 
 @described
@@ -81,11 +112,6 @@ MATERIALS = {
 # The content of a mesh file before a reader has it: one file, which names no others and ends.
 
 
-FIELD = "mesh_file"
-_ALONE = "Write all nodes and elements into one file."
-_PART = 4096  # bytes
-
-
 def mesh_text(content: bytes) -> TextIOWrapper:
     """Return the text of a mesh by lines: a lone carriage return ends one, too."""
     return TextIOWrapper(BytesIO(content), encoding="utf-8", errors="replace")
@@ -99,10 +125,6 @@ def check_mesh_content(name: str, content: bytes) -> None:
     find = _FAULTS.get(PurePath(name).suffix.lower())  # other formats name no files
     if find and (fault := find(content)):
         raise InputError(FIELD, name, *fault)
-
-
-Fault = tuple[str, str] | None
-"""The bound that a content breaks, and what to do."""
 
 
 def _of_abaqus(content: bytes) -> Fault:
@@ -147,32 +169,6 @@ _FAULTS: dict[str, Callable[[bytes], Fault]] = {
 }
 
 
-MODES = Declared(
-    Kind.COUNT,
-    "",
-    integers(1, 2000),
-    "Modes to keep; responses hold to 0.7 of the highest frequency",
-    80,
-    later=True,
-)
-ELEMENT_SIZE = Declared(
-    Kind.LENGTH,
-    "m",
-    up_to(20.0),
-    "Edge of an element of a STEP file's mesh; left out: the mean wall thickness over 0.7",
-    0.014,
-    later=True,
-)
-LOSS_FACTOR = Declared(
-    Kind.RATIO,
-    "",
-    between(0.0, 1.0),
-    "Loss factor of the material and its joints",
-    0.01,
-    later=True,
-)
-
-
 @described
 @dataclass(frozen=True)
 class ReductionSettings:
@@ -202,8 +198,6 @@ class Ring(StrEnum):
     RIGID = auto()
 
 
-BORE_DIAMETER = Declared(Kind.LENGTH, "m", up_to(20.0), "Diameter of the bore", 0.062)
-BORE_LENGTH = Declared(Kind.LENGTH, "m", up_to(20.0), "Length of the bore along its axis", 0.025)
 _RING = Declared(
     Kind.CHOICE,
     "",

@@ -20,6 +20,15 @@ LARGEST_DEVIATION = 0.01
 """m; larger values of an axis are micrometers given as meters."""
 LARGEST_PERIOD = 1_000_000
 Levels = Sequence[float] | FloatArray
+OnPlan = Callable[[Mapping[str, float]], None]
+"""Called with the predicted CPU seconds of the stages of a table, in their order, before it is computed."""
+LEVELS = ("draft", "standard", "fine")
+CHOICES = {
+    "level": (None, *LEVELS),
+    "model": ("auto", "plane_strain", "plane_stress", "3d"),
+    "receipt": ("full", "minimal"),
+    "on_violation": ("repeat", "fail", "report"),
+}
 
 
 @dataclass(frozen=True)
@@ -108,9 +117,6 @@ class OperatingPoint:
 
 # The resources of a run: workers, cache, progress.
 
-OnPlan = Callable[[Mapping[str, float]], None]
-"""Called with the predicted CPU seconds of the stages of a table, in their order, before it is computed."""
-
 
 def _unplanned(_stages: Mapping[str, float]) -> None:
     """Take no note of a plan."""
@@ -135,15 +141,6 @@ class Run:
     def silent(self) -> Run:
         """The same without reports of progress."""
         return replace(self, progress=silent, on_plan=_unplanned)
-
-
-LEVELS = ("draft", "standard", "fine")
-CHOICES = {
-    "level": (None, *LEVELS),
-    "model": ("auto", "plane_strain", "plane_stress", "3d"),
-    "receipt": ("full", "minimal"),
-    "on_violation": ("repeat", "fail", "report"),
-}
 
 
 @dataclass(frozen=True)

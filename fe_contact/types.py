@@ -9,6 +9,13 @@ from enum import IntEnum
 from bounds.types import BoolArray, ComplexArray, FloatArray, IntArray, Json
 
 __all__ = ["BoolArray", "ComplexArray", "Estimate", "FloatArray", "IntArray", "Json", "Status"]
+_UNITS = {
+    "m": {"mm": 1e-3, "um": 1e-6, "µm": 1e-6, "nm": 1e-9},
+    "Pa": {"MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6},
+    "N": {"kN": 1e3},
+    "N/m": {"N/mm": 1e3, "N/um": 1e6},
+}
+"""Sizes of the units in which a number of an SI unit can be written."""
 
 
 class Status(IntEnum):
@@ -62,15 +69,6 @@ class Estimate:
             return f"{value:.4g} {name}, no error stated".replace("  ", " ")
         places = _decimals(error)
         return f"{value:.{places}f} ± {error:.{places}f} {name}".rstrip()
-
-
-_UNITS = {
-    "m": {"mm": 1e-3, "um": 1e-6, "µm": 1e-6, "nm": 1e-9},
-    "Pa": {"MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6},
-    "N": {"kN": 1e3},
-    "N/m": {"N/mm": 1e3, "N/um": 1e6},
-}
-"""Sizes of the units in which a number of an SI unit can be written."""
 
 
 def _decimals(error: float) -> int:

@@ -25,6 +25,31 @@ from host.system_calls import NO_NEW_PRIVILEGES, filters_calls, keep_to_reading
 
 # Limits on what processes may take: POSIX systems alone have them, elsewhere each raises `Unavailable`.
 
+FILES, CALLS, LIMITS = "files (Landlock)", "system calls (seccomp)", "memory and CPU time"
+_ROOT = Path(__file__).resolve().parents[1]
+_SYSTEM = ("/usr", "/lib", "/lib64", "/etc/ld.so.cache", "/etc/localtime", "/dev/null", "/dev/urandom")
+_MB = 1 << 20
+_SIGNAL_AT_END_OF_PARENT = 1
+_LIBRARIES_MB = 1024
+"""Addresses of libraries that are loaded later, beside memory: of scipy 130 MB, of gmsh 100 MB."""
+_STACK_MB = 64
+"""gmsh asks for a stack without limit, and does not get it."""
+LOOK_S = 0.05
+"""How often whoever started a confined process looks at what it has written."""
+_CREATE, _ADD, _RESTRICT = 444, 445, 446
+"""Numbers of the system calls, on every processor."""
+_VERSION = 1
+_PATH_BENEATH = 1
+_WRITE_FILE, _READ_FILE, _READ_FOLDER, _REMOVE_FILE, _MAKE_FILE = (1 << bit for bit in (1, 2, 3, 5, 8))
+_TRUNCATE = 1 << 14
+_OF_FILES = _WRITE_FILE | _READ_FILE | _TRUNCATE
+_OF_FOLDER = _OF_FILES | _READ_FOLDER | _REMOVE_FILE | _MAKE_FILE
+_RIGHTS = {1: (1 << 13) - 1, 2: 1 << 13, 3: 1 << 14, 5: 1 << 15}
+"""Rights to files by the version that brought them."""
+_BIND_AND_CONNECT = 0b11
+_NETWORK_SINCE, _SCOPES_SINCE = 4, 6
+_ABSTRACT_SOCKETS_AND_SIGNALS = 0b11
+
 
 def limit_memory(size: int) -> None:
     """Let allocations of this process fail beyond so many bytes of data; a stricter limit stays.
@@ -47,12 +72,6 @@ def limit_file_size(pid: int, size: int) -> None:
     import resource  # noqa: PLC0415 (POSIX alone)
 
     resource.prlimit(pid, resource.RLIMIT_FSIZE, (size, size))
-
-
-FILES, CALLS, LIMITS = "files (Landlock)", "system calls (seccomp)", "memory and CPU time"
-_ROOT = Path(__file__).resolve().parents[1]
-_SYSTEM = ("/usr", "/lib", "/lib64", "/etc/ld.so.cache", "/etc/localtime", "/dev/null", "/dev/urandom")
-_MB = 1 << 20
 
 
 @dataclass(frozen=True)
@@ -107,13 +126,6 @@ def confine(folder: Path, limits: Limits = READING) -> None:
         keep_to_reading()
 
 
-_SIGNAL_AT_END_OF_PARENT = 1
-_LIBRARIES_MB = 1024
-"""Addresses of libraries that are loaded later, beside memory: of scipy 130 MB, of gmsh 100 MB."""
-_STACK_MB = 64
-"""gmsh asks for a stack without limit, and does not get it."""
-
-
 def prepare_confinement() -> None:
     """Find out once, in a process whose forks are confined, what is the same for all of them."""
     _readable()
@@ -151,10 +163,6 @@ def _limit(limits: Limits, addresses: int) -> None:
         resource.setrlimit(kind, (soft, last))
 
 
-LOOK_S = 0.05
-"""How often whoever started a confined process looks at what it has written."""
-
-
 def excess(pid: int, folder: Path, limits: Limits) -> str:
     """Return what a confined process writes beyond its limits, "" if nothing; for whoever started it.
 
@@ -190,21 +198,6 @@ def _readable() -> tuple[Path, ...]:
 
 
 # Landlock, by which a process of Linux gives up files, connections and signals for good, as any user.
-
-
-_CREATE, _ADD, _RESTRICT = 444, 445, 446
-"""Numbers of the system calls, on every processor."""
-_VERSION = 1
-_PATH_BENEATH = 1
-_WRITE_FILE, _READ_FILE, _READ_FOLDER, _REMOVE_FILE, _MAKE_FILE = (1 << bit for bit in (1, 2, 3, 5, 8))
-_TRUNCATE = 1 << 14
-_OF_FILES = _WRITE_FILE | _READ_FILE | _TRUNCATE
-_OF_FOLDER = _OF_FILES | _READ_FOLDER | _REMOVE_FILE | _MAKE_FILE
-_RIGHTS = {1: (1 << 13) - 1, 2: 1 << 13, 3: 1 << 14, 5: 1 << 15}
-"""Rights to files by the version that brought them."""
-_BIND_AND_CONNECT = 0b11
-_NETWORK_SINCE, _SCOPES_SINCE = 4, 6
-_ABSTRACT_SOCKETS_AND_SIGNALS = 0b11
 
 
 class _Beneath(ctypes.Structure):

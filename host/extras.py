@@ -7,23 +7,6 @@ from importlib.util import find_spec
 from typing import Any
 
 _ADVICE = "Use Linux, or macOS, or on Windows WSL or a container."
-
-
-class Unavailable(OSError):
-    """The operating system does not offer what the program needs.
-
-    `what`: what it does not offer, in the plural: "limits on memory".
-    """
-
-    def __init__(self, what: str, advice: str = _ADVICE) -> None:
-        super().__init__(f"{what} are not available on {sys.platform}. {advice}")
-        self.what, self.advice = what, advice
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle by what it is made of."""
-        return type(self), (self.what, self.advice)
-
-
 MODULES = {
     "dask": ("distributed",),
     "analysis": (
@@ -51,6 +34,21 @@ MODULES = {
     ),
 }
 """Modules that come with each extra, as pyproject.toml has them by the names of their packages."""
+
+
+class Unavailable(OSError):
+    """The operating system does not offer what the program needs.
+
+    `what`: what it does not offer, in the plural: "limits on memory".
+    """
+
+    def __init__(self, what: str, advice: str = _ADVICE) -> None:
+        super().__init__(f"{what} are not available on {sys.platform}. {advice}")
+        self.what, self.advice = what, advice
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle by what it is made of."""
+        return type(self), (self.what, self.advice)
 
 
 class MissingExtra(ModuleNotFoundError):

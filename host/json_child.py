@@ -27,15 +27,6 @@ ONE_THREAD = dict.fromkeys(
 Matrices of a few hundred rows gain nothing by more: threads that wait for each other keep processors busy.
 """
 
-
-def keep_to_one_thread() -> None:
-    """Let libraries that are not loaded yet start no threads, where the environment does not say how many."""
-    if not any(name in os.environ for name in ONE_THREAD):
-        os.environ.update(ONE_THREAD)
-
-
-# What a child process gets of this one's environment: what it needs to compute, and no secrets.
-
 _ROOT = str(Path(__file__).resolve().parents[1])
 INHERITED = (
     *("PATH", "HOME", "USER", "LOGNAME", "LANG", "LANGUAGE", "LC_*", "TZ", "TMPDIR", "TEMP", "TMP"),
@@ -46,6 +37,17 @@ INHERITED = (
     f"{ENVIRONMENT}*",
 )
 """Variables that children inherit, with ``*`` for any ending: none of them holds a secret."""
+_NO_MEMORY = ("MemoryError", "bad_alloc")
+"""How Python and C++ say that an allocation failed."""
+
+
+def keep_to_one_thread() -> None:
+    """Let libraries that are not loaded yet start no threads, where the environment does not say how many."""
+    if not any(name in os.environ for name in ONE_THREAD):
+        os.environ.update(ONE_THREAD)
+
+
+# What a child process gets of this one's environment: what it needs to compute, and no secrets.
 
 
 def child_environment(**further: str) -> dict[str, str]:
@@ -63,10 +65,6 @@ def child_environment(**further: str) -> dict[str, str]:
     }
     modules = os.pathsep.join(filter(None, (os.environ.get("PYTHONPATH"), _ROOT)))
     return inherited | ONE_THREAD | {"PYTHONPATH": modules} | further
-
-
-_NO_MEMORY = ("MemoryError", "bad_alloc")
-"""How Python and C++ say that an allocation failed."""
 
 
 class ChildFailed(Exception):

@@ -40,6 +40,8 @@ __all__ = ["inner", "njit"]
 Loop = TypeVar("Loop", bound=Callable[..., Any])
 
 _held: set[Path] = set()
+_BARE = {"nopython": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_decorator = _OverloadFunctionTemplate._get_jit_decorator
 
 
 def _unless_gone(load: Callable[..., Any], absent: Callable[[], Any]) -> Callable[..., Any]:
@@ -144,12 +146,6 @@ class _Inner(CPUDispatcher):
     def _outer(self) -> Any:
         options = {name: value for name, value in self.targetoptions.items() if name not in _BARE}
         return njit(cache=True, **options)(self.py_func)
-
-
-_BARE = {"nopython": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-
-
-_decorator = _OverloadFunctionTemplate._get_jit_decorator
 
 
 def _linked(template: Any) -> Any:

@@ -15,6 +15,10 @@ from host.sessions import RESIDENT_UNIT, memory_figure
 
 assert sys.platform != "win32"
 
+_TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3
+"""Settings of mallopt, of glibc; above 32 MiB it takes no other threshold of mapped memory."""
+_MIB = 1 << 20
+
 
 def cpu_seconds() -> float:
     """Return the CPU seconds of this process and of its finished children: what a cost is counted by."""
@@ -44,11 +48,6 @@ def children_peak_memory() -> int:
 def physical_memory() -> int:
     """Return the memory of the machine, bytes."""
     return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-
-
-_TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3
-"""Settings of mallopt, of glibc; above 32 MiB it takes no other threshold of mapped memory."""
-_MIB = 1 << 20
 
 
 def keep_freed_memory() -> None:

@@ -16,6 +16,8 @@ from host.extras import Unavailable
 RESIDENT_UNIT = 1 if sys.platform == "darwin" else 1024
 """Bytes in which POSIX systems report resident memory: macOS in 1, Linux in 1024."""
 
+_PROC = Path("/proc")
+
 
 class Ended(NamedTuple):
     """An ended child."""
@@ -109,9 +111,6 @@ def handlers_kept(names: Sequence[str]) -> Iterator[None]:
     yield
     for name, handler in handlers.items():
         signal.signal(getattr(signal, name), handler)
-
-
-_PROC = Path("/proc")
 
 
 def processes_in(directory: Path, command: str = "", proc: Path = _PROC) -> list[int]:

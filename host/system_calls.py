@@ -68,6 +68,21 @@ _ALLOWED: dict[str, tuple[int | None, int | None]] = {
 }
 """Calls with any arguments: their numbers on x86-64 and on ARM64, None where a processor has no such call."""
 
+_MAP_KIND, _MAP_PRIVATE, _MAP_GROWS, _MAP_HUGE = 0x0F, 0x02, 0x100, 0x4_0000
+_IS_TERMINAL, _CLOSE_ON_EXEC = 0x5401, 0x5451
+_GET_FLAGS, _SET_FLAGS, _GET_STATUS, _DUPLICATE = 1, 2, 3, 1030
+NO_NEW_PRIVILEGES = 38
+_SET_SECCOMP, _FILTER = 22, 2
+_ACTION_AVAILABLE = 2
+_ALLOW, _REFUSE = 0x7FFF_0000, 0x0005_0000 | errno.EPERM
+_LOAD, _AND, _IF_EQUAL, _RETURN = 0x20, 0x54, 0x15, 0x06
+_NUMBER, _ARCHITECTURE, _ARGUMENTS = 0, 4, 16
+"""Offsets of the number of a call, of its architecture and of its arguments."""
+_PROCESSORS = {"x86_64": (0, 0xC000_003E, 317), "aarch64": (1, 0xC000_00B7, 277)}
+"""Column of the numbers of calls, architecture, number of ``seccomp``."""
+_Step = tuple[int, int, int, int]
+"""An instruction: operation, instructions to skip if its condition holds and if not, operand."""
+
 
 @dataclass(frozen=True)
 class _Check:
@@ -79,9 +94,6 @@ class _Check:
     mask: int = 0xFFFF_FFFF
 
 
-_MAP_KIND, _MAP_PRIVATE, _MAP_GROWS, _MAP_HUGE = 0x0F, 0x02, 0x100, 0x4_0000
-_IS_TERMINAL, _CLOSE_ON_EXEC = 0x5401, 0x5451
-_GET_FLAGS, _SET_FLAGS, _GET_STATUS, _DUPLICATE = 1, 2, 3, 1030
 _Checked = tuple[tuple[int, int], tuple[_Check, ...]]
 
 
@@ -100,19 +112,6 @@ def _checked_calls(pid: int) -> tuple[_Checked, ...]:
 
 
 # The filter as a program of the kernel's packet filter (BPF), and its installation.
-
-
-NO_NEW_PRIVILEGES = 38
-_SET_SECCOMP, _FILTER = 22, 2
-_ACTION_AVAILABLE = 2
-_ALLOW, _REFUSE = 0x7FFF_0000, 0x0005_0000 | errno.EPERM
-_LOAD, _AND, _IF_EQUAL, _RETURN = 0x20, 0x54, 0x15, 0x06
-_NUMBER, _ARCHITECTURE, _ARGUMENTS = 0, 4, 16
-"""Offsets of the number of a call, of its architecture and of its arguments."""
-_PROCESSORS = {"x86_64": (0, 0xC000_003E, 317), "aarch64": (1, 0xC000_00B7, 277)}
-"""Column of the numbers of calls, architecture, number of ``seccomp``."""
-_Step = tuple[int, int, int, int]
-"""An instruction: operation, instructions to skip if its condition holds and if not, operand."""
 
 
 class _Program(ctypes.Structure):

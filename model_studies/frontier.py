@@ -17,6 +17,10 @@ from model_studies.workers import InProcess, Workers, divided
 
 V = TypeVar("V")
 R = TypeVar("R")
+Q = TypeVar("Q")
+Q_contra = TypeVar("Q_contra", contravariant=True)
+Errors = Mapping[str, float]
+"""Relative errors by the name of the figure; NaN: not known."""
 
 
 class LeftOut(Exception):
@@ -74,11 +78,6 @@ def _attempted(shared: tuple[Callable[[V], R], tuple[type[Exception], ...]], var
 
 
 # Fidelities of a model: each run and timed by itself, and measured against the finest.
-
-Q = TypeVar("Q")
-Q_contra = TypeVar("Q_contra", contravariant=True)
-Errors = Mapping[str, float]
-"""Relative errors by the name of the figure; NaN: not known."""
 
 
 class Fidelity(Protocol[Q_contra]):

@@ -34,6 +34,9 @@ UNPACKED = 100
 DAMAGE = (OSError, ValueError, KeyError, RuntimeError, TypeError, AttributeError, IndexError, MemoryError)
 """What HDF5, its readers and a record of foreign fields raise is not one class."""
 
+_PACKED = {"compression": "gzip", "compression_opts": 4, "shuffle": True}
+_NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable."
+
 
 class UnreadableFile(ValueError):
     """A file is missing, no netCDF-4, of another schema, damaged, or reaches out of itself."""
@@ -186,10 +189,6 @@ def _parts(kind: Any) -> list[Any]:
         members = [kind.get_member_type(index) for index in range(kind.get_nmembers())]
         return [member for member in members if member.get_class() != h5t.INTEGER]
     return [kind.get_super()] if kind.get_class() == h5t.VLEN else [kind]
-
-
-_PACKED = {"compression": "gzip", "compression_opts": 4, "shuffle": True}
-_NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable."
 
 
 class Variable(NamedTuple):

@@ -12,14 +12,13 @@ Progress = Callable[[str, float], None]
 Report = Callable[[float], None]
 """Called with the fraction done of one piece of work, from 0 to 1."""
 
+ANNOUNCED = 3.0
+"""CPU seconds from which on a cost is reported before the work begins."""
+
 
 def stage_name(reported: str) -> str:
     """Return the name of a stage without what is said of it behind a semicolon."""
     return reported.partition(";")[0]
-
-
-ANNOUNCED = 3.0
-"""CPU seconds from which on a cost is reported before the work begins."""
 
 
 def announce(progress: Progress, stage: str, seconds: float, subject: str = "") -> None:

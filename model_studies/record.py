@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+NOT_STORED = {"stored": False}
+"""The metadata of a field that is in no file of the record; a default stands for it."""
+
 
 def in_unit(unit: str, *dimensions: str) -> dict[str, Any]:
     """Return the metadata of numbers in a unit, such as "m", which ends their name, along dimensions."""
     return {"unit": unit} | ({"dimensions": dimensions} if dimensions else {})
-
-
-NOT_STORED = {"stored": False}
-"""The metadata of a field that is in no file of the record; a default stands for it."""

@@ -16,6 +16,10 @@ from host import lock
 from host.directories import private
 from lineofaction.gearbox.problems import BadInput
 
+IN_USE_S = 600.0
+"""A file that was used so recently stays: somebody may be reading it."""
+DEFAULT_BYTES = 2_000_000_000
+
 
 def locked(path: Path, flags: int = os.O_RDWR | os.O_CREAT) -> int | None:
     """Open a file or folder and lock it as long as it is open; None: another process has."""
@@ -52,11 +56,6 @@ def remove_left(home: Path) -> None:
 
 
 # How much a folder of files that can be made again holds, and what goes first when it is too much.
-
-
-IN_USE_S = 600.0
-"""A file that was used so recently stays: somebody may be reading it."""
-DEFAULT_BYTES = 2_000_000_000
 
 
 @dataclass(frozen=True, order=True)

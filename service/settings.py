@@ -31,6 +31,17 @@ from service.origin import Origin, is_loopback
 
 
 _LARGEST = 65_536
+LEAST_MEMORY_MB = 256
+"""What a worker needs to load the program."""
+_SIGNING = "whsec_"
+_SCHEDULER = re.compile(r"(?:tcp|tls|ws|wss|ucx)://[^\s/]+:[0-9]{1,5}")
+_ENCRYPTED = ("tls", "wss")
+_FORMER = {
+    "LOA_DASK_SCHEDULER": "It is LOA_SCHEDULER.",
+    "LOA_LEASE_S": "Remove it: one server owns a job table, by a lock that ends with it.",
+}
+"""Settings that earlier versions had, and what to do with them."""
+logger = structlog.get_logger(__name__)
 
 
 def is_secret(field: FieldInfo) -> bool:
@@ -83,13 +94,6 @@ def _content(file: Path, variable: str, field: str) -> str:
     if not content:
         raise BadInput.of(field, str(file), "a file with the secret: it is empty", tip)
     return content
-
-
-LEAST_MEMORY_MB = 256
-"""What a worker needs to load the program."""
-_SIGNING = "whsec_"
-_SCHEDULER = re.compile(r"(?:tcp|tls|ws|wss|ucx)://[^\s/]+:[0-9]{1,5}")
-_ENCRYPTED = ("tls", "wss")
 
 
 class Settings(BaseSettings):
@@ -272,14 +276,6 @@ def secret_bytes(secret: str) -> bytes:
     if not secret.startswith(_SIGNING) or not 24 <= len(key) <= 64:
         raise ValueError("secret")
     return key
-
-
-_FORMER = {
-    "LOA_DASK_SCHEDULER": "It is LOA_SCHEDULER.",
-    "LOA_LEASE_S": "Remove it: one server owns a job table, by a lock that ends with it.",
-}
-"""Settings that earlier versions had, and what to do with them."""
-logger = structlog.get_logger(__name__)
 
 
 def note_former_settings() -> None:

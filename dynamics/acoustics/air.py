@@ -13,6 +13,9 @@ from dynamics.types import ComplexArray, FloatArray
 
 DENSITY = Declared(Kind.INERTIA, "kg/m^3", between(0.1, 10.0), "Density of the air", 1.204)
 SOUND_SPEED = Declared(Kind.SPEED, "m/s", between(100.0, 1000.0), "Speed of sound", 343.2)
+MARGIN = 12
+"""Spherical harmonics above the wavenumber times the radius: what is left out is below 1e-8."""
+BLOCK = 2_000_000  # phases that are held at a time
 
 
 @described
@@ -30,11 +33,6 @@ class Air:
     def impedance(self) -> float:
         """Return rho c, Pa s/m."""
         return self.density * self.sound_speed
-
-
-MARGIN = 12
-"""Spherical harmonics above the wavenumber times the radius: what is left out is below 1e-8."""
-BLOCK = 2_000_000  # phases that are held at a time
 
 
 def directions(order: int) -> tuple[FloatArray, FloatArray]:

@@ -34,6 +34,27 @@ from model_studies.workers import InProcess, Workers, divided
 MARGIN = 8
 """Spherical harmonics above the wavenumber times the radius, whose part of the far field is below 1e-6."""
 MIDDLES = 0.5 * (np.ones((3, 3)) - np.eye(3))  # barycentric coordinates of the edges' middles
+BLOCK = 512
+"""Panels, at most, whose rows of the operators are a task."""
+TESTED = "tested"
+"""Name of the panels of a block in the library's mesh."""
+EDGES = 2.6
+"""Least number of the longest edges in a wavelength: gear cases are within 0.4 dB of six."""
+RESIDUAL = 1e-8
+"""Greatest relative residual of the dense solve."""
+MOST_PANELS = 8000
+"""So many take 7 GB at the peak."""
+SECONDS, GROWTH = 1.40e-6, 2.24
+"""CPU seconds of one panel, and the power of their number by which they grow.
+
+Fitted to spheres of 500 to 2880 panels, within 1.2; 7040 panels of a box took 615 CPU s, this says 585. That
+is more than the square of assembly: larger operators miss the cache more often.
+"""
+BYTES, LIBRARY = 110.0, 1e8
+"""For the square of the number of panels (5.9 GB measured with 7040), and of NGSolve."""
+SHARES = {"operators": 0.98, "pressure": 0.02}
+"""Usual shares in the time."""
+STAGE = "boundary elements"
 
 
 def _far_field_resistance(
@@ -58,10 +79,6 @@ def _far_field_resistance(
 
 
 # Layer operators of the Helmholtz equation by NGSolve: the one module that loads it.
-
-
-BLOCK = 512
-"""Panels, at most, whose rows of the operators are a task."""
 
 
 def _layer_operators(
@@ -106,10 +123,6 @@ def _layer_rows(shared: tuple[Hull, float], block: tuple[int, int]) -> tuple[Com
     return _dense(single.mat, block), _dense(double.mat, block)
 
 
-TESTED = "tested"
-"""Name of the panels of a block in the library's mesh."""
-
-
 def _mesh(hull: Hull, block: tuple[int, int]) -> Any:
     """Return the hull as a mesh of the library, nodes and panels in the same order."""
     import ngsolve  # noqa: PLC0415 (an extra)
@@ -132,25 +145,6 @@ def _dense(matrix: Any, block: tuple[int, int]) -> ComplexArray:
     entries = np.zeros((block[1] - block[0], matrix.width), dtype=complex)
     entries[rows - block[0], columns] = values
     return entries
-
-
-EDGES = 2.6
-"""Least number of the longest edges in a wavelength: gear cases are within 0.4 dB of six."""
-RESIDUAL = 1e-8
-"""Greatest relative residual of the dense solve."""
-MOST_PANELS = 8000
-"""So many take 7 GB at the peak."""
-SECONDS, GROWTH = 1.40e-6, 2.24
-"""CPU seconds of one panel, and the power of their number by which they grow.
-
-Fitted to spheres of 500 to 2880 panels, within 1.2; 7040 panels of a box took 615 CPU s, this says 585. That
-is more than the square of assembly: larger operators miss the cache more often.
-"""
-BYTES, LIBRARY = 110.0, 1e8
-"""For the square of the number of panels (5.9 GB measured with 7040), and of NGSolve."""
-SHARES = {"operators": 0.98, "pressure": 0.02}
-"""Usual shares in the time."""
-STAGE = "boundary elements"
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,14 @@ REFERENCE_PRESSURE = 20e-6  # Pa, rms
 FLOOR = -200.0
 """Level of no power at all, dB: -inf would spread through sums and plots."""
 POLES = (20.598997, 107.65265, 737.86223, 12194.217)  # Hz, of [1]_: twofold, single, single, twofold
+ENDS = (0.05, 0.95)
+"""Quantiles at which a band ends: nine of ten cases lie between."""
+CASES = 64
+"""Joint cases of all parameters; each end leaves out 5 % of further cases, give or take 2 %."""
+JOINTLY = "jointly"
+"""Contribution of parameters that act on each other, and of extremes inside a range."""
+SEED = 22
+"""Of the joint cases: bands are the same each time."""
 
 
 def sound_power_level(power: ArrayLike) -> FloatArray:
@@ -68,16 +76,6 @@ def free_field_pressure(power: ArrayLike, distance: float, impedance: float) -> 
         rho c of the air, Pa s/m.
     """
     return np.asarray(np.sqrt(np.asarray(power, dtype=float) * impedance / (4.0 * np.pi)) / distance)
-
-
-ENDS = (0.05, 0.95)
-"""Quantiles at which a band ends: nine of ten cases lie between."""
-CASES = 64
-"""Joint cases of all parameters; each end leaves out 5 % of further cases, give or take 2 %."""
-JOINTLY = "jointly"
-"""Contribution of parameters that act on each other, and of extremes inside a range."""
-SEED = 22
-"""Of the joint cases: bands are the same each time."""
 
 
 @dataclass(frozen=True)

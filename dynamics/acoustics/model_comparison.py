@@ -38,6 +38,9 @@ OFF_AT, OFF = (1.5, 2.5), ((-7.0, -9.0), (2.0, 1.0))
 WAVES_HELD = 4
 """Arrays of phases."""
 
+WORK = "radiation by {}"
+"""Name of a model at one frequency in the log of runs."""
+
 
 @dataclass(frozen=True)
 class ElementalRadiators:
@@ -135,10 +138,6 @@ MODELS: tuple[RadiationModel, ...] = (
     BoundaryElements(),
 )
 """From coarse to fine."""
-
-
-WORK = "radiation by {}"
-"""Name of a model at one frequency in the log of runs."""
 
 
 @dataclass(frozen=True)

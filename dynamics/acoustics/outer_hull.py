@@ -28,6 +28,15 @@ STEEP = 0.2
 MARGIN = 8.0
 """Pixels by which another face must be in front: a face under `STEEP` spans 5 in depth in its own pixel."""
 
+OUTSIDE = 0.5
+"""A face that sees this part of its sky is outside."""
+JOINED = 0.15
+"""So is what is joined to such a face and sees this part: ribs, recesses; walls behind a bore see less."""
+POCKET = 0.05
+"""So is what is left in between if it sees this part on average: corners of a tub, but no inner cavity."""
+QUARTERS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
+"""Nodes of the four panels of a triangle with six nodes."""
+
 
 def _free_sky(corners: FloatArray) -> FloatArray:
     """Return the part of the hemisphere over each triangle from which its middle is seen, (t,), 0 to 1.
@@ -133,16 +142,6 @@ def _cap(points: FloatArray, rim: IntArray, first: int) -> tuple[IntArray, Float
     last = rings[-1]
     middle = np.full(count, first + len(weights) - 1)
     return np.concatenate([*triangles, np.stack([np.roll(last, -1), last, middle], axis=1)]), weights
-
-
-OUTSIDE = 0.5
-"""A face that sees this part of its sky is outside."""
-JOINED = 0.15
-"""So is what is joined to such a face and sees this part: ribs, recesses; walls behind a bore see less."""
-POCKET = 0.05
-"""So is what is left in between if it sees this part on average: corners of a tub, but no inner cavity."""
-QUARTERS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
-"""Nodes of the four panels of a triangle with six nodes."""
 
 
 @dataclass(frozen=True)

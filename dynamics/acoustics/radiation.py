@@ -19,6 +19,11 @@ from dynamics.errors import InputError
 from dynamics.types import ComplexArray, FloatArray
 from dynamics.work_cost import Cost
 
+PRODUCT = 0.1e-9
+"""CPU seconds for a panel and a pair of shapes."""
+SMALLER = 0.8
+"""Size of the sphere: two waves on a wall are shorter than those around the body."""
+
 
 class RadiationModel(Protocol):
     """A way to compute the sound that a hull radiates."""
@@ -170,12 +175,6 @@ def errors_db(ka: float, orders: int = 3) -> dict[str, FloatArray]:
         "equivalent_radiated_power": -10.0 * np.log10(exact),
         "monopoles": 10.0 * np.log10(np.maximum(monopoles, 1e-300) / exact),
     }
-
-
-PRODUCT = 0.1e-9
-"""CPU seconds for a panel and a pair of shapes."""
-SMALLER = 0.8
-"""Size of the sphere: two waves on a wall are shorter than those around the body."""
 
 
 @dataclass(frozen=True)

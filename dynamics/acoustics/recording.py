@@ -26,6 +26,12 @@ LARGEST_STEP = 20_000  # of the lower of two rates in their ratio
 PASSED = 0.45
 """Highest frequency over the sample rate: the resampling filter passes it unchanged."""
 
+LOWEST = 20.0
+"""Hz: below it nothing is heard, and slow changes of load would take the full scale."""
+SLOPE = 4  # order of the high-pass filter, which is run forwards and backwards
+FADE = 0.01  # s at both ends
+COMMENT = ("quantity", "unit", "full_scale")
+
 
 @brief
 @dataclass(frozen=True)
@@ -126,12 +132,6 @@ def _turned(time: FloatArray, frequency: FloatArray, at: FloatArray) -> FloatArr
     return np.asarray(2.0 * np.pi * (whole[piece] + since * (frequency[piece] + 0.5 * slope * since)))
 
 
-LOWEST = 20.0
-"""Hz: below it nothing is heard, and slow changes of load would take the full scale."""
-SLOPE = 4  # order of the high-pass filter, which is run forwards and backwards
-FADE = 0.01  # s at both ends
-
-
 def audible(values: FloatArray, sample_rate: float) -> FloatArray:
     """Return a series (..., T) without its trend and what is slower than `LOWEST`, without phase shift.
 
@@ -211,9 +211,6 @@ def unit_vector(direction: FloatArray) -> FloatArray:
     if axis.shape != (3,) or not np.all(np.isfinite(axis)) or not np.any(axis):
         raise InputError("direction", axis.tolist(), "three finite components, not all zero")
     return np.asarray(axis / np.linalg.norm(axis))
-
-
-COMMENT = ("quantity", "unit", "full_scale")
 
 
 def common_full_scale(*recordings: Recording) -> float:

@@ -21,6 +21,9 @@ from dynamics.errors import InputError
 from dynamics.types import FloatArray
 from host import MissingExtra
 
+SHORTEST = 0.01
+"""s of a sound that has a loudness."""
+
 
 def sound_pressure_level(recording: Recording, *, weighted: bool = False) -> float:
     """Return the level of the root mean square over a recording re 20 uPa, dB or dB(A); at least `FLOOR`.
@@ -37,10 +40,6 @@ def sound_pressure_level(recording: Recording, *, weighted: bool = False) -> flo
         lines *= 10.0 ** (a_weighting(np.fft.rfftfreq(samples.size, 1.0 / recording.sample_rate)) / 10.0)
     lowest = 10.0 ** (FLOOR / 10.0)
     return float(10.0 * np.log10(max(lines.sum() / REFERENCE_PRESSURE**2, lowest)))
-
-
-SHORTEST = 0.01
-"""s of a sound that has a loudness."""
 
 
 @dataclass(frozen=True)

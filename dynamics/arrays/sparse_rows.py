@@ -22,6 +22,8 @@ LEAST = 16
 TOGETHER = 4
 """Rows of a product taken at a time: amplitudes and forces on them are read a fourth as often."""
 
+_NONE = np.zeros((0, 0))
+
 
 class ModalFreedoms(NamedTuple):
     """The last b of n freedoms, from `first` on; b = 0 where there are fewer than `LEAST`."""
@@ -234,7 +236,6 @@ def _chained(entries: BoolArray) -> BoolArray:
         joined = further
 
 
-_NONE = np.zeros((0, 0))
 NO_ENTRIES = sparse_matrices(_NONE, _NONE, _NONE, _NONE, _NONE)
 """Of a system without freedoms."""
 

@@ -46,6 +46,14 @@ from dynamics.types import FloatArray, IntArray, Json
 
 # Forces of the shafts on the ground or on pins at every support, linear in state and local forces.
 
+_NO_INDEX = np.zeros(0, dtype=np.int64)
+LEAST_SEAT = 0.1
+"""Least scale of an amplitude, of the largest."""
+MESH_SHARE = 0.01
+"""Share of a mode's strain energy in the meshes from which on they excite it."""
+LAWS = frozenset((BEARING_LAWS, ELEMENT_PASSING))
+"""What effects add to bearings that are not linear."""
+
 
 class BearingForce(NamedTuple):
     """The sparse linear map from local forces (R), displacements (n) and rates (n) to forces at supports."""
@@ -78,7 +86,6 @@ class BearingForce(NamedTuple):
         return signals
 
 
-_NO_INDEX = np.zeros(0, dtype=np.int64)
 NO_SIGNALS = BearingForce(np.zeros(1, dtype=np.int64), _NO_INDEX, np.zeros(0), np.zeros(0), 0)
 """Of no support."""
 
@@ -117,12 +124,6 @@ def _bearing_force_map(
 
 
 # A model laid out as the plain arrays that the compiled loops see.
-
-
-LEAST_SEAT = 0.1
-"""Least scale of an amplitude, of the largest."""
-MESH_SHARE = 0.01
-"""Share of a mode's strain energy in the meshes from which on they excite it."""
 
 
 def _system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) -> SystemArrays:
@@ -234,10 +235,6 @@ def _scales(scene: Scene, rotors: Bodies, freedoms: Freedoms) -> FloatArray:
     moved = [np.max(np.abs(housing.shape) * per_strain, axis=(0, 1)) for housing in rotors.housings]
     seats = [np.maximum(own, LEAST_SEAT * np.max(own)) for own in moved]
     return np.ascontiguousarray(np.concatenate([scale.ravel(), *elastic, *seats])[freedoms.column])
-
-
-LAWS = frozenset((BEARING_LAWS, ELEMENT_PASSING))
-"""What effects add to bearings that are not linear."""
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,13 @@ from dynamics.types import FloatArray, IntArray
 
 # How a row of rolling elements is laid out for compiled functions, and the grooves its balls lie between.
 
+HOLDS = ALONG | AGAINST
+STEPS = 100
+SETTLED = 1e-12  # of the sum of the loads of all balls
+Seat = tuple[float, float, float, float, float, float, float, float]
+Thrust = tuple[float, float, float, float, float, float, float]
+DIRECTIONS, AXIAL = 5, 2
+
 
 @dataclass(frozen=True)
 class RowPlacement:
@@ -138,13 +145,6 @@ def cage_angle(local: LocalState, turned: int) -> float:
     return 2.0 * math.pi * float(local.position[turned]) if turned >= 0 else 0.0
 
 
-HOLDS = ALONG | AGAINST
-STEPS = 100
-SETTLED = 1e-12  # of the sum of the loads of all balls
-Seat = tuple[float, float, float, float, float, float, float, float]
-Thrust = tuple[float, float, float, float, float, float, float]
-
-
 @routine
 def axial_seat(laws: BallElements, entry: int, local: LocalState, row: int, turned: int) -> Seat:
     """Return where a ring stands along the axis, and what presses it against its seat.
@@ -212,9 +212,6 @@ def _thrust(laws: BallElements, entry: int, angle: float, y: FloatArray, row: in
 
 
 # Forces, derivatives and energy of all balls.
-
-
-DIRECTIONS, AXIAL = 5, 2
 
 
 @routine

@@ -32,6 +32,7 @@ from dynamics.types import FloatArray
 TOLERANCE = 1e-12  # of the load
 STEPS = 500
 LEAST_DAMPING = 1.0  # N/m; a tangent of unloaded elements is singular without
+ANGLES = 32
 
 
 @dataclass(frozen=True)
@@ -143,9 +144,6 @@ class LoadedBearing:
 
 
 # Element passing: how a shaft moves under a constant load as the elements pass it, without inertia.
-
-
-ANGLES = 32
 
 
 @dataclass(frozen=True)

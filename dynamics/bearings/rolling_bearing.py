@@ -61,6 +61,72 @@ CLEARANCE = Declared(
     1e-5,
     written="µm",
 )
+RATING = Declared(Kind.FORCE, "N", between(1.0, 1e9), "Basic static load rating C_0", 11600.0)
+LEAST_RATIO = 1e-12  # of the axes: radii that differ by 23 orders of magnitude
+GROOVE = Declared(Kind.RATIO, "", between(0.501, 1.0), "Groove radius over ball diameter", 0.52)
+MODULUS = Declared(Kind.STIFFNESS, "Pa", between(1e9, 1e12), "Young's modulus of rings and balls", 206e9)
+POISSON = Declared(Kind.RATIO, "", between(0.0, 0.49), "Poisson's ratio of rings and balls", 0.3)
+LOGARITHMIC, CROWNED, STRAIGHT = "logarithmic", "crowned", "straight"
+PROFILES = (LOGARITHMIC, CROWNED, STRAIGHT)
+LINE_STIFFNESS = 35948e6  # N/m^2: 35948 N/mm^2 of [1]_, of steel rollers between steel raceways
+LONG = 2.5  # diameters: longer cylindrical rollers are straight in their middle
+LENGTH = Declared(Kind.LENGTH, "m", between(1e-4, 10.0), "Effective length of a roller", 0.0136)
+PROFILE = Declared(Kind.CHOICE, "", Choice(PROFILES), "Profile of a roller", LOGARITHMIC)
+CROWN = Declared(
+    Kind.AMOUNT,
+    "m",
+    between(0.0, 1e-3),
+    "Drop of a crowned profile at the ends of the roller, at each contact",
+    1e-5,
+)
+LAMINAE = Declared(Kind.COUNT, "", integers(1, 1000), "Laminae of a roller; ISO/TS 16281: at least 30", 30)
+BOTH, POSITIVE, NEGATIVE, NONE = "both", "positive", "negative", "none"
+LOCATING = Declared(
+    Kind.CHOICE,
+    "",
+    Choice((BOTH, POSITIVE, NEGATIVE, NONE)),
+    "Directions along z in which its rings are held in their seats. positive, negative: only against a shaft "
+    "that is pushed along z, against z, as in a cross-located pair; none: a non-locating (floating) bearing, "
+    "one ring of which slides",
+    BOTH,
+    later=True,
+)
+ALONG, AGAINST = 1, 2
+HELD = {BOTH: ALONG | AGAINST, POSITIVE: ALONG, NEGATIVE: AGAINST, NONE: 0}
+"""The directions as bits."""
+AXIAL_PRELOAD = Declared(
+    Kind.FORCE,
+    "N",
+    between(-1e9, 1e9),
+    "Axial force of the inner ring on the outer where the shaft is not displaced; along z, with the sign of "
+    "the contact angle",
+    500.0,
+)
+DAMPING_RATIO = Declared(
+    Kind.RATIO,
+    "",
+    between(0.0, 10.0),
+    "Damping ratio of the shaft bouncing on its bearings under the nominal mesh forces",
+    0.05,
+)
+DYNAMIC_CAPACITY = Declared(
+    Kind.FORCE,
+    "N",
+    between(1.0, 1e9),
+    "Basic dynamic load rating C of the row (ISO 281), from which its rating life follows; default: no life",
+    22500.0,
+    later=True,
+)
+_FITS = Declared(
+    Kind.PART,
+    "",
+    None,
+    "Fits of its rings; left out: at temperature the rings expand by themselves",
+    part=RingFits,
+    later=True,
+)
+_INNER = replace(TEMPERATURE, description="Steady temperature of the inner ring")
+_OUTER = replace(TEMPERATURE, description="Steady temperature of the outer ring", example=70.0)
 
 
 class _Row:
@@ -101,9 +167,6 @@ class _Row:
             raise InputError("pitch_diameter", self.pitch_diameter, bound, suggestion)
 
 
-RATING = Declared(Kind.FORCE, "N", between(1.0, 1e9), "Basic static load rating C_0", 11600.0)
-
-
 @described
 @dataclass(frozen=True)
 class CatalogLine:
@@ -121,9 +184,6 @@ class CatalogLine:
 
 
 # Hertz contact of two elastic bodies over an ellipse, by exact integrals.
-
-
-LEAST_RATIO = 1e-12  # of the axes: radii that differ by 23 orders of magnitude
 
 
 @dataclass(frozen=True)
@@ -183,11 +243,6 @@ class EllipticContact:
         """Return the peak pressure under `load` (N, > 0), Pa."""
         a, b = self.axes(load)
         return 1.5 * load / (math.pi * a * b)
-
-
-GROOVE = Declared(Kind.RATIO, "", between(0.501, 1.0), "Groove radius over ball diameter", 0.52)
-MODULUS = Declared(Kind.STIFFNESS, "Pa", between(1e9, 1e12), "Young's modulus of rings and balls", 206e9)
-POISSON = Declared(Kind.RATIO, "", between(0.0, 0.49), "Poisson's ratio of rings and balls", 0.3)
 
 
 @described
@@ -259,25 +314,7 @@ class BallBearing(_Row):
 # Profiles of rollers, and the stiffness of their laminae, by ISO/TS 16281.
 
 
-LOGARITHMIC, CROWNED, STRAIGHT = "logarithmic", "crowned", "straight"
-PROFILES = (LOGARITHMIC, CROWNED, STRAIGHT)
-LINE_STIFFNESS = 35948e6  # N/m^2: 35948 N/mm^2 of [1]_, of steel rollers between steel raceways
-LONG = 2.5  # diameters: longer cylindrical rollers are straight in their middle
-
-
 # Cylindrical and tapered roller bearings by their internal geometry, in laminae.
-
-
-LENGTH = Declared(Kind.LENGTH, "m", between(1e-4, 10.0), "Effective length of a roller", 0.0136)
-PROFILE = Declared(Kind.CHOICE, "", Choice(PROFILES), "Profile of a roller", LOGARITHMIC)
-CROWN = Declared(
-    Kind.AMOUNT,
-    "m",
-    between(0.0, 1e-3),
-    "Drop of a crowned profile at the ends of the roller, at each contact",
-    1e-5,
-)
-LAMINAE = Declared(Kind.COUNT, "", integers(1, 1000), "Laminae of a roller; ISO/TS 16281: at least 30", 30)
 
 
 @described
@@ -346,22 +383,6 @@ class RollerBearing(_Row):
         return math.sqrt(load * self.laminae / self.length * modulus / (math.pi * radius))
 
 
-BOTH, POSITIVE, NEGATIVE, NONE = "both", "positive", "negative", "none"
-LOCATING = Declared(
-    Kind.CHOICE,
-    "",
-    Choice((BOTH, POSITIVE, NEGATIVE, NONE)),
-    "Directions along z in which its rings are held in their seats. positive, negative: only against a shaft "
-    "that is pushed along z, against z, as in a cross-located pair; none: a non-locating (floating) bearing, "
-    "one ring of which slides",
-    BOTH,
-    later=True,
-)
-ALONG, AGAINST = 1, 2
-HELD = {BOTH: ALONG | AGAINST, POSITIVE: ALONG, NEGATIVE: AGAINST, NONE: 0}
-"""The directions as bits."""
-
-
 def check_locating(row: BallBearing | RollerBearing, locating: str) -> None:
     """Refuse a row with a contact angle of which a ring slides: it would carry nothing at all.
 
@@ -372,43 +393,6 @@ def check_locating(row: BallBearing | RollerBearing, locating: str) -> None:
     if locating != BOTH and row.contact_angle != 0.0:
         bound = f'"{BOTH}" with a contact angle, whose sign is the direction in which the row holds'
         raise InputError("locating", locating, bound, "State the contact angle's sign instead.")
-
-
-AXIAL_PRELOAD = Declared(
-    Kind.FORCE,
-    "N",
-    between(-1e9, 1e9),
-    "Axial force of the inner ring on the outer where the shaft is not displaced; along z, with the sign of "
-    "the contact angle",
-    500.0,
-)
-DAMPING_RATIO = Declared(
-    Kind.RATIO,
-    "",
-    between(0.0, 10.0),
-    "Damping ratio of the shaft bouncing on its bearings under the nominal mesh forces",
-    0.05,
-)
-DYNAMIC_CAPACITY = Declared(
-    Kind.FORCE,
-    "N",
-    between(1.0, 1e9),
-    "Basic dynamic load rating C of the row (ISO 281), from which its rating life follows; default: no life",
-    22500.0,
-    later=True,
-)
-
-
-_FITS = Declared(
-    Kind.PART,
-    "",
-    None,
-    "Fits of its rings; left out: at temperature the rings expand by themselves",
-    part=RingFits,
-    later=True,
-)
-_INNER = replace(TEMPERATURE, description="Steady temperature of the inner ring")
-_OUTER = replace(TEMPERATURE, description="Steady temperature of the outer ring", example=70.0)
 
 
 @described

@@ -42,6 +42,10 @@ DAMPING_RATIO = Declared(
 SEAT_TEMPERATURE = replace(
     TEMPERATURE, description="Steady temperature of the housing at this seat; left out: that of the housing"
 )
+_RADIAL = Declared(
+    Kind.SLOPE, "m", between(-1e-2, 1e-2), "Position error of the pin, away from the carrier's axis", 0.0
+)
+_TANGENTIAL = Declared(Kind.SLOPE, "m", between(-1e-2, 1e-2), "Position error of the pin, about +z", 20e-6)
 
 
 class _Seat:
@@ -147,12 +151,6 @@ class Bushing(_Seat):
 
     def __post_init__(self) -> None:
         self.check_seat()
-
-
-_RADIAL = Declared(
-    Kind.SLOPE, "m", between(-1e-2, 1e-2), "Position error of the pin, away from the carrier's axis", 0.0
-)
-_TANGENTIAL = Declared(Kind.SLOPE, "m", between(-1e-2, 1e-2), "Position error of the pin, about +z", 20e-6)
 
 
 @described

@@ -39,6 +39,10 @@ from model_studies.workers import InProcess, Workers, divided
 
 # Basic reference rating life of rolling bearings under load cases, and over all of them.
 
+LIFE_EXPONENT = 10.0 / 3.0
+"""Of roller bearings; ball bearings have 3."""
+MOST_POSITIONS = 512
+
 
 def _life_of(bearing: RollingBearing, displacement: FloatArray) -> float:
     """Return L_10r of a row in revolutions; NaN without a capacity, infinite where no element is loaded.
@@ -71,10 +75,6 @@ def life_duration(revolutions: Sequence[float], speed: Sequence[float], share: S
     turned = part * np.asarray(speed, dtype=float) / (2.0 * math.pi)  # revolutions per s
     damage = float(np.sum(turned / np.asarray(revolutions, dtype=float)))
     return math.inf if damage == 0.0 else 1.0 / damage
-
-
-LIFE_EXPONENT = 10.0 / 3.0
-"""Of roller bearings; ball bearings have 3."""
 
 
 @dataclass(frozen=True)
@@ -201,9 +201,6 @@ def _cycle_times(system: System, positions: int) -> FloatArray:
         count += 1
     drive = system.scene.drives[period.law]
     return np.arange(count) / count * period.duration(drive.speed.extreme)
-
-
-MOST_POSITIONS = 512
 
 
 @dataclass(frozen=True)

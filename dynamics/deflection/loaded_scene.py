@@ -20,6 +20,9 @@ from model_studies import in_unit
 
 # The forces of a scene under a load case.
 
+STATIC = 1.0
+"""Hz to which shafts are resolved: their deflections under forces at what is on them are exact anyway."""
+
 
 @dataclass(frozen=True)
 class ForceUnderCase:
@@ -49,10 +52,6 @@ def _stated(force: AppliedForce, own: CaseForce | None) -> AppliedForce:
 def _times(factor: float, vector: Vector) -> Vector:
     x, y, z = vector
     return factor * x, factor * y, factor * z
-
-
-STATIC = 1.0
-"""Hz to which shafts are resolved: their deflections under forces at what is on them are exact anyway."""
 
 
 @dataclass(frozen=True)

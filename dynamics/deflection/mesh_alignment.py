@@ -39,6 +39,12 @@ HALVINGS = 50
 FREE = 1e-12
 """Part of the force up to which an element does not press."""
 
+CAUSES = ("shaft", "bearing", "clearance", "housing", "coupling", "set")
+"""Elastic shafts, elastic bearings, their clearance, the motion of their seats, shafts that couplings alone
+hold, and what the scene itself sets."""
+SHAFT, BEARING, CLEARANCE, HOUSING, COUPLING, SET = range(len(CAUSES))
+TILT = slice(3, 5)
+
 
 def _free_fraction(arrays: SystemArrays, element: int, coordinate: FloatArray) -> float:
     """Return the largest fraction of `coordinate` (p,) at which an element exerts no force; bisection."""
@@ -200,13 +206,6 @@ def _load_arms(system: System, force: FloatArray) -> FloatArray:
 
 
 # Tilts of shafts split by their causes: a linear functional of the displacements for each cause.
-
-
-CAUSES = ("shaft", "bearing", "clearance", "housing", "coupling", "set")
-"""Elastic shafts, elastic bearings, their clearance, the motion of their seats, shafts that couplings alone
-hold, and what the scene itself sets."""
-SHAFT, BEARING, CLEARANCE, HOUSING, COUPLING, SET = range(len(CAUSES))
-TILT = slice(3, 5)
 
 
 def _gear_tilt(system: System, gear: str, motion: FloatArray, strain: BearingStrain) -> FloatArray:

@@ -24,6 +24,13 @@ from dynamics.shafts import Disc, ElasticShaft, PointOfApplication, elastic_shaf
 from dynamics.shafts.shaft import OnShaft, on_length
 from dynamics.types import FloatArray
 
+SHARE = 0.05
+"""Least displacement at a mesh, over what the mesh itself yields, that calls for it."""
+ROUNDING = 1e-9
+NOTHING_BENDS = (
+    "forces act at one position of the shaft alone, or it is not held there: nothing bends or twists it"
+)
+
 
 def _why_rigid(mechanism: Mechanism, index: int) -> str:
     """Return why the shaft `index` cannot be flexible; empty where it can."""
@@ -117,14 +124,6 @@ def _couplings(scene: Scene, rotor: Rotor) -> list[tuple[float, bool]]:
         for coupling in scene.couplings
         if rotor.shaft.name in (coupling.first, coupling.second)
     ]
-
-
-SHARE = 0.05
-"""Least displacement at a mesh, over what the mesh itself yields, that calls for it."""
-ROUNDING = 1e-9
-NOTHING_BENDS = (
-    "forces act at one position of the shaft alone, or it is not held there: nothing bends or twists it"
-)
 
 
 @dataclass(frozen=True)

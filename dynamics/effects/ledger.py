@@ -17,6 +17,7 @@ from dynamics.scene.scene import Scene
 from dynamics.types import Json
 
 CHOICES = ("auto", "on", "off")
+UNSHARED = ("outputs", "quantity")
 
 
 @dataclass(frozen=True)
@@ -196,9 +197,6 @@ def mechanism_of(scene: Scene, registry: tuple[Effect, ...] = EFFECTS) -> Mechan
     if all(getattr(mechanism.scene, name) is part for name, part in own.items()):
         return mechanism
     return replace(mechanism, scene=replace(mechanism.scene, **own))
-
-
-UNSHARED = ("outputs", "quantity")
 
 
 def _shared_parts(scene: Scene) -> tuple[object, ...]:

@@ -29,6 +29,12 @@ Drive = Callable[[float], tuple[float, float]]
 
 Force = Callable[[Any, float, int, Any, Any], FloatArray]
 Jacobian = Callable[[Any, float, int, Any, Any, float, float], FloatArray]
+PLANAR = ("x", "y", "rotation")
+REBUILT = (
+    *("shafts", "gears", "discs", "meshes", "drives", "bushings", "loads"),
+    *("duration", "effects", "outputs", "integration", "on_violation", "quantity"),
+)
+SOLVERS = ("GeneralizedAlpha", "TrapezoidalIndex2", "RK44", "DOPRI5")
 
 
 @dataclass(frozen=True)
@@ -162,14 +168,6 @@ def _evaluate(
     x = facts[0] + facts[1] * angle
     force, _, tangent, viscous, interval = flank_force(law, 0, x, deflection, speed, hint[0])
     values[0], values[1], values[2], hint[0] = force, tangent, viscous, interval
-
-
-PLANAR = ("x", "y", "rotation")
-REBUILT = (
-    *("shafts", "gears", "discs", "meshes", "drives", "bushings", "loads"),
-    *("duration", "effects", "outputs", "integration", "on_violation", "quantity"),
-)
-SOLVERS = ("GeneralizedAlpha", "TrapezoidalIndex2", "RK44", "DOPRI5")
 
 
 @dataclass(frozen=True)

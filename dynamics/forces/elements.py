@@ -25,6 +25,15 @@ LINEAR_BEARING = int(Law.LINEAR_BEARING)
 TURNED = tuple(int(law) for law, row in COMPILED.items() if "turned" in signature(row.force).parameters)
 """Laws whose position is the turn of a frame or a cage."""
 
+_ARGUMENTS = {
+    "entry": "elements.entry[e]",
+    "local": "local",
+    "row": "elements.first[e]",
+    "e": "e",
+    "mesh": "elements.mesh[e]",
+    "turned": "elements.mesh[e]",
+}
+
 
 @dataclass(frozen=True)
 class Element:
@@ -125,15 +134,6 @@ def make_local(elements: Elements, meshes: int) -> LocalState:
 
 
 # The dispatch is written from the list of laws: a chain of comparisons, each with the call of its law.
-
-_ARGUMENTS = {
-    "entry": "elements.entry[e]",
-    "local": "local",
-    "row": "elements.first[e]",
-    "e": "e",
-    "mesh": "elements.mesh[e]",
-    "turned": "elements.mesh[e]",
-}
 
 
 def _call(law: Law, function: Callable[..., Any]) -> str:

@@ -22,6 +22,18 @@ from dynamics.types import FloatArray, IntArray
 
 # Freedoms of a mesh some of whose faces are rigid or fixed.
 
+HELD = 1e-12
+"""Stiffness against a rigid motion below which mounts do not hold it, relative to the stiffest."""
+BLOCK = 3
+"""Consecutive freedoms that are ordered as one: those of a node, half those of a rigid face."""
+Solve = Callable[[FloatArray], FloatArray]
+SHIFT = 1e-10
+"""Shift of a housing that may move freely, relative to a bound of the highest squared frequency."""
+REFINEMENTS = 8
+REFINED, ACCEPTED = 1e-12, 1e-6
+"""Work of the forces that a deflection leaves unbalanced, relative to that of its load: where refining ends,
+and the most that is accepted. Soft mounts and slender bodies are ill conditioned and stay between."""
+
 
 @dataclass(frozen=True)
 class _RigidFace:
@@ -105,10 +117,6 @@ def _mass_and_stiffness(mesh: TetrahedralMesh, material: Material) -> tuple[sp.c
     by_node = np.arange(3 * len(mesh.points)).reshape(3, -1).T.ravel()
     stiffness = sp.block_array(blocks, format="csr")[by_node][:, by_node]
     return material.density * shapes, stiffness
-
-
-HELD = 1e-12
-"""Stiffness against a rigid motion below which mounts do not hold it, relative to the stiffest."""
 
 
 @dataclass(frozen=True)
@@ -227,11 +235,6 @@ def _loose(
 # Factor of a symmetric positive definite matrix: SuperLU without pivoting on an ordering by METIS.
 
 
-BLOCK = 3
-"""Consecutive freedoms that are ordered as one: those of a node, half those of a rigid face."""
-Solve = Callable[[FloatArray], FloatArray]
-
-
 def _factorized(matrix: sp.csr_array) -> Solve:
     """Return x of matrix x = b; b is (f,) or (f, m); refuses a singular matrix."""
     from scipy.sparse.linalg import splu  # noqa: PLC0415 (start-up time)
@@ -261,14 +264,6 @@ def _nested_dissection(matrix: sp.csr_array) -> IntArray:
     graph.eliminate_zeros()
     order, _ = pymetis.nested_dissection(pymetis.CSRAdjacency(graph.indptr, graph.indices))
     return (BLOCK * np.asarray(order, dtype=np.int64)[:, None] + np.arange(BLOCK)).ravel()
-
-
-SHIFT = 1e-10
-"""Shift of a housing that may move freely, relative to a bound of the highest squared frequency."""
-REFINEMENTS = 8
-REFINED, ACCEPTED = 1e-12, 1e-6
-"""Work of the forces that a deflection leaves unbalanced, relative to that of its load: where refining ends,
-and the most that is accepted. Soft mounts and slender bodies are ill conditioned and stay between."""
 
 
 class ModeStatus(IntEnum):

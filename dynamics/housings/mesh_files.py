@@ -29,6 +29,12 @@ LEAST_SHAPE = 0.02
 """A sliver: its volume is that part of a regular tetrahedron's with edges of the same mean square."""
 SIZE = from_to(5e-3, 50.0, "m")
 FIELD = "mesh_file"
+UNITS = {"m": 1.0, "mm": 1e-3}
+_MESH_WORKER = Path(__file__).with_name("mesh_worker.py")
+_MESH_SECONDS = 60.0
+LINEAR_NODES = 4
+TEXTS = ("Abaqus", "Nastran")
+CORNERS = 3
 
 
 def _element_shape(mesh: TetrahedralMesh) -> FloatArray:
@@ -65,13 +71,6 @@ def _check_quality(mesh: TetrahedralMesh) -> None:
     if parts > 1:
         advice = "Unite the bodies, or merge the nodes they share."
         raise InputError(f"{FIELD}.parts", parts, "1: one body whose elements share nodes", advice)
-
-
-UNITS = {"m": 1.0, "mm": 1e-3}
-_MESH_WORKER = Path(__file__).with_name("mesh_worker.py")
-_MESH_SECONDS = 60.0
-LINEAR_NODES = 4
-TEXTS = ("Abaqus", "Nastran")
 
 
 class _Content(NamedTuple):
@@ -160,9 +159,6 @@ def _quadratic(content: _Content) -> tuple[FloatArray, IntArray]:
 
 
 # Surfaces with fields, as VTU.
-
-
-CORNERS = 3
 
 
 def write_surface(

@@ -23,6 +23,14 @@ from dynamics.work_cost import WorkCost
 
 # Rigid motions of points, and mass, center of gravity and inertia by them.
 
+SCHEMA = "lineofaction reduced housing"
+SINGULAR = 1e-14
+"""Relative to the diagonal."""
+VALID = 0.7
+"""Of the highest frequency kept: to it a reduction follows the whole mesh within 1 %."""
+PARALLEL = 1e-3
+"""Sine of the angle to z from which a bore is no seat of a shaft along z."""
+
 
 @dataclass(frozen=True)
 class RigidBody:
@@ -61,13 +69,6 @@ def rigid_body(points: FloatArray, mass: sp.csr_array) -> RigidBody:
 
 
 # A housing by the motion of its seats and a few modes.
-
-
-SCHEMA = "lineofaction reduced housing"
-SINGULAR = 1e-14
-"""Relative to the diagonal."""
-VALID = 0.7
-"""Of the highest frequency kept: to it a reduction follows the whole mesh within 1 %."""
 
 
 @dataclass(frozen=True)
@@ -233,10 +234,6 @@ def receptance(
             "frequency", "singular", "off frequencies at which the motion is infinite", advice
         ) from error
     return np.asarray(basis @ amplitude)
-
-
-PARALLEL = 1e-3
-"""Sine of the angle to z from which a bore is no seat of a shaft along z."""
 
 
 def scene_housing(housing: ReducedHousing, name: str, bushings: tuple[str, ...] | None = None) -> Housing:

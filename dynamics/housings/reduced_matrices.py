@@ -26,6 +26,15 @@ from host import MissingExtra
 
 
 HIGHEST_RATIO = 1.0
+PRECISION = 1e-6
+"""Relative; what a finite-element program writes."""
+FIELD = "matrix_file"
+NAMES = {
+    "stiffness": ("stiffness", "k", "kaa", "kaax"),
+    "mass": ("mass", "m", "maa", "maax"),
+    "damping": ("damping", "b", "baa", "baax"),
+}
+"""Names of the matrices in files, in small letters; Nastran writes KAA, or KAAX by EXTSEOUT."""
 
 
 class _Damping(Protocol):
@@ -118,17 +127,6 @@ class MeshedHousing:
                 raise InputError(f"points.{name}", point, bound)
             nodes.append(int(distance.argmin()))
         return np.array(nodes, dtype=np.int64)
-
-
-PRECISION = 1e-6
-"""Relative; what a finite-element program writes."""
-FIELD = "matrix_file"
-NAMES = {
-    "stiffness": ("stiffness", "k", "kaa", "kaax"),
-    "mass": ("mass", "m", "maa", "maax"),
-    "damping": ("damping", "b", "baa", "baax"),
-}
-"""Names of the matrices in files, in small letters; Nastran writes KAA, or KAAX by EXTSEOUT."""
 
 
 @dataclass(frozen=True)

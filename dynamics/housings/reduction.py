@@ -47,6 +47,28 @@ from model_studies.record_file import read_record, write_record
 INDEPENDENT = 1e-12
 """Share of a deflection that is not in the modes kept, in modal mass, below which it adds nothing."""
 SINGULAR = 1e-12
+REFERENCE = 1e5
+"""Freedoms at which the figures below hold: walls 10 mm thick, the reference host of `host_speed`.
+
+Fitted to a thin-walled cast box of 9 500 to 221 000 freedoms and 20 to 80 modes.
+"""
+ASSEMBLY, FACTOR, SOLVE = 2.9, 6.8, 0.074
+"""CPU seconds: matrices and their ordering, factor, one step of Lanczos' method or one deflection."""
+ORTHOGONALIZATION, PROJECTION = 2.7e-4, 1.6e-4
+"""CPU seconds: of a step against a vector of Lanczos' basis, of a pair of vectors in Galerkin's matrices."""
+FIRST_STEPS, STEPS_PER_MODE = 36.0, 1.8
+"""Of Lanczos' method, its restarts among them."""
+REFINED = 2.0
+"""Solutions for a deflection: one, and its refinement."""
+FILL = 0.935e9
+"""Bytes of the matrices and their factor."""
+REDUCTION_VERSION = 5
+"""Raised with every change of the numbers of a reduction, or of what is kept with them."""
+WORK = "housing reduction"
+"""Name of a reduction in the log of runs."""
+MESH_VERSION = 1
+"""Raised with every change of the mesh of a STEP file."""
+MESH_SCHEMA = "lineofaction housing mesh"
 
 
 @dataclass(frozen=True)
@@ -201,23 +223,6 @@ def _symmetric(matrix: FloatArray) -> FloatArray:
 # Time and memory of a reduction, predicted before it runs.
 
 
-REFERENCE = 1e5
-"""Freedoms at which the figures below hold: walls 10 mm thick, the reference host of `host_speed`.
-
-Fitted to a thin-walled cast box of 9 500 to 221 000 freedoms and 20 to 80 modes.
-"""
-ASSEMBLY, FACTOR, SOLVE = 2.9, 6.8, 0.074
-"""CPU seconds: matrices and their ordering, factor, one step of Lanczos' method or one deflection."""
-ORTHOGONALIZATION, PROJECTION = 2.7e-4, 1.6e-4
-"""CPU seconds: of a step against a vector of Lanczos' basis, of a pair of vectors in Galerkin's matrices."""
-FIRST_STEPS, STEPS_PER_MODE = 36.0, 1.8
-"""Of Lanczos' method, its restarts among them."""
-REFINED = 2.0
-"""Solutions for a deflection: one, and its refinement."""
-FILL = 0.935e9
-"""Bytes of the matrices and their factor."""
-
-
 class CostLimit(NamedTuple):
     """What a reduction may cost: CPU seconds and bytes."""
 
@@ -247,15 +252,6 @@ def reduction_cost(freedoms: int, modes: int, motions: int) -> Cost:
     )
     vectors = basis + modes + 4.0 * motions
     return Cost(seconds, FILL * size**1.1 + 8.0 * freedoms * vectors)
-
-
-REDUCTION_VERSION = 5
-"""Raised with every change of the numbers of a reduction, or of what is kept with them."""
-WORK = "housing reduction"
-"""Name of a reduction in the log of runs."""
-MESH_VERSION = 1
-"""Raised with every change of the mesh of a STEP file."""
-MESH_SCHEMA = "lineofaction housing mesh"
 
 
 @dataclass(frozen=True)

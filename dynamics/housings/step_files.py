@@ -26,6 +26,8 @@ STEP_SECONDS = 600.0
 WALL_ELEMENTS = 0.7
 """Elements over the mean wall thickness, 2 V/S of the body, unless a size is given: quadratic ones bend."""
 Made = TypeVar("Made")
+_SAME = 1e-6
+"""Directions; lengths in m at which axes, radii and heights are the same."""
 
 
 def mesh_step(
@@ -129,10 +131,6 @@ def _by_gmsh(
 
 
 # Bores: faces of cylinders about one axis that lie at the same height are one.
-
-
-_SAME = 1e-6
-"""Directions; lengths in m at which axes, radii and heights are the same."""
 
 
 @dataclass(frozen=True)

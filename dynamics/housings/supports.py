@@ -20,6 +20,9 @@ from dynamics.types import FloatArray
 MOTIONS = ("x", "y", "z", "tilt_x", "tilt_y", "rotation_z")
 """In the seat's own axes, z along the bore."""
 
+PRECISION = 1e-6
+"""Relative; a data sheet or a finite-element program writes its matrices with that many digits."""
+
 
 @dataclass(frozen=True)
 class SeatBore:
@@ -88,10 +91,6 @@ def mean_motion(mesh: TetrahedralMesh, face: Face, about: FloatArray) -> sp.csr_
     rows = np.repeat(np.arange(6), freedoms.size)
     entries = (values.ravel(), (rows, np.tile(freedoms.ravel(), 6)))
     return sp.coo_array(entries, shape=(6, mesh.freedoms)).tocsr()
-
-
-PRECISION = 1e-6
-"""Relative; a data sheet or a finite-element program writes its matrices with that many digits."""
 
 
 @dataclass(frozen=True)

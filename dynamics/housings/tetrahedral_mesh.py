@@ -23,6 +23,13 @@ EDGES = np.array([[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]])
 FACES = np.array([[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]])
 """Nodes of the faces: three corners, counter-clockwise from outside, then the mid-side nodes after them."""
 
+NEAR = 5e-3
+"""Distance at which corners are on a face, relative to its size."""
+INWARD = 0.7
+"""Least cosine between the normal of a bore's wall and the direction to its axis."""
+COVERED = 0.5
+"""Least part of a bore's wall that must be there: a split seat has half of it."""
+
 
 @dataclass(frozen=True)
 class TetrahedralMesh:
@@ -62,14 +69,6 @@ def raised(corners: IntArray, points: FloatArray) -> tuple[FloatArray, IntArray]
     middle = points[edges].mean(axis=1)
     own = len(points) + number.reshape(-1, len(EDGES))
     return np.vstack([points, middle]), np.hstack([corners, own])
-
-
-NEAR = 5e-3
-"""Distance at which corners are on a face, relative to its size."""
-INWARD = 0.7
-"""Least cosine between the normal of a bore's wall and the direction to its axis."""
-COVERED = 0.5
-"""Least part of a bore's wall that must be there: a split seat has half of it."""
 
 
 class Face(Protocol):

@@ -34,6 +34,13 @@ have as many orders."""
 LOADS = 6
 """Loads at which a system is linearized where they vary along the run."""
 
+COMPARED = 5
+"""Mesh orders of bearing forces that are compared."""
+MODES, MET = 4, 3
+"""Modes and mesh orders whose meeting is looked at on a run-up."""
+POSITIONS = 128
+"""Per base pitch at which tables are read."""
+
 
 @dataclass(frozen=True)
 class OperatingCondition:
@@ -106,14 +113,6 @@ def _loads_vary(scene: Scene, time: FloatArray) -> bool:
     ]
     by_speed = bool(scene.speed_torques) or any(isinstance(course, BySpeed) for course in courses)
     return by_speed or any(np.ptp(np.asarray(law)) > 0.0 for law in laws)
-
-
-COMPARED = 5
-"""Mesh orders of bearing forces that are compared."""
-MODES, MET = 4, 3
-"""Modes and mesh orders whose meeting is looked at on a run-up."""
-POSITIONS = 128
-"""Per base pitch at which tables are read."""
 
 
 @dataclass(frozen=True)

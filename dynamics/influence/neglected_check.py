@@ -45,6 +45,30 @@ from model_studies.stage_clock import TimeTaken
 
 # The change by leaving an effect out, by linear theory: an ablation before integration.
 
+_Key = tuple[bytes | None, float, bool]
+_KNOWN: dict[_Key, dict[str, Influence]] = {}
+"""Sizes by content of the scene, the last ones: a scene is often run again with other steps or outputs."""
+KNOWN = 64
+_SOLVED, _VARYING, _BEGUN = 4.5e-8, 2e-3, 0.01
+"""CPU seconds of a line at a speed by freedoms squared, of stiffness that varies at a speed, and of an effect
+beside its lines.
+
+5 to 170 freedoms, 2 to 30 lines: within a factor of 2.
+"""
+SCREENED = 3
+"""Meshes from which on effects are looked at with the mean stiffness first: one that varies takes ten times
+as long for six meshes."""
+UNSEEN = 0.01
+"""dB; an effect that changes no more with the mean stiffness has that size."""
+LINEAR = frozenset(effect.name for effect in EFFECTS if effect.linear)
+"""Effects whose size linear theory estimates."""
+SHARE = 0.1
+"""Of a relative tolerance, for all neglected effects together: estimates may be wrong by a factor of two and
+more, and neglected effects must stay invisible."""
+LEVEL_SHARE = 0.5
+"""Of a tolerance of levels likewise: 97 of 100 changes of a level are estimated within a factor of two."""
+ANY_PART = ""
+
 
 def _no_orders() -> FloatArray:
     return np.zeros((0, COMPARED))
@@ -167,12 +191,6 @@ def _chosen(scene: Scene, effect: str) -> bool:
     return scene.effects.get(effect, "auto") != "auto"
 
 
-_Key = tuple[bytes | None, float, bool]
-_KNOWN: dict[_Key, dict[str, Influence]] = {}
-"""Sizes by content of the scene, the last ones: a scene is often run again with other steps or outputs."""
-KNOWN = 64
-
-
 def forget_sizes() -> None:
     """Forget all sizes, such as to measure what they take."""
     _KNOWN.clear()
@@ -203,14 +221,6 @@ def response_influences(scene: Scene, speed: FloatArray, time: float = 0.0) -> d
     return _influences(scene, assemble(scene), conditions_at(speed, time))
 
 
-_SOLVED, _VARYING, _BEGUN = 4.5e-8, 2e-3, 0.01
-"""CPU seconds of a line at a speed by freedoms squared, of stiffness that varies at a speed, and of an effect
-beside its lines.
-
-5 to 170 freedoms, 2 to 30 lines: within a factor of 2.
-"""
-
-
 class ResponseCost(NamedTuple):
     """CPU seconds of a linear response at a speed, and of a system with or without an effect; of how many."""
 
@@ -229,13 +239,6 @@ def response_cost(system: System, speed: FloatArray, orders: int) -> ResponseCos
     lines = (possible_lines(at, count, speed).size for count in (orders, FEWER))
     each, fewer = (_VARYING + _SOLVED * freedoms**2 * count for count in lines)
     return ResponseCost(each, _BEGUN + fewer * min(speed.size, SPEEDS), 1 + switched)
-
-
-SCREENED = 3
-"""Meshes from which on effects are looked at with the mean stiffness first: one that varies takes ten times
-as long for six meshes."""
-UNSEEN = 0.01
-"""dB; an effect that changes no more with the mean stiffness has that size."""
 
 
 def _influences(
@@ -321,10 +324,6 @@ def _influence_of(system: System, name: str, on: bool, own: LinearFigures, other
     )
 
 
-LINEAR = frozenset(effect.name for effect in EFFECTS if effect.linear)
-"""Effects whose size linear theory estimates."""
-
-
 def _beyond(system: System, linear: bool, parts: bool) -> str:
     """Return what linear theory leaves out of a change, in words: of an effect that is `linear` or not.
 
@@ -355,13 +354,6 @@ def _largest(change: FloatArray, value: FloatArray | float) -> float:
 
 
 # The decision of "auto" by a tolerance: effects too small to be seen are neglected, larger ones are on.
-
-
-SHARE = 0.1
-"""Of a relative tolerance, for all neglected effects together: estimates may be wrong by a factor of two and
-more, and neglected effects must stay invisible."""
-LEVEL_SHARE = 0.5
-"""Of a tolerance of levels likewise: 97 of 100 changes of a level are estimated within a factor of two."""
 
 
 @dataclass(frozen=True)
@@ -463,9 +455,6 @@ def _neglected(free: Mapping[str, Influence], allowance: _Allowance) -> list[str
     order = sorted(able, key=lambda name: able[name])
     total = np.cumsum([able[name] for name in order])
     return [name for name, changed in zip(order, total, strict=True) if changed <= allowance.together]
-
-
-ANY_PART = ""
 
 
 class NeglectedChecks:

@@ -21,6 +21,16 @@ SAFETY = math.log2(0.9)  # octaves of the step size, like the limits of its chan
 RISE_LIMIT = math.log2(2.0)
 FALL_LIMIT = math.log2(0.2)
 POSITION_LIMIT = 1.0 / 64.0  # base pitches
+ROUNDING = 4.0 * 2.0**-52
+"""Part of a knot's time by which a step ends before it: its last stage still sees the law's old piece."""
+SMOOTH = 1e-9
+"""Jump of an acceleration over what the law's pieces make of it, below which it is rounding."""
+COMPLETED, STEP_FLOOR = int(RunStatus.COMPLETED), int(RunStatus.STEP_FLOOR)
+STEP_LIMIT, NOT_FINITE = int(RunStatus.STEP_LIMIT), int(RunStatus.NOT_FINITE)
+UNSOLVED = 1e10  # the error of a step in which Newton's method failed
+DIVERGED = 1.0  # m
+AT_REST = 1e-100
+"""Motion below which a freedom is at rest, SI: its squares do not underflow yet."""
 
 
 class Control(NamedTuple):
@@ -103,12 +113,6 @@ def _next_level(work: Workspace, control: Control, error: float, accepted: bool)
 # Compiled steps that end where a speed law has a knot: the inertia of the kinematic motion jumps there.
 
 
-ROUNDING = 4.0 * 2.0**-52
-"""Part of a knot's time by which a step ends before it: its last stage still sees the law's old piece."""
-SMOOTH = 1e-9
-"""Jump of an acceleration over what the law's pieces make of it, below which it is rounding."""
-
-
 @inner
 def _next_jump(laws: Cubics, time: float) -> float:
     """Return when the next piece of any law begins if the slope jumps there; infinite if none does."""
@@ -135,15 +139,6 @@ def _step_to_jump(system: SystemArrays, work: Workspace, level: int, jump: float
     work.step_sizes[landing] = step
     work.ready[landing] = False
     return landing
-
-
-COMPLETED, STEP_FLOOR = int(RunStatus.COMPLETED), int(RunStatus.STEP_FLOOR)
-STEP_LIMIT, NOT_FINITE = int(RunStatus.STEP_LIMIT), int(RunStatus.NOT_FINITE)
-UNSOLVED = 1e10  # the error of a step in which Newton's method failed
-DIVERGED = 1.0  # m
-
-AT_REST = 1e-100
-"""Motion below which a freedom is at rest, SI: its squares do not underflow yet."""
 
 
 def prepare_steps(system: SystemArrays, work: Workspace, implicit: bool, audit: bool) -> None:

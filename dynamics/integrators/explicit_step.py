@@ -39,6 +39,8 @@ from dynamics.motion.motion import (
 )
 from dynamics.types import FloatArray
 
+STAGE_COUNT = 7
+
 
 @routine
 def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float) -> None:
@@ -213,9 +215,6 @@ def finish_step(work: Workspace, step: float, weights: FloatArray, embedded: Flo
         for i in range(q_error.size):
             q_error[i] += difference * work.stage_v[stage, i]
             v_error[i] += difference * work.stage_a[stage, i]
-
-
-STAGE_COUNT = 7
 
 
 @routine

@@ -29,6 +29,17 @@ from dynamics.kernels.routine import routine
 from dynamics.motion.motion import add_motion, set_acceleration
 from dynamics.types import FloatArray
 
+ITERATION_LIMIT = 25
+WEAK = 0.01
+"""Change of a row's law with its own force, below which the row is iterated."""
+SLOW = 0.1
+"""Part of the last update that is left, above which the equations are made anew."""
+ROUNDING = 2.0**-52
+"""Update over the largest force that rounding makes where coordinates are as small as deflections."""
+NOISE, STALL = 1e-10, 0.5
+"""Update over the largest force, and part of the last one left, from which on larger coordinates make it."""
+STAGE_COUNT = 6
+
 
 @inner
 def _gauss_jordan(matrix: FloatArray, size: int) -> None:
@@ -179,17 +190,6 @@ def _sum(weights: FloatArray, values: FloatArray) -> float:
 
 
 # Compiled Newton's method for the local forces of one implicit stage.
-
-
-ITERATION_LIMIT = 25
-WEAK = 0.01
-"""Change of a row's law with its own force, below which the row is iterated."""
-SLOW = 0.1
-"""Part of the last update that is left, above which the equations are made anew."""
-ROUNDING = 2.0**-52
-"""Update over the largest force that rounding makes where coordinates are as small as deflections."""
-NOISE, STALL = 1e-10, 0.5
-"""Update over the largest force, and part of the last one left, from which on larger coordinates make it."""
 
 
 @inner
@@ -387,9 +387,6 @@ def invert(matrix: FloatArray) -> None:
             matrix[i, p] = 0.0
             for j in range(size):
                 matrix[i, j] -= factor * matrix[p, j]
-
-
-STAGE_COUNT = 6
 
 
 @routine

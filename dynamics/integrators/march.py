@@ -35,6 +35,24 @@ from dynamics.structure_code.arrays import Known
 from dynamics.types import FloatArray, IntArray, Json, RunStatus
 from model_studies.stage_clock import TimeTaken
 
+Progress = Callable[[float, str], None]
+Cancel = Callable[[], bool]
+CHUNKS = 50
+BLOCK_WORK = 25_000
+"""Samples times freedoms of a block that nobody waits for: 5 to 50 ms without the interpreter's lock."""
+FIRST_STEP = 1e-6
+NO_SAMPLES = np.zeros(0, dtype=np.int64)
+STEP_SHARE = 0.07
+"""Error allowed per step over the tolerance of the run.
+
+Measured on the run-up of a spur pair: with it the rms error of the run is 0.2 of the tolerance at damping
+ratios of 0.05, and 0.8 at 0.01, where steps' errors ring five times longer."""
+NEWTON_SHARE = 0.01
+"""Error of Newton's method over the error allowed per step.
+
+Stated steps have no such bound, and their error may lie far below any tolerance. What Newton's method leaves
+is of one sign and adds up, so there it goes on to rounding."""
+
 
 @dataclass(frozen=True)
 class _SampleFigures:
@@ -152,26 +170,6 @@ def _in_elements(elements: Elements, local: LocalState) -> tuple[float, float]:
         else:
             bearing += potential(elements, local, e)[0]
     return mesh, bearing
-
-
-Progress = Callable[[float, str], None]
-Cancel = Callable[[], bool]
-
-CHUNKS = 50
-BLOCK_WORK = 25_000
-"""Samples times freedoms of a block that nobody waits for: 5 to 50 ms without the interpreter's lock."""
-FIRST_STEP = 1e-6
-NO_SAMPLES = np.zeros(0, dtype=np.int64)
-STEP_SHARE = 0.07
-"""Error allowed per step over the tolerance of the run.
-
-Measured on the run-up of a spur pair: with it the rms error of the run is 0.2 of the tolerance at damping
-ratios of 0.05, and 0.8 at 0.01, where steps' errors ring five times longer."""
-NEWTON_SHARE = 0.01
-"""Error of Newton's method over the error allowed per step.
-
-Stated steps have no such bound, and their error may lie far below any tolerance. What Newton's method leaves
-is of one sign and adds up, so there it goes on to rounding."""
 
 
 class _Passed(NamedTuple):

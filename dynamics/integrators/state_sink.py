@@ -22,6 +22,9 @@ BLOCK = 8192
 """Samples that are in memory at once where a run is streamed, and that series are made of at once always, so
 that both ways give the same bits."""
 
+VERSION = 3
+Arrays = dict[str, Any]
+
 
 class StateSink(Protocol):
     """Takes samples in order, and gives them back."""
@@ -61,10 +64,6 @@ def blocks(samples: int) -> Iterator[tuple[int, int]]:
 
 
 # Checkpoints of a run: every array its workspace carries, in one file that appears whole or not at all.
-
-
-VERSION = 3
-Arrays = dict[str, Any]
 
 
 def _leaves(state: Any, name: str = "") -> Iterator[tuple[str, Any]]:

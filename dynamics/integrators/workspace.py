@@ -16,6 +16,8 @@ from dynamics.types import BoolArray, FloatArray, IntArray
 
 STAGES = 7  # of the method with the most stages
 LEVELS_PER_OCTAVE = 4
+_PER_FREEDOM = ("v", "v_rest", "a", "q_new", "v_new", "a_new", "q_error", "v_error", "external", "unloaded")
+_PER_ROW = ("force", "free", "free_rate", "free_acceleration", "update", "correction")
 
 
 class Power(IntEnum):
@@ -190,10 +192,6 @@ def geometric_steps(largest: float, smallest: float) -> FloatArray:
     """
     levels = int(np.ceil(LEVELS_PER_OCTAVE * np.log2(largest / smallest))) + 1
     return np.append(largest * 2.0 ** (-np.arange(levels) / LEVELS_PER_OCTAVE), 0.0)
-
-
-_PER_FREEDOM = ("v", "v_rest", "a", "q_new", "v_new", "a_new", "q_error", "v_error", "external", "unloaded")
-_PER_ROW = ("force", "free", "free_rate", "free_acceleration", "update", "correction")
 
 
 def _counts(step_sizes: FloatArray, first_step: float) -> IntArray:

@@ -21,6 +21,28 @@ _HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.r
 LARGEST = 2**27
 """Bytes of a CSV file, or of an archive unpacked: three matrices of 2300 rows."""
 
+PER_SEAT = (3, SEAT, SEAT + 1)
+MATRICES = ("stiffness", "damping", "mass")
+PRECISION = 1e-6  # relative; a finite-element program writes its matrices with that many digits
+DEFINITE = 1e-13
+"""Least eigenvalue of a mass or a stiffness that is taken for more than rounding, diagonal entries 1."""
+DAMPING_RATIO = Declared(
+    Kind.RATIO,
+    "",
+    between(0.0, 1.0),
+    "Damping ratio of every mode of a housing with mass that has no damping matrix",
+    0.005,
+    later=True,
+)
+MODAL_COORDINATES = Declared(
+    Kind.COUNT,
+    "",
+    integers(0, 2000),
+    "Modal coordinates of a housing with mass: the last rows of its matrices, behind those of the seats",
+    0,
+    later=True,
+)
+
 
 def _read_csv(file: Path, field: str) -> FloatArray:
     """Return the rows of a CSV file, ``#`` before remarks; raises as `read_archive`."""
@@ -72,31 +94,6 @@ def _check_size(size: int, file: Path, field: str) -> None:
     """Refuse more bytes than matrices have."""
     if size > LARGEST:
         raise InputError(field, file.name, f"of at most {LARGEST} bytes", "Reduce it to fewer coordinates.")
-
-
-PER_SEAT = (3, SEAT, SEAT + 1)
-MATRICES = ("stiffness", "damping", "mass")
-PRECISION = 1e-6  # relative; a finite-element program writes its matrices with that many digits
-
-
-DEFINITE = 1e-13
-"""Least eigenvalue of a mass or a stiffness that is taken for more than rounding, diagonal entries 1."""
-DAMPING_RATIO = Declared(
-    Kind.RATIO,
-    "",
-    between(0.0, 1.0),
-    "Damping ratio of every mode of a housing with mass that has no damping matrix",
-    0.005,
-    later=True,
-)
-MODAL_COORDINATES = Declared(
-    Kind.COUNT,
-    "",
-    integers(0, 2000),
-    "Modal coordinates of a housing with mass: the last rows of its matrices, behind those of the seats",
-    0,
-    later=True,
-)
 
 
 @described

@@ -25,6 +25,21 @@ _POSITION = Declared(
     "Position along a flexible shaft where the motion is imposed, from its left end",
     0.0,
 )
+_FASTEST = 1e7 * math.pi / 30.0
+_SPEED = Declared(
+    Kind.SPEED,
+    "rad/s",
+    between(-_FASTEST, _FASTEST),
+    "Speed at the start, about the fixed +z axis; afterwards the torques determine it",
+    105.0,
+)
+_SENSE = Declared(
+    Kind.CHOICE,
+    "",
+    one_of(("+z", "-z")),
+    "Sense of rotation after a start from rest; it sets the driving flanks",
+    "+z",
+)
 
 
 @described
@@ -50,23 +65,6 @@ class ImposedRotation:
     def rigid(self) -> bool:
         """Whether the shaft's rotation is no freedom."""
         return self.stiffness is None
-
-
-_FASTEST = 1e7 * math.pi / 30.0
-_SPEED = Declared(
-    Kind.SPEED,
-    "rad/s",
-    between(-_FASTEST, _FASTEST),
-    "Speed at the start, about the fixed +z axis; afterwards the torques determine it",
-    105.0,
-)
-_SENSE = Declared(
-    Kind.CHOICE,
-    "",
-    one_of(("+z", "-z")),
-    "Sense of rotation after a start from rest; it sets the driving flanks",
-    "+z",
-)
 
 
 @described

@@ -41,6 +41,8 @@ TupleClass = TypeVar("TupleClass", bound=type)
 
 
 _numbers: dict[type, frozenset[str]] = {}
+_NO_BYTES = c_char * 0
+_seen: dict[type, tuple[list[Any], _AddressType]] = {}
 
 
 def with_numbers(*names: str) -> Callable[[TupleClass], TupleClass]:
@@ -146,10 +148,6 @@ def _address_of(array: Any) -> int:
         if array.flags.c_contiguous:
             return int(array.__array_interface__["data"][0])
     raise TypeError(f"compiled functions take C-contiguous arrays, not strides of {array.strides}")
-
-
-_NO_BYTES = c_char * 0
-_seen: dict[type, tuple[list[Any], _AddressType]] = {}
 
 
 def _address_type(cls: Any, kinds: list[Any]) -> _AddressType:

@@ -26,6 +26,13 @@ from dynamics.types import ComplexArray, FloatArray, IntArray
 QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])  # z x
 LATERAL, TILT = (0, 1), (3, 4)
 OSCILLATING = 1e-6  # least imaginary part over the largest eigenvalue's size
+TIE = 0.05  # weight of the frequencies beside the shapes: it decides between modes of one shape's likeness
+SAME = 1e-6  # of a frequency: nearer modes count as repeated
+STILL = 0.1  # share of kinetic energy across the axis below which a mode has no whirl
+INTERVALS, FINEST = 8, 32
+"""Equal parts of a range of speeds over which modes are followed, and into how many it is divided at most."""
+ALIKE = 0.9
+"""Likeness of a mode and the one that continues it from which on nothing between them need be looked at."""
 
 
 @dataclass(frozen=True)
@@ -151,11 +158,6 @@ def _eigen(
     return values.astype(complex), vectors.astype(complex)
 
 
-TIE = 0.05  # weight of the frequencies beside the shapes: it decides between modes of one shape's likeness
-SAME = 1e-6  # of a frequency: nearer modes count as repeated
-STILL = 0.1  # share of kinetic energy across the axis below which a mode has no whirl
-
-
 @dataclass(frozen=True)
 class WhirlBranches:
     """A modes over S speeds, n freedoms, p springs; NaN where a mode does not oscillate."""
@@ -199,12 +201,6 @@ def whirl_branches(
         if progress is not None:
             progress((index + 1) / speed.size)
     return _followed(system, linear, speed, swept)
-
-
-INTERVALS, FINEST = 8, 32
-"""Equal parts of a range of speeds over which modes are followed, and into how many it is divided at most."""
-ALIKE = 0.9
-"""Likeness of a mode and the one that continues it from which on nothing between them need be looked at."""
 
 
 def branches_up_to(system: System, linear: LinearSystem, highest: float) -> WhirlBranches:

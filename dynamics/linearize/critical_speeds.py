@@ -16,6 +16,11 @@ from dynamics.types import ComplexArray, FloatArray, IntArray
 
 # The matrices of a rotating system as polynomials of speed, in meters.
 
+CLOSE = 1e-9  # of the eigenvalue: last step of a crossing, whose error is of the order of its square
+ITERATIONS = 12
+HALVINGS = 12
+ALIKE = 0.5  # modal assurance with the mode at either speed
+
 
 @dataclass(frozen=True)
 class _SpeedMatrices:
@@ -55,12 +60,6 @@ def _speed_matrices(system: System, linear: LinearSystem, speed: float) -> _Spee
     swept, centripetal = (4.0 * once - twice) / (2.0 * speed), (twice - 2.0 * once) / (2.0 * speed**2)
     parts = (linear.mass, linear.damping, linear.stiffness, gyroscopic / speed, swept, centripetal)
     return _SpeedMatrices(*(per_meter[:, None] * part * per_meter for part in parts))
-
-
-CLOSE = 1e-9  # of the eigenvalue: last step of a crossing, whose error is of the order of its square
-ITERATIONS = 12
-HALVINGS = 12
-ALIKE = 0.5  # modal assurance with the mode at either speed
 
 
 @dataclass(frozen=True)

@@ -48,6 +48,9 @@ from host import cpu_seconds
 
 KINDS = (*HELD_BY, "load", "frame")
 FLANKS = (Law.FLANK, Law.SPATIAL_FLANK)
+LOADS = "loads"
+FRAMES = "rotating frames"
+NOTHING_EXCITES = "such that one excites: transmission errors and loads are constant"
 
 
 @dataclass(frozen=True)
@@ -135,10 +138,6 @@ def _damper(name: str, kind: str, rows: FloatArray, damping: FloatArray) -> _Abs
 
 
 # Power balance of a harmonic vibration: what excitation puts in, and what parts lose, by harmonic.
-
-
-LOADS = "loads"
-FRAMES = "rotating frames"
 
 
 @dataclass(frozen=True)
@@ -302,9 +301,6 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
         return _PowerBalance(
             self.power_source, self.power_input, self.power_sink, self.power_sink_kind, self.power_loss
         )
-
-
-NOTHING_EXCITES = "such that one excites: transmission errors and loads are constant"
 
 
 def forced_response(

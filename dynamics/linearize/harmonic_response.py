@@ -39,6 +39,7 @@ from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 
 
 GRID = ("speed", "order")
+MOST_SAMPLES, MOST_PER_LINE, MOST_PARTED = 16_384, 1_000, 300
 
 
 def _none() -> ComplexArray:
@@ -331,9 +332,6 @@ def _harmonics(order: tuple[float, ...]) -> IntArray:
     scale = math.lcm(*(part.denominator for part in parts))
     multiples = [int(part * scale) for part in parts]
     return np.array(multiples, dtype=np.int64) // max(math.gcd(*multiples), 1)
-
-
-MOST_SAMPLES, MOST_PER_LINE, MOST_PARTED = 16_384, 1_000, 300
 
 
 def parametric_response(

@@ -21,6 +21,21 @@ from dynamics.motion.force_balance import at_mean_loads, force_balance
 from dynamics.motion.observation import local_state
 from dynamics.types import ComplexArray, FloatArray
 
+HELD_BY = ("mesh", "bearing", "coupling", "drive", "shaft", "housing")
+MOVES = {
+    "x": "lateral",
+    "y": "lateral",
+    "z": "axial",
+    "tilt_x": "tilting",
+    "tilt_y": "tilting",
+    "rotation": "torsional",
+    "bending_x": "bending",
+    "bending_y": "bending",
+    "stretch": "axial",
+    "twist": "torsional",
+    "mode": "housing",
+}
+
 
 @dataclass(frozen=True)
 class LinearSystem:
@@ -154,22 +169,6 @@ def _springs(
 
 
 # Distribution of the energy of a mode: strain energy by spring, kinetic energy by freedom.
-
-
-HELD_BY = ("mesh", "bearing", "coupling", "drive", "shaft", "housing")
-MOVES = {
-    "x": "lateral",
-    "y": "lateral",
-    "z": "axial",
-    "tilt_x": "tilting",
-    "tilt_y": "tilting",
-    "rotation": "torsional",
-    "bending_x": "bending",
-    "bending_y": "bending",
-    "stretch": "axial",
-    "twist": "torsional",
-    "mode": "housing",
-}
 
 
 def strain_shares(

@@ -33,6 +33,11 @@ from host import cpu_seconds
 
 # To which frequency the shafts of a modal analysis are resolved.
 
+MOST_ORDERS = 100
+LARGE = 1.0 / 3.0  # share of the energy from which a motion or a spring gives a mode its name
+AT_REST = ("frequency", "damping_ratio", "shape", "strain_energy", "kinetic_energy")
+"""What an analysis keeps of `Modes`."""
+
 
 def resolved_to(system: System, speed: FloatArray, orders: int, highest: float | None) -> float:
     """Return the frequency to resolve, Hz: `highest`, else the highest of the orders at the highest speed."""
@@ -45,13 +50,6 @@ def resolved_to(system: System, speed: FloatArray, orders: int, highest: float |
     else:
         top = system.sampling.mesh_frequency
     return orders * top
-
-
-MOST_ORDERS = 100
-LARGE = 1.0 / 3.0  # share of the energy from which a motion or a spring gives a mode its name
-
-AT_REST = ("frequency", "damping_ratio", "shape", "strain_energy", "kinetic_energy")
-"""What an analysis keeps of `Modes`."""
 
 
 @brief

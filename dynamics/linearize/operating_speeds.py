@@ -20,6 +20,8 @@ from dynamics.types import FloatArray
 
 
 MOST_SPEEDS = 100_000
+LARGEST_DENOMINATOR = 10_000
+AGREEMENT = 1e-12
 
 
 def leading_law(system: System) -> int:
@@ -75,10 +77,6 @@ def checked_speeds(speed: FloatArray | list[float] | tuple[float, ...], *, above
             bound = above(float(speeds[index - 1]), name="the one before it,")
             raise InputError(f"speed[{index}]", float(value), bound, "Sort the list and drop repeats.")
     return speeds
-
-
-LARGEST_DENOMINATOR = 10_000
-AGREEMENT = 1e-12
 
 
 @dataclass(frozen=True)

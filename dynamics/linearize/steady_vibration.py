@@ -27,6 +27,17 @@ from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 ROUNDING = 1e-12
 """Of the entries of modal freedoms, that the rows of their elements may fail to explain."""
 
+Terms = tuple[FloatArray, FloatArray]
+Values = TypeVar("Values", FloatArray, ComplexArray)
+EXCITATIONS = ("static_error", "blocked_force")
+BLOCK = 1_000_000  # entries of the matrices solved at once
+NOTHING = 1e-12  # of the largest exciting force: harmonics below it are left out
+ROUNDED = 1e-3
+"""Largest part of the exciting force that rounding of the elastic forces may be."""
+SWEPT = 0.34
+"""Rate of decay over the root of the rate of the circular frequency that limits a resonance as a sweep does:
+1.17 sqrt(2 pi/h)/(2 m w) is the largest amplitude of an undamped oscillator per force (Lewis, 1932)."""
+
 
 @dataclass(frozen=True)
 class _ModalElimination:
@@ -140,19 +151,6 @@ def _modal_elimination(
     return _ModalElimination(
         bodies, np.concatenate([own, np.diag(mass)[None, first:]]), shape, out, into, along
     )
-
-
-Terms = tuple[FloatArray, FloatArray]
-Values = TypeVar("Values", FloatArray, ComplexArray)
-
-EXCITATIONS = ("static_error", "blocked_force")
-BLOCK = 1_000_000  # entries of the matrices solved at once
-NOTHING = 1e-12  # of the largest exciting force: harmonics below it are left out
-ROUNDED = 1e-3
-"""Largest part of the exciting force that rounding of the elastic forces may be."""
-SWEPT = 0.34
-"""Rate of decay over the root of the rate of the circular frequency that limits a resonance as a sweep does:
-1.17 sqrt(2 pi/h)/(2 m w) is the largest amplitude of an undamped oscillator per force (Lewis, 1932)."""
 
 
 @dataclass(frozen=True)

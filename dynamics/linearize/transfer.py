@@ -53,6 +53,9 @@ SAME = 1e-9  # of the gradients of rows that are the same
 VERSION = 1
 """Raised with every change of the numbers of a transfer function, or of what is kept with them."""
 
+_SOLVED = 6e-8
+"""CPU seconds of a line at a speed by freedoms squared: 3.5 to 9e-8 for 47 to 170 of them."""
+
 
 class FlankExcitation(NamedTuple):
     """What flanks do at their equilibrium, and the tangents there; m meshes, R rows, H harmonics."""
@@ -307,10 +310,6 @@ def flank_transfer(
         FlankTransfer.to_netcdf,
         ResultError,
     )
-
-
-_SOLVED = 6e-8
-"""CPU seconds of a line at a speed by freedoms squared: 3.5 to 9e-8 for 47 to 170 of them."""
 
 
 def transfer_seconds(system: System, speed: FloatArray, orders: int) -> float:

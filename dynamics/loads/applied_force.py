@@ -17,6 +17,24 @@ _ON_SHAFT = Declared(
     "Where along a flexible shaft it acts, in {unit} from its left end",
     0.0,
 )
+Vector = tuple[float, float, float]
+POSITION = Declared(
+    Kind.LENGTH, "m", between(-1000.0, 1000.0), "Where along the shaft it acts, from its left end", 0.1
+)
+_AMOUNT = Declared(
+    Kind.INERTIA,
+    "kg m",
+    between(1e-15, 1e6),
+    "Amount: mass times its distance from the axis",
+    1e-4,
+)
+_ANGLE = Declared(
+    Kind.ANGLE,
+    "rad",
+    between(-math.tau, math.tau),
+    "Angle of the heavy spot from +x about +z at the start",
+    0.0,
+)
 
 
 @described
@@ -55,13 +73,6 @@ class SpeedTorque:
         declared_fields(self)
 
 
-Vector = tuple[float, float, float]
-
-POSITION = Declared(
-    Kind.LENGTH, "m", between(-1000.0, 1000.0), "Where along the shaft it acts, from its left end", 0.1
-)
-
-
 @described
 @dataclass(frozen=True)
 class AppliedForce:
@@ -86,22 +97,6 @@ class AppliedForce:
         for name in ("force", "moment"):
             for axis, value in zip("xyz", getattr(self, name), strict=True):
                 finite(f"{name}.{axis}", value)
-
-
-_AMOUNT = Declared(
-    Kind.INERTIA,
-    "kg m",
-    between(1e-15, 1e6),
-    "Amount: mass times its distance from the axis",
-    1e-4,
-)
-_ANGLE = Declared(
-    Kind.ANGLE,
-    "rad",
-    between(-math.tau, math.tau),
-    "Angle of the heavy spot from +x about +z at the start",
-    0.0,
-)
 
 
 @described

@@ -16,6 +16,13 @@ from dynamics.loads.time_law import TimeLaw
 from dynamics.types import FloatArray
 
 Cubic = tuple[float, float, float, float]
+LARGEST_DENOMINATOR = 1000
+"""Orders are multiples of 1/d, d up to this: then they repeat after d turns."""
+AGREEMENT = 1e-9
+"""Relative difference of an order from such a multiple that the printing of its digits leaves."""
+FAINT = 1e-12
+"""Of the largest: smaller amplitudes of a tabulated turn are rounding."""
+CONSTANT = TimeLaw.constant(1.0)
 
 
 @dataclass(frozen=True)
@@ -81,14 +88,6 @@ class SpeedCurve:
         piece = np.searchsorted(np.asarray(self.speed), value, side="right")
         c, s = np.asarray(self.coefficient)[piece], value - self.start[piece]
         return np.asarray(c[..., 0] + s * (c[..., 1] + s * (c[..., 2] + s * c[..., 3])), dtype=float)
-
-
-LARGEST_DENOMINATOR = 1000
-"""Orders are multiples of 1/d, d up to this: then they repeat after d turns."""
-AGREEMENT = 1e-9
-"""Relative difference of an order from such a multiple that the printing of its digits leaves."""
-FAINT = 1e-12
-"""Of the largest: smaller amplitudes of a tabulated turn are rounding."""
 
 
 @dataclass(frozen=True)
@@ -165,7 +164,6 @@ class Orders:
 
 
 Course = TimeLaw | BySpeed | Orders
-CONSTANT = TimeLaw.constant(1.0)
 
 
 def mean_factor(course: Course, time: float | FloatArray, speed: float | FloatArray) -> FloatArray:

@@ -18,6 +18,8 @@ from dynamics.types import BoolArray, FloatArray, IntArray
 
 # Torques that depend on speed.
 
+BY_TIME, BY_SPEED, BY_ANGLE = 0, 1, 2
+
 
 class SpeedTorqueLaws(NamedTuple):
     """Curves."""
@@ -44,9 +46,6 @@ def speed_torque(laws: SpeedTorqueLaws, entry: int, local: LocalState, row: int)
 
 
 # Applied forces: a factor by time, speed or angle, turned with a shaft.
-
-
-BY_TIME, BY_SPEED, BY_ANGLE = 0, 1, 2
 
 
 class ForceCourseLaws(NamedTuple):

@@ -25,6 +25,10 @@ from dynamics.types import FloatArray
 
 
 Support = TypeVar("Support", Bushing, PlanetBearing)
+ROUNDING = 1e-9
+"""Of the damping of two modes: what couples them by less is rounding."""
+FREQUENCY = 2.0 * math.pi * 1000.0
+"""Of the amplitudes of a resting housing, rad/s; no motion at rest depends on it."""
 
 
 @dataclass(frozen=True)
@@ -166,10 +170,6 @@ def _damped(support: Support, share: float, tilting: float) -> Support:
 # The bodies of a scene that move: its rotors, and the housings with mass that carry them.
 
 
-ROUNDING = 1e-9
-"""Of the damping of two modes: what couples them by less is rounding."""
-
-
 @dataclass(frozen=True)
 class _ModalHousing:
     """M = 1, C and K over m modal amplitudes, and the motion of s seats by them.
@@ -268,10 +268,6 @@ class Bodies(Sequence[Rotor]):
 
 
 # Housings without mass under bearings that are not linear: their states of rest.
-
-
-FREQUENCY = 2.0 * math.pi * 1000.0
-"""Of the amplitudes of a resting housing, rad/s; no motion at rest depends on it."""
 
 
 def under_laws(scene: Scene) -> tuple[Housing, ...]:

@@ -25,6 +25,9 @@ ROTATION = 5
 ACROSS = (0, 1, 3, 4)
 """Strains that a rotating frame mixes: x, y, tilt_x, tilt_y."""
 
+QUARTER = np.zeros((SEAT, SEAT))
+"""z x of a seat's displacement and of its tilt."""
+
 
 @dataclass(frozen=True)
 class CouplingRows:
@@ -130,8 +133,6 @@ def frame_joint(
 # The linear springs and dampers of a scene, laid out on all rotors: supports, seats, couplings.
 
 
-QUARTER = np.zeros((SEAT, SEAT))
-"""z x of a seat's displacement and of its tilt."""
 QUARTER[0, 1], QUARTER[1, 0], QUARTER[3, 4], QUARTER[4, 3] = -1.0, 1.0, -1.0, 1.0
 
 

@@ -16,6 +16,10 @@ from dynamics.types import BoolArray, FloatArray, IntArray
 
 
 PLANET_KINDS = 5  # x, y, z, tilt_x, tilt_y: the carrier takes a planet along in these, not in its rotation
+FREEDOMS = ("x", "y", "z", "tilt_x", "tilt_y", "rotation")
+ROTATION = FREEDOMS.index("rotation")
+COUPLED = ("x", "tilt_y", "bending_x", "y", "tilt_x", "bending_y", "z", "stretch", "rotation", "twist")
+"""Order of a flexible shaft's freedoms: what bearings couple stays together, in the smallest blocks."""
 
 
 def carried_motion(rotors: Bodies, free: IntArray) -> FloatArray:
@@ -43,12 +47,6 @@ def rotational_inertia(rotors: Sequence[Rotor]) -> FloatArray:
             arm = rotor.center - rotors[rotor.carrier].center
             inertia[rotor.carrier] += rotor.inertia.mass * float(arm[0] ** 2 + arm[1] ** 2)
     return inertia
-
-
-FREEDOMS = ("x", "y", "z", "tilt_x", "tilt_y", "rotation")
-ROTATION = FREEDOMS.index("rotation")
-COUPLED = ("x", "tilt_y", "bending_x", "y", "tilt_x", "bending_y", "z", "stretch", "rotation", "twist")
-"""Order of a flexible shaft's freedoms: what bearings couple stays together, in the smallest blocks."""
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,8 @@ from dynamics.types import FloatArray
 
 
 Row = dict[int, Fraction]
+STANDSTILL = 1e-12  # of the fastest law: slower is at rest
+STARTING_SPEED = 1e-6  # rad/s; the speed assumed of a free rotation that starts from rest, for its sense
 
 
 class _TrainSpeeds:
@@ -94,10 +96,6 @@ class _TrainSpeeds:
 
 def _less(vector: list[Fraction], factor: Fraction, other: list[Fraction]) -> list[Fraction]:
     return [x - factor * y for x, y in zip(vector, other, strict=True)]
-
-
-STANDSTILL = 1e-12  # of the fastest law: slower is at rest
-STARTING_SPEED = 1e-6  # rad/s; the speed assumed of a free rotation that starts from rest, for its sense
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,8 @@ from dynamics.scene.scene import Scene
 from dynamics.shafts import GearBody
 from dynamics.types import FloatArray
 
+UNIT_Z = np.array([0.0, 0.0, 1.0])
+
 
 @dataclass(frozen=True)
 class LineOfAction:
@@ -134,9 +136,6 @@ def _common_face(scene: Scene, index: int) -> tuple[float, float]:
 
 
 # How deflection, misalignment and center distance of a flank follow from its bodies' freedoms.
-
-
-UNIT_Z = np.array([0.0, 0.0, 1.0])
 
 
 def approach(scene: Scene, rotors: Bodies, index: int, line: LineOfAction) -> FloatArray:

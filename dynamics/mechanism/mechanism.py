@@ -38,6 +38,8 @@ from dynamics.types import BoolArray, FloatArray
 
 
 BETWEEN_KNOTS = 8  # moments at which a law is looked at between two of its knots
+RADIAL, AXIAL, TILT = (0, 1), (2,), (3, 4)
+GIVE_INERTIA = "Give the shaft or its gears mass and inertia (see hollow_cylinder)."
 
 
 def _nominal_forces(scene: Scene, kinematics: Kinematics, inertia: FloatArray, *, coasts: bool) -> FloatArray:
@@ -163,9 +165,6 @@ def _acceleration(
 # Rotors that no bearing holds in a direction, but a coupling to one that is held there.
 
 
-RADIAL, AXIAL, TILT = (0, 1), (2,), (3, 4)
-
-
 def _with_couplings(scene: Scene, rotors: Sequence[Rotor]) -> tuple[Rotor, ...]:
     """Return the rotors with what their couplings hold where no bearing does.
 
@@ -207,9 +206,6 @@ def _holding(scene: Scene, rotor: Rotor, coupling: Coupling, kinds: tuple[int, .
     kept[at] = matrix[at]
     lever = float(scene.shaft(coupling.first).origin[2] + coupling.position - rotor.center[2])
     return replace(rotor, curved=(*rotor.curved, (kept, lever)))
-
-
-GIVE_INERTIA = "Give the shaft or its gears mass and inertia (see hollow_cylinder)."
 
 
 @dataclass(frozen=True)

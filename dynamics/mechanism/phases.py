@@ -15,6 +15,9 @@ from dynamics.mechanism.mechanism import Mechanism
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
+LARGEST_DENOMINATOR = 1_000_000
+"""A cage's ratio is irrational: as a fraction it is off by at most a turn in 10^12."""
+
 
 @dataclass(frozen=True)
 class LoadPhase:
@@ -96,10 +99,6 @@ def _frame_turns(scene: Scene, kinematics: Kinematics) -> tuple[tuple[Fraction, 
 
 
 # How the cages of bearings turn in the kinematic motion.
-
-
-LARGEST_DENOMINATOR = 1_000_000
-"""A cage's ratio is irrational: as a fraction it is off by at most a turn in 10^12."""
 
 
 def cage_turns(

@@ -16,6 +16,22 @@ from dynamics.meshes.mesh_table import MeshTable, check_table
 # has turned on by its tooth's thickness from where the drive flank passed. With x the position of the driving
 # flank and c that thickness over the pitch, both on the operating pitch circle, the coast flank is at c - x.
 
+DEFAULT_DAMPING_RATIO = 0.05
+TECHNIQUES = ("constant_torque", "variable_torque")
+_TECHNIQUE = Declared(Kind.CHOICE, "", one_of(TECHNIQUES), "Technique of the mesh force", "variable_torque")
+_DAMPING = Declared(
+    Kind.DAMPING, "N s/m", between(0.0, 1e12), "Mesh damping in {unit}; left out: from damping_ratio", 1e3
+)
+_DAMPING_RATIO = Declared(Kind.RATIO, "", between(0.0, 10.0), "Damping ratio of the mesh", 0.05)
+_NOMINAL = "Nominal transverse mesh force in {unit}; left out: from the loads"
+_NOMINAL_FORCE = Declared(Kind.LOAD, "N", up_to(1e9), _NOMINAL, 2660.0)
+_POSITION = "Position in base pitches at the start; left out: from the geometry of the train"
+_OFFSET = Declared(Kind.RATIO, "", between(-1e6, 1e6), _POSITION, 0.0)
+_MISALIGNMENT = Declared(Kind.LENGTH, "m", between(-0.01, 0.01), "Misalignment in {unit}", 0.0, written="µm")
+_CHANGE = Declared(Kind.LENGTH, "m", between(-0.1, 0.1), "Change of the center distance in {unit}", 0.0)
+_SLIDING = "Coefficient of sliding friction of the teeth; left out: none"
+_FRICTION = Declared(Kind.RATIO, "", up_to(1.0), _SLIDING, 0.05)
+
 
 @dataclass(frozen=True)
 class CoastFlank:
@@ -41,24 +57,6 @@ class CoastFlank:
 
 
 # The mesh.
-
-
-DEFAULT_DAMPING_RATIO = 0.05
-TECHNIQUES = ("constant_torque", "variable_torque")
-
-_TECHNIQUE = Declared(Kind.CHOICE, "", one_of(TECHNIQUES), "Technique of the mesh force", "variable_torque")
-_DAMPING = Declared(
-    Kind.DAMPING, "N s/m", between(0.0, 1e12), "Mesh damping in {unit}; left out: from damping_ratio", 1e3
-)
-_DAMPING_RATIO = Declared(Kind.RATIO, "", between(0.0, 10.0), "Damping ratio of the mesh", 0.05)
-_NOMINAL = "Nominal transverse mesh force in {unit}; left out: from the loads"
-_NOMINAL_FORCE = Declared(Kind.LOAD, "N", up_to(1e9), _NOMINAL, 2660.0)
-_POSITION = "Position in base pitches at the start; left out: from the geometry of the train"
-_OFFSET = Declared(Kind.RATIO, "", between(-1e6, 1e6), _POSITION, 0.0)
-_MISALIGNMENT = Declared(Kind.LENGTH, "m", between(-0.01, 0.01), "Misalignment in {unit}", 0.0, written="µm")
-_CHANGE = Declared(Kind.LENGTH, "m", between(-0.1, 0.1), "Change of the center distance in {unit}", 0.0)
-_SLIDING = "Coefficient of sliding friction of the teeth; left out: none"
-_FRICTION = Declared(Kind.RATIO, "", up_to(1.0), _SLIDING, 0.05)
 
 
 @described

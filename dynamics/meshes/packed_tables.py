@@ -19,6 +19,9 @@ from dynamics.types import FloatArray, IntArray
 ORDER = 9
 """Degree in the position: a width, cubic, squared, times a stiffness, cubic."""
 
+BUCKETS_PER_KNOT = 4
+LEAST = 4  # knots of a table that can be decimated
+
 
 def _energy_below(row: FloatArray, level: FloatArray) -> FloatArray:
     """Return ascending coefficients (P L, ORDER + 1), J, of a table of P `row`s at the levels (L,).
@@ -47,10 +50,6 @@ def _add_intervals(row: FloatArray, level: FloatArray, energy: FloatArray) -> No
                     square = width * (row[high, b] - row[low, b]) / 12.0
                     for c in range(4):
                         energy[high, a + b + c] += square * (row[low, 4 + c] - row[high, 4 + c])
-
-
-BUCKETS_PER_KNOT = 4
-LEAST = 4  # knots of a table that can be decimated
 
 
 @with_numbers("offset")

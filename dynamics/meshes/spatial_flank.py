@@ -42,6 +42,8 @@ CREEP_SPEED = 1e-3
 that stick in truth creep at up to it; a pair of 4 mm module at 10 rpm slides ten times as fast at the
 ends of contact."""
 
+LOAD_ARM, SLIDING_SHARE, SLIDING_LEVER = 2, 4, 6  # channels
+
 
 class _Lever(NamedTuple):
     """A quantity of the table with its derivatives in d, m and a."""
@@ -181,9 +183,6 @@ def _area_slope(w: float, start: float, top: float, ends: Weights, slopes: Weigh
     w_slope = 0.0 if w == 1.0 else -(slopes[0] + w * span_slope) / span
     force = start + w * (rise + w * (c2 + w * c3))
     return float(span_slope * area + span * (force * w_slope + w * w * change))
-
-
-LOAD_ARM, SLIDING_SHARE, SLIDING_LEVER = 2, 4, 6  # channels
 
 
 class SpatialFlankLaws(NamedTuple):

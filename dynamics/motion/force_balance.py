@@ -13,6 +13,8 @@ from dynamics.kernels.local_state import LocalState
 from dynamics.motion.observation import local_state
 from dynamics.types import FloatArray
 
+LOADS = (Law.SPEED_TORQUE, Law.APPLIED_FORCE)
+
 
 @dataclass(frozen=True)
 class ForceBalance:
@@ -86,9 +88,6 @@ def block_diagonal(elements: Elements, derivative: FloatArray) -> FloatArray:
     for first, end in zip(elements.first[:-1], elements.first[1:], strict=True):
         matrix[first:end, first:end] = derivative[first:end, : end - first]
     return matrix
-
-
-LOADS = (Law.SPEED_TORQUE, Law.APPLIED_FORCE)
 
 
 def at_mean_loads(arrays: SystemArrays) -> SystemArrays:

@@ -21,6 +21,10 @@ QUANTA_PER_TURN = 2**20
 """A free train's own rotation is moved into the reference phase in units of this part of a revolution: an
 exact power of two, so that counting them loses nothing."""
 QUANTUM = 2.0 * math.pi / QUANTA_PER_TURN
+ITERATIONS = 30
+"""Each leaves of the error the part that the center of mass is off the axis, over the radius of gyration."""
+SETTLED = 1e-14
+"""Of the forces: the last change."""
 
 
 @compiled
@@ -169,12 +173,6 @@ def external_force(system: SystemArrays, time: float, motion: FloatArray, force:
 
 
 # Accelerations of local coordinates, for the laws that depend on them: unbalances.
-
-
-ITERATIONS = 30
-"""Each leaves of the error the part that the center of mass is off the axis, over the radius of gyration."""
-SETTLED = 1e-14
-"""Of the forces: the last change."""
 
 
 @inner

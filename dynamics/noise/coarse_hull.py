@@ -20,6 +20,17 @@ FLAT = 0.02
 FARTHEST = 1.0
 """From the middle of a cell to its node, over the largest distance of the middle to a node of the surface."""
 
+THIN = 0.05
+"""Height over longest edge below which a panel is thin."""
+ROUNDS = 4
+"""A row of nodes on a straight edge needs several exchanges."""
+LONGEST = 2.0
+"""Longest edge of a coarse hull over its mean distance of nodes."""
+ATTEMPTS = 16
+"""To split cells; walls of gear cases took up to six."""
+FEWER = 0.5
+"""Nodes of a coarse hull over those of the fine one, at most: otherwise the fine one is taken."""
+
 
 def _surface_cells(hull: Hull, count: int) -> IntArray:
     """Return the cell of every node, (N,), numbers from 0 on; at most `count` of about the same size."""
@@ -100,12 +111,6 @@ def _means(cell: IntArray, weight: FloatArray, values: FloatArray) -> FloatArray
     return np.stack([np.bincount(cell, weight * values[:, axis]) / whole for axis in range(3)], axis=1)
 
 
-THIN = 0.05
-"""Height over longest edge below which a panel is thin."""
-ROUNDS = 4
-"""A row of nodes on a straight edge needs several exchanges."""
-
-
 def _without_thin(nodes: FloatArray, triangles: IntArray) -> IntArray:
     """Return triangles (T, 3) in which thin ones share their longest edge no more.
 
@@ -149,14 +154,6 @@ def _exchange(turned: IntArray, result: IntArray, thin: IntArray) -> None:
         result[index], result[other] = (top, p, far), (top, far, q)
         beyond[top, far] = beyond[far, top] = (index, p)  # an edge from now on
         done |= {index, other}
-
-
-LONGEST = 2.0
-"""Longest edge of a coarse hull over its mean distance of nodes."""
-ATTEMPTS = 16
-"""To split cells; walls of gear cases took up to six."""
-FEWER = 0.5
-"""Nodes of a coarse hull over those of the fine one, at most: otherwise the fine one is taken."""
 
 
 @dataclass(frozen=True)

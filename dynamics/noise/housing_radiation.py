@@ -39,6 +39,20 @@ FEWEST, KNOTS = 8.0, (0.9, 0.025)
 WIDEST, CLOSEST = 1.5, 1.03
 """Largest ratio of frequencies side by side; the smallest that is parted."""
 
+USUAL = 0.85
+"""Frequency of an octave whose cost is the mean, over its highest: they lie closer towards its end."""
+Points = Sequence[tuple[int, float]]
+"""Numbers of octaves, and frequencies in Hz."""
+BAND = 10.0**0.05
+"""Half a third octave: the range grows to edges of bands."""
+WORK = "radiation resistance by {}"
+"""Name of a model over a range of frequencies in the log of runs."""
+RADIATION_VERSION = 3
+"""Raised with every change of the numbers of a resistance, or of what is kept with them."""
+STAGE = "radiation"
+LEAST_COST = 1.0
+"""CPU seconds."""
+
 
 @dataclass(frozen=True)
 class _Knots:
@@ -87,20 +101,12 @@ def _missed(
     return float(np.max(np.abs(10.0 * np.log10((expected + floor) / (own + floor))), initial=0.0))
 
 
-USUAL = 0.85
-"""Frequency of an octave whose cost is the mean, over its highest: they lie closer towards its end."""
-
-
 class _Octave(NamedTuple):
     """A range of frequencies, Hz, and the panels that resolve it."""
 
     first: float
     last: float
     hull: RadiatingHull
-
-
-Points = Sequence[tuple[int, float]]
-"""Numbers of octaves, and frequencies in Hz."""
 
 
 def _knots_of(
@@ -175,12 +181,6 @@ def _knot_cost(octave: _Octave, model: RadiationModel, air: Air) -> tuple[Cost, 
     per_hertz = 2.0 * math.pi / air.sound_speed * octave.hull.hull.outer_radius
     cost = model.cost(panels, per_hertz * (USUAL * octave.last), coordinates)
     return cost, _expected_knots(per_hertz * octave.last)
-
-
-BAND = 10.0**0.05
-"""Half a third octave: the range grows to edges of bands."""
-WORK = "radiation resistance by {}"
-"""Name of a model over a range of frequencies in the log of runs."""
 
 
 @dataclass(frozen=True)
@@ -332,13 +332,6 @@ def _resolved_parts(
 def resolved_frequency(outer: OuterHull, air: Air) -> float:
     """Return the frequency up to which the panels resolve the wavelength, Hz."""
     return outer.hull.highest_wavenumber * air.sound_speed / (2.0 * np.pi) * ROUNDED_DOWN
-
-
-RADIATION_VERSION = 3
-"""Raised with every change of the numbers of a resistance, or of what is kept with them."""
-STAGE = "radiation"
-LEAST_COST = 1.0
-"""CPU seconds."""
 
 
 def kept_radiation(

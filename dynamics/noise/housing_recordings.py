@@ -42,6 +42,11 @@ NEAREST = 2.0
 HALF_LENGTH, KAISER = 12, 8.0
 """Of the interpolation between samples: up to a quarter of their rate delays are exact within 1e-4."""
 BLOCK = 4_000_000  # phases that are held at a time
+MONOPOLES = ElementalRadiators()
+RESOLUTION = 20.0
+"""Hz, of gains over frequency in time: they change by parts of an octave."""
+FINER = 4
+"""Times the run's rate, at which the force is a cubic spline."""
 
 
 @dataclass(frozen=True)
@@ -127,9 +132,6 @@ def _solid_angle(hull: Hull, point: FloatArray) -> float:
     return float(2.0 * np.arctan2(volume, cosines).sum())
 
 
-MONOPOLES = ElementalRadiators()
-
-
 def pressure_transfer(
     housing: ReducedHousing,
     microphone: FloatArray,
@@ -206,10 +208,6 @@ def pressure_signal(
     return _convolved(acceleration, response, first, times.size)
 
 
-RESOLUTION = 20.0
-"""Hz, of gains over frequency in time: they change by parts of an octave."""
-
-
 def _amplified(response: FloatArray, gains: FloatArray, taps: int) -> FloatArray:
     """Return responses (L, m) with real gains (taps/2 + 1, m) over frequency, delayed by half of the taps."""
     window = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(taps) / taps)
@@ -249,10 +247,6 @@ def _convolved(pieces: Iterator[FloatArray], response: FloatArray, first: int, s
         begin += len(piece)
     heard = total[max(-first, 0) :][: max(samples - max(first, 0), 0)]
     return np.concatenate([np.zeros(samples - heard.size), heard])
-
-
-FINER = 4
-"""Times the run's rate, at which the force is a cubic spline."""
 
 
 def velocity_recording(

@@ -29,6 +29,10 @@ from dynamics.types import ComplexArray, FloatArray, IntArray
 from dynamics.vibration import BearingHarmonics, housing_motion, seat_forces
 from model_studies.progress import Progress, silent
 
+SMALL = 0.02
+"""Part of the hull's area below which a region joins the neighbor with the longest common edge."""
+AXES = "xyz"
+
 
 def models_at(
     response: BearingHarmonics,
@@ -133,11 +137,6 @@ def panel_sound(
     power = np.sum(parts, axis=0)
     whole = float(radiation.power(np.array([hertz]), velocity[None])[0])
     return PanelSound(panels.hull, np.asarray(power * (whole / power.sum() if whole > 0.0 else 1.0)))
-
-
-SMALL = 0.02
-"""Part of the hull's area below which a region joins the neighbor with the longest common edge."""
-AXES = "xyz"
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,11 @@ from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray, Json
 from dynamics.vibration import BearingHarmonics, seat_forces
 from dynamics.vibration.housing_motion import modal_amplitudes
 
+POWER = ("speed", "order")
+BINS = ("speed", "bin")
+QUIET = 30.0
+"""dB below the loudest beyond which a maximum is not listed."""
+
 
 def _powers(
     frequency: FloatArray, amplitudes: ComplexArray, housing: ReducedHousing, radiation: HousingRadiation
@@ -58,10 +63,6 @@ def _powers(
 def _power(velocity: ComplexArray, force: ComplexArray) -> FloatArray:
     """Return Re(v^H f) / 2 of every row, W."""
     return np.asarray(0.5 * np.sum(velocity.conj() * force, axis=1).real)
-
-
-POWER = ("speed", "order")
-BINS = ("speed", "bin")
 
 
 def _no_bins() -> FloatArray:
@@ -267,10 +268,6 @@ def radiated_sound(
         **powers,
         **_floor_fields([] if floor is None else [radiated_floor(floor, housing, names, radiation)]),
     )
-
-
-QUIET = 30.0
-"""dB below the loudest beyond which a maximum is not listed."""
 
 
 @dataclass(frozen=True)

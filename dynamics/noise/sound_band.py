@@ -34,6 +34,11 @@ from dynamics.types import FloatArray, IntArray
 from dynamics.vibration import BearingHarmonics, housing_motion, seat_forces
 from model_studies.progress import Progress, silent
 
+Bearing = TypeVar("Bearing", Bushing, PlanetBearing)
+MOST_MISSED = 10.0
+"""dB; speeds that miss more are no map of a resonance."""
+Levels = Callable[[Mapping[str, float]], FloatArray]
+
 
 @dataclass(frozen=True)
 class SoundModel:
@@ -83,9 +88,6 @@ def forced_power(model: SoundModel, speed: FloatArray, orders: int) -> tuple[Flo
     """
     response = harmonic_response(assemble(model.scene), speed, orders)
     return response.order, _radiated_power(model, response)
-
-
-Bearing = TypeVar("Bearing", Bushing, PlanetBearing)
 
 
 @dataclass(frozen=True)
@@ -192,11 +194,7 @@ def responses_of_band(scene: Scene, *, mounted: bool) -> int:
     return 2 + 2 * (len(("housing_damping", "housing_frequency")) + mounted + of_scene) + CASES
 
 
-MOST_MISSED = 10.0
-"""dB; speeds that miss more are no map of a resonance."""
-
 Powers = Callable[[SoundModel], tuple[FloatArray, OrderPower]]
-Levels = Callable[[Mapping[str, float]], FloatArray]
 
 
 @dataclass(frozen=True)

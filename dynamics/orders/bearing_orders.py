@@ -16,6 +16,19 @@ from dynamics.results import RunResult
 from dynamics.results.order_fit import order_phasors, unwrapped
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray, Json
 
+SAME = 1e-6
+"""Orders closer than this are one: frequencies of meshes in a train are ratios of teeth."""
+SECOND_MOMENT = 1.0 / 12.0 - 0.5 / np.pi**2
+"""Of Hann weights about their middle, over the square of the window's length."""
+PITCHES = 16
+"""Base pitches of a window, if orders lie no closer than an eighth."""
+APART = 2.0
+"""Cycles by which two orders differ within a window, or its Hann weights do not tell them apart."""
+ROWS = 400
+"""Most windows; they overlap by half where that makes fewer."""
+MOST_SWEEP = 0.2
+"""Change of the mesh frequency within a window, of its mean: beyond it the window has no speed."""
+
 
 def bearing_signals(result: RunResult) -> FloatArray:
     """Return forces on bearings over time, (b, 3, T) in N, with moments (b, 6, T) in N m where there are any.
@@ -28,10 +41,6 @@ def bearing_signals(result: RunResult) -> FloatArray:
     if not result.bearing_moment.size:
         return result.bearing_force
     return np.concatenate([result.bearing_force, result.bearing_moment], axis=1)
-
-
-SAME = 1e-6
-"""Orders closer than this are one: frequencies of meshes in a train are ratios of teeth."""
 
 
 @dataclass(frozen=True)
@@ -86,10 +95,6 @@ def _mesh_harmonics(result: RunResult, highest: int) -> _MeshHarmonics:
     return _MeshHarmonics(order, mesh, multiple)
 
 
-SECOND_MOMENT = 1.0 / 12.0 - 0.5 / np.pi**2
-"""Of Hann weights about their middle, over the square of the window's length."""
-
-
 def _smearing(modes: Json, frequency: FloatArray, sweep: FloatArray) -> FloatArray:
     """Return the leading error of amplitudes under Hann windows, of the amplitude near each mode, (S, H).
 
@@ -108,16 +113,6 @@ def _smearing(modes: Json, frequency: FloatArray, sweep: FloatArray) -> FloatArr
             off = (frequency - center) / width
             largest = np.maximum(largest, SECOND_MOMENT * (swept / width) ** 2 / (1.0 + off**2))
     return largest
-
-
-PITCHES = 16
-"""Base pitches of a window, if orders lie no closer than an eighth."""
-APART = 2.0
-"""Cycles by which two orders differ within a window, or its Hann weights do not tell them apart."""
-ROWS = 400
-"""Most windows; they overlap by half where that makes fewer."""
-MOST_SWEEP = 0.2
-"""Change of the mesh frequency within a window, of its mean: beyond it the window has no speed."""
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,14 @@ from dynamics.results import RunResult
 from dynamics.results.run_result import OVER_TIME
 from dynamics.types import FloatArray, IntArray
 
+USUAL = 10
+ROUNDING = 1e-9  # of an order that lies on the edge of the pass band
+KAISER = 12.0  # shape of the filter's window: 118 dB
+NYQUIST = 0.5  # cycles a sample
+REMOVED, TRANSITION = 80.0, 0.1
+"""dB by which a low-pass removes what is above its transition; width of that, of the frequency passed."""
+FINER, HALF_LENGTH = 4, 24  # times the result's rate; of the filter, in samples of the result
+
 
 def order_frequency(result: RunResult, mesh: int = 0) -> FloatArray:
     """Return the mesh frequency, without meshes the rotations per second of the leading shaft, (T,)."""
@@ -25,10 +33,6 @@ def order_frequency(result: RunResult, mesh: int = 0) -> FloatArray:
 def leading_shaft(result: RunResult) -> str:
     """Return the shaft of the first drive or free rotation."""
     return str([*result.case["drives"], *result.case["free_rotations"]][0]["shaft"])
-
-
-USUAL = 10
-ROUNDING = 1e-9  # of an order that lies on the edge of the pass band
 
 
 def highest_valid_order(result: RunResult, mesh: int = 0) -> int:
@@ -67,12 +71,6 @@ def checked_order(result: RunResult, field: str, value: int | None, mesh: int = 
         )
         raise InputError(field, value, bound, suggestion)
     return value
-
-
-KAISER = 12.0  # shape of the filter's window: 118 dB
-NYQUIST = 0.5  # cycles a sample
-REMOVED, TRANSITION = 80.0, 0.1
-"""dB by which a low-pass removes what is above its transition; width of that, of the frequency passed."""
 
 
 def resampled(values: FloatArray, up: int, down: int, half_length: int) -> FloatArray:
@@ -118,9 +116,6 @@ def low_passed(values: FloatArray, frequency: float) -> FloatArray:
     half = int(np.ceil((REMOVED - 7.95) / (2.285 * 2.0 * np.pi * TRANSITION * frequency) / 2.0))
     taps = firwin(2 * half + 1, middle, window=("kaiser", kaiser_beta(REMOVED)), fs=1.0)
     return np.asarray(fftconvolve(values, taps)[half : half + np.size(values)])
-
-
-FINER, HALF_LENGTH = 4, 24  # times the result's rate; of the filter, in samples of the result
 
 
 def resample_to_position(

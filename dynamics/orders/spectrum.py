@@ -16,6 +16,10 @@ from dynamics.types import FloatArray
 
 WINDOWS = ("hann", "rectangular", "flat_top")
 FLAT_TOP = (0.21557895, -0.41663158, 0.277263158, -0.083578947, 0.006947368)  # ISO 18431-2
+ORDERS = 3
+"""Mesh orders with sidebands where no number is given, as far as the output holds them."""
+REVOLUTIONS = 4
+"""Least length in periods of the modulation: under a Hann window a line reaches one line to either side."""
 
 
 @brief
@@ -134,12 +138,6 @@ def _vertex(spectrum: Spectrum, top: int) -> _Peak:
     shift = 0.5 * (left - right) / bend if bend < 0.0 else 0.0
     height = middle - 0.25 * (left - right) * shift
     return _Peak(float(spectrum.frequency[top] + shift * spectrum.resolution), float(np.exp(height)))
-
-
-ORDERS = 3
-"""Mesh orders with sidebands where no number is given, as far as the output holds them."""
-REVOLUTIONS = 4
-"""Least length in periods of the modulation: under a Hann window a line reaches one line to either side."""
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,11 @@ from dynamics.results import RunResult
 from dynamics.types import FloatArray, IntArray
 
 ON_LINE = 1e-6  # of a line's distance
+LEAST_LINES = 3.0
+"""Lines in the narrowest band: below, a band holds what leaks from its neighbors."""
+REFERENCE = 1000.0  # Hz, the center of band 0
+SHARE = 10.0**0.05 - 10.0**-0.05  # width of a band over its center
+NOMINAL = (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0)
 
 
 @brief
@@ -142,13 +147,6 @@ def _waterfall(
         made[0].unit,
         made[0].noise_bandwidth,
     )
-
-
-LEAST_LINES = 3.0
-"""Lines in the narrowest band: below, a band holds what leaks from its neighbors."""
-REFERENCE = 1000.0  # Hz, the center of band 0
-SHARE = 10.0**0.05 - 10.0**-0.05  # width of a band over its center
-NOMINAL = (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0)
 
 
 @dataclass(frozen=True)

@@ -35,6 +35,14 @@ HALVINGS = 8
 """A step in which a flank lifts off or lands is halved down to 1/256 around it, so that its kink costs no
 digits and the end of the march depends smoothly on its start."""
 
+SAME = 1e-11  # of the period: nearer knots count as one, nearer step sizes as equal
+MOST_STEPS = 1_000_000
+MOST_GAIN = 100.0
+STEPS_PER_CYCLE = 24  # of the highest natural frequency
+STEPS_PER_PITCH = 64  # of the mesh with the most pitches, or cycle of a load's highest order
+NEWTON_SHARE = 1e-12  # of the largest force: last update in an implicit stage
+DIFFERENCE = 1e-6  # of the size of the state, for derivatives
+
 
 @compiled
 def _march(
@@ -117,10 +125,6 @@ def _whole_step(
 def _keep(work: Workspace, step: int, path: FloatArray) -> None:
     for i in range(work.q.size):
         path[0, step, i], path[1, step, i], path[2, step, i] = work.q[i], work.v[i], work.a[i]
-
-
-SAME = 1e-11  # of the period: nearer knots count as one, nearer step sizes as equal
-MOST_STEPS = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -222,9 +226,6 @@ def _constant(values: FloatArray) -> Cubics:
     return Cubics(np.arange(values.size + 1), np.zeros(values.size), coefficient)
 
 
-MOST_GAIN = 100.0
-
-
 def _largest_force(system: System, mesh_force: FloatArray) -> float:
     """Return the largest force of meshes and loads at the largest speed, N."""
     laws, extreme = system.arrays.elements.laws, [part.speed.extreme for part in system.scene.references]
@@ -248,12 +249,6 @@ def _resonant_gain(system: System, modes: Modes) -> float:
     if system.scene.meshes or not held.size:
         return 1.0
     return min(MOST_GAIN, 0.5 / max(float(np.min(held)), 0.5 / MOST_GAIN))
-
-
-STEPS_PER_CYCLE = 24  # of the highest natural frequency
-STEPS_PER_PITCH = 64  # of the mesh with the most pitches, or cycle of a load's highest order
-NEWTON_SHARE = 1e-12  # of the largest force: last update in an implicit stage
-DIFFERENCE = 1e-6  # of the size of the state, for derivatives
 
 
 @dataclass(frozen=True)

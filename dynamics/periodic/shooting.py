@@ -12,6 +12,10 @@ from dynamics.periodic.period_map import PeriodicProblem, PeriodMap
 from dynamics.types import ComplexArray, FloatArray
 
 ON_THE_CIRCLE = 1e-6  # multipliers of undamped motions lie on it but for rounding
+ITERATION_LIMIT = 30
+HALVINGS = 12
+RESIDUAL_LIMIT = 1e-9  # of the size of a state
+SETTLING = 64  # periods; at a damping ratio of 0.01 in resonance the rest is below 2 %
 
 
 class Instability(Enum):
@@ -21,11 +25,6 @@ class Instability(Enum):
     FOLD = "real, above 1"
     PERIOD_DOUBLING = "real, below -1"
     NEIMARK_SACKER = "complex pair"
-
-
-ITERATION_LIMIT = 30
-HALVINGS = 12
-RESIDUAL_LIMIT = 1e-9  # of the size of a state
 
 
 class OrbitStatus(IntEnum):
@@ -160,9 +159,6 @@ def _line_search(
         if np.linalg.norm(remaining) < size:  # False for NaN
             return trial, remaining
     return None
-
-
-SETTLING = 64  # periods; at a damping ratio of 0.01 in resonance the rest is below 2 %
 
 
 def settled(

@@ -25,6 +25,21 @@ from host import cpu_seconds
 from model_studies.workers import InProcess, Workers, pays, spent
 
 SAMPLES_PER_PITCH = 64  # at least; as many powers of 2 more as there are steps
+FINE = 256  # samples per base pitch, for the share of the period that flanks touch
+PER_MESH = (
+    "mean_error",
+    "rms_error",
+    "peak_to_peak_error",
+    "least_force",
+    "largest_force",
+    "parted",
+    "coasting",
+)
+KINDS = (Instability.NONE, Instability.FOLD, Instability.PERIOD_DOUBLING, Instability.NEIMARK_SACKER)
+UP, DOWN, BRANCH = 0, 1, 2
+CURVES = ("up", "down", "branch")
+SAME = 0.02  # of the rms of the transmission error: motions nearer than that are one
+MESH = ("point", "mesh")
 
 
 @dataclass(frozen=True)
@@ -109,19 +124,6 @@ def motion(
     )
 
 
-FINE = 256  # samples per base pitch, for the share of the period that flanks touch
-PER_MESH = (
-    "mean_error",
-    "rms_error",
-    "peak_to_peak_error",
-    "least_force",
-    "largest_force",
-    "parted",
-    "coasting",
-)
-KINDS = (Instability.NONE, Instability.FOLD, Instability.PERIOD_DOUBLING, Instability.NEIMARK_SACKER)
-
-
 def _figures_of(problem: PeriodicProblem, orbits: Sequence[Orbit], swept: int) -> dict[str, Any]:
     """Return the figures of all `orbits` by the names of `SteadyStates`; NaN where no motion was found.
 
@@ -191,14 +193,6 @@ def sweep(
         if progress is not None:
             progress(float(done / steps[-1]))
     return tuple(orbits)
-
-
-UP, DOWN, BRANCH = 0, 1, 2
-CURVES = ("up", "down", "branch")
-SAME = 0.02  # of the rms of the transmission error: motions nearer than that are one
-
-
-MESH = ("point", "mesh")
 
 
 @brief

@@ -10,6 +10,11 @@ from bounds import engineering
 from dynamics.results.checks import Check
 from dynamics.types import FloatArray, Json
 
+UNACCOUNTED = 0.01
+"""Of the turnover: more that is not accounted for means that steps miss the motion."""
+FALLEN = 1e-3
+"""Of the turnover: a loss that falls by more has driven; less is the error of a step's weights."""
+
 
 @dataclass(frozen=True)
 class EnergyAudit:
@@ -99,9 +104,3 @@ class EnergyAudit:
         figures, holds = {"unaccounted": self.relative, "fallen": self.fallen}, not (lost or missing)
         assumption = "work is balanced and losses only grow"
         return Check("", assumption, "energy audit", holds, reason, figures, valid=holds)
-
-
-UNACCOUNTED = 0.01
-"""Of the turnover: more that is not accounted for means that steps miss the motion."""
-FALLEN = 1e-3
-"""Of the turnover: a loss that falls by more has driven; less is the error of a step's weights."""

@@ -14,6 +14,8 @@ from dynamics.errors import InputError
 from dynamics.results.run_result import RunResult
 from dynamics.types import FloatArray
 
+AXIS_AGREEMENT = 1e-9  # m
+
 
 class ContactState(IntEnum):
     """The flanks of a mesh that carry."""
@@ -78,9 +80,6 @@ def dynamic_factor(result: RunResult, pitches: int = 16, mesh: int = 0) -> _Dyna
         mean(force),
         np.minimum.reduceat(least, first),
     )
-
-
-AXIS_AGREEMENT = 1e-9  # m
 
 
 @dataclass(frozen=True)

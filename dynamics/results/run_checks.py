@@ -23,6 +23,16 @@ from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray, Json
 
 WHAT = ("tilt", "center distance")
+USUAL_TOLERANCE = 0.01
+"""Relative change of the mean transmission error that may pass where no tolerance was requested."""
+LIGHT = 1e-3
+"""Part of the largest bearing force at the start below which a bearing counts as unloaded from the start."""
+STRAIGHT_ON = 1.2
+"""Times the highest load of a table: up to here it may go on straight, with its last stiffness.
+
+The result is then reported as extrapolated. Beyond it is wrong: tooth pairs that would share the load, and
+corner contact that would set in, are not in the table. A table of two levels is a closed form and holds
+everywhere."""
 
 
 class _AxisChecks:
@@ -76,10 +86,6 @@ class _AxisChecks:
 
 
 # Whether tables that are read at one misalignment or center distance were right to: how far bodies moved.
-
-
-USUAL_TOLERANCE = 0.01
-"""Relative change of the mean transmission error that may pass where no tolerance was requested."""
 
 
 class _HeldOperatingPointChecks:
@@ -223,10 +229,6 @@ def _contact_in_words(gap: float, known: bool, room: float) -> str:
 # Whether linear bearings stayed loaded: a real one has clearance and lets an unloaded shaft float.
 
 
-LIGHT = 1e-3
-"""Part of the largest bearing force at the start below which a bearing counts as unloaded from the start."""
-
-
 class _BearingLoadChecks:
     """Gathers, block by block, how long radial forces pointed away from the static load."""
 
@@ -275,14 +277,6 @@ class _BearingLoadChecks:
             reason = f"the load reversed in {100.0 * share:.3g} % of the run: {advice}"
         assumption, name = "linear bearing stays loaded", self._name[index]
         return Check(self._effect, assumption, name, share == 0.0, reason, {"unloaded": share})
-
-
-STRAIGHT_ON = 1.2
-"""Times the highest load of a table: up to here it may go on straight, with its last stiffness.
-
-The result is then reported as extrapolated. Beyond it is wrong: tooth pairs that would share the load, and
-corner contact that would set in, are not in the table. A table of two levels is a closed form and holds
-everywhere."""
 
 
 class _ForceChecks:

@@ -26,6 +26,19 @@ from model_studies.netcdf import DAMAGE, UnreadableFile, describe, make_dimensio
 if TYPE_CHECKING:
     import xarray
 
+MESH, FREEDOM = ("mesh", "time"), ("freedom", "time")
+BEARING = ("bearing", "direction", "time")
+NAMED = ("mesh", "shaft", "bearing", "freedom", "drive", "coupling")
+"""Dimensions along which names stand, in the field of the same name."""
+CHUNK = 8192  # samples that are packed together
+PACKING: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
+DIRECTIONS = ("x", "y", "z")
+TIME = Stored(("time",), "s", "time")
+SCHEMA = "lineofaction dynamics run"
+SCHEMA_VERSION = 3
+DOCUMENTS = {"effect_ledger": "{}", "receipt": "{}", "case": "{}", "modes": "{}", "warnings": "[]"}
+"""JSON attributes, and the default of those that older files lack."""
+
 
 @dataclass(frozen=True)
 class StepStatistics:
@@ -43,10 +56,6 @@ class StepStatistics:
     smallest_step: float
     largest_step: float
     """`smallest_step`, `largest_step`: Accepted, s."""
-
-
-MESH, FREEDOM = ("mesh", "time"), ("freedom", "time")
-BEARING = ("bearing", "direction", "time")
 
 
 @brief
@@ -251,8 +260,6 @@ class RunResult:
         np.savetxt(path, table, fmt="%.9g", delimiter=",", header=",".join(names), comments="")
 
 
-NAMED = ("mesh", "shaft", "bearing", "freedom", "drive", "coupling")
-"""Dimensions along which names stand, in the field of the same name."""
 _STORED: dict[str, Stored] = {
     each.name: each.metadata["stored"] for each in fields(RunResult) if "stored" in each.metadata
 }
@@ -265,12 +272,6 @@ SERIES = OVER_TIME | _STORED
 
 
 # The netCDF-4 file of a run, written block by block: memory does not grow with the run.
-
-
-CHUNK = 8192  # samples that are packed together
-PACKING: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
-DIRECTIONS = ("x", "y", "z")
-TIME = Stored(("time",), "s", "time")
 
 
 class RunFile:
@@ -344,12 +345,6 @@ class RunFile:
         if series.dimensions[-1] == "time":
             self._growing[name] = variable
         return variable
-
-
-SCHEMA = "lineofaction dynamics run"
-SCHEMA_VERSION = 3
-DOCUMENTS = {"effect_ledger": "{}", "receipt": "{}", "case": "{}", "modes": "{}", "warnings": "[]"}
-"""JSON attributes, and the default of those that older files lack."""
 
 
 def attributes(fields: Mapping[str, Any]) -> dict[str, Any]:

@@ -38,6 +38,12 @@ from dynamics.types import FloatArray
 ISOTROPY = 1e-9  # relative
 SEAT_AGREEMENT = 1e-3  # m; a bearing acts at its middle, which need not be that of its bore
 IRRATIONAL = 1.0  # rad; what this turn leaves alone any turn does
+AXIS_AGREEMENT = 1e-9  # of a shaft's length: shafts nearer than this share an axis
+ON_VIOLATION = ("repeat", "fail", "report")
+TOLERANCES = (1e-6, 0.5)
+LEVEL_TOLERANCES = (1e-9, 3.0)  # dB
+SAMPLE_LIMIT = 2e7  # a run's states are held in memory
+LEAST_RATE = 1000.0  # Hz, of an output whose rate is chosen
 
 
 def _check_housings(scene: Scene) -> None:
@@ -105,9 +111,6 @@ def _alike_across(matrix: FloatArray) -> bool:
 
 
 # Shafts of different frames: which lie on one axis, and what may join them.
-
-
-AXIS_AGREEMENT = 1e-9  # of a shaft's length: shafts nearer than this share an axis
 
 
 def _check_frames(scene: Scene) -> None:
@@ -290,13 +293,6 @@ def _check_parts(scene: Scene) -> None:
     _check_temperatures(scene)
     for check in (_check_frames, _check_gravity, _check_couplings, _check_housings, _check_bearing_laws):
         check(scene)
-
-
-ON_VIOLATION = ("repeat", "fail", "report")
-TOLERANCES = (1e-6, 0.5)
-LEVEL_TOLERANCES = (1e-9, 3.0)  # dB
-SAMPLE_LIMIT = 2e7  # a run's states are held in memory
-LEAST_RATE = 1000.0  # Hz, of an output whose rate is chosen
 
 
 @dataclass(frozen=True)

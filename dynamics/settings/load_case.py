@@ -20,6 +20,23 @@ _FORCE_FACTOR = Declared(
     0.5,
 )
 _ONE = "Give the case's own force and moment, or a factor on the scene's."
+DRIVE, COAST = "drive", "coast"
+_SHARE = Declared(Kind.RATIO, "", up_to(1e9), "Share of the duration, relative to the other load cases", 1.0)
+_FACTOR = Declared(Kind.RATIO, "", up_to(1e6), "Factor on the scene's loads, not on its forces", 1.0)
+_TORQUE = Declared(
+    Kind.LOAD, "N m", up_to(1e9), "Torque on the leading shaft, in place of a factor on the loads", 100.0
+)
+_FASTEST = 1e7 * math.pi / 30.0
+_SPEED = Declared(
+    Kind.SPEED, "rad/s", up_to(_FASTEST), "Speed of the leading shaft; left out: the scene's", 150.0
+)
+_DIRECTION = Declared(
+    Kind.CHOICE,
+    "",
+    one_of((DRIVE, COAST)),
+    "Flanks that carry: the driving ones of the scene, or the others",
+    DRIVE,
+)
 
 
 @described
@@ -47,26 +64,6 @@ class CaseForce:
             raise InputError("factor", self.factor, f"left out if a {min(stated)} is given", _ONE)
         if not stated and self.factor is None:
             raise InputError("force", None, "given, or a moment, or a factor", _ONE)
-
-
-DRIVE, COAST = "drive", "coast"
-
-_SHARE = Declared(Kind.RATIO, "", up_to(1e9), "Share of the duration, relative to the other load cases", 1.0)
-_FACTOR = Declared(Kind.RATIO, "", up_to(1e6), "Factor on the scene's loads, not on its forces", 1.0)
-_TORQUE = Declared(
-    Kind.LOAD, "N m", up_to(1e9), "Torque on the leading shaft, in place of a factor on the loads", 100.0
-)
-_FASTEST = 1e7 * math.pi / 30.0
-_SPEED = Declared(
-    Kind.SPEED, "rad/s", up_to(_FASTEST), "Speed of the leading shaft; left out: the scene's", 150.0
-)
-_DIRECTION = Declared(
-    Kind.CHOICE,
-    "",
-    one_of((DRIVE, COAST)),
-    "Flanks that carry: the driving ones of the scene, or the others",
-    DRIVE,
-)
 
 
 @described

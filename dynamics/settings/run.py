@@ -26,36 +26,6 @@ _TOLERANCE = Declared(
 )
 _FIXED = Declared(Kind.TIME, "s", up_to(1.0), "Step; left out: chosen by error control", 1e-5)
 _LARGEST = Declared(Kind.TIME, "s", Interval(gt=1e-12, le=1.0), "Largest step of the error control", 1e-3)
-
-
-@described
-@dataclass(frozen=True)
-class Integration:
-    """Method and tolerances of the time integration.
-
-    Error control takes no step below `smallest_step`, s. A run of more than `step_limit` steps ends as
-    `RunStatus.STEP_LIMIT`. With `estimate_error` it runs again at a tenth of the tolerance (half of a
-    `fixed_step`) and states the error from the difference of the transmission errors, as it does unasked
-    where flanks part or damping is light.
-    """
-
-    method: str = declared("auto", _METHOD)
-    tolerance: float = declared(1e-9, _TOLERANCE)
-    fixed_step: float | None = declared(None, _FIXED)
-    smallest_step: float = 1e-12
-    largest_step: float = declared(1e-3, _LARGEST)
-    step_limit: int = 100_000_000
-    estimate_error: bool = False
-
-    def __post_init__(self) -> None:
-        positive("smallest_step", self.smallest_step)
-        if self.largest_step <= self.smallest_step:
-            bound = above(self.smallest_step, name="smallest_step")
-            raise InputError("largest_step", self.largest_step, bound)
-        declared_fields(self)
-        integer("step_limit", self.step_limit, 1, 2**62)
-
-
 _RATE = Declared(
     Kind.FREQUENCY,
     "Hz",
@@ -117,6 +87,34 @@ _FILTER = Declared(
     "Filter the output against aliasing from above half the rate; false: unfiltered samples",
     True,
 )
+
+
+@described
+@dataclass(frozen=True)
+class Integration:
+    """Method and tolerances of the time integration.
+
+    Error control takes no step below `smallest_step`, s. A run of more than `step_limit` steps ends as
+    `RunStatus.STEP_LIMIT`. With `estimate_error` it runs again at a tenth of the tolerance (half of a
+    `fixed_step`) and states the error from the difference of the transmission errors, as it does unasked
+    where flanks part or damping is light.
+    """
+
+    method: str = declared("auto", _METHOD)
+    tolerance: float = declared(1e-9, _TOLERANCE)
+    fixed_step: float | None = declared(None, _FIXED)
+    smallest_step: float = 1e-12
+    largest_step: float = declared(1e-3, _LARGEST)
+    step_limit: int = 100_000_000
+    estimate_error: bool = False
+
+    def __post_init__(self) -> None:
+        positive("smallest_step", self.smallest_step)
+        if self.largest_step <= self.smallest_step:
+            bound = above(self.smallest_step, name="smallest_step")
+            raise InputError("largest_step", self.largest_step, bound)
+        declared_fields(self)
+        integer("step_limit", self.step_limit, 1, 2**62)
 
 
 @described

@@ -44,6 +44,12 @@ _TRANSVERSE = Declared(
     "Moment of inertia across the axis, through the center of mass",
     7e-3,
 )
+_MID_FACE = Declared(
+    Kind.LENGTH, "m", between(-1000.0, 1000.0), "Mid-face along the shaft, from its left end", 0.1
+)
+_CENTER = Declared(
+    Kind.LENGTH, "m", between(-1000.0, 1000.0), "Center of mass along the shaft, from its left end", 0.1
+)
 
 
 @described
@@ -92,11 +98,6 @@ def hollow_cylinder(
 # Gears by teeth, base radius and helix, and discs that mesh with nothing.
 
 
-_MID_FACE = Declared(
-    Kind.LENGTH, "m", between(-1000.0, 1000.0), "Mid-face along the shaft, from its left end", 0.1
-)
-
-
 @described
 @dataclass(frozen=True)
 class GearBody:
@@ -136,11 +137,6 @@ class GearBody:
     def base_pitch(self) -> float:
         """Transverse base pitch, m."""
         return 2.0 * math.pi * self.base_radius / self.teeth
-
-
-_CENTER = Declared(
-    Kind.LENGTH, "m", between(-1000.0, 1000.0), "Center of mass along the shaft, from its left end", 0.1
-)
 
 
 @described

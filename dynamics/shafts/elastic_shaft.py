@@ -18,6 +18,15 @@ from dynamics.types import BoolArray, FloatArray, IntArray
 
 # Reduction of an elastic body to its interface and a few modes: Craig and Bampton.
 
+CUT_OFFS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
+"""Up to which multiple of the frequency of interest modes with the interface held may be kept."""
+TRUNCATION = 0.01
+"""Relative error of the frequencies of interest at which enough of them are kept."""
+MESH_ERROR = 1e-3
+"""Estimated relative error of the frequencies of interest at which beam elements are short enough."""
+FIRST_PARTS, LAST_PARTS = 8, 256  # elements per length of the shaft: where refining starts and ends
+ACROSS, ALONG, TURN = (0, 4), 2, 5  # freedoms of a node: bending in the plane x z, extension, torsion
+
 
 @dataclass(frozen=True)
 class _ReducedBody:
@@ -74,12 +83,6 @@ def craig_bampton(
         motion[inside, : held.size] = -shape @ ((shape.T @ stiffness[at]) / square[:, None])
         motion[inside, held.size :] = shape[:, kept]
     return _ReducedBody(motion, motion.T @ mass @ motion, motion.T @ stiffness @ motion, frequency[kept])
-
-
-CUT_OFFS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
-"""Up to which multiple of the frequency of interest modes with the interface held may be kept."""
-TRUNCATION = 0.01
-"""Relative error of the frequencies of interest at which enough of them are kept."""
 
 
 @dataclass(frozen=True)
@@ -198,12 +201,6 @@ def _hertz(square: FloatArray) -> FloatArray:
 
 
 # The beam of a shaft with gears on it, fine enough, apart into bending, extension and torsion.
-
-
-MESH_ERROR = 1e-3
-"""Estimated relative error of the frequencies of interest at which beam elements are short enough."""
-FIRST_PARTS, LAST_PARTS = 8, 256  # elements per length of the shaft: where refining starts and ends
-ACROSS, ALONG, TURN = (0, 4), 2, 5  # freedoms of a node: bending in the plane x z, extension, torsion
 
 
 @dataclass(frozen=True)

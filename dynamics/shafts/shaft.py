@@ -20,6 +20,15 @@ SAME_POSITION = 1e-9
 PLACED = ("gears", "discs", "bushings", "rolling_bearings", "planet_bearings", "forces", "unbalances")
 """Kinds of parts of a scene that lie within the length of their shaft."""
 
+_LENGTH = Declared(Kind.LENGTH, "m", up_to(1000.0), "Length, from the left end towards +z", 0.2)
+_DAMPING = Declared(
+    Kind.RATIO,
+    "",
+    between(0.0, 1.0),
+    "Damping ratio of the material, in every elastic natural motion of the free shaft",
+    0.005,
+)
+
 
 class OnShaft(Protocol):
     """A part at a position on a shaft, m from its left end."""
@@ -40,16 +49,6 @@ def on_length(position: float, length: float) -> bool:
 def nearest_on(position: float, length: float) -> float:
     """Return the position on a shaft of `length` nearest to `position`, m from the left end."""
     return min(max(position, 0.0), length)
-
-
-_LENGTH = Declared(Kind.LENGTH, "m", up_to(1000.0), "Length, from the left end towards +z", 0.2)
-_DAMPING = Declared(
-    Kind.RATIO,
-    "",
-    between(0.0, 1.0),
-    "Damping ratio of the material, in every elastic natural motion of the free shaft",
-    0.005,
-)
 
 
 @described

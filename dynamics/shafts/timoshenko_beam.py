@@ -26,6 +26,8 @@ vary by a factor of 2, within 2e-6 at a factor of 4."""
 
 _GAUSS = np.polynomial.legendre.leggauss(POINTS)
 _SHARE, _WEIGHT = 0.5 * (1.0 + _GAUSS[0]), 0.5 * _GAUSS[1]
+PER_NODE = 6
+"""Freedoms of a node: x, y, z, tilt_x, tilt_y, rotation about z."""
 
 
 class _Piece(NamedTuple):
@@ -148,10 +150,6 @@ def _rod(
 
 def _stacked(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray) -> FloatArray:
     return np.stack([np.stack([a, b], axis=-1), np.stack([c, d], axis=-1)], axis=-2)
-
-
-PER_NODE = 6
-"""Freedoms of a node: x, y, z, tilt_x, tilt_y, rotation about z."""
 
 
 @dataclass(frozen=True)

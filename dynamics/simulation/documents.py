@@ -51,6 +51,10 @@ from dynamics.types import FloatArray, Json
 from model_studies.stage_clock import StageClock
 
 NOT_CHECKED = "no; toggling it measures it (ablation)"
+LEAST_SHARE = 0.05  # of a part in the kinetic energy of a mode
+ROWS = (Law.BALLS, Law.ROLLERS)
+ERROR_CHECK_FACTOR = 0.1
+IMPLICIT_STAGES_PER_STEP = 5
 
 
 @dataclass(frozen=True)
@@ -210,9 +214,6 @@ def _mesh(system: System, index: int) -> Json:
     }
 
 
-LEAST_SHARE = 0.05  # of a part in the kinetic energy of a mode
-
-
 def _modes_of_run(system: System) -> Json:
     """Return the `modes` of `RunResult`; nothing where there is no equilibrium."""
     try:
@@ -263,9 +264,6 @@ def _moves(freedom: Sequence[str], kinetic_energy: FloatArray) -> list[Json]:
     return moves
 
 
-ROWS = (Law.BALLS, Law.ROLLERS)
-
-
 def _bearings_at_rest(system: System) -> Json:
     """Return ``{"rolling_bearings": {name: ...}}`` in the equilibrium under the loads at t = 0.
 
@@ -305,10 +303,6 @@ def _carried(
         "element_load": float(np.max(load.sum(axis=1))),
         "peak_pressure": bearing.row.peak_pressure(float(np.max(load))),
     }
-
-
-ERROR_CHECK_FACTOR = 0.1
-IMPLICIT_STAGES_PER_STEP = 5
 
 
 def documents(

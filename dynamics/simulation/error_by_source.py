@@ -37,6 +37,10 @@ CAP = 0.63
 """Longest steps of a finer run over those of the run where no tolerance sets them: 0.1^(1/5)."""
 
 StatesOf = Callable[[int, int], States]
+TIME_STEP_REST = 1.0 / (1.0 - ERROR_CHECK_FACTOR**0.75)
+"""Error over the difference to a run at a tenth of the tolerance: it falls as the tolerance^(3/4)."""
+TABLE_REST = 1.0 / 3.0
+"""Error over the difference to half the positions: second order, as kinks at handovers allow."""
 
 
 @dataclass(frozen=True)
@@ -161,12 +165,6 @@ def observed_signals(
     force = system.bearing_force(seen.force, states.q, states.v)
     meshes = len(system.scene.meshes)  # frames that turn have positions too, behind those of the meshes
     return unwrapped(seen.position[:meshes]), seen.coordinate[system.driving_rows], force[:, :3]
-
-
-TIME_STEP_REST = 1.0 / (1.0 - ERROR_CHECK_FACTOR**0.75)
-"""Error over the difference to a run at a tenth of the tolerance: it falls as the tolerance^(3/4)."""
-TABLE_REST = 1.0 / 3.0
-"""Error over the difference to half the positions: second order, as kinks at handovers allow."""
 
 
 def error_by_source(

@@ -48,6 +48,8 @@ from dynamics.simulation.whole_run_error import RunPair, blind_windows, finer_ru
 from dynamics.types import Json, RunStatus
 from model_studies.stage_clock import StageClock, TimeTaken
 
+CHECKPOINT_EVERY = 5.0  # s of wall time
+
 
 @dataclass(frozen=True)
 class _MadeRun:
@@ -387,9 +389,6 @@ def _no_trajectory(system: System, start: StaticSolution) -> Trajectory:
         time=np.zeros(1),
         states=sink.states(0, 1),
     )
-
-
-CHECKPOINT_EVERY = 5.0  # s of wall time
 
 
 def interrupted_run(path: str | Path) -> Path:

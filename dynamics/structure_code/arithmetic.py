@@ -22,19 +22,6 @@ from dynamics.kernels.by_address import WORD
 
 FLOAT, FLAG, BYTE = ir.DoubleType(), ir.IntType(1), ir.IntType(8)
 TYPES: dict[type, Any] = {float: FLOAT, int: WORD, bool: FLAG}
-
-
-class Unsupported(Exception):
-    """The function needs what is not written out for a structure."""
-
-
-@dataclass(frozen=True)
-class Value:
-    """A number that is known when the loop runs."""
-
-    ir: Any
-
-
 Scalar = bool | int | float
 _BINARY: dict[type, tuple[Callable[..., Any], str, str]] = {
     ast.Add: (operator.add, "fadd", "add"),
@@ -59,6 +46,17 @@ _COMPARE: dict[type, tuple[Callable[[Any, Any], Any], str]] = {
     ast.Eq: (operator.eq, "=="),
     ast.NotEq: (operator.ne, "!="),
 }
+
+
+class Unsupported(Exception):
+    """The function needs what is not written out for a structure."""
+
+
+@dataclass(frozen=True)
+class Value:
+    """A number that is known when the loop runs."""
+
+    ir: Any
 
 
 class Arithmetic:

@@ -16,6 +16,8 @@ from dynamics.checks import finite, integer, positive
 from dynamics.errors import InputError
 from dynamics.types import FloatArray
 
+MOST_POINTS = 1_000_000
+
 
 @dataclass(frozen=True)
 class Levels:
@@ -89,9 +91,6 @@ def _check_values(field: str, values: tuple[float, ...]) -> None:
         raise InputError(field, values, "at least one value")
     for index, value in enumerate(values):
         finite(f"{field}[{index}]", value)
-
-
-MOST_POINTS = 1_000_000
 
 
 @dataclass(frozen=True)

@@ -26,6 +26,12 @@ from model_studies.spread import quantile_bounds, rank_correlation
 from model_studies.workers import InProcess, Workers, task_cpu_seconds
 
 FRACTIONS = (0.05, 0.5, 0.95)
+RUNS = 8
+"""At most in a batch: what an interruption loses of each worker. It does not depend on who does the tasks."""
+NAN = float("nan")
+Batch = tuple[tuple[float, ...], ...]
+NEGLECTED = ("errors of steps and tables measured in windows of the run", "estimated influence of effects")
+"""What runs of a minimal receipt do without."""
 
 
 @dataclass(frozen=True)
@@ -162,14 +168,6 @@ class Scenes(Protocol):
         ...
 
 
-RUNS = 8
-"""At most in a batch: what an interruption loses of each worker. It does not depend on who does the tasks."""
-
-NAN = float("nan")
-
-Batch = tuple[tuple[float, ...], ...]
-
-
 @dataclass(frozen=True)
 class StudyTask:
     """What all batches of a study share."""
@@ -238,10 +236,6 @@ def _run_point(task: StudyTask, values: tuple[float, ...]) -> _PointResult:
     except MemoryError:
         figures, errors, reason = none, none, "out of memory"
     return _PointResult(figures, errors, reason, [task_cpu_seconds() - began, integration])
-
-
-NEGLECTED = ("errors of steps and tables measured in windows of the run", "estimated influence of effects")
-"""What runs of a minimal receipt do without."""
 
 
 def study(

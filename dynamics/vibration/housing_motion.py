@@ -18,6 +18,15 @@ from dynamics.orders.resampling import interpolated
 from dynamics.results import RunResult
 from dynamics.types import BoolArray, ComplexArray, FloatArray, Json
 
+HALF_LENGTH = 24
+"""Of the filter of `finer_seat_forces`, in samples of the run."""
+ROUNDING = 1e-9
+"""Of the damping of two modes: what couples them by less is rounding."""
+UNDAMPED = 1e-12
+"""Of the stiffness of a mode: what is left of it in a resonance without damping is rounding."""
+BLOCK = 64
+"""Frequencies whose matrices are held at a time, where modes are coupled by damping."""
+
 
 class BearingForces(Protocol):
     """Forces of b bearings."""
@@ -72,10 +81,6 @@ class ReportedHarmonics(BearingHarmonics, Protocol):
     @property
     def facts(self) -> Json:
         """Plain JSON."""
-
-
-HALF_LENGTH = 24
-"""Of the filter of `finer_seat_forces`, in samples of the run."""
 
 
 def seat_forces(
@@ -142,14 +147,6 @@ def _on_seats(
     ]
     own = [signals[known.index(name)] for name in names]
     return np.concatenate([np.tensordot(turn, force, 1) for turn, force in zip(turns, own, strict=True)])
-
-
-ROUNDING = 1e-9
-"""Of the damping of two modes: what couples them by less is rounding."""
-UNDAMPED = 1e-12
-"""Of the stiffness of a mode: what is left of it in a resonance without damping is rounding."""
-BLOCK = 64
-"""Frequencies whose matrices are held at a time, where modes are coupled by damping."""
 
 
 def modal_amplitudes(housing: ReducedHousing, frequency: FloatArray, force: ComplexArray) -> ComplexArray:

@@ -25,6 +25,9 @@ from dynamics.vibration.housing_vibration import (
 RESIDUAL = "residual"
 """Name of what the modes that are not kept contribute: static flexibility of the seats."""
 
+FREQUENCIES = 800
+"""Of the transfer functions, evenly spaced; resonances kept are among them."""
+
 
 @dataclass(frozen=True)
 class Parts:
@@ -190,10 +193,6 @@ def mode_shape(housing: ReducedHousing, number: int) -> SurfaceShape:
     shape = operating_deflection(housing, housing.modes[1][:, number - 1].astype(complex))
     largest = np.linalg.norm(shape.motion, axis=1).max()
     return SurfaceShape(shape.points, shape.triangles, shape.motion / largest)
-
-
-FREQUENCIES = 800
-"""Of the transfer functions, evenly spaced; resonances kept are among them."""
 
 
 @dataclass(frozen=True)

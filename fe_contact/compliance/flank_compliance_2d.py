@@ -37,6 +37,9 @@ from model_studies.stage_clock import StageClock
 
 # Checks of a condensed gear on its uncondensed mesh, by the field of one load.
 
+MODEL_VERSION = 5  # raise it whenever the same input gives another result: old cache files are then not found
+USUAL_TEETH = 5
+
 
 @dataclass(frozen=True)
 class Field:
@@ -157,10 +160,6 @@ def _ring_checks(ring: Ring, tooth_index: int, load: _FlankLoad, matrix: FloatAr
         residual_rounding=left[0],
         energy_rounding=left[1],
     )
-
-
-MODEL_VERSION = 5  # raise it whenever the same input gives another result: old cache files are then not found
-USUAL_TEETH = 5
 
 
 def flank_compliance(

@@ -28,6 +28,11 @@ of two slices, the shortest ones that the bodies carry, move them as patches of 
 LONGEST_LAW = 0.5
 """The same at most, in modules: about half the thickness of a tooth."""
 
+_FLUSH = 1e-6
+"""Faces that stand apart by less than this part of their width end together."""
+_USUAL_LOAD = 60e6
+"""Normal force over face width and module, Pa: about the rated one."""
+
 
 @dataclass(frozen=True)
 class PatchRule:
@@ -219,10 +224,6 @@ def _free_ends(pair: ParallelAxes, gear: Toothing, middle: float, slices: Slices
     )
 
 
-_FLUSH = 1e-6
-"""Faces that stand apart by less than this part of their width end together."""
-
-
 def _shift(s: FloatArray, offset: FloatArray, tip: float, radius: FloatArray, rule: PatchRule) -> FloatArray:
     """Shift of the load's centroid to its root by the partner's edge, m: both forces must be in line."""
     patches = tip_patches(s, offset, tip, rule.half_width, rule.lengths(offset, radius))
@@ -244,10 +245,6 @@ def _flank_curvature(gear: Toothing, patches: Patches) -> FloatArray:
     """
     along = np.maximum(np.abs(patches.center), 0.5 * patches.half_width)
     return math.cos(gear.base_helix_angle) / (gear.sign * np.sqrt(2.0 * gear.base_radius * along))
-
-
-_USUAL_LOAD = 60e6
-"""Normal force over face width and module, Pa: about the rated one."""
 
 
 def _turned_normals(

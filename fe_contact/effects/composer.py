@@ -12,6 +12,8 @@ from fe_contact.types import Json
 
 # One effect toggled, all others as they were decided.
 
+CHOICES = ("on", "off", "auto")
+
 
 def flipped(registry: Sequence[Effect], decided: Mapping[str, str], name: str, choice: str) -> dict[str, str]:
     """Return the choices with `name` on or off.
@@ -31,9 +33,6 @@ def flipped(registry: Sequence[Effect], decided: Mapping[str, str], name: str, c
     if name == width and choice == "on":
         choices[face] = "off"
     return choices
-
-
-CHOICES = ("on", "off", "auto")
 
 
 @dataclass(frozen=True)

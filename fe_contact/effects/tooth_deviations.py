@@ -20,6 +20,9 @@ from fe_contact.geometry import (
     deviations_period,
 )
 
+_PLACES = 513
+"""Places of the path of contact at which surfaces are looked at."""
+
 
 @dataclass(frozen=True)
 class ToothDeviations(Effect):
@@ -79,10 +82,6 @@ def sharpest_crest(pair: ParallelAxes) -> float:
     )
     surfaces = sum(_hollow_surface(pair, index) for index in (0, 1))
     return float(np.max(sum(waves) / pair.relative_curvature(roll_1))) + surfaces
-
-
-_PLACES = 513
-"""Places of the path of contact at which surfaces are looked at."""
 
 
 def _hollow_surface(pair: ParallelAxes, index: int) -> float:

@@ -20,6 +20,9 @@ from host.loops import inner, njit
 _IN_WAVE = 8
 """Parts of a wave between the nodes of a profile."""
 
+_TERMS = tuple((-1.0) ** k * math.pi ** (2 * k + 1) / math.factorial(2 * k + 1) for k in range(10))
+"""Taylor series of the sine of pi times a number up to one half: its remainder is below 1e-13."""
+
 
 @dataclass(frozen=True)
 class TurningGap:
@@ -206,10 +209,6 @@ def _take_harmonics(
         for k in range(gap.size):
             angle = order * turn[k] + advance * along[k] - late
             gap[k] -= (amplitude + over_face * along[k]) * _cosine(angle)
-
-
-_TERMS = tuple((-1.0) ** k * math.pi ** (2 * k + 1) / math.factorial(2 * k + 1) for k in range(10))
-"""Taylor series of the sine of pi times a number up to one half: its remainder is below 1e-13."""
 
 
 @inner(error_model="numpy")

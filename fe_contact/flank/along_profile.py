@@ -17,6 +17,16 @@ from fe_contact.flank.relief import ProfileRelief, Shape, amount, length, shape,
 from fe_contact.types import FloatArray
 
 _PROFILE = Direction.PROFILE
+FLATTEST, STEEPEST = math.radians(5.0), math.radians(85.0)
+"""Angles between flank and chamfer, rad; a flatter one is a relief."""
+_HALVINGS = 50
+_LOWEST = 1e-3  # of the normal module: a chamfer so low fits at any angle at which it reaches the tip circle
+_ROUNDING_FITS = Text.of("It must leave an involute and some of the tip. ", SiNote("In m: 0.2 mm is 2e-4."))
+_CHAMFER_RISES = Text.of("The chamfer must run on towards the tip circle. ", SiNote("In rad, to the flank."))
+_CHAMFER_FITS = "It must leave an involute and some of the tip; at a smaller angle it takes less of the tip."
+_ROUNDING = "Radius of the rounded tip edge in the transverse plane, tangent to flank and tip circle"
+_CHAMFER = "Radial height h_K of the tip chamfer: d_Fa = d_a - 2 h_K (a ring gear: +)"
+_ANGLE = "Angle between flank and tip chamfer at the tip form point in the transverse plane"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,14 +119,6 @@ class _RootRelief(ProfileRelief):
 # runs into the tip circle, or a straight chamfer. Both are counted in the transverse plane as material
 # removed from the involute, over the arc length of the flank from the tip form point: jump d + bend d^2/2.
 
-FLATTEST, STEEPEST = math.radians(5.0), math.radians(85.0)
-"""Angles between flank and chamfer, rad; a flatter one is a relief."""
-_HALVINGS = 50
-_LOWEST = 1e-3  # of the normal module: a chamfer so low fits at any angle at which it reaches the tip circle
-_ROUNDING_FITS = Text.of("It must leave an involute and some of the tip. ", SiNote("In m: 0.2 mm is 2e-4."))
-_CHAMFER_RISES = Text.of("The chamfer must run on towards the tip circle. ", SiNote("In rad, to the flank."))
-_CHAMFER_FITS = "It must leave an involute and some of the tip; at a smaller angle it takes less of the tip."
-
 
 def _rounding_start(gear: Tooth, radius: float) -> float:
     """Roll length in m of the tip form point of a rounding that touches involute and tip circle.
@@ -200,11 +202,6 @@ def _chamfer_reaches(gear: Tooth, roll: float, angle: float) -> bool:
 def _edge(description: str, example: float) -> Declared:
     """Return the declaration of the size of an edge, m."""
     return Declared(Kind.EDGE, "m", between(0.0, 0.1), description, example, _PROFILE)
-
-
-_ROUNDING = "Radius of the rounded tip edge in the transverse plane, tangent to flank and tip circle"
-_CHAMFER = "Radial height h_K of the tip chamfer: d_Fa = d_a - 2 h_K (a ring gear: +)"
-_ANGLE = "Angle between flank and tip chamfer at the tip form point in the transverse plane"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -32,6 +32,8 @@ else:
 PARTS: tuple[type[FlankPart], ...] = (*AlongProfile.__bases__, *AlongFace.__bases__, *OverFlank.__bases__)
 """The modifications that there are, each a line of these lists, in the order of their figures."""
 Flank = TypeVar("Flank")
+_DEFAULTS = {kind: (kind(), {entry.name: entry.default for entry in fields(kind)}) for kind in PARTS}
+"""Every part as it is by default, which most parts of most flanks are, and its fields."""
 
 
 @dataclass_transform(frozen_default=True, kw_only_default=True)
@@ -167,10 +169,6 @@ FLANK_FIELDS = declarations(FlankModification)
 def fields_of(*kinds: Kind) -> tuple[str, ...]:
     """Return the fields of a modification that are of one of these kinds."""
     return tuple(name for name, fact in FLANK_FIELDS.items() if fact.kind in kinds)
-
-
-_DEFAULTS = {kind: (kind(), {entry.name: entry.default for entry in fields(kind)}) for kind in PARTS}
-"""Every part as it is by default, which most parts of most flanks are, and its fields."""
 
 
 def _part(modification: FlankModification, kind: type[FlankPart]) -> FlankPart:

@@ -23,6 +23,15 @@ from fe_contact.flank.relief import ProfileRelief, Shape, amount, length, shape,
 from fe_contact.types import FloatArray
 
 _FLANK = Direction.PROFILE | Direction.FACE
+SURFACE = Declared(
+    Kind.SURFACE,
+    "",
+    None,
+    "Free-form flank: material removed in addition to the amounts above",
+    FlankGrid((4e-3, 20e-3), (-12.5e-3, 12.5e-3), ((0.0, 0.0), (5e-6, 7e-6))),
+    along=_FLANK,
+    part=FlankGrid,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,17 +145,6 @@ class _TriangularRootRelief(_CornerRelief):
         later=True,
     )
     triangular_root_relief_shape: Shape = shape(_FLANK, "Triangular root relief over its length", later=True)
-
-
-SURFACE = Declared(
-    Kind.SURFACE,
-    "",
-    None,
-    "Free-form flank: material removed in addition to the amounts above",
-    FlankGrid((4e-3, 20e-3), (-12.5e-3, 12.5e-3), ((0.0, 0.0), (5e-6, 7e-6))),
-    along=_FLANK,
-    part=FlankGrid,
-)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -15,6 +15,10 @@ from fe_contact.types import FloatArray
 
 # The properties that a modification reads of the gear whose flanks it changes.
 
+_ACTING = (Kind.AMOUNT, Kind.SLOPE, Kind.EDGE)
+SHORTEST = 1e-9
+"""m; what is shorter is a step, and its slope no number."""
+
 
 class Tooth(Protocol):
     """Sizes of a gear's teeth, lengths in m and angles in rad; `fe_contact.geometry` has the gears."""
@@ -63,9 +67,6 @@ class Tooth(Protocol):
         """Roll length at a radius from the base radius on."""
 
 
-_ACTING = (Kind.AMOUNT, Kind.SLOPE, Kind.EDGE)
-
-
 @dataclass(frozen=True)
 class ReliefStart:
     """Start of a relief or of the tip's edge along the profile; jump d + bend d^2/2 a distance d inside."""
@@ -80,10 +81,6 @@ class ReliefStart:
     """
     ends_flank: bool = False
     """Whether it is the edge of a rounded or chamfered tip, where the usable flank ends."""
-
-
-SHORTEST = 1e-9
-"""m; what is shorter is a step, and its slope no number."""
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,9 @@ Shape = Literal["linear", "parabolic", "circular", "exponential", "logarithmic"]
 """Names of the shapes, those of REXS 2.0 (attribute ``shape_of_relief``)."""
 
 _GROWTH = math.e - 1.0
+_DEEPEST = 1e-3  # m; catches micrometers given as meters
+_LONGEST = 10.0  # m; what a gear has room for depends on the gear
+_LENGTHS = SiNote("Lengths are in m: 1 mm is 0.001.")
 
 
 @dataclass(frozen=True)
@@ -62,9 +65,6 @@ at the diagonal, ln(1 + (e - 1) u): the laws of these names without a further pa
 
 # Declarations of the figures of flank modifications: depths in m, lengths in m, laws by name.
 
-_DEEPEST = 1e-3  # m; catches micrometers given as meters
-_LONGEST = 10.0  # m; what a gear has room for depends on the gear
-
 
 def amount(along: Direction, description: str, example: float, *, later: bool = False) -> Any:
     """Return the field of material removed in m, >= 0."""
@@ -88,9 +88,6 @@ def shape(along: Direction, description: str, *, later: bool = False) -> Any:
     """Return the field ``x_shape`` of the law of a relief over its length."""
     bound = one_of(tuple(SHAPES))
     return declared("linear", Declared(Kind.SHAPE, "", bound, description, "linear", along, later=later))
-
-
-_LENGTHS = SiNote("Lengths are in m: 1 mm is 0.001.")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -27,6 +27,8 @@ from fe_contact.errors import InputError, declared_fields
 from fe_contact.flank.involute import radius_at_roll_length, roll_length_at_radius
 from fe_contact.flank.part import SHORTEST, Tooth
 
+_ADVICE = "A relief starts on the involute, before the end of the flank to which it runs."
+
 
 @dataclass(frozen=True)
 class _Way:
@@ -56,7 +58,6 @@ WAYS = {
         "roll angle", "rad", 2.0 * math.pi, lambda base, roll: roll / base, lambda base, angle: base * angle
     ),
 }
-_ADVICE = "A relief starts on the involute, before the end of the flank to which it runs."
 
 
 def _start(relief: str, way: str, example: float) -> Any:

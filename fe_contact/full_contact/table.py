@@ -14,6 +14,8 @@ from fe_contact.types import FloatArray, IntArray, Json, Status
 
 
 NOTHING = float("nan")
+_SAMPLES = 4001
+"""Places of a load over the face between which its means are searched."""
 
 
 @dataclass(frozen=True)
@@ -35,10 +37,6 @@ class LineLoad:
         start = np.linspace(face[0], face[-1] - length, _SAMPLES)
         within = np.interp(start + length, face, force) - np.interp(start, face, force)
         return float(within.max() / length)
-
-
-_SAMPLES = 4001
-"""Places of a load over the face between which its means are searched."""
 
 
 def line_loads(ahead: IntArray, face: FloatArray, force: FloatArray) -> tuple[LineLoad, ...]:

@@ -24,6 +24,9 @@ PENALTY = 10.0
 SLACK = 0.005
 """Limits exceeded by less, in parts of them, are kept: a full analysis has more positions than a search."""
 
+USUAL_DESIGNS = 100
+"""Of all walks of a search: workers that are woken by its first designs serve the others, too."""
+
 
 @dataclass(frozen=True)
 class Assessed:
@@ -217,8 +220,6 @@ class Budget:
 
 
 Design = tuple[Assessed, FloatArray]
-USUAL_DESIGNS = 100
-"""Of all walks of a search: workers that are woken by its first designs serve the others, too."""
 
 
 class CountedMerit:

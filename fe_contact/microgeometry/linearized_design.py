@@ -55,6 +55,13 @@ AMOUNT_STEP, LENGTH_STEP = 1e-6, 1e-6
 DISTANCE_STEP = 1e-7
 """To a larger center distance in m, at which the curve is solved: other places of the flanks touch there."""
 
+NEAR = 0.8
+"""Pressures from this part of the largest on are followed."""
+FOLLOWED = 16
+"""Highest and lowest positions that are followed."""
+_POINT = 1e-9
+"""Half length in m of the strip of an edge that is not in contact."""
+
 
 @dataclass(frozen=True)
 class FlankDerivatives:
@@ -245,14 +252,6 @@ class _Difference:
 
 def _gap(gear: str, modification: FlankModification) -> ModificationGap:
     return ModificationGap(**(dict.fromkeys(GEARS, UNMODIFIED) | {gear: modification}))
-
-
-NEAR = 0.8
-"""Pressures from this part of the largest on are followed."""
-FOLLOWED = 16
-"""Highest and lowest positions that are followed."""
-_POINT = 1e-9
-"""Half length in m of the strip of an edge that is not in contact."""
 
 
 @dataclass(frozen=True)

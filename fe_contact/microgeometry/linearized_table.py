@@ -19,6 +19,10 @@ from fe_contact.ste.database import AXIS
 from fe_contact.ste.extraction import force_table
 from fe_contact.types import FloatArray, IntArray
 
+LOAD = "force"
+APART = 1e-9
+"""Between the misalignments by which moved tables are told apart, m: any number would do."""
+
 
 @dataclass(frozen=True)
 class TabledLoads:
@@ -52,11 +56,6 @@ class TabledLoads:
             stacked[name] = stacked[name] + np.moveaxis(np.tensordot(steps, by, 1), 0, 2)[..., None]
         whole = force_table(replace(table, **stacked | {AXIS: APART * np.arange(count)}))
         return [whole.at_misalignment(k, table.misalignment) for k in range(count)]
-
-
-LOAD = "force"
-APART = 1e-9
-"""Between the misalignments by which moved tables are told apart, m: any number would do."""
 
 
 def tabled_loads(

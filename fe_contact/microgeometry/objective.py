@@ -13,6 +13,9 @@ from bounds import Bound, SiNote, above, at_least
 from fe_contact.errors import InputError, finite, positive
 from fe_contact.types import FloatArray, IntArray, Json
 
+Rows = tuple[FloatArray, FloatArray]
+"""Values (R,) and their derivatives (R, d)."""
+
 
 class Objective(Protocol):
     """One number of the expected peak-to-peak STE at all loads."""
@@ -138,9 +141,6 @@ NO_LIMITS = Limits()
 # ----------
 # .. [1] K. Madsen, H. Schjaer-Jacobsen, Linearly constrained minimax optimization, Math. Programming 14
 #    (1978) 208-223.
-
-Rows = tuple[FloatArray, FloatArray]
-"""Values (R,) and their derivatives (R, d)."""
 
 
 @dataclass(frozen=True)

@@ -53,6 +53,14 @@ _FOUND = struct.Struct("<ddQ")  # objective, violation, checksum
 _POSITIONS = 8  # bytes of their digest
 
 Figures = tuple[float, float]
+REFINED = 4
+"""Where they are exceeded by more, the search goes on at those positions, with a quarter of the designs."""
+ROUNDS = 3
+"""How often: the full analysis of another design has positions of its own, which join those of all before."""
+STEP = 0.05
+"""Perturbation of the optimum in parts of a variable's range, where it does not scatter."""
+AT_BOUND = 1e-3
+"""A variable this near to a bound, in parts of its range, lies on it."""
 
 
 @dataclass(frozen=True)
@@ -125,13 +133,6 @@ def _name(values: FloatArray, position: FloatArray) -> bytes:
 
 
 # The best design of all searches, assessed by full analyses of it and of the design to begin with.
-
-REFINED = 4
-"""Where they are exceeded by more, the search goes on at those positions, with a quarter of the designs."""
-ROUNDS = 3
-"""How often: the full analysis of another design has positions of its own, which join those of all before."""
-STEP = 0.05
-"""Perturbation of the optimum in parts of a variable's range, where it does not scatter."""
 
 
 @dataclass(frozen=True)
@@ -234,10 +235,6 @@ def _perturbation(best: tuple[DesignProblem, SearchRun, Scatter], variable: Desi
 
 
 # The conclusion of an optimization in words: the gain, its end, and what was not tried.
-
-
-AT_BOUND = 1e-3
-"""A variable this near to a bound, in parts of its range, lies on it."""
 
 
 def _conclusion(choice: _Choice, request: OptimizationRequest) -> tuple[Outcome, str]:

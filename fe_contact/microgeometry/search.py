@@ -50,6 +50,12 @@ ASIDE, LEAST_GAIN, MISSES = 0.05, 0.005, 3
 FINISHED = 3
 """Rough walks that are followed on by the merit: the best by it."""
 
+EXPLORED = 0.65
+"""Part of the designs that exploration may use: the simplex behind it needs some hundred to converge."""
+Cancel = Callable[[], bool]
+LINEARIZED, FOLLOWED = 1.4, 75
+"""Assessments that a design with its slopes costs; designs of the walk to the end and of those beside it."""
+
 
 class Method(Protocol):
     """A way to search the unit cube."""
@@ -313,12 +319,6 @@ class DifferentialEvolution:
         return {"method": "differential_evolution", "population": self.population}
 
 
-EXPLORED = 0.65
-"""Part of the designs that exploration may use: the simplex behind it needs some hundred to converge."""
-
-Cancel = Callable[[], bool]
-
-
 class Ended(StrEnum):
     """The reason why a search ended."""
 
@@ -358,10 +358,6 @@ class Search:
             "positions": self.positions,
             "exploration": self.exploration,
         }
-
-
-LINEARIZED, FOLLOWED = 1.4, 75
-"""Assessments that a design with its slopes costs; designs of the walk to the end and of those beside it."""
 
 
 def usual_designs(search: Search) -> float:

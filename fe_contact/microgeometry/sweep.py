@@ -34,6 +34,12 @@ CONDITIONS = (TORQUE, MISALIGNMENT, CENTER_DISTANCE)
 """Operating conditions that a sweep can vary."""
 MOST_POINTS = 4096
 Values = Mapping[str, float]
+HARMONICS = 3
+_OF_CURVE = {"peak_to_peak": "m"} | {f"harmonic_{n}": "m" for n in range(1, HARMONICS + 1)}
+_OF_FLANKS = {"max_pressure": "Pa", "face_load_factor": ""}
+SWEPT = {**_OF_CURVE, **_OF_FLANKS}
+"""Quantities of a sweep and their SI units. The face load factor is that of the mesh cycle; the plane has
+none."""
 
 
 @dataclass(frozen=True)
@@ -147,14 +153,6 @@ class SweepRequest:
         points = int(np.prod([len(axis.values) for axis in self.axes]))
         if points > MOST_POINTS:
             raise InputError("axes", points, f"at most {MOST_POINTS} points", "Take larger steps.")
-
-
-HARMONICS = 3
-_OF_CURVE = {"peak_to_peak": "m"} | {f"harmonic_{n}": "m" for n in range(1, HARMONICS + 1)}
-_OF_FLANKS = {"max_pressure": "Pa", "face_load_factor": ""}
-SWEPT = {**_OF_CURVE, **_OF_FLANKS}
-"""Quantities of a sweep and their SI units. The face load factor is that of the mesh cycle; the plane has
-none."""
 
 
 @dataclass(frozen=True)

@@ -45,6 +45,13 @@ from model_studies.stage_clock import StageClock
 
 # Quantiles of a sample with confidence bounds that assume no shape of the distribution.
 
+TANGENTS = 64
+"""Pairs about which tangents are taken, besides the design, at most."""
+IN_A_TASK = 25
+"""Samples of a task: half a second to some seconds. It does not depend on who does the tasks."""
+ACTING = SobolSample(1)
+"""Two pairs that deviate in everything: by them the effects are decided."""
+
 
 @dataclass(frozen=True)
 class Quantile:
@@ -103,14 +110,6 @@ class Sampling:
     def tangents(self) -> int:
         """Number of them about which tangents are taken."""
         return min(TANGENTS, max(1, self.solved // 4))
-
-
-TANGENTS = 64
-"""Pairs about which tangents are taken, besides the design, at most."""
-IN_A_TASK = 25
-"""Samples of a task: half a second to some seconds. It does not depend on who does the tasks."""
-ACTING = SobolSample(1)
-"""Two pairs that deviate in everything: by them the effects are decided."""
 
 
 @brief

@@ -27,6 +27,42 @@ Distribution = Literal["normal", "uniform"]
 PROCESS_SPREAD = 3.0
 """Standard deviations of the normal distribution in a tolerance, beyond which parts are rejected."""
 
+Finishing = Literal["any", "generating_grinding", "form_grinding", "honing", "shaving", "hobbing"]
+OF_A_CLASS = {
+    "profile_slope": profile_slope_tolerance,
+    "profile_form": profile_form_tolerance,
+    "helix_slope": helix_slope_tolerance,
+    "helix_form": helix_form_tolerance,
+}
+"""Tolerances that bound the mean flank of a gear."""
+COMMON: Mapping[Finishing, tuple[float, float, float, float]] = {
+    "any": (1.0, 1.0, 1.0, 1.0),
+    "generating_grinding": (0.8, 0.9, 0.7, 0.9),
+    "form_grinding": (0.9, 0.9, 0.7, 0.9),
+    "honing": (0.7, 0.8, 0.6, 0.8),
+    "shaving": (0.7, 0.8, 0.6, 0.7),
+    "hobbing": (0.6, 0.7, 0.5, 0.6),
+}
+"""Assumed: part of each tolerance of `OF_A_CLASS` that the mean of all teeth takes.
+
+With the part c two teeth of a gear correlate by c^2. The rest, from tooth to tooth, is in orders of shafts
+and sidebands, not in mesh orders. A dressed wheel or worm makes the profile, so teeth are alike; run-out of
+the blank changes the helix slope once a revolution; a hob cuts each flank anew. They are not measured.
+"""
+ACCUMULATED: Mapping[Finishing, float] = {
+    "any": 0.0,
+    "generating_grinding": 0.3,
+    "form_grinding": 0.1,
+    "honing": 0.4,
+    "shaving": 0.4,
+    "hobbing": 0.3,
+}
+"""Assumed: part of the square of a single pitch deviation that the teeth behind keep.
+
+Where tool and gear roll, errors of the table and of the blank are slow over the teeth, and what smooths
+neighbors leaves them; where each gap is ground by itself, indexing places each tooth anew. Not measured.
+"""
+
 
 @dataclass(frozen=True)
 class Tolerances:
@@ -94,43 +130,6 @@ def spread_within(width: float | FloatArray, uniform: FloatArray, distribution: 
         return np.asarray(width * (2.0 * uniform - 1.0))
     low = ndtr(-PROCESS_SPREAD)
     return np.asarray(width * ndtri(low + (1.0 - 2.0 * low) * uniform) / PROCESS_SPREAD)
-
-
-Finishing = Literal["any", "generating_grinding", "form_grinding", "honing", "shaving", "hobbing"]
-OF_A_CLASS = {
-    "profile_slope": profile_slope_tolerance,
-    "profile_form": profile_form_tolerance,
-    "helix_slope": helix_slope_tolerance,
-    "helix_form": helix_form_tolerance,
-}
-"""Tolerances that bound the mean flank of a gear."""
-COMMON: Mapping[Finishing, tuple[float, float, float, float]] = {
-    "any": (1.0, 1.0, 1.0, 1.0),
-    "generating_grinding": (0.8, 0.9, 0.7, 0.9),
-    "form_grinding": (0.9, 0.9, 0.7, 0.9),
-    "honing": (0.7, 0.8, 0.6, 0.8),
-    "shaving": (0.7, 0.8, 0.6, 0.7),
-    "hobbing": (0.6, 0.7, 0.5, 0.6),
-}
-"""Assumed: part of each tolerance of `OF_A_CLASS` that the mean of all teeth takes.
-
-With the part c two teeth of a gear correlate by c^2. The rest, from tooth to tooth, is in orders of shafts
-and sidebands, not in mesh orders. A dressed wheel or worm makes the profile, so teeth are alike; run-out of
-the blank changes the helix slope once a revolution; a hob cuts each flank anew. They are not measured.
-"""
-ACCUMULATED: Mapping[Finishing, float] = {
-    "any": 0.0,
-    "generating_grinding": 0.3,
-    "form_grinding": 0.1,
-    "honing": 0.4,
-    "shaving": 0.4,
-    "hobbing": 0.3,
-}
-"""Assumed: part of the square of a single pitch deviation that the teeth behind keep.
-
-Where tool and gear roll, errors of the table and of the blank are slow over the teeth, and what smooths
-neighbors leaves them; where each gap is ground by itself, indexing places each tooth anew. Not measured.
-"""
 
 
 def iso1328_tolerances(

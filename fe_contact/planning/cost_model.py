@@ -74,6 +74,42 @@ _HELD_POSITIONS, _HELD_PART = 320, 2.5
 _POINT_NUMBERS = 25
 """Numbers that are kept of a touching point."""
 
+MOST_ROWS = 150_000
+"""Positions x alignments that a table may have."""
+POINTS_AT_ONCE = 2**18
+"""Touching points of a part of the base pitches that is solved at once: enough that the rows of the
+compliance, which are prepared once in each part, cost little."""
+_PART_NUMBERS = 90
+"""Numbers that are held of one of them at a time, with its solutions."""
+_ROW_NUMBERS, _LOAD_NUMBERS = 150, 160
+"""Numbers of a row of a table, and of each load at it, its errors and force table included."""
+STAGES = ("compliance", "contact", "error estimate")
+PROCESS_BYTES = 210_000_000
+"""Of a process with the libraries loaded, and a small table."""
+# CPU seconds of a gear in the plane: process of the mesher, hub mesh, sector factors, ring, hub freedoms
+_MESHER, _HUB = 0.095, 0.025
+_SECTOR, _RING, _HUB_FREEDOM, _DEPTH = 1.89e-9, 2.06e-7, 5.34e-5, 2.72e-6
+_DEEP_RING = 9.4
+"""Depth of a body in modules beyond which the mesh has a hub: three root circle pitches."""
+_READ_PLANE, _READ_SOLID = 1.5e-3, {True: 0.06, False: 0.02}
+"""CPU seconds to read what is kept of a gear in the plane, and over the face of a helical or a spur gear."""
+_WORKING = 1.2
+"""Memory of a solid over its largest working set: what was given back is not all used again."""
+_READING = 1.25
+"""The same of one that is read, over what is kept: its mirror image, and what contacts gather of a block."""
+_SECTOR_BYTES, _HUB_BYTES = 9_000, 12_000
+"""For each freedom of a sector, and for each of a hub of so many: the factors of larger ones fill more."""
+_HUB_FREEDOMS, _FILL = 20_000, 0.33
+# one gear over the face: mesher, factor, powers of layers and teeth, part of it for the coarse mesh
+_SOLID_MESHER = 0.15
+_SOLID_EFFORT = {
+    "draft": (9.3e-5, 2.28, 1.11, 0.34),
+    "standard": (1.05e-4, 2.58, 0.89, 0.25),
+    "fine": (7.3e-4, 2.35, 0.81, 0.19),
+}
+_FREE_ENDS = 0.35
+"""The solids that correct one gear for its finite width."""
+
 
 def contact_seconds(
     pair: ParallelAxes,
@@ -125,17 +161,6 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
     seconds += work.of(apart, held + apart * some)
     seconds += _FACE_CHECK if made.slices > 1 else _PLANE_CHECK
     return seconds + _TABLE_POINT * kept * period * alignments[0] * alignments[1] * loads
-
-
-MOST_ROWS = 150_000
-"""Positions x alignments that a table may have."""
-POINTS_AT_ONCE = 2**18
-"""Touching points of a part of the base pitches that is solved at once: enough that the rows of the
-compliance, which are prepared once in each part, cost little."""
-_PART_NUMBERS = 90
-"""Numbers that are held of one of them at a time, with its solutions."""
-_ROW_NUMBERS, _LOAD_NUMBERS = 150, 160
-"""Numbers of a row of a table, and of each load at it, its errors and force table included."""
 
 
 def memory_of_contact(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, int]) -> float:
@@ -215,27 +240,6 @@ def _finer(pair: ParallelAxes, plan: Plan) -> float:
 def most_positions(plan: Plan, times: int) -> int:
     """Return how many positions a search may end with, in so many base pitches and alignments."""
     return max(min(plan.nodes.most, MOST_ROWS // times), plan.nodes.start)
-
-
-STAGES = ("compliance", "contact", "error estimate")
-PROCESS_BYTES = 210_000_000
-"""Of a process with the libraries loaded, and a small table."""
-
-# CPU seconds of a gear in the plane: process of the mesher, hub mesh, sector factors, ring, hub freedoms
-_MESHER, _HUB = 0.095, 0.025
-_SECTOR, _RING, _HUB_FREEDOM, _DEPTH = 1.89e-9, 2.06e-7, 5.34e-5, 2.72e-6
-_DEEP_RING = 9.4
-"""Depth of a body in modules beyond which the mesh has a hub: three root circle pitches."""
-
-_READ_PLANE, _READ_SOLID = 1.5e-3, {True: 0.06, False: 0.02}
-"""CPU seconds to read what is kept of a gear in the plane, and over the face of a helical or a spur gear."""
-_WORKING = 1.2
-"""Memory of a solid over its largest working set: what was given back is not all used again."""
-_READING = 1.25
-"""The same of one that is read, over what is kept: its mirror image, and what contacts gather of a block."""
-_SECTOR_BYTES, _HUB_BYTES = 9_000, 12_000
-"""For each freedom of a sector, and for each of a hub of so many: the factors of larger ones fill more."""
-_HUB_FREEDOMS, _FILL = 20_000, 0.33
 
 
 class _Cost(NamedTuple):
@@ -431,17 +435,6 @@ def condensed_teeth(pair: ParallelAxes) -> int:
 # alternatives are weighed before a run: finite elements over the face are a fit, within a factor 1.8, to
 # the operations that `fe_contact.compliance.cyclic_compliance` counts, of gears of 18 to 60 teeth and
 # faces of 4 to 14 modules.
-
-
-# one gear over the face: mesher, factor, powers of layers and teeth, part of it for the coarse mesh
-_SOLID_MESHER = 0.15
-_SOLID_EFFORT = {
-    "draft": (9.3e-5, 2.28, 1.11, 0.34),
-    "standard": (1.05e-4, 2.58, 0.89, 0.25),
-    "fine": (7.3e-4, 2.35, 0.81, 0.19),
-}
-_FREE_ENDS = 0.35
-"""The solids that correct one gear for its finite width."""
 
 
 def effort(pair: ParallelAxes, plan: Plan, model: ContactModel, alignments: tuple[int, int]) -> float:

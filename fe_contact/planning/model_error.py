@@ -28,23 +28,6 @@ Of 12 pairs in plane strain, 17 to 90 teeth, external and internal, steel and 9 
 2 to 70 um: 0.04 to 0.15, and 0.2 to 0.55.
 """
 
-
-def _flank_tilt(pair: ParallelAxes, force: FloatArray) -> FloatArray:
-    """Return the part of the mean transmission error that the tilt of the flanks takes off; `force` in N.
-
-    The approach falls by 3 R tau^2/2 on a pair of teeth, R the relative radius of curvature, and the tilt
-    tau grows with p/(E* m). In gears of one material those of both flanks nearly cancel
-    (docs/theory/contact.md, "Limits").
-    """
-    first, second = (gear.material for gear in (pair.pinion, pair.wheel))
-    soft, stiff = 1.0 / first.plane_strain_modulus, 1.0 / second.plane_strain_modulus
-    unlike = (soft - stiff) / (soft + stiff)
-    line_load = force * math.cos(pair.base_helix_angle) / pair.face_width
-    radius = 1.0 / abs(float(pair.relative_curvature(pair.path_of_contact.pitch_point)))
-    slenderness = radius / pair.pinion.normal_module**2
-    return (_ALIKE + _UNLIKE * unlike**2) * line_load * slenderness / contact_modulus(first, second)
-
-
 FLOOR = (4e-4, 4.6e-4, 2.2e-3)
 """Of mean, peak-to-peak and harmonics of plain flanks: more than the 0.03 and 0.04 % that calibrating pairs
 ask for (docs/lab/accuracy.md)."""
@@ -68,6 +51,22 @@ HELICAL_OVERLAP = 0.5
 HARMONIC_OVER_PEAK, FLAT_HARMONICS = 0.5, 3
 """Harmonics over that peak-to-peak: the first so many alike, since where teeth take over is a step; then
 harmonic k falls with 1/k."""
+
+
+def _flank_tilt(pair: ParallelAxes, force: FloatArray) -> FloatArray:
+    """Return the part of the mean transmission error that the tilt of the flanks takes off; `force` in N.
+
+    The approach falls by 3 R tau^2/2 on a pair of teeth, R the relative radius of curvature, and the tilt
+    tau grows with p/(E* m). In gears of one material those of both flanks nearly cancel
+    (docs/theory/contact.md, "Limits").
+    """
+    first, second = (gear.material for gear in (pair.pinion, pair.wheel))
+    soft, stiff = 1.0 / first.plane_strain_modulus, 1.0 / second.plane_strain_modulus
+    unlike = (soft - stiff) / (soft + stiff)
+    line_load = force * math.cos(pair.base_helix_angle) / pair.face_width
+    radius = 1.0 / abs(float(pair.relative_curvature(pair.path_of_contact.pitch_point)))
+    slenderness = radius / pair.pinion.normal_module**2
+    return (_ALIKE + _UNLIKE * unlike**2) * line_load * slenderness / contact_modulus(first, second)
 
 
 def model_errors(pair: ParallelAxes, force: FloatArray, own: FloatArray, *, over_face: bool) -> FloatArray:

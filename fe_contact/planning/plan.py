@@ -50,6 +50,35 @@ the local law lose definiteness, and heavy loads have no unique solution."""
 COARSER = 1.5
 """Elements of the coarse mesh of a solid over those of its own."""
 
+EDGE_PATCH = 0.0125
+"""Least length of the patch at a tip edge in modules: two to three elements of the tip (factors of two move
+STE in corner contact by less than 0.05 %)."""
+EDGE_SHARE = 0.5
+"""Share of the largest load whose strip the patch at a tip edge follows: another pair carries too there."""
+WIDEST_STRIP = 0.225
+"""Largest half-width of a strip in modules that patches and the local law follow; wider ones are counted in
+the receipt."""
+STRIP_OVER_LAW = 0.6
+"""Strip over the reference length of the local law, at most; the law is straight from 0.66 on."""
+PATCH_SHARE = 0.5
+"""Share of the largest load whose strips the load patches follow."""
+SMALLEST_SUPPORT = 1e-3
+"""Lowest support load over the largest load."""
+LARGEST_SUPPORT = 2.0
+"""Highest support load over the largest load: dynamic forces exceed the static ones."""
+SUPPORT_RATIO = 5.0
+"""Largest ratio of neighboring support loads."""
+_REACH = 2.5
+"""Spacings of the first nodes: interpolants take two nodes of the pitch before and three of the next one."""
+POSITION_SHARE = 0.5
+"""Part of a tolerance that the search of positions allows between them: 0.2 to 0.8 of it is left."""
+CLOSEST = 1.0 / 16.0
+"""Least of what a search allows over the usual."""
+FLOOR_SHARE = 0.5
+"""Part of the floor of a tolerance that positions go by: meshes and slices take most of what is allowed."""
+_ROUNDING = 1e-6
+"""Least ripple beside the deflection: less is not looked into."""
+
 
 @dataclass(frozen=True)
 class PlaneDiscretization:
@@ -180,31 +209,6 @@ def _coarser(recipe: SectorRecipe, gear: Toothing) -> SectorRecipe:
     return replace(larger, merge_rows=()) if few else larger
 
 
-EDGE_PATCH = 0.0125
-"""Least length of the patch at a tip edge in modules: two to three elements of the tip (factors of two move
-STE in corner contact by less than 0.05 %)."""
-
-EDGE_SHARE = 0.5
-"""Share of the largest load whose strip the patch at a tip edge follows: another pair carries too there."""
-
-WIDEST_STRIP = 0.225
-"""Largest half-width of a strip in modules that patches and the local law follow; wider ones are counted in
-the receipt."""
-
-STRIP_OVER_LAW = 0.6
-"""Strip over the reference length of the local law, at most; the law is straight from 0.66 on."""
-
-PATCH_SHARE = 0.5
-"""Share of the largest load whose strips the load patches follow."""
-
-SMALLEST_SUPPORT = 1e-3
-"""Lowest support load over the largest load."""
-LARGEST_SUPPORT = 2.0
-"""Highest support load over the largest load: dynamic forces exceed the static ones."""
-SUPPORT_RATIO = 5.0
-"""Largest ratio of neighboring support loads."""
-
-
 @dataclass(frozen=True)
 class NodeRule:
     """The density of positions where none are requested."""
@@ -242,17 +246,6 @@ class NodeRule:
         least = np.maximum(self.least_ripple, _ROUNDING * np.abs(curves).max(axis=0))
         return np.asarray(np.maximum(np.ptp(curves, axis=0), least))
 
-
-_REACH = 2.5
-"""Spacings of the first nodes: interpolants take two nodes of the pitch before and three of the next one."""
-POSITION_SHARE = 0.5
-"""Part of a tolerance that the search of positions allows between them: 0.2 to 0.8 of it is left."""
-CLOSEST = 1.0 / 16.0
-"""Least of what a search allows over the usual."""
-FLOOR_SHARE = 0.5
-"""Part of the floor of a tolerance that positions go by: meshes and slices take most of what is allowed."""
-_ROUNDING = 1e-6
-"""Least ripple beside the deflection: less is not looked into."""
 
 PLANE_NODES = NodeRule(64, 0.0015, 768, 64)
 FACE_NODES = NodeRule(64, 0.005, 192, 3)

@@ -33,6 +33,22 @@ from fe_contact.types import FloatArray, Json
 _PLANE_RIPPLE, _SPUR_RIPPLE, _HELICAL_RIPPLE = 0.4, 0.4, 0.15
 """Peak-to-peak over mean of usual pairs: in the plane, over the face of spur and of helical pairs."""
 
+_PLANE = {"draft": (8e-4, 1.2e-3), "standard": (2.6e-4, 2.6e-4), "fine": (5.4e-5, 5e-5)}
+_SPUR = {"draft": (2.2e-3, 1.1e-3), "standard": (1.1e-3, 6e-4), "fine": (4.6e-4, 4.6e-4)}
+_HELICAL = {"draft": (5e-3, 3e-3), "standard": (1.8e-3, 8.5e-4), "fine": (8e-4, 4e-4)}
+_RELIEVED = {"draft": (4e-3, 1.8e-3), "standard": (1.6e-3, 4.5e-4), "fine": (6e-4, 2.3e-4)}
+"""Mesh: of mean and of peak-to-peak in parts of what the load adds to the mean. In the plane; over the face
+of spur pairs; of helical pairs with plain and with modified profiles, whose contact lines end under less
+load."""
+_HELICAL_SLICES, _SPUR_SLICES, _SLICES = 7e-4, 5e-5, 15
+"""Peak-to-peak at so many slices in parts of the same: of helical pairs times the overlap ratio."""
+_CORRECTION = 0.03
+"""Error of the correction for a finite width over what it is expected to correct."""
+_WIDTH_RIPPLE = 0.45
+"""Peak-to-peak over mean of usual spur pairs."""
+_PLANE_POSITIONS, _FACE_POSITIONS = 0.14, 0.55
+"""Error of peak-to-peak between positions over what their search allows."""
+
 
 @dataclass(frozen=True)
 class ExpectedCurves:
@@ -66,23 +82,6 @@ def _usual_curves(pair: ParallelAxes, plan: Plan) -> ExpectedCurves:
 
 
 # Prediction of the error that a run will state of a model, a mesh and slices.
-
-
-_PLANE = {"draft": (8e-4, 1.2e-3), "standard": (2.6e-4, 2.6e-4), "fine": (5.4e-5, 5e-5)}
-_SPUR = {"draft": (2.2e-3, 1.1e-3), "standard": (1.1e-3, 6e-4), "fine": (4.6e-4, 4.6e-4)}
-_HELICAL = {"draft": (5e-3, 3e-3), "standard": (1.8e-3, 8.5e-4), "fine": (8e-4, 4e-4)}
-_RELIEVED = {"draft": (4e-3, 1.8e-3), "standard": (1.6e-3, 4.5e-4), "fine": (6e-4, 2.3e-4)}
-"""Mesh: of mean and of peak-to-peak in parts of what the load adds to the mean. In the plane; over the face
-of spur pairs; of helical pairs with plain and with modified profiles, whose contact lines end under less
-load."""
-_HELICAL_SLICES, _SPUR_SLICES, _SLICES = 7e-4, 5e-5, 15
-"""Peak-to-peak at so many slices in parts of the same: of helical pairs times the overlap ratio."""
-_CORRECTION = 0.03
-"""Error of the correction for a finite width over what it is expected to correct."""
-_WIDTH_RIPPLE = 0.45
-"""Peak-to-peak over mean of usual spur pairs."""
-_PLANE_POSITIONS, _FACE_POSITIONS = 0.14, 0.55
-"""Error of peak-to-peak between positions over what their search allows."""
 
 
 @dataclass(frozen=True)

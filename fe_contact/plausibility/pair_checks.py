@@ -33,6 +33,9 @@ _SAMPLES = 33
 _NOTCH = (1.0, 8.0)
 """Where the stress correction factor holds: chord over twice the root radius [2]_."""
 
+_RATED = 20.0
+"""Rated loads over the lightest that is plausible."""
+
 
 def _sharing_pairs(pair: ParallelAxes) -> float:
     """Return how many pairs of teeth share the load where fewest do; of wide helical gears on average."""
@@ -88,10 +91,6 @@ def _root_stress(gear: Toothing, load: float, roll_length: float) -> float:
     sharpness = min(max(chord * turned / (4.0 * step), _NOTCH[0]), _NOTCH[1])
     slimness = chord / max(lever, 1e-9 * chord)
     return float(bending * (1.2 + 0.13 * slimness) * sharpness ** (1.0 / (1.21 + 2.3 / slimness)))
-
-
-_RATED = 20.0
-"""Rated loads over the lightest that is plausible."""
 
 
 def pair_findings(

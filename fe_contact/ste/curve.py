@@ -21,6 +21,19 @@ from fe_contact.types import Estimate, FloatArray
 
 # The load, misalignment and center distance of a query.
 
+PLANE, METHOD = "finite_width", "method"
+"""A plane in place of three dimensions; what the method leaves out of full contact, whatever the mesh."""
+AT_NODES = ("discretisation", "slices", "contact_solver", PLANE, "position", METHOD)
+"""Sources that act at stored loads and alignments as well."""
+BETWEEN_NODES = ("force", "misalignment", "center_distance_change")
+"""Interpolation along each axis: nothing on its nodes; stored at the lower node of every interval."""
+SOURCES = AT_NODES + BETWEEN_NODES
+DERIVATIVES = "derivatives"
+"""A source at nodes that follows all others in tables of which some base pitches are not solved."""
+OF_LOAD_ARM = ("discretisation", "slices", "position")
+"""Sources of the errors of the load arm at stored loads and alignments."""
+_FARTHEST = 1000  # periods from the reference; load shares get a column per pair passed on the way
+
 
 @dataclass(frozen=True)
 class OperatingPoint:
@@ -82,18 +95,6 @@ def _inside(name: str, value: float | None, axis: FloatArray) -> float:
 
 
 # Errors of mean, peak-to-peak and harmonics by source, as a table stores them.
-
-PLANE, METHOD = "finite_width", "method"
-"""A plane in place of three dimensions; what the method leaves out of full contact, whatever the mesh."""
-AT_NODES = ("discretisation", "slices", "contact_solver", PLANE, "position", METHOD)
-"""Sources that act at stored loads and alignments as well."""
-BETWEEN_NODES = ("force", "misalignment", "center_distance_change")
-"""Interpolation along each axis: nothing on its nodes; stored at the lower node of every interval."""
-SOURCES = AT_NODES + BETWEEN_NODES
-DERIVATIVES = "derivatives"
-"""A source at nodes that follows all others in tables of which some base pitches are not solved."""
-OF_LOAD_ARM = ("discretisation", "slices", "position")
-"""Sources of the errors of the load arm at stored loads and alignments."""
 
 
 def errors_by_source(table: SteFields, point: OperatingPoint) -> FloatArray:
@@ -213,9 +214,6 @@ def _knot_after(database: SteFields, teeth: int) -> float:
     next_one = int(np.searchsorted(database.position, pitch + 1))
     turned = database.period if next_one == database.position.size else 0
     return float((database.pair[-1] - pitch + turned) + database.position[next_one % database.position.size])
-
-
-_FARTHEST = 1000  # periods from the reference; load shares get a column per pair passed on the way
 
 
 @brief

@@ -19,6 +19,16 @@ HARMONICS = 20
 # samples of one pitch, and of a whole period where that would be too many; 256 a pitch leave room for a mesh
 # harmonic six times the highest one requested
 _SPECTRUM_PER_PITCH, _SPECTRUM_PER_PERIOD, _SPECTRUM_FEWEST = 4096, 2**18, 256
+MEAN, PEAK_TO_PEAK, BESIDE_MESH, FIRST_HARMONIC = range(4)
+"""Mean, peak-to-peak, the largest order beside the mesh orders, and the harmonics, in this order.
+
+What repeats at every pitch is in mesh orders alone: other orders have the error of what pitches differ by."""
+QUANTITIES = FIRST_HARMONIC + HARMONICS
+BY_SOURCE = {"mean_m": MEAN, "peak_to_peak_m": PEAK_TO_PEAK, "first_harmonic_m": FIRST_HARMONIC}
+"""Those whose errors a receipt has by source, m."""
+# samples of a pitch, a dozen for the shortest harmonic, and of a long period where that would be too many
+_PER_PITCH, _PER_PERIOD, _FEWEST = 256, 2**15, 64
+_FEWEST_ROWS = 8
 
 
 @brief
@@ -79,18 +89,6 @@ def spectrum(samples: FloatArray, period: int, teeth: tuple[int, int], errors: F
     error[period - 1 :: period] = errors[1:]
     order = np.arange(1, count + 1) / period
     return Spectrum(order, np.abs(lines), np.angle(lines) % (2.0 * math.pi), error, teeth)
-
-
-MEAN, PEAK_TO_PEAK, BESIDE_MESH, FIRST_HARMONIC = range(4)
-"""Mean, peak-to-peak, the largest order beside the mesh orders, and the harmonics, in this order.
-
-What repeats at every pitch is in mesh orders alone: other orders have the error of what pitches differ by."""
-QUANTITIES = FIRST_HARMONIC + HARMONICS
-BY_SOURCE = {"mean_m": MEAN, "peak_to_peak_m": PEAK_TO_PEAK, "first_harmonic_m": FIRST_HARMONIC}
-"""Those whose errors a receipt has by source, m."""
-# samples of a pitch, a dozen for the shortest harmonic, and of a long period where that would be too many
-_PER_PITCH, _PER_PERIOD, _FEWEST = 256, 2**15, 64
-_FEWEST_ROWS = 8
 
 
 class Quantities(NamedTuple):

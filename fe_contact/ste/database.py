@@ -38,6 +38,7 @@ Table = TypeVar("Table", bound=SteFields)
 _LIFT_OFF_WEIGHT = 1e6
 # repaired neighbors stay apart by at least this part of the smallest stored tangent compliance
 _LEAST_COMPLIANCE = 0.1
+AXIS = "misalignment"
 
 
 @dataclass(frozen=True)
@@ -339,8 +340,6 @@ class SteDatabase(SteFields):
 
 
 # Tables of single misalignments as one table over all of them.
-
-AXIS = "misalignment"
 
 
 def joined_over_misalignment(tables: Sequence[SteDatabase]) -> SteDatabase:

@@ -49,6 +49,8 @@ _GRADUAL_OVERLAP = 0.1
 
 
 Pair = tuple[FloatArray, FloatArray]  # deflection in m and stiffness in N/m
+SMOOTHING = 0.01
+"""Half width of the smoothed change of direction at the pitch point, base pitches."""
 
 
 @dataclass(frozen=True)
@@ -208,10 +210,6 @@ def _load_refinement_merged(pieces: list[_LoadLevels]) -> _LoadLevels:
 
 
 # Sliding along the path of contact: the position of the load and the sense in which it slides.
-
-
-SMOOTHING = 0.01
-"""Half width of the smoothed change of direction at the pitch point, base pitches."""
 
 
 def sliding_sums(database: SteFields) -> tuple[FloatArray, FloatArray]:

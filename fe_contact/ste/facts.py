@@ -18,6 +18,11 @@ if TYPE_CHECKING:
 
 # The name of a result: a hash of everything that decides it.
 
+SCHEMA_VERSION = 6
+"""Version 1 states no errors of the model; up to 2 the largest pressure is that of edges, too; up to 3 orders
+beside the mesh have no errors of their own; up to 4 the errors of a plane hold its bias, bands between nodes
+not the error of their interval; up to 5 all alignments are requested ones."""
+
 
 def content_hash(case: Json, solver_version: str, schema_version: int) -> str:
     """SHA-256, in hex, of the canonical JSON (RFC 8785) of the case with solver and schema version.
@@ -31,12 +36,6 @@ def content_hash(case: Json, solver_version: str, schema_version: int) -> str:
     except (rfc8785.CanonicalizationError, RecursionError) as error:
         raise InputError("case", type(case).__name__, f"plain JSON ({error})") from error
     return hashlib.sha256(canonical).hexdigest()
-
-
-SCHEMA_VERSION = 6
-"""Version 1 states no errors of the model; up to 2 the largest pressure is that of edges, too; up to 3 orders
-beside the mesh have no errors of their own; up to 4 the errors of a plane hold its bias, bands between nodes
-not the error of their interval; up to 5 all alignments are requested ones."""
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,63 @@ from model_studies.netcdf import NetcdfContent, UnreadableFile, Variable, opened
 
 # Result files: netCDF-4 read without decoding, checked by a digest of their arrays.
 
+FORMAT = "lineofaction STE database"
+_BESIDE_MESH_SINCE = 4
+WARNINGS = "warnings"
+_JSON_ATTRIBUTES = ("case", "effect_ledger", "receipt", "software_versions")
+# units and long names; "1" is CF's dimensionless
+ATTRIBUTES: dict[str, tuple[str, str]] = {
+    "position": (
+        "1",
+        "phase of the driving gear in base pitches (transverse), 0 = reference pair at the pitch point",
+    ),
+    "force": ("N", "total normal tooth force"),
+    "torque": ("N m", "torque on the driving gear"),
+    "misalignment": ("m", "tilt of the axes in the plane of action, as gap over the common face width"),
+    "center_distance_change": ("m", "deviation from the nominal center distance"),
+    "pair": ("1", "index of the tooth pair, counted anew at every whole pitch, 0 = reference pair"),
+    "static_transmission_error": (
+        "m",
+        "static transmission error on the line of action, driven gear lags > 0",
+    ),
+    "tangent_compliance": ("m N-1", "derivative of the static transmission error in the normal tooth force"),
+    "no_load_transmission_error": ("m", "transmission error at first contact"),
+    "load_share": ("1", "part of the load carried by the tooth pair"),
+    "face_centroid": ("m", "offset of the centroid of the load from mid-face"),
+    "load_arm": ("m", "arm of the load about the axis of a misalignment"),
+    "max_pressure": ("Pa", "largest contact pressure where no edge is reached"),
+    "edge_pressure": ("Pa", "largest contact pressure at edges of flanks, as if they went on: indicative"),
+    "pair_pressure": ("Pa", "largest contact pressure of the tooth pair where no edge is reached"),
+    "pairs_in_contact": ("1", "number of tooth pairs that carry load"),
+    "status": ("1", "outcome of the contact solve"),
+    "error_estimate": ("m", "half-width of the error band of the static transmission error"),
+    "curve_error": (
+        "m",
+        "error of mean, peak-to-peak, any order beside the mesh and harmonics 1 to 20, by source: "
+        + ", ".join(SOURCES),
+    ),
+    "load_arm_error": (
+        "m",
+        "error of mean, peak-to-peak, any order beside the mesh and harmonics 1 to 20 of the load arm, "
+        "by source: " + ", ".join(OF_LOAD_ARM),
+    ),
+    "interval_error": (
+        "m",
+        "largest error of the transmission error between each node and the next of the axes force, "
+        "misalignment, center_distance_change",
+    ),
+    "misalignment_inserted": ("1", "1 where the node was inserted to meet a tolerance, 0 where requested"),
+    "center_distance_inserted": ("1", "1 where the node was inserted to meet a tolerance, 0 where requested"),
+    "support_force": (
+        "N",
+        "further loads that only carry the interpolation: those between two loads of the axis were inserted",
+    ),
+    "support_transmission_error": ("m", "static transmission error at the support loads"),
+    "support_tangent_compliance": ("m N-1", "derivative of the transmission error at the support loads"),
+    "support_pairs_in_contact": ("1", "number of tooth pairs that carry the support loads"),
+    "residuals": ("1", "residuals of the contact solution: " + ", ".join(RESIDUALS)),
+}
+
 
 def _read_variables(path: Path) -> tuple[dict[str, Any], Json]:
     """Return all variables and global attributes of a netCDF-4 file, undecoded.
@@ -99,64 +156,7 @@ def digest(arrays: Mapping[str, Any], before: str = "") -> str:
     return hasher.hexdigest()
 
 
-FORMAT = "lineofaction STE database"
-_BESIDE_MESH_SINCE = 4
-WARNINGS = "warnings"
-_JSON_ATTRIBUTES = ("case", "effect_ledger", "receipt", "software_versions")
 FILES = FileFormat(FORMAT, "STE database", SCHEMA_VERSION, tuple(DIMENSIONS), optional=tuple(OPTIONAL))
-
-# units and long names; "1" is CF's dimensionless
-ATTRIBUTES: dict[str, tuple[str, str]] = {
-    "position": (
-        "1",
-        "phase of the driving gear in base pitches (transverse), 0 = reference pair at the pitch point",
-    ),
-    "force": ("N", "total normal tooth force"),
-    "torque": ("N m", "torque on the driving gear"),
-    "misalignment": ("m", "tilt of the axes in the plane of action, as gap over the common face width"),
-    "center_distance_change": ("m", "deviation from the nominal center distance"),
-    "pair": ("1", "index of the tooth pair, counted anew at every whole pitch, 0 = reference pair"),
-    "static_transmission_error": (
-        "m",
-        "static transmission error on the line of action, driven gear lags > 0",
-    ),
-    "tangent_compliance": ("m N-1", "derivative of the static transmission error in the normal tooth force"),
-    "no_load_transmission_error": ("m", "transmission error at first contact"),
-    "load_share": ("1", "part of the load carried by the tooth pair"),
-    "face_centroid": ("m", "offset of the centroid of the load from mid-face"),
-    "load_arm": ("m", "arm of the load about the axis of a misalignment"),
-    "max_pressure": ("Pa", "largest contact pressure where no edge is reached"),
-    "edge_pressure": ("Pa", "largest contact pressure at edges of flanks, as if they went on: indicative"),
-    "pair_pressure": ("Pa", "largest contact pressure of the tooth pair where no edge is reached"),
-    "pairs_in_contact": ("1", "number of tooth pairs that carry load"),
-    "status": ("1", "outcome of the contact solve"),
-    "error_estimate": ("m", "half-width of the error band of the static transmission error"),
-    "curve_error": (
-        "m",
-        "error of mean, peak-to-peak, any order beside the mesh and harmonics 1 to 20, by source: "
-        + ", ".join(SOURCES),
-    ),
-    "load_arm_error": (
-        "m",
-        "error of mean, peak-to-peak, any order beside the mesh and harmonics 1 to 20 of the load arm, "
-        "by source: " + ", ".join(OF_LOAD_ARM),
-    ),
-    "interval_error": (
-        "m",
-        "largest error of the transmission error between each node and the next of the axes force, "
-        "misalignment, center_distance_change",
-    ),
-    "misalignment_inserted": ("1", "1 where the node was inserted to meet a tolerance, 0 where requested"),
-    "center_distance_inserted": ("1", "1 where the node was inserted to meet a tolerance, 0 where requested"),
-    "support_force": (
-        "N",
-        "further loads that only carry the interpolation: those between two loads of the axis were inserted",
-    ),
-    "support_transmission_error": ("m", "static transmission error at the support loads"),
-    "support_tangent_compliance": ("m N-1", "derivative of the transmission error at the support loads"),
-    "support_pairs_in_contact": ("1", "number of tooth pairs that carry the support loads"),
-    "residuals": ("1", "residuals of the contact solution: " + ", ".join(RESIDUALS)),
-}
 
 
 def content(database: SteFields) -> NetcdfContent:

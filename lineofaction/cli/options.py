@@ -39,6 +39,19 @@ Scheduler = Annotated[
 
 
 Force = Annotated[float | None, typer.Option("--force", help="Normal tooth force in N, instead of a torque.")]
+R = TypeVar("R")
+_SET = "Override a value of the file, as pair.pinion.tip_relief_um=20; repeatable; empty: remove the field."
+_LEVEL = "Short for --set accuracy.level=: draft, standard or fine, instead of a tolerance."
+_TOLERANCE = "Short for --set accuracy.tolerance=: relative, instead of a level."
+_TORQUE = "Short for --set load.torque_n_m=[...]: torques on the driving gear in N m, as 50,100."
+_SHORTHANDS: Mapping[str, tuple[str, tuple[str, ...]]] = {
+    "level": ("accuracy.level", ("accuracy.tolerance", "accuracy.time_budget_s")),
+    "tolerance": ("accuracy.tolerance", ("accuracy.level",)),
+    "torque": ("load.torque_n_m", ("load.normal_force_n",)),
+}
+"""Option to the path it sets, and those that it leaves out."""
+_OF_ONE = ("output", "json", "csv")
+"""Options that hold one file, or one object, for one case."""
 
 
 def to_file(text: str) -> Any:
@@ -65,24 +78,6 @@ class PairWishes:
 
 
 # ``--set`` and its shorthands: on every verb that takes a case or a scene, by one decorator.
-
-
-R = TypeVar("R")
-
-_SET = "Override a value of the file, as pair.pinion.tip_relief_um=20; repeatable; empty: remove the field."
-_LEVEL = "Short for --set accuracy.level=: draft, standard or fine, instead of a tolerance."
-_TOLERANCE = "Short for --set accuracy.tolerance=: relative, instead of a level."
-_TORQUE = "Short for --set load.torque_n_m=[...]: torques on the driving gear in N m, as 50,100."
-_SHORTHANDS: Mapping[str, tuple[str, tuple[str, ...]]] = {
-    "level": ("accuracy.level", ("accuracy.tolerance", "accuracy.time_budget_s")),
-    "tolerance": ("accuracy.tolerance", ("accuracy.level",)),
-    "torque": ("load.torque_n_m", ("load.normal_force_n",)),
-}
-"""Option to the path it sets, and those that it leaves out."""
-
-
-_OF_ONE = ("output", "json", "csv")
-"""Options that hold one file, or one object, for one case."""
 
 
 def file_argument(text: str, metavar: str) -> Any:

@@ -38,6 +38,16 @@ if TYPE_CHECKING:
 Report = Callable[[str, float], None]
 
 _MOST_HEADLINES = 2
+FOUND = "bold"
+"""Style of the line that says what was found."""
+_THEME = Theme({"loa.error": "cyan", "loa.beside": "bright_black"})
+_WIDEST, _GAP, _INDENT, _MOST_LINES = 24, 2, "  ", 2
+"""Columns that a text takes before it wraps; between two columns of a table; before what stands below a row.
+
+The last: lines that a text in the last column takes beside its row.
+"""
+_FIGURE = re.compile(r"([+-]?\d+)((?:\.\d+)?(?: ?[^\d.e±].*?)?)( ?±.*)?")
+"""A number: what is before its decimal point, its decimals with its unit, and its error."""
 
 
 def print_json(facts: dict[str, Any]) -> None:
@@ -64,11 +74,6 @@ class _Terminal(Console):
         super().print(*broken, soft_wrap=soft_wrap, **options)
 
 
-FOUND = "bold"
-"""Style of the line that says what was found."""
-_THEME = Theme({"loa.error": "cyan", "loa.beside": "bright_black"})
-
-
 def console() -> Console:
     """Return the console of standard output: styles on a terminal alone, where NO_COLOR is not set.
 
@@ -82,13 +87,6 @@ def console() -> Console:
     return Console(
         width=int(columns) if columns.isdecimal() and int(columns) else 200, no_color=True, **plain
     )
-
-
-_WIDEST, _GAP, _INDENT, _MOST_LINES = 24, 2, "  ", 2
-"""Columns that a text takes before it wraps; between two columns of a table; before what stands below a row.
-
-The last: lines that a text in the last column takes beside its row.
-"""
 
 
 @dataclass(frozen=True)
@@ -160,10 +158,6 @@ def _is_long(shown: Sequence[_Column], width: int) -> bool:
     *others, last = shown
     left = width - sum(own.whole + _GAP for own in others)
     return bool(others) and last.text and last.whole > max(_WIDEST, _MOST_LINES * left)
-
-
-_FIGURE = re.compile(r"([+-]?\d+)((?:\.\d+)?(?: ?[^\d.e±].*?)?)( ?±.*)?")
-"""A number: what is before its decimal point, its decimals with its unit, and its error."""
 
 
 def aligned(cells: Sequence[str]) -> list[str]:

@@ -35,6 +35,9 @@ if TYPE_CHECKING:
     from lineofaction.report.drawing.page import Headline
 
 _COLORS = {"failed": "red", "dismissed": "yellow"}
+_OF_CASES = ("analyze", *studies_of("case"))
+_OF_SCENES = ("simulate", *studies_of("scene"))
+_OF_BOTH = studies_of("case or scene")
 
 
 def _waited(client: LineOfActionClient, job: str) -> Result:
@@ -100,11 +103,6 @@ def run_dismiss(job: str, service: str, *, as_json: bool) -> None:
 
 
 # ``loa submit`` and ``loa fetch``: the client on the command line.
-
-
-_OF_CASES = ("analyze", *studies_of("case"))
-_OF_SCENES = ("simulate", *studies_of("scene"))
-_OF_BOTH = studies_of("case or scene")
 
 
 def run_submit(

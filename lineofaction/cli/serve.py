@@ -49,6 +49,16 @@ if TYPE_CHECKING:
     from lineofaction.cli.connections import Server
 
 logger = structlog.get_logger(__name__)
+LEAST_LIFE_S = 5.0
+"""Processes that end earlier are replaced only after so long: what they lack may be there by then."""
+STOPPING_S = 3.5
+"""After which serving processes that do not stop are killed."""
+_LOOK_S = 0.2
+_APPLICATION = "service.app"
+_METRICS = "PROMETHEUS_MULTIPROC_DIR"
+"""Where prometheus-client keeps the figures of all processes, by its own name."""
+Work = Callable[[], None]
+"""What a process does; pickled on the way to it."""
 
 
 def log_to_standard_error() -> None:
@@ -190,19 +200,6 @@ def _listener(settings: Settings) -> socket.socket:
 
 
 # Several serving processes on one socket, and beside them the scheduler of their jobs.
-
-
-LEAST_LIFE_S = 5.0
-"""Processes that end earlier are replaced only after so long: what they lack may be there by then."""
-STOPPING_S = 3.5
-"""After which serving processes that do not stop are killed."""
-_LOOK_S = 0.2
-_APPLICATION = "service.app"
-_METRICS = "PROMETHEUS_MULTIPROC_DIR"
-"""Where prometheus-client keeps the figures of all processes, by its own name."""
-
-Work = Callable[[], None]
-"""What a process does; pickled on the way to it."""
 
 
 def _serve_in_processes(settings: Settings, serve: Work, announce: Work) -> None:

@@ -27,6 +27,10 @@ from lineofaction.gearbox.studies.cost import StudyCost
 from lineofaction.gearbox.studies.scene_before_tables import CASES
 from lineofaction.gearbox.subjects import scene_of
 
+_STATES, _HEAD = ("fresh", "stale", "missing"), ("state", "result", "made by")
+_NAMED = 3
+"""Verbs that are named where they refuse for one reason."""
+
 
 def result_costs(states: Iterable[ResultState], project: Path) -> dict[str, StudyCost | BadInput]:
     """Return the predicted cost by the name of the result, as its verb would run without options.
@@ -74,9 +78,6 @@ def scene_tables_cost(project: Path) -> StudyCost:
     except BadInput:
         return StudyCost(())
     return tables_cost(*scene_of(file))
-
-
-_STATES, _HEAD = ("fresh", "stale", "missing"), ("state", "result", "made by")
 
 
 def run_status(folder: Path, *, as_json: bool) -> None:
@@ -127,10 +128,6 @@ def run_status(folder: Path, *, as_json: bool) -> None:
 def _reason(error: BadInput) -> str:
     """Say in a line what a verb refuses, without what to try: the verb says it."""
     return "; ".join(str(replace(fault, suggestion="")) for fault in error.faults)
-
-
-_NAMED = 3
-"""Verbs that are named where they refuse for one reason."""
 
 
 def _refusals(verbs: Mapping[str, str], reasons: Mapping[str, str]) -> Iterator[str]:

@@ -23,6 +23,7 @@ _FARTHEST = 1e6
 _SHOWN_ORDERS = 8
 _NAME, _DECIMALS, _BAR, _SPARKS = 17, 4, 16, 24
 _BLOCKS = "▁▂▃▄▅▆▇█"
+_Line = tuple[str, float, float | None]
 
 
 def run_ste(
@@ -181,9 +182,6 @@ def _bands(curve: dict[str, Any]) -> Iterator[str]:
     if interpolated := curve["interval_error_um"]:
         words += f", {engineering(interpolated, 2)} µm of it by interpolation between the nodes"
     yield words
-
-
-_Line = tuple[str, float, float | None]
 
 
 def _with_error(curve: dict[str, Any], name: str) -> tuple[Any, Any]:

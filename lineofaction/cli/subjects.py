@@ -47,6 +47,10 @@ from model_studies.progress import ANNOUNCED
 from model_studies.workers import InProcess, Workers
 from service.version import program_tag
 
+_READING, _HEARD, _BY_EAR = 0.5, 0.06, 2.9
+"""CPU seconds: of a run as it is read, of a second of it, and of a second at a microphone, where hearing
+counts."""
+
 
 def assessed_case(file: InputFile, point: FlankPoint | None = None) -> CheckedCase:
     """Return the case in a file, at one load and alignment if requested; warn of what is implausible.
@@ -127,11 +131,6 @@ def tables_cost(scene: SceneInput, folder: Path) -> StudyCost:
 def simulation_cost(scene: SceneInput, folder: Path) -> StudyCost | None:
     """Return the predicted cost of a run, without the tables of its scene; None: not predicted."""
     return run_cost(with_own_cases(scene, folder))
-
-
-_READING, _HEARD, _BY_EAR = 0.5, 0.06, 2.9
-"""CPU seconds: of a run as it is read, of a second of it, and of a second at a microphone, where hearing
-counts."""
 
 
 def listening_cost(seconds: float, *, housings: int = 0) -> StudyCost:

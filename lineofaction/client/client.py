@@ -57,6 +57,10 @@ if TYPE_CHECKING:
 
 # Scenes of dynamics on the tables of a service.
 
+T = TypeVar("T")
+M = TypeVar("M", bound="BaseModel")
+DEFAULT = "http://127.0.0.1:8321"
+
 
 class ServiceTables:
     """A service as the source of a scene's STE databases."""
@@ -109,10 +113,6 @@ class _SceneCalls(Surface):
 
 
 # What a service says before anything is computed: plans, drawings, examples, effects, files.
-
-
-T = TypeVar("T")
-M = TypeVar("M", bound="BaseModel")
 
 
 class _LookupCalls(Surface):
@@ -236,9 +236,6 @@ def _model(name: str) -> Any:
 
 
 # The address of a service, and how HTTP libraries are to reach it.
-
-
-DEFAULT = "http://127.0.0.1:8321"
 
 
 def _http_options(base_url: str | None, timeout: float, key: str | None) -> dict[str, Any]:

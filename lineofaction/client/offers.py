@@ -17,6 +17,11 @@ from lineofaction.gearbox.study import Study
 _SUBJECTS: Callable[[], Any] = partial(import_module, "lineofaction.gearbox.subjects")
 """Loads what declares the fields of a case, with the first call."""
 
+_ADVICE = (
+    "Results as objects need the libraries: pip uninstall lineofaction-client, pip install lineofaction. "
+    "job.figures(), job.report() and job.file() do not."
+)
+
 
 @dataclass(frozen=True)
 class Offer:
@@ -53,12 +58,6 @@ def subject_inputs(kind: str, subject: Any) -> dict[str, Any]:
     name = {"case": "case_inputs", "scene": "scene_inputs", "case or scene": "inputs_of"}[kind]
     inputs: dict[str, Any] = getattr(_SUBJECTS(), name)(subject)
     return inputs
-
-
-_ADVICE = (
-    "Results as objects need the libraries: pip uninstall lineofaction-client, pip install lineofaction. "
-    "job.figures(), job.report() and job.file() do not."
-)
 
 
 @contextmanager

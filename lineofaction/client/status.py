@@ -18,6 +18,16 @@ from lineofaction.gearbox.problems import (
     Unreachable,
 )
 
+T = TypeVar("T")
+AWAY = (Unreachable, DatabaseUnavailable, StoreUnavailable, TryLater)
+"""Raised while a service is away or busy, which jobs outlast."""
+STOPS = (KeyboardInterrupt, CancelledError)
+"""Raised where the caller stops an operation."""
+AWAY_PAUSE_S = 0.5
+"""Before a service that was away is asked again."""
+_GROWTH = 1.1
+"""Of each pause over the last: what is seen late is then about a tenth of the time waited."""
+
 
 @dataclass(frozen=True)
 class JobState:
@@ -128,17 +138,6 @@ class Result:
 
 class OfflineWarning(UserWarning):
     """A result is from the cache because no service answers."""
-
-
-T = TypeVar("T")
-AWAY = (Unreachable, DatabaseUnavailable, StoreUnavailable, TryLater)
-"""Raised while a service is away or busy, which jobs outlast."""
-STOPS = (KeyboardInterrupt, CancelledError)
-"""Raised where the caller stops an operation."""
-AWAY_PAUSE_S = 0.5
-"""Before a service that was away is asked again."""
-_GROWTH = 1.1
-"""Of each pause over the last: what is seen late is then about a tenth of the time waited."""
 
 
 @dataclass(frozen=True)

@@ -29,6 +29,7 @@ from lineofaction.client.status import Watch
 from lineofaction.client.steps import Item, Items, Open, Pause, Piece, Send, Steps, Stream
 
 T = TypeVar("T")
+P = ParamSpec("P")
 
 
 class _Course(Generic[T]):
@@ -247,9 +248,6 @@ class AwaitingDriver:
                 return await anext(action.stream.pieces, None)
             case Pause():
                 return await asyncio.sleep(action.seconds)
-
-
-P = ParamSpec("P")
 
 
 @dataclass(frozen=True)

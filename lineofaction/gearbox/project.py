@@ -25,6 +25,8 @@ _ENDINGS = (".toml", ".json")
 RUN, SOUND = f"run{SUFFIX}", "run.wav"
 """Of a scene, in its project."""
 
+Named = TypeVar("Named", InputFile, Path)
+
 
 def file_of(named: InputFile, subject: str) -> InputFile:
     """Return a file as it is named, of a folder the only one in it that holds what is studied.
@@ -50,9 +52,6 @@ def files_of(named: InputFile, subject: str) -> list[InputFile]:
         if files:
             return files if kind == "case" else [only(files, named.path, kind)]
     raise _none_of(named.path, str(named), subject)
-
-
-Named = TypeVar("Named", InputFile, Path)
 
 
 def only(files: Sequence[Named], project: Path, kind: str) -> Named:

@@ -7,6 +7,11 @@ from typing import NamedTuple
 
 from model_studies.progress import Progress, by_cost, silent, stage_name
 
+_PACE_KNOWN = 0.1
+"""Fraction of a stage from which on its pace alone says what it takes."""
+_FIRST = 0.8
+"""Share of what is left that a pass takes if another may follow: most passes are the last."""
+
 
 class Stage(NamedTuple):
     """A stage of the work and its usual share of the time (the shares of a process sum to 1)."""
@@ -18,10 +23,6 @@ class Stage(NamedTuple):
 def staged(report: Progress) -> Callable[[float, str], None]:
     """Return the progress callback of `dynamics.simulation` that feeds ``report(stage, fraction)``."""
     return lambda fraction, _doing: report("integration", fraction)
-
-
-_PACE_KNOWN = 0.1
-"""Fraction of a stage from which on its pace alone says what it takes."""
 
 
 class PacedFraction:
@@ -73,10 +74,6 @@ class PacedFraction:
         whole_s = (1.0 - known) * max(usual_s, stage_s) + (known * stage_s / fraction if fraction else 0.0)
         later_s = ahead * (past_s + whole_s) / (before + share)
         return (past_s + stage_s) / (past_s + whole_s + later_s)
-
-
-_FIRST = 0.8
-"""Share of what is left that a pass takes if another may follow: most passes are the last."""
 
 
 class TableFraction:

@@ -58,6 +58,9 @@ _OF_SI = {
 ENDINGS = (*BY_SUFFIX, *_OF_SI.values(), "_n_per_m_n", "_m_per_s2", "_matrix")
 """What may follow the name of a field at the boundary."""
 
+_RENAMED = {"worth": "influence_m", "worth_relative": "relative_influence", "worths": "influences"}
+"""Keys of effect ledgers in the files of runs and studies of former versions, and today's."""
+
 
 def suffix_of(declaration: Declared) -> str:
     """Return how the boundary's name of a declared field ends."""
@@ -87,10 +90,6 @@ def factor(name: str) -> float:
 def as_typed(value: float, unit: float = 1.0) -> float:
     """Return a value in SI in a unit, without the noise of conversions: 60 for 59.99999999999999."""
     return float(f"{value / unit:.12g}")
-
-
-_RENAMED = {"worth": "influence_m", "worth_relative": "relative_influence", "worths": "influences"}
-"""Keys of effect ledgers in the files of runs and studies of former versions, and today's."""
 
 
 def boundary_ledger(ledger: Any) -> Any:

@@ -45,6 +45,14 @@ from lineofaction.report.ste.page import static_alarms, static_headlines, static
 from lineofaction.report.unit_picture import is_picture, one_picture, picture_sections
 from model_studies.netcdf import UnreadableFile, opened_netcdf
 
+_ACROSS = 2  # panels beside each other on a page
+_BOUND = f"an STE database, a run, or the result of a study ({', '.join(STUDIES)})"
+_READERS: dict[str, tuple[tuple[str, str], Callable[[Path], Any]]] = {
+    "database": (("format", "lineofaction STE database"), SteDatabase.from_netcdf),
+    "run": (("schema", "lineofaction dynamics run"), RunResult.from_netcdf),
+}
+"""Attribute of the file, and what reads it."""
+
 
 def stored_study(attributes: Mapping[str, object]) -> Study | None:
     """Return the study that made a file with these attributes; None: another kind of file."""
@@ -75,16 +83,6 @@ def page_beside(study: Study, result: object, database: SteDatabase | None) -> P
     if database is None or presentation.beside is None:
         return presentation.page(result)
     return presentation.beside(result, database)
-
-
-_ACROSS = 2  # panels beside each other on a page
-
-_BOUND = f"an STE database, a run, or the result of a study ({', '.join(STUDIES)})"
-_READERS: dict[str, tuple[tuple[str, str], Callable[[Path], Any]]] = {
-    "database": (("format", "lineofaction STE database"), SteDatabase.from_netcdf),
-    "run": (("schema", "lineofaction dynamics run"), RunResult.from_netcdf),
-}
-"""Attribute of the file, and what reads it."""
 
 
 @dataclass(frozen=True)

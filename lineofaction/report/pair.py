@@ -66,6 +66,20 @@ _PARTS: dict[str, Callable[..., object]] = {
     "tooth_flanks": ToothFlank,
     "flank_grid": FlankGrid,
 }
+_POINTS = 201
+_AXES = (Direction.PROFILE, Direction.FACE)
+_SIDES = {"pinion": palette.BLUE, "wheel": palette.VERMILLION}
+_HEIGHT = 3.4
+"""Modules drawn above and below the pitch point."""
+_WIDTH = 3.4
+"""Width of the drawing over its height, nearly that of a panel."""
+_UNITS: Mapping[str, float] = {"": 1.0, "mm": MM, "um": UM, "deg": DEGREE}
+_DECIMALS = {"": 4, "mm": 4, "um": 1, "deg": 4}
+_SYMBOLS = {"um": "µm", "deg": "°"}
+_POINT_HEAD = (
+    "point", "d_y1 mm", "d_y2 mm", "roll angle 1 °", "roll angle 2 °", "sliding factor K_g",
+    "specific sliding 1", "specific sliding 2",
+)  # fmt: skip
 
 
 def pair_of(database: SteDatabase) -> ParallelAxes | None:
@@ -146,15 +160,6 @@ def pair_remarks(pair: ParallelAxes) -> list[Json]:
         remarks.append(("backlash", f"pair: {words}"))
     remarks += [(finding.check, finding.message()) for finding in mesh_findings(pair)]
     return [{"check": check, "message": message} for check, message in remarks]
-
-
-_POINTS = 201
-_AXES = (Direction.PROFILE, Direction.FACE)
-_SIDES = {"pinion": palette.BLUE, "wheel": palette.VERMILLION}
-_HEIGHT = 3.4
-"""Modules drawn above and below the pitch point."""
-_WIDTH = 3.4
-"""Width of the drawing over its height, nearly that of a panel."""
 
 
 def pair_drawing(pair: ParallelAxes, tolerance_class: int | None = None) -> Figure:
@@ -318,11 +323,6 @@ def _finding(name: str, gear: Toothing) -> str:
     return f"At most {number(_removed(gear, roll, face).max(), 3)} µm are removed from the {name}.{made}"
 
 
-_UNITS: Mapping[str, float] = {"": 1.0, "mm": MM, "um": UM, "deg": DEGREE}
-_DECIMALS = {"": 4, "mm": 4, "um": 1, "deg": 4}
-_SYMBOLS = {"um": "µm", "deg": "°"}
-
-
 @dataclass(frozen=True)
 class Entry:
     """A line of the sheet: words and symbol of ISO 21771-1, the unit of the boundary, and values in SI.
@@ -447,12 +447,6 @@ def data_sheet(pair: ParallelAxes) -> tuple[Table, Table, Table]:
         Table("Mesh", ("quantity", "symbol", "value", "unit"), mesh),
         Table("Path of contact", _POINT_HEAD, points),
     )
-
-
-_POINT_HEAD = (
-    "point", "d_y1 mm", "d_y2 mm", "roll angle 1 °", "roll angle 2 °", "sliding factor K_g",
-    "specific sliding 1", "specific sliding 2",
-)  # fmt: skip
 
 
 def _point_row(name: str, point: Json) -> tuple[str, ...]:

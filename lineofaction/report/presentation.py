@@ -22,6 +22,9 @@ from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.tables import cost_tables, ledger_section
 from lineofaction.report.unit_picture import with_picture
 
+_SUBJECTS = [entry.name for entry in iter_modules([str(Path(__file__).parent)]) if entry.ispkg]
+"""Folders of the report."""
+
 
 @dataclass(frozen=True)
 class Presentation:
@@ -36,10 +39,6 @@ class Presentation:
     text: Callable[[Any], Iterable[Table | str]]
     series: Callable[[Any], Table] | None = None
     beside: Callable[[Any, SteDatabase], Page] | None = None
-
-
-_SUBJECTS = [entry.name for entry in iter_modules([str(Path(__file__).parent)]) if entry.ispkg]
-"""Folders of the report."""
 
 
 def presentation_of(study: Study) -> Presentation:

@@ -19,16 +19,26 @@ from typing import Any, Generic, Protocol, TypeVar
 
 from host import children_cpu_seconds, cpu_seconds, peak_memory
 
+KEPT = 2
+"""Shared things that a thread of a worker keeps: what it prepared of one serves all its tasks."""
+_local = threading.local()
+R = TypeVar("R")
+S = TypeVar("S")
+T = TypeVar("T")
+LARGE = 100_000
+"""Bytes; what tasks share beyond that goes by a file and not with each of them."""
+Function = TypeVar("Function", bound=Callable[..., Any])
+START_SECONDS = 10.0
+"""CPU seconds that pay for two new processes, which load program and compiled code: less work stays here."""
+AWAKE = 0.1
+"""Part of it that pays for workers that have done tasks: they may have to load what others need."""
+
 
 class WorkersLost(Exception):
     """Nobody is left to do the tasks of a study: a cluster without workers, a pool that broke."""
 
 
 # Arguments that tasks share, pickled once.
-
-KEPT = 2
-"""Shared things that a thread of a worker keeps: what it prepared of one serves all its tasks."""
-_local = threading.local()
 
 
 @dataclass(frozen=True)
@@ -74,8 +84,6 @@ class _PassedFiles:
 
 
 # Cost of tasks to the workers that did them.
-
-R = TypeVar("R")
 
 
 @dataclass
@@ -129,13 +137,6 @@ def task_cpu_seconds() -> float:
     alone = threading.current_thread() is threading.main_thread()
     own = time.process_time() if alone else time.thread_time()
     return own + children_cpu_seconds()
-
-
-S = TypeVar("S")
-T = TypeVar("T")
-
-LARGE = 100_000
-"""Bytes; what tasks share beyond that goes by a file and not with each of them."""
 
 
 @dataclass(frozen=True)
@@ -240,9 +241,6 @@ class InProcess:
         return (function(shared, item) for item in items)
 
 
-Function = TypeVar("Function", bound=Callable[..., Any])
-
-
 def kept(function: Function) -> Function:
     """Mark a function of tasks whose results a cluster keeps for whoever asks for the same later."""
     function.kept = True  # type: ignore[attr-defined]
@@ -283,11 +281,6 @@ class OrHere:
 
 
 # Which work is divided: what costs more than the start of a process.
-
-START_SECONDS = 10.0
-"""CPU seconds that pay for two new processes, which load program and compiled code: less work stays here."""
-AWAKE = 0.1
-"""Part of it that pays for workers that have done tasks: they may have to load what others need."""
 
 
 def _least(workers: Workers) -> float:

@@ -21,6 +21,11 @@ from model_studies.workers.executor import RunCost, Workers
 HOW_IT_CAME = ("from_cache", "seconds")
 """Fields that say how a thing was computed, not what it is."""
 
+S = TypeVar("S")
+T = TypeVar("T")
+R = TypeVar("R")
+_CHECKSUM = 32
+
 
 def content_digest(content: object) -> str:
     """Return the SHA-256 of frozen data: dataclasses by their fields, arrays by type, shape and values.
@@ -53,13 +58,6 @@ def _parts(content: object) -> list[bytes]:
         raise TypeError(f"the content of {type(content).__name__} is not known")
     name = f"{type(content).__qualname__} {len(inside)}".encode()
     return [name, *(part for each in inside for part in _parts(each))]
-
-
-S = TypeVar("S")
-T = TypeVar("T")
-R = TypeVar("R")
-
-_CHECKSUM = 32
 
 
 @dataclass(frozen=True)

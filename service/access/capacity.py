@@ -21,6 +21,15 @@ _AGAIN_S = 1
 NOBODY = ""
 """Holder of what callers without a key hold."""
 
+logger = structlog.get_logger(__name__)
+_MINUTE_S = 60.0
+_MOST_CONNECTIONS = 800
+_LEAST_CONNECTIONS = 32
+_OTHER_FILES = 192
+"""Kept for all else: up to four files in each of the 40 threads of handlers, pipes to workers, the rest."""
+_FILES_OF_A_WORKER = 4
+RAISE = "Raise the limit of the process (ulimit -n, LimitNOFILE= of systemd)."
+
 
 class Held:
     """Counts of one kind by the names of their holders, in one event loop of one server process.
@@ -61,11 +70,6 @@ class Held:
                 del self._held[name]
 
 
-logger = structlog.get_logger(__name__)
-
-_MINUTE_S = 60.0
-
-
 class RateLimits:
     """The buckets of all keys, in the memory of one server process.
 
@@ -103,14 +107,6 @@ class RateLimits:
         instant = self._clock()
         left, last = self._left.get(name, (float(limit), instant))
         return min(limit, left + (instant - last) * limit / _MINUTE_S), instant
-
-
-_MOST_CONNECTIONS = 800
-_LEAST_CONNECTIONS = 32
-_OTHER_FILES = 192
-"""Kept for all else: up to four files in each of the 40 threads of handlers, pipes to workers, the rest."""
-_FILES_OF_A_WORKER = 4
-RAISE = "Raise the limit of the process (ulimit -n, LimitNOFILE= of systemd)."
 
 
 @dataclass(frozen=True)

@@ -34,6 +34,11 @@ _DISCOVERY = "/.well-known/openid-configuration"
 
 Json = dict[str, Any]
 logger = structlog.get_logger(__name__)
+ALGORITHMS = ("RS256", "RS384", "RS512", "PS256", "PS384", "PS512", "ES256", "ES384", "ES512", "EdDSA")
+"""Signatures that only the holder of a private key makes (RFC 7518, RFC 8037): no others can be allowed."""
+_LEEWAY_S = 30
+_LONGEST_NAME = 200
+_REQUIRED = ["exp", "iss", "aud"]
 
 
 class Issuer:
@@ -133,10 +138,6 @@ def _document(http: httpx2.Client, url: str) -> Json:
 # Settings of bearer tokens of an OpenID Connect issuer: from the environment (``LOA_OIDC_...``).
 
 
-ALGORITHMS = ("RS256", "RS384", "RS512", "PS256", "PS384", "PS512", "ES256", "ES384", "ES512", "EdDSA")
-"""Signatures that only the holder of a private key makes (RFC 7518, RFC 8037): no others can be allowed."""
-
-
 class _OidcSettings(BaseSettings):
     """What tokens are accepted, and what their claims mean."""
 
@@ -203,11 +204,6 @@ def _fault(item: dict[str, object]) -> Fault:
 
 
 # Bearer tokens of an OpenID Connect issuer (RFC 9068, RFC 8725): checked, and read as a holder.
-
-
-_LEEWAY_S = 30
-_LONGEST_NAME = 200
-_REQUIRED = ["exp", "iss", "aud"]
 
 
 class _Tokens:

@@ -35,6 +35,23 @@ SOON = timedelta(days=7)
 
 _DURATION = re.compile(r"([1-9][0-9]{0,4})([hdw])")
 _UNITS = {"h": timedelta(hours=1), "d": timedelta(days=1), "w": timedelta(weeks=1)}
+LIMITS = (
+    "requests_per_minute",
+    "unfinished_jobs",
+    "highest_priority",
+    "max_cost_s",
+    "connections",
+    "streams",
+)
+"""Fields of a holder that are limits."""
+LEAST = {"highest_priority": -9}
+"""Of limits; of others 1."""
+PREFIX = "loa_"
+"""Beginning of every key."""
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
+logger = structlog.get_logger(__name__)
+_DAY_S = 86_400.0
+_Stamp = tuple[int, int, int] | None
 
 
 def _duration(field: str, text: str) -> timedelta:
@@ -115,19 +132,6 @@ class Holder:
         return self.ends_within(timedelta(0))
 
 
-LIMITS = (
-    "requests_per_minute",
-    "unfinished_jobs",
-    "highest_priority",
-    "max_cost_s",
-    "connections",
-    "streams",
-)
-"""Fields of a holder that are limits."""
-LEAST = {"highest_priority": -9}
-"""Of limits; of others 1."""
-
-
 # The record of an access key.
 
 
@@ -157,11 +161,6 @@ def _record_of(entry: dict[str, Any]) -> AccessKey:
         if limit is not None and (not isinstance(limit, int) or limit < LEAST.get(name, 1)):
             raise ValueError(entry)
     return key
-
-
-PREFIX = "loa_"
-"""Beginning of every key."""
-_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
 
 class KeyFile:
@@ -310,13 +309,6 @@ def _scopes(names: Iterable[str]) -> tuple[Scope, ...]:
 
 
 # Look-up of a presented key: in constant time, from a file that may change while the service runs.
-
-
-logger = structlog.get_logger(__name__)
-
-_DAY_S = 86_400.0
-
-_Stamp = tuple[int, int, int] | None
 
 
 class Keyring:

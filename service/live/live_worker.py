@@ -31,6 +31,9 @@ _LOOK_S = 0.1
 """Time between two looks whether somebody still waits."""
 
 logger = structlog.get_logger(__name__)
+WORKERS = 3
+"""Processes at most: one for submissions that wait for a predicted cost, two for all others."""
+LIMITS = Limits(held=64, in_all=512)
 
 
 @dataclass(frozen=True)
@@ -256,11 +259,6 @@ class LiveWorker:
 
 def _superseded() -> ServiceError:
     return Superseded("A later request of the same caller replaced it.")
-
-
-WORKERS = 3
-"""Processes at most: one for submissions that wait for a predicted cost, two for all others."""
-LIMITS = Limits(held=64, in_all=512)
 
 
 def live_pool(settings: Settings) -> QuestionPool:

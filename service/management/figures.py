@@ -43,6 +43,8 @@ from service.version import solver_version
 
 _STATES = ("accepted", "running", "successful", "failed", "dismissed")
 _ENDED = ["process", "outcome"]
+_METHODS = frozenset(("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE", "CONNECT"))
+"""Of RFC 9110 and RFC 5789; a caller may send any word."""
 
 
 class _Collected(Collector):
@@ -193,10 +195,6 @@ def process_registry(
 
 
 # Metrics of the requests that this process answers.
-
-
-_METHODS = frozenset(("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE", "CONNECT"))
-"""Of RFC 9110 and RFC 5789; a caller may send any word."""
 
 
 class Metrics:

@@ -29,6 +29,12 @@ store, each for some 10 s."""
 _ANSWER_WITHIN_S = 0.8
 """Supervisors wait for a second."""
 
+METRICS_TYPE = "text/plain; version=0.0.4; charset=utf-8"
+_MOST_REQUESTS = 16
+"""Answered at once; a connection beyond them is closed."""
+_PATIENCE_S = 5.0
+"""For the next piece of a request."""
+
 
 @dataclass
 class EventLoop:
@@ -74,13 +80,6 @@ class Vitals:
 
 
 # The management port.
-
-
-METRICS_TYPE = "text/plain; version=0.0.4; charset=utf-8"
-_MOST_REQUESTS = 16
-"""Answered at once; a connection beyond them is closed."""
-_PATIENCE_S = 5.0
-"""For the next piece of a request."""
 
 
 class _Answer(NamedTuple):

@@ -29,6 +29,25 @@ _FROM_PACKAGES = {
 }
 """Package and folder in it."""
 
+_EXAMPLES = Path(__file__).parent / "examples"
+_OFFERED = (
+    ("helical_ev_23_67", "EV reducer: helical 23/67, module 1.8 mm", "With relief and crowning."),
+    ("industrial_spur_21_59", "Industrial gearbox: spur 21/59, module 5 mm", "With tip relief."),
+    ("palermo_spur_20_20", "Spur 20/20, module 4 mm", "Published pair (ISMA 2010), in the plane."),
+    (
+        "helical_automotive",
+        "Helical 39/40, module 3 mm",
+        "Automotive pair (ISMA 2010) with relief and crowning.",
+    ),
+    ("internal_gear", "Planet 36 in ring 96, module 2 mm", "An internal pair in the plane."),
+    (
+        "pitch_error",
+        "Spur with pitch deviations",
+        "Every tooth of the pinion has its own place: 20 base pitches.",
+    ),
+)
+"""The first is shown when the page opens with an empty address, with the result in `first.json`."""
+
 
 @dataclass(frozen=True)
 class PageFile:
@@ -67,26 +86,6 @@ def _own() -> dict[str, Path]:
 
 
 # Cases that the page offers to begin with.
-
-
-_EXAMPLES = Path(__file__).parent / "examples"
-_OFFERED = (
-    ("helical_ev_23_67", "EV reducer: helical 23/67, module 1.8 mm", "With relief and crowning."),
-    ("industrial_spur_21_59", "Industrial gearbox: spur 21/59, module 5 mm", "With tip relief."),
-    ("palermo_spur_20_20", "Spur 20/20, module 4 mm", "Published pair (ISMA 2010), in the plane."),
-    (
-        "helical_automotive",
-        "Helical 39/40, module 3 mm",
-        "Automotive pair (ISMA 2010) with relief and crowning.",
-    ),
-    ("internal_gear", "Planet 36 in ring 96, module 2 mm", "An internal pair in the plane."),
-    (
-        "pitch_error",
-        "Spur with pitch deviations",
-        "Every tooth of the pinion has its own place: 20 base pitches.",
-    ),
-)
-"""The first is shown when the page opens with an empty address, with the result in `first.json`."""
 
 
 class Example(NamedTuple):

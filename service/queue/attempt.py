@@ -42,6 +42,15 @@ files_read = on_demand("service.worker.preparations:files_read")
 Run: TypeAlias = Worker | Task
 """Work on one order."""
 
+_MEMORY_MB = (128, 256, 512, 1024, 2048, 4096, 8192, 16384)
+"""Upper bounds of the classes of peak memory."""
+_ALARMING = ("died", "defect")
+"""Outcomes that an operator is to look into."""
+_START = "start"
+"""Stage before the first report: the process starts and loads its program."""
+_MOST_STAGES = 200
+"""Spans of one attempt; what is reported after them belongs to the last."""
+
 
 class Children:
     """Child processes of this one, `settings.workers` at a time."""
@@ -75,12 +84,6 @@ Crew: TypeAlias = Children | Cluster
 
 
 # What the workers of one scheduler did: counted by the process they worked for.
-
-
-_MEMORY_MB = (128, 256, 512, 1024, 2048, 4096, 8192, 16384)
-"""Upper bounds of the classes of peak memory."""
-_ALARMING = ("died", "defect")
-"""Outcomes that an operator is to look into."""
 
 
 class WorkerFigures(Collector):
@@ -127,12 +130,6 @@ class WorkerFigures(Collector):
 
 
 # The spans of one attempt: its wait in the queue, the attempt, and the stages of its worker.
-
-
-_START = "start"
-"""Stage before the first report: the process starts and loads its program."""
-_MOST_STAGES = 200
-"""Spans of one attempt; what is reported after them belongs to the last."""
 
 
 class _AttemptTrace:

@@ -18,6 +18,18 @@ from service.schemas.answers import Differences
 from service.store.results import results
 
 Json = dict[str, Any]
+ENDED = ("successful", "failed", "dismissed")
+"""States in which nothing more happens."""
+_PACE_KNOWN = 0.02
+_AS_STORED = (
+    *("process", "stage", "stage_fraction", "fraction", "attempts", "started", "reference", "inputs"),
+    *("priority", "max_cost_s", "caller", "parent", "place", "children"),
+)
+"""Fields of a job that are columns of its row."""
+_OF_JOB = (
+    *("dismissed", "asked", "delivery", "title", "tags", "differences", "stated"),
+    *("caller", "parent", "place", "children"),
+)
 
 
 @lru_cache(maxsize=1024)
@@ -36,11 +48,6 @@ def _pair(case: Json) -> str:
     torques = load.get("torque_n_m") or ()
     up_to = f", up to {engineering(max(torques), 4)} N m" if torques else ""
     return f"{teeth}, module {engineering(pair['normal_module_mm'], 4)} mm{up_to}"
-
-
-ENDED = ("successful", "failed", "dismissed")
-"""States in which nothing more happens."""
-_PACE_KNOWN = 0.02
 
 
 @dataclass(frozen=True)
@@ -99,17 +106,6 @@ class Job:
         spent = (updated - datetime.fromisoformat(self.started)).total_seconds()
         left = spent * (1.0 - self.fraction) / self.fraction
         return max(left - (instant - updated).total_seconds(), 0.0)
-
-
-_AS_STORED = (
-    *("process", "stage", "stage_fraction", "fraction", "attempts", "started", "reference", "inputs"),
-    *("priority", "max_cost_s", "caller", "parent", "place", "children"),
-)
-"""Fields of a job that are columns of its row."""
-_OF_JOB = (
-    *("dismissed", "asked", "delivery", "title", "tags", "differences", "stated"),
-    *("caller", "parent", "place", "children"),
-)
 
 
 def job_state() -> ColumnElement[Any]:

@@ -31,6 +31,8 @@ from service.store.results import ResultStore
 logger = structlog.get_logger(__name__)
 
 _AT_ONCE = 500
+_IDENTIFIER = 36  # of a computation: other logs are not ours to remove
+FIRST_S, EVERY_S = 60.0, 3600.0
 
 
 class Retention:
@@ -115,12 +117,6 @@ class Retention:
         with reading(self._engine) as connection:
             which = select(computations.c.id).where(computations.c.state.in_(states))
             return set(connection.execute(which).scalars())
-
-
-_IDENTIFIER = 36  # of a computation: other logs are not ours to remove
-
-
-FIRST_S, EVERY_S = 60.0, 3600.0
 
 
 class Housekeeper:

@@ -12,6 +12,10 @@ from service.store.database import metadata
 from service.version import solver_version
 
 _LIVE = text("state IN ('accepted', 'running')")
+BATCH = "batch "
+"""How the key of what stands for the computation of a batch begins; the hash of a result has no space."""
+# What lists are chosen and ordered by; the database's triggers keep it, see `service.store.listing`.
+listings = Table("listing", metadata, *listing.columns())
 
 
 def _columns(kind: Any, *names: str, **options: Any) -> Iterator[Column[Any]]:
@@ -43,8 +47,6 @@ Index("computation_in_flight", computations.c.key, unique=True, sqlite_where=_LI
 Index("computation_by_key", computations.c.key, computations.c.state, computations.c.created)
 Index("computation_by_turn", computations.c.state, computations.c.priority, computations.c.created)
 
-BATCH = "batch "
-"""How the key of what stands for the computation of a batch begins; the hash of a result has no space."""
 # an index finds the range, up to behind all hexadecimal digits; by its collation it may have others too
 of_batch = computations.c.key.between(BATCH, f"{BATCH}g") & computations.c.key.startswith(BATCH)
 
@@ -91,7 +93,5 @@ Index("job_by_parent", jobs.c.parent)
 Index("job_by_caller_and_time", jobs.c.caller, jobs.c.created)
 Index("job_by_computation", jobs.c.computation_id)
 
-# What lists are chosen and ordered by; the database's triggers keep it, see `service.store.listing`.
-listings = Table("listing", metadata, *listing.columns())
 for _name, _columns_of in listing.INDEXES.items():
     Index(_name, *(listings.c[column] for column in _columns_of))

@@ -16,6 +16,16 @@ from service.schemas.answers import Difference, Differences, Value
 ANYBODY = Holder(name="")
 """The caller of a service without keys."""
 
+LOWER_COST = (
+    "Select a coarser level, fewer positions, loads or samples, of a run a shorter one; or raise the limit."
+)
+Response = Literal["raw", "document"]
+Transmission = Literal["value", "reference"]
+Json = dict[str, Any]
+_MOST = 12
+_LONGEST_LIST, _LONGEST_TEXT = 16, 200
+NOT_COMPARED = Differences(since=None, first=[], number=0)
+
 
 def check_priority(priority: int, caller: Holder) -> None:
     """Raise `BadInput` if a caller may not have this priority."""
@@ -23,11 +33,6 @@ def check_priority(priority: int, caller: Holder) -> None:
     if highest is not None and priority > highest:
         bound = f"at most {highest}, the limit of key {caller.name!r}"
         raise BadInput.of("priority", priority, bound, "Leave it out, or ask the operator of the service.")
-
-
-LOWER_COST = (
-    "Select a coarser level, fewer positions, loads or samples, of a run a shorter one; or raise the limit."
-)
 
 
 def cost_limit(requested: float | None, caller: Holder) -> float | None:
@@ -72,10 +77,6 @@ class Label:
 NO_LABEL = Label()
 
 
-Response = Literal["raw", "document"]
-Transmission = Literal["value", "reference"]
-
-
 @dataclass(frozen=True)
 class Delivery:
     """The form of a result: itself or links in headers (raw), or a JSON object by name of output."""
@@ -113,12 +114,6 @@ def delivery(response: Response, transmission: Transmission | None, field: str) 
 
 
 # What sets a job apart: its inputs that differ from those of its caller's job before it.
-
-
-Json = dict[str, Any]
-_MOST = 12
-_LONGEST_LIST, _LONGEST_TEXT = 16, 200
-NOT_COMPARED = Differences(since=None, first=[], number=0)
 
 
 def differences_between(reference: Json, inputs: Json, since: str | None = None) -> Differences:

@@ -17,6 +17,9 @@ from service.store.results import results
 
 # Batches: how far one is follows from the jobs in it.
 
+BOUNDS_S = (1.0, 2.0, 5.0, 10.0, 20.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0, math.inf)
+"""Upper bounds of the classes; another program version may have others, each class is kept by its bound."""
+
 
 @dataclass(frozen=True)
 class Family:
@@ -86,10 +89,6 @@ def _families(connection: Connection, parents: list[str]) -> dict[str, Family]:
         fraction = sum(row[4] for row in rows) / weight if weight else 1.0
         families[parent] = Family({row[1]: row[2] for row in rows}, fraction)
     return families
-
-
-BOUNDS_S = (1.0, 2.0, 5.0, 10.0, 20.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0, math.inf)
-"""Upper bounds of the classes; another program version may have others, each class is kept by its bound."""
 
 
 def end_computations(connection: Connection, which: ColumnElement[bool], values: dict[str, Any]) -> None:

@@ -22,6 +22,12 @@ _KILL = "SIGKILL"
 Answer = tuple[AnswerHead, bytes]
 """Head and body."""
 
+_TEXTS = ("toml", "csv", "rexs_base64")
+_SHOWN = 20
+_ADVICE = (
+    "Export it again, or heal it in the program that wrote it; if it is large, leave out what is not needed."
+)
+
 
 @dataclass(frozen=True)
 class Course:
@@ -71,13 +77,6 @@ class Course:
 
 
 # Which of the files or texts of an order it was.
-
-
-_TEXTS = ("toml", "csv", "rexs_base64")
-_SHOWN = 20
-_ADVICE = (
-    "Export it again, or heal it in the program that wrote it; if it is large, leave out what is not needed."
-)
 
 
 def refusal(inputs: Mapping[str, Any], field: str, bound: str) -> BadInput:

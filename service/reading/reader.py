@@ -41,6 +41,8 @@ _PATIENCE_S = 2.0
 _PIECE = 1 << 16
 
 logger = structlog.get_logger(__name__)
+AT_ONCE = 4
+LIMITS = Limits(held=2, in_all=20)
 
 
 @dataclass(frozen=True)
@@ -194,10 +196,6 @@ class Reader:
     def close(self) -> None:
         """End the process that children are forked from; see `QuestionWorker`."""
         self._children.close()
-
-
-AT_ONCE = 4
-LIMITS = Limits(held=2, in_all=20)
 
 
 def require_confinement() -> None:

@@ -25,6 +25,10 @@ from lineofaction.gearbox.schemas.toml import toml_table
 
 # The files that a caller sends together with a text: written into a folder, found there by their names.
 
+Json = dict[str, Any]
+Announce = Callable[[str], None]
+"""Says which field of the inputs is read next."""
+
 
 def _sent_files(files: Sequence[FileContentInput], folder: Path, announce: Announce) -> Find:
     """Write files into a folder; what is returned finds them by their own names, and no others.
@@ -65,11 +69,6 @@ def _written(file: FileContentInput, folder: Path, field: str, most: int) -> Pat
     except (OSError, ValueError):
         raise BadInput.of(f"{field}.name", file.name, "a name that a file can have") from None
     return place
-
-
-Json = dict[str, Any]
-Announce = Callable[[str], None]
-"""Says which field of the inputs is read next."""
 
 
 def case_of_toml(inputs: Json, folder: Path, announce: Announce) -> Json:

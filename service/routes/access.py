@@ -21,6 +21,17 @@ from service.routes.media_types import for_one_caller
 
 # How many requests are answered at once, and how many bodies are awaited: of one caller and in all.
 
+_KEY = re.compile(r"loa_[A-Za-z0-9_-]+")
+_LONGEST = 200
+logger = structlog.get_logger(__name__)
+OPEN_PATHS = ("/health", "/ready", "/", "/docs")
+OPEN_FOLDER = "/page/"
+"""Answered to everybody: they tell nothing about anybody's work. Supervisors and load balancers ask without a
+key; the page asks its reader for one."""
+VITAL_PATHS = ("/health", "/ready")
+"""Answered however many requests are under way."""
+_SCHEME = "bearer "
+
 
 class Admission:
     """The requests of all callers of one server process.
@@ -87,12 +98,6 @@ class Admission:
 # The line of every access in the log: who did what to what, under which scope, and what came of it.
 
 
-_KEY = re.compile(r"loa_[A-Za-z0-9_-]+")
-_LONGEST = 200
-
-logger = structlog.get_logger(__name__)
-
-
 class _Visit:
     """One access to a service with keys, until it is noted; `holder` is who it is, once that is known."""
 
@@ -140,16 +145,6 @@ def _meant_for_us(scope: Scope) -> bool:
         return True
     host = named[1:].partition("]")[0] if named.startswith("[") else named.partition(":")[0]
     return host.lower() == str(server[0]).lower() or is_loopback(host.lower())
-
-
-OPEN_PATHS = ("/health", "/ready", "/", "/docs")
-OPEN_FOLDER = "/page/"
-"""Answered to everybody: they tell nothing about anybody's work. Supervisors and load balancers ask without a
-key; the page asks its reader for one."""
-VITAL_PATHS = ("/health", "/ready")
-"""Answered however many requests are under way."""
-
-_SCHEME = "bearer "
 
 
 class Access:

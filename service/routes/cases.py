@@ -39,6 +39,9 @@ router = APIRouter(tags=["cases"], route_class=ScopedRoute)
 case_json = on_demand("lineofaction.gearbox.convert.case:case_json")
 case_as_filed = on_demand("lineofaction.gearbox.convert.case:case_as_filed")
 outline_json = on_demand("lineofaction.gearbox.convert.live:outline_json")
+scenes_router = APIRouter(tags=["scenes"], route_class=ScopedRoute)
+units_router = APIRouter(tags=["units"], route_class=ScopedRoute)
+ENTRY = "lineofaction.gearbox.from_rexs.unit_answer:unit_of_rexs"
 
 
 class CaseInputs(BoundaryModel):
@@ -175,9 +178,6 @@ def case_to_toml(body: CaseRequest) -> TomlBody:
     return TomlBody(toml=toml_text(case_as_filed(body.inputs.case)))
 
 
-scenes_router = APIRouter(tags=["scenes"], route_class=ScopedRoute)
-
-
 class SceneInputs(BoundaryModel):
     """A scene."""
 
@@ -272,11 +272,6 @@ async def housing_surface(body: HousingsRequest, context: Ctx, request: Request)
     )
     await run_in_threadpool(context.kept.keep, tag, bytes(answer.body))
     return answer
-
-
-units_router = APIRouter(tags=["units"], route_class=ScopedRoute)
-
-ENTRY = "lineofaction.gearbox.from_rexs.unit_answer:unit_of_rexs"
 
 
 @units_router.post(

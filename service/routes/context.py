@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 # What event streams share: their events, and a count of those open.
 
+_MOST_OPEN = 16
+
 
 class JobEvent(NamedTuple):
     """A state of a job as all its streams send it, made once."""
@@ -68,9 +70,6 @@ class Streams:
 
 
 # The STE databases queried last, kept open.
-
-
-_MOST_OPEN = 16
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,29 @@ _LINKS = (
     Link(href="/v1/jobs", rel=f"{_OGC}job-list", title="Jobs"),
     Link(href="/v1/databases", rel="data", title="STE databases"),
 )
+effects_router = APIRouter(tags=["effects"], route_class=ScopedRoute)
+pages_router = APIRouter(include_in_schema=False, route_class=ScopedRoute)
+_POLICY = "; ".join(
+    (
+        "default-src 'none'",
+        "script-src 'self'",
+        "style-src 'self' 'unsafe-inline'",  # plotly.js writes its styles into what it draws
+        "img-src 'self' data: blob:",  # a plot becomes a PNG by way of them
+        "media-src blob:",  # sounds come with the caller's key, as all else
+        "connect-src 'self'",
+        "base-uri 'none'",
+        "form-action 'none'",
+        "frame-ancestors 'none'",
+    )
+)
+_HEADERS = {
+    "Content-Security-Policy": _POLICY,
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cache-Control": "no-cache",
+    "Vary": "Accept-Encoding",
+}
+_OFFERED = (JSON, media_type(OPENAPI))
 
 
 @router.get("", summary="Landing page")
@@ -50,9 +73,6 @@ def conformance() -> Conformance:
     return Conformance(conformsTo=list(CONFORMANCE))
 
 
-effects_router = APIRouter(tags=["effects"], route_class=ScopedRoute)
-
-
 @effects_router.get("/effects", summary="Optional physics")
 @needs(Scope.READ)
 def list_effects() -> list[EffectBody]:
@@ -64,30 +84,6 @@ def list_effects() -> list[EffectBody]:
 
 
 # The pages at / and /docs: plain files, nothing from elsewhere, and a policy that says so.
-
-
-pages_router = APIRouter(include_in_schema=False, route_class=ScopedRoute)
-
-_POLICY = "; ".join(
-    (
-        "default-src 'none'",
-        "script-src 'self'",
-        "style-src 'self' 'unsafe-inline'",  # plotly.js writes its styles into what it draws
-        "img-src 'self' data: blob:",  # a plot becomes a PNG by way of them
-        "media-src blob:",  # sounds come with the caller's key, as all else
-        "connect-src 'self'",
-        "base-uri 'none'",
-        "form-action 'none'",
-        "frame-ancestors 'none'",
-    )
-)
-_HEADERS = {
-    "Content-Security-Policy": _POLICY,
-    "Referrer-Policy": "no-referrer",
-    "Cross-Origin-Opener-Policy": "same-origin",
-    "Cache-Control": "no-cache",
-    "Vary": "Accept-Encoding",
-}
 
 
 @pages_router.get("/")
@@ -121,9 +117,6 @@ def _served(file: PageFile | None, request: Request) -> Response:
     if "gzip" in request.headers.get("accept-encoding", ""):
         return Response(file.packed, 200, headers | {"Content-Encoding": "gzip"}, file.media_type)
     return Response(file.content, 200, headers, file.media_type)
-
-
-_OFFERED = (JSON, media_type(OPENAPI))
 
 
 @pages_router.get("/openapi.json")

@@ -21,6 +21,18 @@ from service.routes.middleware import refusal_of
 from service.routes.scopes import ScopedRoute
 from service.schemas.answers import FaultBody
 
+DRAFTS = {
+    "/cases/outline": ("outline", "Drawing of a draft"),
+    "/cases/to-toml": ("to-toml", "Case file of a draft"),
+    "/cases/as-made": ("as-made", "Gears of a draft as made"),
+    "/plans": ("plan", "Plan of a draft"),
+    "/databases/{key}/ste": ("{key}/ste", "Transmission error of drafted flanks"),
+    "/scenes/to-files": ("scene", "Text of a drafted scene"),
+    "/scenes/from-toml": ("scene-text", "Scene of a drafted text"),
+    "/scenes/housing-surface": ("housing-surface", "Surface of drafted housings"),
+}
+"""Questions that may be asked of a draft, by their own path: the path below `/drafts`, and what they are."""
+
 
 class FaultsBody(BaseModel):
     """What is wrong with a draft."""
@@ -56,18 +68,6 @@ def _faults_of(refusal: ServiceError) -> Response:
         raise refusal
     return JSONResponse({"detail": problem["detail"], "faults": problem["errors"]})
 
-
-DRAFTS = {
-    "/cases/outline": ("outline", "Drawing of a draft"),
-    "/cases/to-toml": ("to-toml", "Case file of a draft"),
-    "/cases/as-made": ("as-made", "Gears of a draft as made"),
-    "/plans": ("plan", "Plan of a draft"),
-    "/databases/{key}/ste": ("{key}/ste", "Transmission error of drafted flanks"),
-    "/scenes/to-files": ("scene", "Text of a drafted scene"),
-    "/scenes/from-toml": ("scene-text", "Scene of a drafted text"),
-    "/scenes/housing-surface": ("housing-surface", "Surface of drafted housings"),
-}
-"""Questions that may be asked of a draft, by their own path: the path below `/drafts`, and what they are."""
 
 router = APIRouter(tags=["drafts"], route_class=DraftRoute)
 

@@ -99,6 +99,22 @@ Parent = Annotated[
 Once = Annotated[
     bool, Query(description="Of jobs with one result the newest alone; one in vain where all are")
 ]
+router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=ScopedRoute)
+input_warnings = on_demand("service.worker.preparations:input_warnings")
+AskedForm = Annotated[Form | None, Query(description="Form of the result; overrides that of the execution")]
+AskedMode = Annotated[
+    Transmission | None,
+    Query(alias="transmissionMode", description="Transmission mode; overrides that of the execution"),
+]
+AskedType = Annotated[
+    str,
+    Header(
+        alias="Accept",
+        description=f"{JSON} for the document, which generated clients prefer by default; {NETCDF} for the "
+        "file. A request without it, or that takes both, gets the form of the execution.",
+    ),
+]
+_REFUSED = documented(NoSuchJob, ResultNotReady, NotFound, JobDismissed, JobFailed, DamagedFile)
 
 
 async def job_filter(
@@ -150,10 +166,6 @@ def _instant(text: str) -> str:
     if instant.tzinfo is None:
         raise ValueError(text)
     return instant.astimezone(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
-
-
-router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=ScopedRoute)
-input_warnings = on_demand("service.worker.preparations:input_warnings")
 
 
 @router.get("", summary="Jobs", response_model=JobList, responses=LISTED)
@@ -252,22 +264,6 @@ def status_info(job: Job, registry: Registry) -> StatusInfo:
 
 
 # Results in the form that was requested.
-
-
-AskedForm = Annotated[Form | None, Query(description="Form of the result; overrides that of the execution")]
-AskedMode = Annotated[
-    Transmission | None,
-    Query(alias="transmissionMode", description="Transmission mode; overrides that of the execution"),
-]
-AskedType = Annotated[
-    str,
-    Header(
-        alias="Accept",
-        description=f"{JSON} for the document, which generated clients prefer by default; {NETCDF} for the "
-        "file. A request without it, or that takes both, gets the form of the execution.",
-    ),
-]
-_REFUSED = documented(NoSuchJob, ResultNotReady, NotFound, JobDismissed, JobFailed, DamagedFile)
 
 
 def job_results_router(registry: Registry) -> APIRouter:

@@ -25,6 +25,57 @@ HTML = "text/html"
 EVENT_STREAM = "text/event-stream"
 PROBLEM = "application/problem+json"
 OPENAPI = "application/vnd.oai.openapi+json;version=3.1"
+NO_STORE = "no-store"
+_REVALIDATED = "private, no-cache"
+_TEXT, _ADDRESS = {"type": "string"}, {"type": "string", "format": "uri-reference"}
+OF_ALL = ("X-Request-ID", POLICY, LIMIT)
+"""Of every answer; the last two of callers with shares."""
+OF_STATUS: Mapping[int, tuple[str, ...]] = {
+    401: ("WWW-Authenticate",),
+    403: ("WWW-Authenticate",),
+    405: ("Allow",),
+    415: ("Accept-Post",),
+    429: ("Retry-After",),
+    503: ("Retry-After",),
+}
+"""Of refusals, as HTTP has them (RFC 9110, RFC 6585; `Accept-Post`: W3C LDP, section 7.1)."""
+OF_VERSIONS = ("ETag", "Cache-Control", "Vary")
+"""Of what a caller may keep, also in the answer 304."""
+HEADERS: dict[str, dict[str, Any]] = {
+    name: {"description": text, "schema": schema}
+    for name, text, schema in (
+        ("X-Request-ID", "Identifier of the request, as the log has it", _TEXT),
+        (
+            POLICY,
+            "Shares of the key: quota q, its unit qu, window w in s (draft-ietf-httpapi-ratelimit-headers)",
+            _TEXT,
+        ),
+        (LIMIT, "What the key has left of its shares: r, and t, s until all is there again", _TEXT),
+        (
+            "WWW-Authenticate",
+            "Bearer: send the access key in the header Authorization; the scope that it lacks",
+            _TEXT,
+        ),
+        ("Allow", "Methods of the path", _TEXT),
+        ("Accept-Post", "Types of body that are read", _TEXT),
+        ("Retry-After", "Seconds after which to try again; left out: not by itself", {"type": "integer"}),
+        ("Location", "Address of the job", _ADDRESS),
+        ("Preference-Applied", "respond-async, where Prefer requests that", _TEXT),
+        ("ETag", "Version of the answer; send it in If-None-Match", _TEXT),
+        ("Cache-Control", "How long who may keep the answer", _TEXT),
+        ("Vary", "Headers of the request on which the answer depends", _TEXT),
+        ("Content-Digest", "SHA-256 of the body (RFC 9530)", _TEXT),
+        ("Content-Location", "Address of the result", _ADDRESS),
+        ("Result-Kind", "Kind of the result", _TEXT),
+        ("Link", "Address of the result, its type and the name of the output as title (RFC 8288)", _TEXT),
+    )
+}
+_MARK = re.compile(r"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{6}Z) ([0-9a-f-]{36}|[0-9a-f]{64})\Z")
+Cursor = Annotated[
+    str | None,
+    Query(max_length=200, description="Cursor from the link `next` of the previous page"),
+]
+Limit = Annotated[int, Query(ge=1, le=1000, description="Largest number of entries on the page")]
 
 
 def media_type(header: str) -> str:
@@ -65,10 +116,6 @@ def _wanted(ranges: Sequence[tuple[str, float]], kind: str) -> tuple[float, int]
     return 0.0, 0
 
 
-NO_STORE = "no-store"
-_REVALIDATED = "private, no-cache"
-
-
 def for_one_caller(send: Send) -> Send:
     """Return `send` for answers that hang on a key: no shared cache keeps them, and no other asks in vain.
 
@@ -87,53 +134,6 @@ def for_one_caller(send: Send) -> Send:
     return confidential
 
 
-_TEXT, _ADDRESS = {"type": "string"}, {"type": "string", "format": "uri-reference"}
-
-OF_ALL = ("X-Request-ID", POLICY, LIMIT)
-"""Of every answer; the last two of callers with shares."""
-OF_STATUS: Mapping[int, tuple[str, ...]] = {
-    401: ("WWW-Authenticate",),
-    403: ("WWW-Authenticate",),
-    405: ("Allow",),
-    415: ("Accept-Post",),
-    429: ("Retry-After",),
-    503: ("Retry-After",),
-}
-"""Of refusals, as HTTP has them (RFC 9110, RFC 6585; `Accept-Post`: W3C LDP, section 7.1)."""
-OF_VERSIONS = ("ETag", "Cache-Control", "Vary")
-"""Of what a caller may keep, also in the answer 304."""
-
-HEADERS: dict[str, dict[str, Any]] = {
-    name: {"description": text, "schema": schema}
-    for name, text, schema in (
-        ("X-Request-ID", "Identifier of the request, as the log has it", _TEXT),
-        (
-            POLICY,
-            "Shares of the key: quota q, its unit qu, window w in s (draft-ietf-httpapi-ratelimit-headers)",
-            _TEXT,
-        ),
-        (LIMIT, "What the key has left of its shares: r, and t, s until all is there again", _TEXT),
-        (
-            "WWW-Authenticate",
-            "Bearer: send the access key in the header Authorization; the scope that it lacks",
-            _TEXT,
-        ),
-        ("Allow", "Methods of the path", _TEXT),
-        ("Accept-Post", "Types of body that are read", _TEXT),
-        ("Retry-After", "Seconds after which to try again; left out: not by itself", {"type": "integer"}),
-        ("Location", "Address of the job", _ADDRESS),
-        ("Preference-Applied", "respond-async, where Prefer requests that", _TEXT),
-        ("ETag", "Version of the answer; send it in If-None-Match", _TEXT),
-        ("Cache-Control", "How long who may keep the answer", _TEXT),
-        ("Vary", "Headers of the request on which the answer depends", _TEXT),
-        ("Content-Digest", "SHA-256 of the body (RFC 9530)", _TEXT),
-        ("Content-Location", "Address of the result", _ADDRESS),
-        ("Result-Kind", "Kind of the result", _TEXT),
-        ("Link", "Address of the result, its type and the name of the output as title (RFC 8288)", _TEXT),
-    )
-}
-
-
 def described_headers(*names: str) -> dict[str, Any]:
     """Return references to headers, for an answer in the description."""
     return {name: {"$ref": f"#/components/headers/{name}"} for name in names}
@@ -145,16 +145,6 @@ def answer(description: str, *headers: str, **further: Any) -> dict[str, Any]:
 
 
 # Cursors of pages: opaque to callers, good as long as the service, whatever becomes of what they name.
-
-
-_MARK = re.compile(r"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{6}Z) ([0-9a-f-]{36}|[0-9a-f]{64})\Z")
-
-Cursor = Annotated[
-    str | None,
-    Query(max_length=200, description="Cursor from the link `next` of the previous page"),
-]
-
-Limit = Annotated[int, Query(ge=1, le=1000, description="Largest number of entries on the page")]
 
 
 def page_links(request: Request, path: str, last: Mark | None) -> list[Link]:

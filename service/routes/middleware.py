@@ -39,6 +39,19 @@ from service.tracing import TRACEPARENT, current_traceparent, trace_facts, valid
 
 # Every error leaves as problem+json, in one shape.
 
+_MOST = {b"{": (5_000, "tables"), b"[": (50_000, "lists"), b":": (50_000, "fields"), b"=": (50_000, "fields")}
+"""Largest number of what each sign begins, in JSON or in the TOML that it carries.
+
+A scene of a wind turbine has some hundred tables, two free-form flanks have a thousand lists, a reduced
+housing six thousand. Numbers are not counted: a flank may have 250 000.
+"""
+API_PREFIX = "/v1"
+logger = structlog.get_logger(__name__)
+PATIENCE_S, LEAST_BYTES_PER_S = 30.0, 10_000.0
+"""A body is to be there after so long, and longer by what has come at this rate."""
+_IDENTIFIER = re.compile(rb"[A-Za-z0-9._-]{1,64}")
+_AS_SAID = (b"x-content-type-options", b"nosniff")  # a browser takes no answer for what it is not
+
 
 def _problem_response(facts: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> Response:
     """Return a problem, which no cache keeps, in ASCII, so that nothing a caller sent can break it."""
@@ -152,14 +165,6 @@ class _StreamFigures:
 # Limits of a body before it is read: the cost of reading depends on its parts, not on its bytes.
 
 
-_MOST = {b"{": (5_000, "tables"), b"[": (50_000, "lists"), b":": (50_000, "fields"), b"=": (50_000, "fields")}
-"""Largest number of what each sign begins, in JSON or in the TOML that it carries.
-
-A scene of a wind turbine has some hundred tables, two free-form flanks have a thousand lists, a reduced
-housing six thousand. Numbers are not counted: a flank may have 250 000.
-"""
-
-
 class _Extent:
     """The parts of one body, counted as its pieces come; of binary bodies nothing is counted."""
 
@@ -174,16 +179,6 @@ class _Extent:
             if self._found[sign] > most:
                 text = f"The body has more than {most} {parts}, the limit of this service. Send less at once."
                 raise TooLarge(text)
-
-
-API_PREFIX = "/v1"
-logger = structlog.get_logger(__name__)
-
-PATIENCE_S, LEAST_BYTES_PER_S = 30.0, 10_000.0
-"""A body is to be there after so long, and longer by what has come at this rate."""
-
-_IDENTIFIER = re.compile(rb"[A-Za-z0-9._-]{1,64}")
-_AS_SAID = (b"x-content-type-options", b"nosniff")  # a browser takes no answer for what it is not
 
 
 class Guard:

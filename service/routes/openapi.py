@@ -74,6 +74,49 @@ _OF_STORES = (Busy, DatabaseUnavailable, DatabaseDamaged, NoSpace, OutOfFiles, S
 _OF_BODIES = (TooLarge, UnsupportedMediaType, BadInput)
 _OF_ROUTING: Kinds = {405: {"about:blank": "Method Not Allowed"}}
 _KINDS = "x-problems"
+TAGS = {
+    "service": "What the service is, and which parts of the standard it meets.",
+    "processes": "What can be computed, and executions: each enters a job.",
+    "jobs": "State, progress, results and dismissal of computations.",
+    "results": "Stored results under the hash of their input: figures, files, plots, mesh forces.",
+    "live": "Answers while the caller waits: other flanks on a stored compliance, plans of runs.",
+    "drafts": "Questions about what is being typed: faults are an answer (200), not a refusal (422).",
+    "cases": "Gear pairs with their loads: examples, drawing, conversion from and to TOML.",
+    "scenes": "Geared systems: conversion from and to TOML.",
+    "units": "Gear units of other tools (REXS).",
+    "effects": "The physics that a case can toggle.",
+    "operations": "Health, readiness and metrics, for those who run the service.",
+}
+ABOUT: Json = {
+    "title": "lineofaction",
+    "summary": "Contact analysis of gear pairs for noise, and the dynamics it excites.",
+    "description": "Jobs follow OGC API - Processes 1.0; errors are problem details (RFC 9457). Units are in "
+    "the names of the fields.",
+    "license_info": {"name": "GNU General Public License v3.0 or later", "identifier": "GPL-3.0-or-later"},
+    "servers": [{"url": "/", "description": "The service that answers with this description"}],
+    "openapi_tags": [{"name": name, "description": text} for name, text in TAGS.items()],
+}
+"""What the framework takes of it."""
+_KEY = {
+    "type": "http",
+    "scheme": "bearer",
+    "description": "An access key. A service that listens on loopback alone asks for none until it has one. "
+    "An operation names the scope that the key needs: "
+    + "; ".join(f"`{scope}`: {meaning}" for scope, meaning in MEANINGS.items())
+    + ".",
+}
+_JOB = {"job_id": "$response.body#/jobID"}
+_LINKS = {
+    "status": ("job_status", "State and progress"),
+    "events": ("job_events", "Changes of the state as they come"),
+    "results": ("job_results", "The results, once the state is successful"),
+    "dismiss": ("dismiss_job", "Dismissal"),
+}
+"""From every status document, by name."""
+_REF = "#/components/schemas/{model}"
+_SHOWN = (JSON, CBOR, EVENT_STREAM)
+_BESIDE = (ProblemBody, QueryInput, InputWarning, ReportSection)
+"""Models that no handler names."""
 
 
 def documented(*problems: type[ServiceError]) -> dict[int | str, Json]:
@@ -136,53 +179,6 @@ def _response(status: int, kinds: Mapping[str, str]) -> Json:
         "headers": described_headers(*OF_ALL, *OF_STATUS.get(status, ())),
         "content": {PROBLEM: {"schema": {"$ref": "#/components/schemas/ProblemBody"}, "examples": examples}},
     }
-
-
-TAGS = {
-    "service": "What the service is, and which parts of the standard it meets.",
-    "processes": "What can be computed, and executions: each enters a job.",
-    "jobs": "State, progress, results and dismissal of computations.",
-    "results": "Stored results under the hash of their input: figures, files, plots, mesh forces.",
-    "live": "Answers while the caller waits: other flanks on a stored compliance, plans of runs.",
-    "drafts": "Questions about what is being typed: faults are an answer (200), not a refusal (422).",
-    "cases": "Gear pairs with their loads: examples, drawing, conversion from and to TOML.",
-    "scenes": "Geared systems: conversion from and to TOML.",
-    "units": "Gear units of other tools (REXS).",
-    "effects": "The physics that a case can toggle.",
-    "operations": "Health, readiness and metrics, for those who run the service.",
-}
-ABOUT: Json = {
-    "title": "lineofaction",
-    "summary": "Contact analysis of gear pairs for noise, and the dynamics it excites.",
-    "description": "Jobs follow OGC API - Processes 1.0; errors are problem details (RFC 9457). Units are in "
-    "the names of the fields.",
-    "license_info": {"name": "GNU General Public License v3.0 or later", "identifier": "GPL-3.0-or-later"},
-    "servers": [{"url": "/", "description": "The service that answers with this description"}],
-    "openapi_tags": [{"name": name, "description": text} for name, text in TAGS.items()],
-}
-"""What the framework takes of it."""
-
-_KEY = {
-    "type": "http",
-    "scheme": "bearer",
-    "description": "An access key. A service that listens on loopback alone asks for none until it has one. "
-    "An operation names the scope that the key needs: "
-    + "; ".join(f"`{scope}`: {meaning}" for scope, meaning in MEANINGS.items())
-    + ".",
-}
-_JOB = {"job_id": "$response.body#/jobID"}
-_LINKS = {
-    "status": ("job_status", "State and progress"),
-    "events": ("job_events", "Changes of the state as they come"),
-    "results": ("job_results", "The results, once the state is successful"),
-    "dismiss": ("dismiss_job", "Dismissal"),
-}
-"""From every status document, by name."""
-
-_REF = "#/components/schemas/{model}"
-_SHOWN = (JSON, CBOR, EVENT_STREAM)
-_BESIDE = (ProblemBody, QueryInput, InputWarning, ReportSection)
-"""Models that no handler names."""
 
 
 def install_description(app: FastAPI) -> None:

@@ -66,6 +66,26 @@ from service.worker.process import Process, Registry
 
 # Whom a request may have called, and what is told.
 
+logger = structlog.get_logger(__name__)
+After = Annotated[str, Query(max_length=64, description="Last process of the previous page")]
+_SUBJECTS = ("case", "scene")
+_LONGEST_STATED = 65_536
+"""Characters of a caller's inputs that are kept with each of its jobs, beside those of the computation."""
+IdempotencyKey = Annotated[
+    str | None,
+    Header(
+        description="A name of the caller's for this request: sent again, it is the same job",
+        min_length=1,
+        max_length=255,
+    ),
+]
+Prefer = Annotated[str, Header(description="Jobs are always asynchronous (RFC 7240)", max_length=1000)]
+Json = dict[str, Any]
+_PREDICTING_S = 1.0
+"""CPU time for the predicted costs of one batch: 6 ms a case in the plane, 0.1 s over the face."""
+router = APIRouter(prefix="/batches", tags=["jobs"], route_class=ScopedRoute)
+predicted_seconds = on_demand("service.worker.preparations:predicted_seconds")
+
 
 def _checked_uris(settings: Settings, subscriber: Subscriber | None) -> dict[str, str]:
     """Return the addresses to call, by event; raises `BadInput` for any that is not listed."""
@@ -115,23 +135,6 @@ def _message(context: Context, identifier: str, event: str) -> Any:
     if job.children:
         return batch_results(context, job).model_dump()
     return {context.registry[job.process].output: reference_of(job).model_dump()}
-
-
-logger = structlog.get_logger(__name__)
-
-After = Annotated[str, Query(max_length=64, description="Last process of the previous page")]
-_SUBJECTS = ("case", "scene")
-_LONGEST_STATED = 65_536
-"""Characters of a caller's inputs that are kept with each of its jobs, beside those of the computation."""
-IdempotencyKey = Annotated[
-    str | None,
-    Header(
-        description="A name of the caller's for this request: sent again, it is the same job",
-        min_length=1,
-        max_length=255,
-    ),
-]
-Prefer = Annotated[str, Header(description="Jobs are always asynchronous (RFC 7240)", max_length=1000)]
 
 
 def processes_router(registry: Registry) -> APIRouter:
@@ -317,13 +320,6 @@ def _description(process: Process) -> ProcessDescription:
 
 
 # Batches: one request, many jobs of one process, all entered or none.
-
-
-Json = dict[str, Any]
-_PREDICTING_S = 1.0
-"""CPU time for the predicted costs of one batch: 6 ms a case in the plane, 0.1 s over the face."""
-router = APIRouter(prefix="/batches", tags=["jobs"], route_class=ScopedRoute)
-predicted_seconds = on_demand("service.worker.preparations:predicted_seconds")
 
 
 @router.post(

@@ -59,6 +59,27 @@ _WORDS = [validity_words(flags) for flags in range(16)]
 _FLOAT64_ARRAY = 86  # RFC 8746: little-endian float64, the one tag a query may have
 _DEEPEST = 2
 _EMPTY_LIST = b"\x80"  # also a byte of numbers, but hardly of every other one
+_BUILT_IN = (0, 1, 2, 3, 4, 5, 25, 28, 29, 30, 35, 36, 37, 52, 54, 100, 256, 258, 260, 261, 1004, 43000)
+_KEY = re.compile(HASH[:-1] + r"\Z")
+_COLUMNS = "position,deflection_um"
+_LONGEST_COLUMNS = 100
+_INLINE_BYTES = (
+    32_768  # beyond it a body is read and answered in a thread, so that others are not kept waiting
+)
+router = APIRouter(tags=["results"], route_class=DirectRoute)
+_BINARY = {"type": "string", "format": "binary"}
+_QUERY, _ANSWER = ({"$ref": f"#/components/schemas/{model.__name__}"} for model in (QueryInput, QueryOutput))
+_ANSWERS = {
+    CBOR: {"schema": _ANSWER},
+    RAW: {"schema": _BINARY | {"description": "Columns force_n, stiffness_n_per_um, validity: float64"}},
+}
+_BODIES = {
+    JSON: {"schema": _QUERY},
+    CBOR: {"schema": _QUERY | {"description": "Lists may be typed arrays (RFC 8746, tag 86)"}},
+    RAW: {"schema": _BINARY | {"description": "Columns of little-endian float64, one after the other"}},
+}
+live_router = APIRouter(tags=["live"], route_class=ScopedRoute)
+STE, PLAN = "service.live.work:live_ste", "service.live.work:live_plan"
 
 
 def _points_of_json(body: bytes, _columns: Sequence[str]) -> FloatArray:
@@ -144,31 +165,7 @@ def _no_tag(_value: Any, _immutable: bool) -> NoReturn:
     raise ValueError("a tag that a query does not have")
 
 
-_BUILT_IN = (0, 1, 2, 3, 4, 5, 25, 28, 29, 30, 35, 36, 37, 52, 54, 100, 256, 258, 260, 261, 1004, 43000)
 _NO_TAGS = dict.fromkeys(_BUILT_IN, _no_tag)
-
-
-_KEY = re.compile(HASH[:-1] + r"\Z")
-_COLUMNS = "position,deflection_um"
-_LONGEST_COLUMNS = 100
-_INLINE_BYTES = (
-    32_768  # beyond it a body is read and answered in a thread, so that others are not kept waiting
-)
-
-router = APIRouter(tags=["results"], route_class=DirectRoute)
-
-
-_BINARY = {"type": "string", "format": "binary"}
-_QUERY, _ANSWER = ({"$ref": f"#/components/schemas/{model.__name__}"} for model in (QueryInput, QueryOutput))
-_ANSWERS = {
-    CBOR: {"schema": _ANSWER},
-    RAW: {"schema": _BINARY | {"description": "Columns force_n, stiffness_n_per_um, validity: float64"}},
-}
-_BODIES = {
-    JSON: {"schema": _QUERY},
-    CBOR: {"schema": _QUERY | {"description": "Lists may be typed arrays (RFC 8746, tag 86)"}},
-    RAW: {"schema": _BINARY | {"description": "Columns of little-endian float64, one after the other"}},
-}
 
 
 async def _answer(request: Request) -> Response:
@@ -219,11 +216,6 @@ def query_forces(
 
 
 # The live worker computes curves and plans.
-
-
-live_router = APIRouter(tags=["live"], route_class=ScopedRoute)
-
-STE, PLAN = "service.live.work:live_ste", "service.live.work:live_plan"
 
 
 @live_router.post(

@@ -53,6 +53,37 @@ from service.version import program_tag
 _VERSION = ("ETag", "Cache-Control")
 """Headers of such an answer."""
 
+_FIGURES = "-json-2"
+"""Ends the tag of figures: another one where their keys are others, as `version` of studies."""
+_IMMUTABLE = "public, max-age=31536000, immutable"
+Key = Annotated[str, Path(pattern=HASH, description="Content hash of the input")]
+Accept = Annotated[str, Header(description=f"{NETCDF} for the file, application/json for its figures")]
+FILE = {"type": "string", "format": "binary"}
+OF_RESULT = (*OF_VERSIONS, "Result-Kind")
+_FIGURES_OR_FILE = answer(
+    "The figures of the result, or its file",
+    *(*OF_RESULT, "Content-Digest"),
+    model=ResultFigures,
+    content={JSON: {}, NETCDF: {"schema": FILE}},
+)
+_NETCDF_FILE = answer("The netCDF file", *OF_RESULT, "Content-Digest", content={NETCDF: {"schema": FILE}})
+_UNMODIFIED, _UNMODIFIED_ANSWER = answer("Not modified", *OF_RESULT), answer("Not modified", *_VERSION)
+case_of_file = on_demand("lineofaction.gearbox.result_files:case_of_file")
+figures_of = on_demand("lineofaction.gearbox.result_figures:figures_of")
+metadata_json = on_demand("lineofaction.gearbox.convert.answers:metadata_json")
+router = APIRouter(tags=["results"], route_class=ScopedRoute)
+_PATH = "/v1/databases"
+FIGURES = "lineofaction.report.document:stored_figures"
+COMPARISON = "lineofaction.report.comparison.compare:stored_comparison"
+_INERT = {"Content-Security-Policy": "sandbox; default-src 'none'; style-src 'unsafe-inline'; img-src data:"}
+"""Of a page that a browser opens at its address: nothing in it runs."""
+MOTION = "lineofaction.report.unit_motion:stored_motion"
+_MOST_MOTIONS = 1_000_000
+SOUND = "lineofaction.report.run.sound:stored_sound"
+HEARD = ("run", "recording")
+"""Kinds of results that have a sound."""
+_NAME = 200  # characters
+
 
 async def _kept_answer(
     request: Request,
@@ -71,32 +102,6 @@ async def _kept_answer(
         body = body_of(await asyncio.wrap_future(context.live.ask(order, asker_of(request))))
         await run_in_threadpool(context.kept.keep, tag, body)
     return Response(body, media_type=media_type, headers=headers)
-
-
-_FIGURES = "-json-2"
-"""Ends the tag of figures: another one where their keys are others, as `version` of studies."""
-_IMMUTABLE = "public, max-age=31536000, immutable"
-
-Key = Annotated[str, Path(pattern=HASH, description="Content hash of the input")]
-Accept = Annotated[str, Header(description=f"{NETCDF} for the file, application/json for its figures")]
-FILE = {"type": "string", "format": "binary"}
-OF_RESULT = (*OF_VERSIONS, "Result-Kind")
-_FIGURES_OR_FILE = answer(
-    "The figures of the result, or its file",
-    *(*OF_RESULT, "Content-Digest"),
-    model=ResultFigures,
-    content={JSON: {}, NETCDF: {"schema": FILE}},
-)
-_NETCDF_FILE = answer("The netCDF file", *OF_RESULT, "Content-Digest", content={NETCDF: {"schema": FILE}})
-_UNMODIFIED, _UNMODIFIED_ANSWER = answer("Not modified", *OF_RESULT), answer("Not modified", *_VERSION)
-case_of_file = on_demand("lineofaction.gearbox.result_files:case_of_file")
-figures_of = on_demand("lineofaction.gearbox.result_figures:figures_of")
-metadata_json = on_demand("lineofaction.gearbox.convert.answers:metadata_json")
-
-router = APIRouter(tags=["results"], route_class=ScopedRoute)
-
-
-_PATH = "/v1/databases"
 
 
 @router.get("/databases", summary="STE databases", response_model=DatabaseList, responses=LISTED)
@@ -214,12 +219,6 @@ def _known(request: Request, tag: str) -> bool:
 # Figures and tables of stored results, as `loa report` draws them.
 
 
-FIGURES = "lineofaction.report.document:stored_figures"
-COMPARISON = "lineofaction.report.comparison.compare:stored_comparison"
-_INERT = {"Content-Security-Policy": "sandbox; default-src 'none'; style-src 'unsafe-inline'; img-src data:"}
-"""Of a page that a browser opens at its address: nothing in it runs."""
-
-
 @router.get(
     "/results/{key}/figures",
     summary="Figures of a result",
@@ -269,10 +268,6 @@ def _page(made: bytes) -> bytes:
     return text.encode("utf-8")
 
 
-MOTION = "lineofaction.report.unit_motion:stored_motion"
-_MOST_MOTIONS = 1_000_000
-
-
 @router.get(
     "/results/{key}/motion",
     summary="A motion of the unit",
@@ -301,12 +296,6 @@ async def result_motion(
 
 
 # Stored runs and recordings to listen to, as `loa listen` writes them.
-
-
-SOUND = "lineofaction.report.run.sound:stored_sound"
-HEARD = ("run", "recording")
-"""Kinds of results that have a sound."""
-_NAME = 200  # characters
 
 
 def _named(description: str) -> object:

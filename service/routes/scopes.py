@@ -21,6 +21,8 @@ KEY_SCHEME = "accessKey"
 OPEN_TO_ALL = None
 """In place of a scope: no key is needed; `service.routes.access.OPEN_PATHS` are the paths."""
 
+Handler = Callable[[Request], Awaitable[Response]]
+
 
 def needs(
     scope: Scope | None, *, streams: bool = False, body: type[BaseModel] | None = None
@@ -82,9 +84,6 @@ def require(request: Request, scope: Scope) -> None:
 
 
 # Routes that take the request as it is: no dependencies, no validation by the framework.
-
-
-Handler = Callable[[Request], Awaitable[Response]]
 
 
 def answered_by(handler: Handler) -> Callable[[Callable[..., None]], Callable[..., None]]:

@@ -10,6 +10,15 @@ from lineofaction.gearbox.schemas.figures import Headline
 from lineofaction.gearbox.schemas.model import BoundaryModel, Named
 
 Uri = Annotated[str, Field(max_length=2000, examples=["https://hooks.example.com/loa?case=12"])]
+JobStatus = Literal["accepted", "running", "successful", "failed", "dismissed"]
+CONFORMANCE = (
+    "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/core",
+    "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/ogc-process-description",
+    "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/json",
+    "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/job-list",
+    "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/dismiss",
+)
+Value = bool | int | float | str | list[bool | int | float | str | None] | None
 
 
 class Subscriber(BoundaryModel):
@@ -33,20 +42,6 @@ class WebhookState(BaseModel):
     state: Literal["waiting", "delivered", "skipped", "given up"]
     attempts: int = Field(ge=0)
     message: str = Field(description="Of the last attempt")
-
-
-JobStatus = Literal["accepted", "running", "successful", "failed", "dismissed"]
-
-CONFORMANCE = (
-    "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/core",
-    "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/ogc-process-description",
-    "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/json",
-    "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/job-list",
-    "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/dismiss",
-)
-
-
-Value = bool | int | float | str | list[bool | int | float | str | None] | None
 
 
 class Link(BaseModel):

@@ -20,71 +20,7 @@ CASE: Json = {
 }
 """The spur pair of Palermo et al., ISMA 2010."""
 
-
-def _bushing(shaft: str, position_mm: float) -> Json:
-    return {
-        "name": f"{shaft} at {position_mm:g}",
-        "shaft": shaft,
-        "position_mm": position_mm,
-        "radial_stiffness_n_per_m": 1e8,
-        "axial_stiffness_n_per_m": 1e8,
-        "damping_ratio": 0.05,
-    }
-
-
-SCENE: Json = {
-    "run": {"duration_s": 0.1},
-    "shafts": [
-        {"name": name, "length_mm": 200.0, "diameter_mm": 40.0, "origin_mm": [x, 0.0, 0.0]}
-        for name, x in (("input", 0.0), ("output", 80.0))
-    ],
-    "gears": [
-        {"name": name, "shaft": shaft, "position_mm": 100.0, "bore_diameter_mm": 40.0}
-        for name, shaft in (("pinion", "input"), ("wheel", "output"))
-    ],
-    "bushings": [_bushing(shaft, position) for shaft in ("input", "output") for position in (0.0, 200.0)],
-    "meshes": [{"name": "mesh", "driver": "pinion", "driven": "wheel", "case": CASE, "damping_ratio": 0.15}],
-    "drives": [{"name": "motor", "shaft": "input", "time_s": [0.0], "speed_rpm": [955.0]}],
-    "loads": [{"name": "brake", "shaft": "output", "torque_n_m": [100.0]}],
-    "outputs": {"sample_rate_hz": 20000.0},
-}
-
-
-HOUSED_SCENE: Json = SCENE | {
-    "housings": [
-        {
-            "name": "case",
-            "step_file": {"name": "case.step", "content": b64encode(compress(b"ISO-10303-21;")).decode()},
-            "material": "gray_cast_iron",
-            "seats": [
-                {"bearing": bushing["name"], "bore_diameter_mm": 62.0, "bore_length_mm": 18.0}
-                for bushing in SCENE["bushings"]
-            ],
-            "feet": [{"name": "base", "point_mm": [0.0, -60.0, 0.0], "normal": [0.0, -1.0, 0.0]}],
-            "points": [{"name": "cover", "position_mm": [40.0, 60.0, 100.0]}],
-        }
-    ]
-}
-"""The scene in a housing by its solid, of whose file only the beginning is shown."""
-
-
-def _example(study: Study) -> Json:
-    """Return inputs of a study: every field that has an example."""
-    scene = HOUSED_SCENE if study.housed else SCENE
-    subject = {"scene": scene} if study.takes.subject == "scene" else {"case": CASE}
-    fields = study.inputs.model_fields.items()
-    return subject | {name: field.examples[0] for name, field in fields if field.examples}
-
-
-INPUTS: dict[str, Json] = {
-    "analyze": {"case": CASE},
-    "simulate": {"scene": SCENE},
-    **{name: _example(study) for name, study in STUDIES.items()},
-}
-"""Inputs of an execution, by process."""
-
 QUERY: Json = {"position": [0.0, 0.25], "deflection_um": [5.0, 7.5]}
-
 _SCENE_FILE = """[run]
 duration_s = 0.1
 [[shafts]]
@@ -117,39 +53,10 @@ shaft = "input"
 time_s = [0.0]
 speed_rpm = [955.0]
 """
-
 _REXS_FILE = (
     b'<model version="2.0.0" applicationId="hand" applicationVersion="1" date="2026-01-01">'
     b'<relations/><components><component id="1" type="gear_unit"/></components></model>'
 )
-
-BODIES: dict[str, Json] = {
-    "/v1/jobs/{job_id}": {"title": "Tip relief 20 µm", "tags": ["ev-3", "draft"]},
-    "/v1/batches": {
-        "process": "analyze",
-        "inputs": {"case": CASE},
-        "jobs": [
-            {"case": {"pair": {"pinion": {"tip_relief_um": um, "tip_relief_length_mm": 1.5}}}}
-            for um in (10.0, 20.0)
-        ],
-    },
-    "/v1/databases/{key}/query": QUERY,
-    "/v1/databases/{key}/ste": {"torque_n_m": [100.0], "pinion": {"tip_relief_um": 10.0}},
-    **{path: {"inputs": {"case": CASE}} for path in ("/v1/plans", "/v1/cases/outline", "/v1/cases/to-toml")},
-    "/v1/cases/from-toml": {
-        "toml": "[pair]\nnormal_module_mm = 4.0\ncenter_distance_mm = 80.0\n"
-        "[pair.pinion]\nteeth = 20\nface_width_mm = 25.0\nbore_diameter_mm = 40.0\n"
-        "[pair.wheel]\nteeth = 20\nface_width_mm = 25.0\nbore_diameter_mm = 40.0\n"
-        "[load]\ntorque_n_m = [100.0]\n"
-    },
-    "/v1/cases/as-made": {"inputs": {"case": CASE}, "tolerance_class": 6, "seed": 1},
-    **{path: {"inputs": {"scene": SCENE}} for path in ("/v1/scenes/to-toml", "/v1/scenes/to-files")},
-    "/v1/scenes/from-toml": {"toml": _SCENE_FILE},
-    "/v1/scenes/housing-surface": {"housings": [MESHED_HOUSING]},
-    "/v1/units/open": {"rexs_base64": b64encode(_REXS_FILE).decode()},
-}
-"""Other bodies, by path."""
-
 _DRAFTS = {
     **{f"/v1/drafts/{name}": f"/v1/cases/{name}" for name in ("outline", "to-toml", "as-made")},
     **{"/v1/drafts/plan": "/v1/plans", "/v1/drafts/{key}/ste": "/v1/databases/{key}/ste"},
@@ -158,20 +65,6 @@ _DRAFTS = {
     "/v1/drafts/housing-surface": "/v1/scenes/housing-surface",
 }
 """Questions about drafts, and whose bodies and answers they have."""
-BODIES |= {draft: BODIES[path] for draft, path in _DRAFTS.items()}
-
-
-def request_example(path: str) -> Json | None:
-    """Return the body of a path, None if there is none."""
-    parts = path.split("/")
-    if parts[-1] == "execution":
-        inputs = INPUTS.get(parts[-2])
-        return None if inputs is None else {"inputs": inputs}
-    return BODIES.get(path)
-
-
-# Bodies that the service answers with.
-
 HASH = "5f1d8a3c0e7b4692d85c13f7a9e06b24c7d3185ae94f620bb1873ce5f90d24a6"
 JOB = "3f1c0e5a-6c3d-4c1e-9b1e-2f6f0a1b2c3d"
 _INSTANT = "2026-01-31T12:00:00.000000Z"
@@ -332,6 +225,132 @@ _PLAN: Json = {
     "warnings": [],
     "effect_ledger": [_EFFECT],
 }
+_DETAILS: dict[str, Json] = {
+    "urn:lineofaction:problem:not-found": {
+        "detail": f"There is no database {HASH!r}. Submit its case again to compute it.",
+    },
+    "urn:lineofaction:problem:bad-input": {
+        "detail": "pair.pinion.bore_diameter_mm = 95.0: must be below the root diameter 70 mm (bore). "
+        "Lower the bore or add teeth.",
+        "errors": [
+            {
+                "field": "pair.pinion.bore_diameter_mm",
+                "value": 95.0,
+                "bound": "below the root diameter 70 mm (bore)",
+                "suggestion": "Lower the bore or add teeth.",
+            }
+        ],
+    },
+    "urn:lineofaction:problem:queue-full": {
+        "detail": "100 computations wait already. Try again later.",
+    },
+}
+"""Further members of some problems, by type."""
+
+
+def _bushing(shaft: str, position_mm: float) -> Json:
+    return {
+        "name": f"{shaft} at {position_mm:g}",
+        "shaft": shaft,
+        "position_mm": position_mm,
+        "radial_stiffness_n_per_m": 1e8,
+        "axial_stiffness_n_per_m": 1e8,
+        "damping_ratio": 0.05,
+    }
+
+
+SCENE: Json = {
+    "run": {"duration_s": 0.1},
+    "shafts": [
+        {"name": name, "length_mm": 200.0, "diameter_mm": 40.0, "origin_mm": [x, 0.0, 0.0]}
+        for name, x in (("input", 0.0), ("output", 80.0))
+    ],
+    "gears": [
+        {"name": name, "shaft": shaft, "position_mm": 100.0, "bore_diameter_mm": 40.0}
+        for name, shaft in (("pinion", "input"), ("wheel", "output"))
+    ],
+    "bushings": [_bushing(shaft, position) for shaft in ("input", "output") for position in (0.0, 200.0)],
+    "meshes": [{"name": "mesh", "driver": "pinion", "driven": "wheel", "case": CASE, "damping_ratio": 0.15}],
+    "drives": [{"name": "motor", "shaft": "input", "time_s": [0.0], "speed_rpm": [955.0]}],
+    "loads": [{"name": "brake", "shaft": "output", "torque_n_m": [100.0]}],
+    "outputs": {"sample_rate_hz": 20000.0},
+}
+
+
+HOUSED_SCENE: Json = SCENE | {
+    "housings": [
+        {
+            "name": "case",
+            "step_file": {"name": "case.step", "content": b64encode(compress(b"ISO-10303-21;")).decode()},
+            "material": "gray_cast_iron",
+            "seats": [
+                {"bearing": bushing["name"], "bore_diameter_mm": 62.0, "bore_length_mm": 18.0}
+                for bushing in SCENE["bushings"]
+            ],
+            "feet": [{"name": "base", "point_mm": [0.0, -60.0, 0.0], "normal": [0.0, -1.0, 0.0]}],
+            "points": [{"name": "cover", "position_mm": [40.0, 60.0, 100.0]}],
+        }
+    ]
+}
+"""The scene in a housing by its solid, of whose file only the beginning is shown."""
+
+
+def _example(study: Study) -> Json:
+    """Return inputs of a study: every field that has an example."""
+    scene = HOUSED_SCENE if study.housed else SCENE
+    subject = {"scene": scene} if study.takes.subject == "scene" else {"case": CASE}
+    fields = study.inputs.model_fields.items()
+    return subject | {name: field.examples[0] for name, field in fields if field.examples}
+
+
+INPUTS: dict[str, Json] = {
+    "analyze": {"case": CASE},
+    "simulate": {"scene": SCENE},
+    **{name: _example(study) for name, study in STUDIES.items()},
+}
+"""Inputs of an execution, by process."""
+
+
+BODIES: dict[str, Json] = {
+    "/v1/jobs/{job_id}": {"title": "Tip relief 20 µm", "tags": ["ev-3", "draft"]},
+    "/v1/batches": {
+        "process": "analyze",
+        "inputs": {"case": CASE},
+        "jobs": [
+            {"case": {"pair": {"pinion": {"tip_relief_um": um, "tip_relief_length_mm": 1.5}}}}
+            for um in (10.0, 20.0)
+        ],
+    },
+    "/v1/databases/{key}/query": QUERY,
+    "/v1/databases/{key}/ste": {"torque_n_m": [100.0], "pinion": {"tip_relief_um": 10.0}},
+    **{path: {"inputs": {"case": CASE}} for path in ("/v1/plans", "/v1/cases/outline", "/v1/cases/to-toml")},
+    "/v1/cases/from-toml": {
+        "toml": "[pair]\nnormal_module_mm = 4.0\ncenter_distance_mm = 80.0\n"
+        "[pair.pinion]\nteeth = 20\nface_width_mm = 25.0\nbore_diameter_mm = 40.0\n"
+        "[pair.wheel]\nteeth = 20\nface_width_mm = 25.0\nbore_diameter_mm = 40.0\n"
+        "[load]\ntorque_n_m = [100.0]\n"
+    },
+    "/v1/cases/as-made": {"inputs": {"case": CASE}, "tolerance_class": 6, "seed": 1},
+    **{path: {"inputs": {"scene": SCENE}} for path in ("/v1/scenes/to-toml", "/v1/scenes/to-files")},
+    "/v1/scenes/from-toml": {"toml": _SCENE_FILE},
+    "/v1/scenes/housing-surface": {"housings": [MESHED_HOUSING]},
+    "/v1/units/open": {"rexs_base64": b64encode(_REXS_FILE).decode()},
+}
+"""Other bodies, by path."""
+
+BODIES |= {draft: BODIES[path] for draft, path in _DRAFTS.items()}
+
+
+def request_example(path: str) -> Json | None:
+    """Return the body of a path, None if there is none."""
+    parts = path.split("/")
+    if parts[-1] == "execution":
+        inputs = INPUTS.get(parts[-2])
+        return None if inputs is None else {"inputs": inputs}
+    return BODIES.get(path)
+
+
+# Bodies that the service answers with.
 
 
 def _outline(height_mm: float, turn: float) -> Json:
@@ -466,29 +485,6 @@ ANSWERS |= {draft: ANSWERS[path] for draft, path in _DRAFTS.items()}
 def answer_example(path: str) -> Any:
     """Return the answer of a path, None if there is none."""
     return STATUS if path.endswith("/execution") else ANSWERS.get(path)
-
-
-_DETAILS: dict[str, Json] = {
-    "urn:lineofaction:problem:not-found": {
-        "detail": f"There is no database {HASH!r}. Submit its case again to compute it.",
-    },
-    "urn:lineofaction:problem:bad-input": {
-        "detail": "pair.pinion.bore_diameter_mm = 95.0: must be below the root diameter 70 mm (bore). "
-        "Lower the bore or add teeth.",
-        "errors": [
-            {
-                "field": "pair.pinion.bore_diameter_mm",
-                "value": 95.0,
-                "bound": "below the root diameter 70 mm (bore)",
-                "suggestion": "Lower the bore or add teeth.",
-            }
-        ],
-    },
-    "urn:lineofaction:problem:queue-full": {
-        "detail": "100 computations wait already. Try again later.",
-    },
-}
-"""Further members of some problems, by type."""
 
 
 def problem_example(status: int, kind: str, title: str) -> Json:

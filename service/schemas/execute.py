@@ -18,6 +18,13 @@ from service.schemas.answers import JobStatus, ProblemBody, ResultReference, Sub
 Title = Annotated[str, Field(max_length=200, pattern=r"^[^\x00-\x1f\x7f]*$")]
 Tag = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._:/+-]{0,39}$")]
 Tags = Annotated[list[Tag], Field(max_length=16)]
+_FORMAT = {"mediaType", "encoding", "schema"}
+Priority = Annotated[int, Field(ge=-9, le=9)]
+Cost = Annotated[float, Field(gt=0.0, le=1e9)]
+_LINK = {"href", "rel", "type", "hreflang", "title"}
+MOST_JOBS = 200
+"""Of one batch: their inputs are checked while the caller waits, 4 to 40 ms each."""
+_DEEPEST = 32
 
 
 class LabelChange(BoundaryModel):
@@ -52,12 +59,6 @@ def study_inputs(study: Study) -> type[BoundaryModel]:
     bases = (study.inputs, _SUBJECTS[study.takes.subject])
     text = f"Inputs of the process {study.name}."
     return create_model(f"{class_name(study.name)}Inputs", __base__=bases, __doc__=text)
-
-
-_FORMAT = {"mediaType", "encoding", "schema"}
-Priority = Annotated[int, Field(ge=-9, le=9)]
-Cost = Annotated[float, Field(gt=0.0, le=1e9)]
-_LINK = {"href", "rel", "type", "hreflang", "title"}
 
 
 class _ExecuteBody(BoundaryModel):
@@ -140,11 +141,6 @@ def execute_model(process: str, inputs: type[BoundaryModel], output: str) -> typ
         ),
     }
     return create_model(f"Execute{title}", __base__=_ExecuteBody, **fields)
-
-
-MOST_JOBS = 200
-"""Of one batch: their inputs are checked while the caller waits, 4 to 40 ms each."""
-_DEEPEST = 32
 
 
 class BatchRequest(BoundaryModel):

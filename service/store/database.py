@@ -25,6 +25,14 @@ _OLDEST = "alembic_version"
 _UNNUMBERED = "computation"
 """A table that databases had before their schemas had numbers."""
 
+metadata = MetaData()
+BRIEF_MS = 100
+"""Patience of those who can do without what they write."""
+_DRIVERS = {"sqlite": "sqlite", "postgresql": "postgresql+psycopg"}
+_LOCK = text("SELECT pg_try_advisory_lock(:ours, CAST(CAST('computation' AS regclass) AS oid)::int4)")
+_OURS = {"ours": 0x6C6F61}
+"""First key of the lock, "loa"; the second is the table: a database may have several, by their schemas."""
+
 
 @dataclass(frozen=True)
 class _SchemaNumbers:
@@ -150,13 +158,6 @@ def _refuse_newer(numbers: _SchemaNumbers, engine: Engine) -> None:
         raise BadInput.of("database_url", shown(engine), bound, tip)
 
 
-metadata = MetaData()
-BRIEF_MS = 100
-"""Patience of those who can do without what they write."""
-
-_DRIVERS = {"sqlite": "sqlite", "postgresql": "postgresql+psycopg"}
-
-
 def open_database(where: Path | str, *, pooled: bool = True) -> Engine:
     """Return an engine on the database, its schema of this program.
 
@@ -235,11 +236,6 @@ def instant(time: datetime) -> str:
 
 
 # One server owns a job table: the lock that says so, which the system or the database lifts when it dies.
-
-
-_LOCK = text("SELECT pg_try_advisory_lock(:ours, CAST(CAST('computation' AS regclass) AS oid)::int4)")
-_OURS = {"ours": 0x6C6F61}
-"""First key of the lock, "loa"; the second is the table: a database may have several, by their schemas."""
 
 
 class Ownership:

@@ -44,6 +44,24 @@ deployments = Table(
     Column("created", String, nullable=False),
     Column("checked", String),
 )
+_REINDEX = (
+    "If the database of these files is lost, run loa store reindex: it rebuilds the index from them. If it "
+    "is not, name that database (LOA_DATABASE_URL, LOA_DATA_DIRECTORY), or another place for the results of "
+    "this one (LOA_RESULTS_URL): two deployments on one place would remove each other's files."
+)
+_ELSEWHERE = (
+    "Name the database of these files (LOA_DATABASE_URL, LOA_DATA_DIRECTORY), or the place of the results "
+    "that this one names (LOA_RESULTS_URL)."
+)
+_WRITABLE = "Give the service the right to write there, or name another place (LOA_RESULTS_URL)."
+KEPT_S = 1.0
+"""For so long an outcome is good: what was written then need not be tried now."""
+PATIENCE_S = 0.8
+"""Nobody waits for longer than this: supervisors ask for an answer within a second."""
+LATE_S = 10.0
+"""For so long after a write that succeeded one that only waits is no fault: others write, many at once. It is
+how long a submission waits for its turn."""
+logger = structlog.get_logger(__name__)
 
 
 @dataclass(frozen=True)
@@ -64,19 +82,6 @@ class _Owner:
 
     def __str__(self) -> str:
         return f"deployment {self.deployment} (database {self.database})"
-
-
-_REINDEX = (
-    "If the database of these files is lost, run loa store reindex: it rebuilds the index from them. If it "
-    "is not, name that database (LOA_DATABASE_URL, LOA_DATA_DIRECTORY), or another place for the results of "
-    "this one (LOA_RESULTS_URL): two deployments on one place would remove each other's files."
-)
-_ELSEWHERE = (
-    "Name the database of these files (LOA_DATABASE_URL, LOA_DATA_DIRECTORY), or the place of the results "
-    "that this one names (LOA_RESULTS_URL)."
-)
-
-_WRITABLE = "Give the service the right to write there, or name another place (LOA_RESULTS_URL)."
 
 
 class Deployment:
@@ -230,17 +235,6 @@ class _Comparison:
 
 
 # Whether a service can write: tried when somebody wants to know, in a thread of its own.
-
-
-KEPT_S = 1.0
-"""For so long an outcome is good: what was written then need not be tried now."""
-PATIENCE_S = 0.8
-"""Nobody waits for longer than this: supervisors ask for an answer within a second."""
-LATE_S = 10.0
-"""For so long after a write that succeeded one that only waits is no fault: others write, many at once. It is
-how long a submission waits for its turn."""
-
-logger = structlog.get_logger(__name__)
 
 
 @dataclass(frozen=True)

@@ -40,6 +40,82 @@ LEAST_FREE = 16_000_000
 """Bytes below which a folder counts as full: four times the longest body of a submission, which the database
 writes more than once."""
 
+CHANNEL = "loa_jobs"
+"""What PostgreSQL notifies on when a job changed; the triggers of schema 0011 do."""
+_POLL_S = 0.05
+_SLICE_S = 0.25
+PATIENCE_MS = 10_000
+"""How long a transaction waits for others that write, if it says nothing else."""
+_PRAGMAS = (
+    f"PRAGMA busy_timeout={PATIENCE_MS}",  # first: the others may have to wait too
+    "PRAGMA journal_mode=WAL",
+    "PRAGMA synchronous=FULL",
+    "PRAGMA foreign_keys=ON",
+)
+DEADLINE_S = 15.0
+"""A statement that works for longer is ended: longer than the patience of those who wait for a lock. By the
+option `deadline_s` of an engine another one, of an upgrade for example none."""
+_LOOK_EVERY = 20_000
+"""Instructions of SQLite's machine between two looks at the clock: some milliseconds."""
+_TURN = 0x6C6F61  # "loa": any number that all our processes know
+_CONNECT_TIMEOUT_S = 5
+_STALLED = (
+    f"-c idle_in_transaction_session_timeout=30s -c lock_timeout={PATIENCE_MS} "
+    f"-c statement_timeout={DEADLINE_S:g}s "
+    "-c tcp_keepalives_idle=10 -c tcp_keepalives_interval=5 -c tcp_keepalives_count=3"
+)
+"""A stalled process must not hold rows for ever, nor let its callers wait for longer than a client does; the
+locks of a machine that is gone end after half a minute."""
+_SILENT: Mapping[str, Any] = {
+    "keepalives_idle": 10,
+    "keepalives_interval": 5,
+    "keepalives_count": 3,
+    "tcp_user_timeout": 20_000,
+}
+"""A network that swallows everything is noticed after half a minute, not after the system's quarter hour."""
+_POOL: Mapping[str, Any] = {"pool_size": 5, "max_overflow": 15, "pool_timeout": 5.0, "pool_pre_ping": True}
+RESTORE = (
+    "Stop the service. Restore the database from its backup; or move it aside, for SQLite with its -wal and "
+    "-shm, and rebuild the index of results with loa store reindex (docs/how-to/runbooks.md)."
+)
+_RIGHTS = "Give the service the right to write it, and for SQLite its folder."
+ROOM = "Make room on its disk."
+FILES = "Let the process open more files (ulimit -n, LimitNOFILE= of systemd), or end what holds them."
+_DISK = "Look at its disk and at the log of the system."
+_SQLITE_REMEDIES: Mapping[int, str] = {
+    sqlite3.SQLITE_CORRUPT: RESTORE,
+    sqlite3.SQLITE_NOTADB: RESTORE,
+    sqlite3.SQLITE_PERM: _RIGHTS,
+    sqlite3.SQLITE_READONLY: _RIGHTS,
+    sqlite3.SQLITE_CANTOPEN: _RIGHTS,
+    sqlite3.SQLITE_FULL: ROOM,
+    sqlite3.SQLITE_IOERR: _DISK,
+    sqlite3.SQLITE_PROTOCOL: _DISK,
+}
+_POSTGRESQL_REMEDIES: Mapping[str, str] = {
+    "XX001": RESTORE,  # data corrupted
+    "XX002": RESTORE,  # index corrupted
+    "42P01": RESTORE,  # undefined table
+    "25006": _RIGHTS,  # read-only transaction
+    "42501": _RIGHTS,  # insufficient privilege
+    "53100": ROOM,  # disk full
+    "58030": _DISK,  # I/O error
+}
+_CANCELED = "57014"  # by the deadline of the statement: nobody else cancels ours
+_LOCKED = "55P03"  # by others, for longer than lock_timeout
+_ATTEMPTS = 6
+_PATIENCE_S = 5.0
+"""After which a step is not tried again: one attempt may have waited for a lock as long as it may."""
+_FIRST_WAIT_S, _LONGEST_WAIT_S = 0.05, 1.0
+_KINDS: Mapping[str, tuple[str, type[DatabaseUnavailable]]] = {
+    ROOM: ("no space", NoSpace),
+    FILES: ("out of files", OutOfFiles),
+}
+"""Event of the log and error by what is to be done, where the database itself is sound."""
+P = ParamSpec("P")
+R = TypeVar("R")
+logger = structlog.get_logger(__name__)
+
 
 def shortage(folder: Path | None) -> str:
     """Return that there is no space left in a folder, in a sentence without its name; empty if there is."""
@@ -63,12 +139,6 @@ def out_of_files() -> bool:
 
 
 # News that something was committed to a database, by whichever process, without a question for rows.
-
-
-CHANNEL = "loa_jobs"
-"""What PostgreSQL notifies on when a job changed; the triggers of schema 0011 do."""
-_POLL_S = 0.05
-_SLICE_S = 0.25
 
 
 class _Commits(Protocol):
@@ -121,38 +191,6 @@ class _PostgresCommits:
 
     def close(self) -> None:
         self._connection.close()
-
-
-PATIENCE_MS = 10_000
-"""How long a transaction waits for others that write, if it says nothing else."""
-_PRAGMAS = (
-    f"PRAGMA busy_timeout={PATIENCE_MS}",  # first: the others may have to wait too
-    "PRAGMA journal_mode=WAL",
-    "PRAGMA synchronous=FULL",
-    "PRAGMA foreign_keys=ON",
-)
-DEADLINE_S = 15.0
-"""A statement that works for longer is ended: longer than the patience of those who wait for a lock. By the
-option `deadline_s` of an engine another one, of an upgrade for example none."""
-_LOOK_EVERY = 20_000
-"""Instructions of SQLite's machine between two looks at the clock: some milliseconds."""
-_TURN = 0x6C6F61  # "loa": any number that all our processes know
-_CONNECT_TIMEOUT_S = 5
-_STALLED = (
-    f"-c idle_in_transaction_session_timeout=30s -c lock_timeout={PATIENCE_MS} "
-    f"-c statement_timeout={DEADLINE_S:g}s "
-    "-c tcp_keepalives_idle=10 -c tcp_keepalives_interval=5 -c tcp_keepalives_count=3"
-)
-"""A stalled process must not hold rows for ever, nor let its callers wait for longer than a client does; the
-locks of a machine that is gone end after half a minute."""
-_SILENT: Mapping[str, Any] = {
-    "keepalives_idle": 10,
-    "keepalives_interval": 5,
-    "keepalives_count": 3,
-    "tcp_user_timeout": 20_000,
-}
-"""A network that swallows everything is noticed after half a minute, not after the system's quarter hour."""
-_POOL: Mapping[str, Any] = {"pool_size": 5, "max_overflow": 15, "pool_timeout": 5.0, "pool_pre_ping": True}
 
 
 class _Dialect(Protocol):
@@ -268,37 +306,6 @@ class _SQLite:
         """Read every page, some 0.1 to 1 s for 100 MB."""
         verdict = str(connection.exec_driver_sql("PRAGMA quick_check(1)").scalar_one())
         return None if verdict == "ok" else verdict
-
-
-RESTORE = (
-    "Stop the service. Restore the database from its backup; or move it aside, for SQLite with its -wal and "
-    "-shm, and rebuild the index of results with loa store reindex (docs/how-to/runbooks.md)."
-)
-_RIGHTS = "Give the service the right to write it, and for SQLite its folder."
-ROOM = "Make room on its disk."
-FILES = "Let the process open more files (ulimit -n, LimitNOFILE= of systemd), or end what holds them."
-_DISK = "Look at its disk and at the log of the system."
-_SQLITE_REMEDIES: Mapping[int, str] = {
-    sqlite3.SQLITE_CORRUPT: RESTORE,
-    sqlite3.SQLITE_NOTADB: RESTORE,
-    sqlite3.SQLITE_PERM: _RIGHTS,
-    sqlite3.SQLITE_READONLY: _RIGHTS,
-    sqlite3.SQLITE_CANTOPEN: _RIGHTS,
-    sqlite3.SQLITE_FULL: ROOM,
-    sqlite3.SQLITE_IOERR: _DISK,
-    sqlite3.SQLITE_PROTOCOL: _DISK,
-}
-_POSTGRESQL_REMEDIES: Mapping[str, str] = {
-    "XX001": RESTORE,  # data corrupted
-    "XX002": RESTORE,  # index corrupted
-    "42P01": RESTORE,  # undefined table
-    "25006": _RIGHTS,  # read-only transaction
-    "42501": _RIGHTS,  # insufficient privilege
-    "53100": ROOM,  # disk full
-    "58030": _DISK,  # I/O error
-}
-_CANCELED = "57014"  # by the deadline of the statement: nobody else cancels ours
-_LOCKED = "55P03"  # by others, for longer than lock_timeout
 
 
 @dataclass
@@ -448,22 +455,6 @@ def _remedy_of(error: BaseException, database: Engine) -> str | None:
 
 
 # Steps that outlast a lost connection: tried again for a while, then refused for the caller to try later.
-
-
-_ATTEMPTS = 6
-_PATIENCE_S = 5.0
-"""After which a step is not tried again: one attempt may have waited for a lock as long as it may."""
-_FIRST_WAIT_S, _LONGEST_WAIT_S = 0.05, 1.0
-
-_KINDS: Mapping[str, tuple[str, type[DatabaseUnavailable]]] = {
-    ROOM: ("no space", NoSpace),
-    FILES: ("out of files", OutOfFiles),
-}
-"""Event of the log and error by what is to be done, where the database itself is sound."""
-
-P = ParamSpec("P")
-R = TypeVar("R")
-logger = structlog.get_logger(__name__)
 
 
 class _OnDatabase(Protocol):

@@ -23,6 +23,11 @@ _NAME = re.compile(
     r"(?P<key>(?P=folder)[0-9a-f]{62})"
     rf"(?:\.(?P<digest>[0-9a-f]{{{_DIGEST_LENGTH}}}))?(?:\.[0-9a-f]{{8}})?\.[a-z]+"
 )
+SET_ASIDE = ".damaged"
+"""Ending of what was found damaged: kept for a person to look at, never served."""
+PARTIAL = ".part"
+"""Ending of what is being written."""
+_PRIVATE = 0o600
 
 
 @dataclass(frozen=True)
@@ -54,13 +59,6 @@ def new_name(project: str, key: str, kind: str, sha256: str) -> str:
     """Return the name of a new file, which no other has."""
     unique = uuid.uuid4().hex[:8]
     return f"{kind}/{key[:2]}/{address_of(project, key)}.{sha256[:_DIGEST_LENGTH]}.{unique}{SUFFIX}"
-
-
-SET_ASIDE = ".damaged"
-"""Ending of what was found damaged: kept for a person to look at, never served."""
-PARTIAL = ".part"
-"""Ending of what is being written."""
-_PRIVATE = 0o600
 
 
 class WrongContent(Exception):

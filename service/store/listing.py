@@ -35,6 +35,22 @@ INDEXES = {
 """Columns of the indexes, in order. A list takes its entries in the order of time from one of them."""
 
 _TEXTS = ("job", "project", "parent", "created", "key", "process", "state", "title_folded", "tags")
+_FAILED = f"IN {IN_VAIN}"
+_NEWEST_OF_ALL = """
+SELECT job FROM (
+    SELECT job, row_number() OVER (
+        PARTITION BY key, parent ORDER BY rank DESC, created DESC, job DESC
+    ) AS turn FROM listing
+) ranked WHERE turn = 1
+"""
+_SECONDS = {
+    # to the microsecond: SQLite's own differences of instants are whole milliseconds
+    "sqlite": "CAST(strftime('%s', {end}) AS INTEGER) - CAST(strftime('%s', {start}) AS INTEGER)"
+    " + (CAST('0' || substr({end}, 20, 7) AS REAL) - CAST('0' || substr({start}, 20, 7) AS REAL))",
+    "postgresql": "CAST(extract(epoch FROM CAST({end} AS timestamptz) - CAST({start} AS timestamptz))"
+    " AS double precision)",
+}
+_JOINED = "FROM job AS j JOIN computation AS c ON c.id = j.computation_id"
 
 
 def columns() -> tuple[sa.Column[object], ...]:
@@ -65,23 +81,6 @@ def add_listing(op: Operations) -> None:
             op.execute(statement)
 
 
-_FAILED = f"IN {IN_VAIN}"
-_NEWEST_OF_ALL = """
-SELECT job FROM (
-    SELECT job, row_number() OVER (
-        PARTITION BY key, parent ORDER BY rank DESC, created DESC, job DESC
-    ) AS turn FROM listing
-) ranked WHERE turn = 1
-"""
-_SECONDS = {
-    # to the microsecond: SQLite's own differences of instants are whole milliseconds
-    "sqlite": "CAST(strftime('%s', {end}) AS INTEGER) - CAST(strftime('%s', {start}) AS INTEGER)"
-    " + (CAST('0' || substr({end}, 20, 7) AS REAL) - CAST('0' || substr({start}, 20, 7) AS REAL))",
-    "postgresql": "CAST(extract(epoch FROM CAST({end} AS timestamptz) - CAST({start} AS timestamptz))"
-    " AS double precision)",
-}
-
-
 def _values(dialect: str) -> dict[str, str]:
     """Return what the columns of a line are, by its job j and the computation c of that."""
     end = "coalesce(j.dismissed, c.finished)"
@@ -100,9 +99,6 @@ def _values(dialect: str) -> dict[str, str]:
         "running_since": f"CASE WHEN {end} IS NULL THEN c.started END",
         "rank": f"CASE WHEN {state} {_FAILED} THEN 0 ELSE 1 END",
     }
-
-
-_JOINED = "FROM job AS j JOIN computation AS c ON c.id = j.computation_id"
 
 
 def _line(dialect: str, which: str = "") -> str:

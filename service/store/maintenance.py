@@ -18,6 +18,8 @@ from service.store.results import IndexLine, ResultStore
 
 _FOLDER = "quarantine/"
 _INSTANT = "%Y%m%dT%H%M%SZ"
+GRACE_S = 3600.0
+"""A file that young may belong to a result that is about to be entered."""
 
 
 class Quarantine:
@@ -76,10 +78,6 @@ def _admitted(name: str) -> datetime | None:
         return datetime.strptime(name.rpartition(".")[2], _INSTANT).replace(tzinfo=UTC)
     except ValueError:
         return None
-
-
-GRACE_S = 3600.0
-"""A file that young may belong to a result that is about to be entered."""
 
 
 @dataclass(frozen=True)

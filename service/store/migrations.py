@@ -21,6 +21,15 @@ USABLE_SINCE = "0015"
 So a former version can be started again after an upgrade. A step that removes or renames moves it up.
 """
 
+_NAMES = """
+UPDATE result SET used = created, file = kind || '/' || substr("key", 1, 2) || '/' || "key"
+    || CASE WHEN kind IN ('ablation', 'frontier') THEN '.json' ELSE '.nc' END
+"""
+_FUNCTION = """
+CREATE FUNCTION loa_job_changed() RETURNS trigger LANGUAGE plpgsql
+AS $$ BEGIN NOTIFY loa_jobs; RETURN NULL; END $$
+"""
+
 
 def migrate(connection: sa.Connection, revision: str | None) -> None:
     """Make the steps behind `revision`, None: all, in the transaction of the connection."""
@@ -97,12 +106,6 @@ def _added(table: str, *columns: tuple[Any, ...], **indexes: Sequence[str]) -> C
     return step
 
 
-_NAMES = """
-UPDATE result SET used = created, file = kind || '/' || substr("key", 1, 2) || '/' || "key"
-    || CASE WHEN kind IN ('ablation', 'frontier') THEN '.json' ELSE '.nc' END
-"""
-
-
 def _uses_of_results(op: Operations) -> None:
     """Add names of files and last uses; files had the names of their keys, and were used when made."""
     op.add_column("result", _column("file"))
@@ -145,12 +148,6 @@ def _terms_of_jobs(op: Operations) -> None:
     op.add_column("computation", _column("priority", "0", sa.Integer))
     op.add_column("computation", sa.Column("max_cost_s", sa.Float))
     op.create_index("computation_by_turn", "computation", ["state", "priority", "created"])
-
-
-_FUNCTION = """
-CREATE FUNCTION loa_job_changed() RETURNS trigger LANGUAGE plpgsql
-AS $$ BEGIN NOTIFY loa_jobs; RETURN NULL; END $$
-"""
 
 
 def _changed_jobs(op: Operations) -> None:

@@ -38,6 +38,13 @@ if TYPE_CHECKING:
 
 
 RETRIES: RetryConfig = {"max_retries": 4, "retry_timeout": timedelta(seconds=10.0)}
+Keys = tuple[str, str]
+"""Access key and secret of a bucket."""
+_ENDPOINTS = ("AWS_ENDPOINT_URL", "AWS_ENDPOINT_URL_S3", "AWS_ENDPOINT")
+DATABASE_FILE = "service.sqlite3"
+RESULTS_DIRECTORY = "results"
+CACHE_DIRECTORY = "cache"
+DEFAULT_CACHE_MB = 10_000
 
 
 class ObjectFiles:
@@ -178,10 +185,6 @@ def _answering() -> Iterator[None]:
         raise StoreUnavailable("The store of results cannot be reached. Try again later.") from error
 
 
-Keys = tuple[str, str]
-"""Access key and secret of a bucket."""
-
-
 def object_files(url: str, cache: Path, cache_bytes: int, keys: Keys | None = None) -> ObjectFiles:
     """Return the place ``s3://bucket/prefix``; endpoint and region are read from the AWS_ variables.
 
@@ -203,15 +206,6 @@ def object_files(url: str, cache: Path, cache_bytes: int, keys: Keys | None = No
     except (BaseError, ValueError) as error:
         raise BadInput.of("results_url", url, f"of a bucket we can use ({error})") from None
     return ObjectFiles(store, url, cache, cache_bytes)
-
-
-_ENDPOINTS = ("AWS_ENDPOINT_URL", "AWS_ENDPOINT_URL_S3", "AWS_ENDPOINT")
-
-
-DATABASE_FILE = "service.sqlite3"
-RESULTS_DIRECTORY = "results"
-CACHE_DIRECTORY = "cache"
-DEFAULT_CACHE_MB = 10_000
 
 
 def result_files(

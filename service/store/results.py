@@ -37,6 +37,23 @@ from service.store.files import SET_ASIDE, ResultFiles, WrongContent, digest_of,
 
 # Places in lists that are read page by page, the newest first.
 
+USE_NOTED_EVERY_S = 3600.0
+"""A result that is read all the time is noted as used this often."""
+results = Table(
+    "result",
+    metadata,
+    Column("key", String, primary_key=True),
+    Column("kind", String, primary_key=True),
+    Column("sha256", String, nullable=False),
+    Column("size", BigInteger, nullable=False),
+    Column("created", String, nullable=False),
+    Column("file", String, nullable=False, default=""),
+    Column("used", String, nullable=False, default=""),
+    Column("reindexed", String),
+    Column("project", String, nullable=False, default=""),
+    Column("headline", Text, nullable=False, default=""),
+)
+
 
 class Mark(NamedTuple):
     """The last line of a page; the next one begins behind it, whether the line still exists or not."""
@@ -52,23 +69,6 @@ def behind(mark: Mark, created: ColumnElement[Any], name: ColumnElement[Any]) ->
     return tuple_(created, name) < tuple_(mark.created, mark.name)
 
 
-USE_NOTED_EVERY_S = 3600.0
-"""A result that is read all the time is noted as used this often."""
-
-results = Table(
-    "result",
-    metadata,
-    Column("key", String, primary_key=True),
-    Column("kind", String, primary_key=True),
-    Column("sha256", String, nullable=False),
-    Column("size", BigInteger, nullable=False),
-    Column("created", String, nullable=False),
-    Column("file", String, nullable=False, default=""),
-    Column("used", String, nullable=False, default=""),
-    Column("reindexed", String),
-    Column("project", String, nullable=False, default=""),
-    Column("headline", Text, nullable=False, default=""),
-)
 Index("result_by_use", results.c.used)
 Index("result_by_project", results.c.project, results.c.kind, results.c.created)
 

@@ -30,6 +30,11 @@ from service.webhooks.calls import Call, Calls
 CONNECTING_S, WHOLE_S = 5.0, 10.0
 """Time to connect, and for the whole exchange."""
 _TRANSLATED = ipaddress.ip_network("64:ff9b::/96")
+THREADS, LOOK_S = 4, 2.0
+"""They look in turns: a call that is due is seen after half a second in the mean."""
+_STOPPING_S = 1.0
+_GONE = 410
+logger = structlog.get_logger(__name__)
 
 
 class NotCalled(Exception):
@@ -104,13 +109,6 @@ def _cut(connection: socket.socket) -> None:
     """End what takes too long, however slowly it drips."""
     with suppress(OSError):
         connection.shutdown(socket.SHUT_RDWR)
-
-
-THREADS, LOOK_S = 4, 2.0
-"""They look in turns: a call that is due is seen after half a second in the mean."""
-_STOPPING_S = 1.0
-_GONE = 410
-logger = structlog.get_logger(__name__)
 
 
 @dataclass(frozen=True)

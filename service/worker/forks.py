@@ -27,6 +27,18 @@ from service.worker.fork_server import MESSAGE_BYTES, READY
 WORK = "service.worker.child"
 """The module that works on orders."""
 
+logger = structlog.get_logger(__name__)
+_FORK_SERVER = (sys.executable, "-P", "-m", "service.worker.fork_server")
+"""Without the folder in which the service was started: its modules may be another program's."""
+MOST_FORKS = 500
+"""Children of one warm process; then a new one takes its place."""
+WARM_WITHIN_S = 10.0
+"""How long a child waits for a warm process, which takes two on an idle machine."""
+_PATIENCE_S = 10.0
+"""For an answer, which takes a hundredth of a second."""
+_LOST = Ended(-9, 0.0, 0)
+"""A child whose end nobody saw, because the warm process had ended before it."""
+
 
 @dataclass(frozen=True)
 class Ends:
@@ -69,20 +81,6 @@ def start_child(ends: Ends, work: str = WORK) -> _StartedChild:
 
 
 # The warm process seen from the service.
-
-
-logger = structlog.get_logger(__name__)
-
-_FORK_SERVER = (sys.executable, "-P", "-m", "service.worker.fork_server")
-"""Without the folder in which the service was started: its modules may be another program's."""
-MOST_FORKS = 500
-"""Children of one warm process; then a new one takes its place."""
-WARM_WITHIN_S = 10.0
-"""How long a child waits for a warm process, which takes two on an idle machine."""
-_PATIENCE_S = 10.0
-"""For an answer, which takes a hundredth of a second."""
-_LOST = Ended(-9, 0.0, 0)
-"""A child whose end nobody saw, because the warm process had ended before it."""
 
 
 class Forks:

@@ -7,16 +7,15 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
 
+PARTS = "parts"
+"""The file in a workspace by which a child says that it gives tasks to the cluster."""
+
 
 class Progress(Protocol):
     """Reports the fraction done of a stage, and of the whole work where its cost was predicted."""
 
     def __call__(self, stage: str, fraction: float, whole: float | None = None, /) -> None:
         """Report both, from 0 to 1; without `whole` it follows from the shares that the process declares."""
-
-
-PARTS = "parts"
-"""The file in a workspace by which a child says that it gives tasks to the cluster."""
 
 
 @dataclass(frozen=True)

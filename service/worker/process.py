@@ -25,6 +25,11 @@ if TYPE_CHECKING:
 
 # Names of results: the hash of what decides them.
 
+Json = dict[str, Any]
+Prepare = Callable[[BoundaryModel, "ResultStore"], Json]
+_HOUSING = Stage("housing", 0.3)
+"""Mesh and modes of solids; a stage that a scene does without has no share."""
+
 
 def content_key(process: str, process_version: str, inputs: dict[str, Any]) -> str:
     """Return the SHA-256 of the RFC 8785 form of the normalized inputs and the versions, hexadecimal."""
@@ -35,10 +40,6 @@ def content_key(process: str, process_version: str, inputs: dict[str, Any]) -> s
         "inputs": inputs,
     }
     return hashlib.sha256(rfc8785.dumps(facts)).hexdigest()
-
-
-Json = dict[str, Any]
-Prepare = Callable[[BoundaryModel, "ResultStore"], Json]
 
 
 @dataclass(frozen=True)
@@ -88,10 +89,6 @@ class Registry(dict[str, Process]):
     def modules(self) -> frozenset[str]:
         """Names of the modules that hold the entries."""
         return frozenset(process.entry.partition(":")[0] for process in self.values())
-
-
-_HOUSING = Stage("housing", 0.3)
-"""Mesh and modes of solids; a stage that a scene does without has no share."""
 
 
 def _of_scene(*stages: Stage) -> tuple[Stage, ...]:

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 _LOOK_S, _TELL_S = 0.1, 0.5
 """Between two looks whether the job is still wanted; between two reports."""
 _LOG_BYTES = 1_000_000
+_forks: list[Forks] = []
+_launching = threading.Lock()
 
 
 @dataclass(frozen=True)
@@ -101,10 +103,6 @@ def _order_here(
         stored={key: folder / "stored" / key for key in files},
         memory_limit_mb=order.memory_limit_mb or max(LEAST_MEMORY_MB, of_worker // worker.state.nthreads),
     )
-
-
-_forks: list[Forks] = []
-_launching = threading.Lock()
 
 
 def _launch(module: str, log: Path, ends: Ends) -> ChildProcess:

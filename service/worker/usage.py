@@ -11,6 +11,10 @@ from pathlib import Path
 from host import limit_memory, physical_memory
 
 BYTES_PER_MB = float(1 << 20)
+_MB = 1 << 20
+_GROUP_LIMIT = Path("/sys/fs/cgroup/memory.max")
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""No space, none left of a quota, none within the largest file a process may write."""
 
 
 def begin_work() -> None:
@@ -40,10 +44,6 @@ class Usage:
         }
 
 
-_MB = 1 << 20
-_GROUP_LIMIT = Path("/sys/fs/cgroup/memory.max")
-
-
 def machine_memory_mb(group_limit: Path = _GROUP_LIMIT) -> int:
     """Return the memory of the machine, MB, or what its control group (a container) leaves of it."""
     physical = physical_memory()
@@ -57,10 +57,6 @@ def machine_memory_mb(group_limit: Path = _GROUP_LIMIT) -> int:
 def hold_to(limit_mb: int) -> None:
     """Let allocations of this process fail beyond so many MB; a stricter limit of the system stays."""
     limit_memory(limit_mb * _MB)
-
-
-_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-"""No space, none left of a quota, none within the largest file a process may write."""
 
 
 def no_space(error: OSError, where: str = "the data directory of the service (LOA_DATA_DIRECTORY)") -> str:

@@ -26,6 +26,32 @@ from dynamics.meshes.mesh_table import FIELDS, MeshTable
 from host.directories import whole_file
 
 REAL, INTEGER, BOOLEAN = "Real", "Integer", "Boolean"
+# exponents of the SI base units
+_UNITS = {
+    "rad": {"rad": 1},
+    "rad/s": {"rad": 1, "s": -1},
+    "m": {"m": 1},
+    "m/s": {"m": 1, "s": -1},
+    "N": {"kg": 1, "m": 1, "s": -2},
+    "N.m": {"kg": 1, "m": 2, "s": -2},
+    "N/m": {"kg": 1, "s": -2},
+    "N.s/m": {"kg": 1, "s": -1},
+}
+_CAPABILITIES = (
+    "canHandleVariableCommunicationStepSize",
+    "canGetAndSetFMUstate",
+    "canSerializeFMUstate",
+    "canNotUseMemoryManagementFunctions",
+)
+COMPILERS = ("cc", "gcc", "clang")
+# -ffp-contract=off: the same rounding as the compiled look-up; -s and no paths: the same bytes every time
+FLAGS = ("-std=c99", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-Wall", "-Wextra", "-I.")
+_FOLDERS = {("Linux", "x86_64"): ("linux64", ".so"), ("Darwin", "x86_64"): ("darwin64", ".dylib")}
+_SECONDS = 120
+TABLE_FILE = "mesh_force_table.bin"
+MAGIC = b"LOAMESH1"
+_EARLIEST = (1980, 1, 1, 0, 0, 0)
+_IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
 @dataclass(frozen=True)
@@ -144,25 +170,6 @@ _INTEGER_OUTPUTS = (
 )
 
 
-# exponents of the SI base units
-_UNITS = {
-    "rad": {"rad": 1},
-    "rad/s": {"rad": 1, "s": -1},
-    "m": {"m": 1},
-    "m/s": {"m": 1, "s": -1},
-    "N": {"kg": 1, "m": 1, "s": -2},
-    "N.m": {"kg": 1, "m": 2, "s": -2},
-    "N/m": {"kg": 1, "s": -2},
-    "N.s/m": {"kg": 1, "s": -1},
-}
-_CAPABILITIES = (
-    "canHandleVariableCommunicationStepSize",
-    "canGetAndSetFMUstate",
-    "canSerializeFMUstate",
-    "canNotUseMemoryManagementFunctions",
-)
-
-
 def _model_description(name: str, chosen: Sequence[_Variable], guid: str, sources: Sequence[str]) -> bytes:
     """Return the XML; it holds no date, so that the same table gives the same file.
 
@@ -226,13 +233,6 @@ def _add_structure(root: Xml.Element, chosen: Sequence[_Variable]) -> None:
 # The system's C compiler, which makes the FMU's binary.
 
 
-COMPILERS = ("cc", "gcc", "clang")
-# -ffp-contract=off: the same rounding as the compiled look-up; -s and no paths: the same bytes every time
-FLAGS = ("-std=c99", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-Wall", "-Wextra", "-I.")
-_FOLDERS = {("Linux", "x86_64"): ("linux64", ".so"), ("Darwin", "x86_64"): ("darwin64", ".dylib")}
-_SECONDS = 120
-
-
 class CompilerError(DynamicsError):
     """The C compiler refused the FMU's sources; its message is the text."""
 
@@ -268,9 +268,6 @@ def _compile_library(folder: Path, sources: Sequence[str], library: str) -> None
 
 
 # The generated C header: value references, start values and the facts of the pair.
-
-
-TABLE_FILE = "mesh_force_table.bin"
 
 
 def _header(element: MeshElement, chosen: Sequence[_Variable], guid: str, identity: str) -> str:
@@ -323,9 +320,6 @@ def _exact(value: float) -> str:
 # The mesh-force table as the FMU's resource: plain little-endian numbers.
 
 
-MAGIC = b"LOAMESH1"
-
-
 def _table_content(table: MeshTable) -> bytes:
     """Return five sizes (M, D, P, L, period) and the arrays: axes, positions, levels, nodes.
 
@@ -341,10 +335,6 @@ def _table_content(table: MeshTable) -> bytes:
 def _identity_of(content: bytes) -> str:
     """Return 32 hexadecimal digits by which the unit knows its table."""
     return hashlib.sha256(content).hexdigest()[:32]
-
-
-_EARLIEST = (1980, 1, 1, 0, 0, 0)
-_IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
 def export_fmu(

@@ -42,6 +42,11 @@ MOST_PITCHES = 32
 _PATCH, _EDGE = 0.15, 0.0125
 """Half-width of the load patches and their length at an edge, modules."""
 
+_MOST_STEPS, _EVEN = 512, 3
+UNEVEN_PITCHES = 4
+"""Base pitches looked at beside these, those of the teeth that deviate most."""
+Both = tuple[FloatArray, FloatArray]
+
 
 @dataclass(frozen=True)
 class EstimatedCurve:
@@ -105,9 +110,6 @@ class Springs:
         return self._plain[key]
 
 
-_MOST_STEPS, _EVEN = 512, 3
-
-
 def spread_pitches(periods: Sequence[int]) -> IntArray:
     """Return at most `MOST_PITCHES` base pitches of gears that repeat after so many, by equal steps.
 
@@ -127,10 +129,6 @@ def spread_pitches(periods: Sequence[int]) -> IntArray:
     return np.sort(index * step[int(steadiness.argmin())] % whole)
 
 
-UNEVEN_PITCHES = 4
-"""Base pitches looked at beside these, those of the teeth that deviate most."""
-
-
 def _uneven_pitches(pair: ParallelAxes, model: ContactModel) -> IntArray:
     """Return the base pitches in which pair 0 deviates most from the nominal flanks."""
     extent = model.extent(pair, np.arange(model.period))
@@ -140,9 +138,6 @@ def _uneven_pitches(pair: ParallelAxes, model: ContactModel) -> IntArray:
 
 def _positions(model: ContactModel) -> int:
     return FACE_POSITIONS if model.across_face else PLANE_POSITIONS
-
-
-Both = tuple[FloatArray, FloatArray]
 
 
 @dataclass(frozen=True)

@@ -43,6 +43,17 @@ from fe_contact.types import FloatArray
 BENDING_HARMONICS = 12
 """Of the load around a gear; bending falls with the third power of their number."""
 
+_SAMPLES = 101
+TOOTH_DECAY = 1.7
+"""Modules over which the bending of a tooth fades along the face: by the compliance (1.4 to 1.7) and the
+ripple (1.6 to 1.9) of nine helical pairs of finite elements, 15 to 30 degrees, faces of 7 to 17 modules."""
+BODY_DECAY = 2.0 / math.pi
+"""Depths of the body over which its shear fades along the face."""
+SUNK_DEPTH = 3.75
+"""Modules of body depth that Weber and Banaschek's half plane stands for."""
+WEB_EXCESS = 2.1
+"""Compliance that a web adds over its own twist: 1.9 to 2.3 measured (docs/effects.md#thin_rim)."""
+
 
 @lru_cache(maxsize=64)
 def _plate_bending(gear: Toothing) -> FloatArray:
@@ -109,8 +120,6 @@ def _derivatives(power: int, logarithm: int, r: float) -> list[float]:
 # finite elements of the transverse section (17 to 60 teeth, loads over the whole flank) it is right within 5
 # %.
 
-_SAMPLES = 101
-
 
 @dataclass(frozen=True)
 class _ToothBending:
@@ -174,17 +183,6 @@ def _up_to(lever: FloatArray, height: FloatArray, values: FloatArray) -> FloatAr
 def half_plane(gear: Toothing) -> float:
     """2 (1 - nu^2)/(pi E), 1/Pa."""
     return 2.0 * (1.0 - gear.material.poissons_ratio**2) / (math.pi * gear.material.youngs_modulus)
-
-
-TOOTH_DECAY = 1.7
-"""Modules over which the bending of a tooth fades along the face: by the compliance (1.4 to 1.7) and the
-ripple (1.6 to 1.9) of nine helical pairs of finite elements, 15 to 30 degrees, faces of 7 to 17 modules."""
-BODY_DECAY = 2.0 / math.pi
-"""Depths of the body over which its shear fades along the face."""
-SUNK_DEPTH = 3.75
-"""Modules of body depth that Weber and Banaschek's half plane stands for."""
-WEB_EXCESS = 2.1
-"""Compliance that a web adds over its own twist: 1.9 to 2.3 measured (docs/effects.md#thin_rim)."""
 
 
 class _GearCompliance(NamedTuple):

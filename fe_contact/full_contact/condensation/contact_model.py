@@ -33,6 +33,22 @@ from fe_contact.types import BoolArray, FloatArray, IntArray
 
 # Six-node triangles in plane strain: their stiffness, and the order that eliminates their nodes.
 
+_A, _B = 0.445948490915965, 0.091576213509771
+POINTS = np.array(
+    [
+        [_A, _A],
+        [1.0 - 2.0 * _A, _A],
+        [_A, 1.0 - 2.0 * _A],
+        [_B, _B],
+        [1.0 - 2.0 * _B, _B],
+        [_B, 1.0 - 2.0 * _B],
+    ]
+)
+WEIGHTS = 0.5 * np.repeat([0.223381589678011, 0.109951743655322], 3)
+"""Six points of order 4 (Dunavant 1985): exact on straight sides, enough on curved ones."""
+MESH_STIFFNESS = 20e9 / 210e9
+"""Of steel teeth, about 20 N/(mm um), over the modulus of elasticity: a first guess of the deflection."""
+
 
 def mesh_graph(triangles: IntArray, count: int) -> sp.csr_array:
     """Return which of `count` nodes share six-node triangles (e, 6), a node with itself too."""
@@ -50,21 +66,6 @@ def dissected(graph: sp.csr_array, nodes: IntArray) -> IntArray:
     inner.eliminate_zeros()
     order, _ = pymetis.nested_dissection(pymetis.CSRAdjacency(inner.indptr, inner.indices))
     return np.asarray(nodes[np.asarray(order, dtype=np.int64)])
-
-
-_A, _B = 0.445948490915965, 0.091576213509771
-POINTS = np.array(
-    [
-        [_A, _A],
-        [1.0 - 2.0 * _A, _A],
-        [_A, 1.0 - 2.0 * _A],
-        [_B, _B],
-        [1.0 - 2.0 * _B, _B],
-        [_B, 1.0 - 2.0 * _B],
-    ]
-)
-WEIGHTS = 0.5 * np.repeat([0.223381589678011, 0.109951743655322], 3)
-"""Six points of order 4 (Dunavant 1985): exact on straight sides, enough on curved ones."""
 
 
 def _plane_strain_stiffness(points: FloatArray, triangles: IntArray, material: Material) -> sp.csc_array:
@@ -319,10 +320,6 @@ def at_end(pair: ParallelAxes, site: ContactSite, slave: PlacedBody) -> BoolArra
     ends = np.zeros(len(s), dtype=bool)
     ends[0], ends[-1] = True, s[-1] < tooth_profile(gear).s_tip
     return ends
-
-
-MESH_STIFFNESS = 20e9 / 210e9
-"""Of steel teeth, about 20 N/(mm um), over the modulus of elasticity: a first guess of the deflection."""
 
 
 class ContactModel(Protocol):

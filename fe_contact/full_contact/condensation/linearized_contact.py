@@ -17,6 +17,8 @@ from fe_contact.types import BoolArray, FloatArray, IntArray, Status
 
 
 MOST_ITERATIONS = 100
+LEAST_FACING = 0.01
+"""Hats of which less than this part of their length faces the mate carry no pressure."""
 
 
 @dataclass(frozen=True)
@@ -132,10 +134,6 @@ def _solution(
     residual = max(0.0, *breaches)
     status = Status.CONVERGED if residual < 1e-8 else Status.ITERATION_LIMIT
     return ActiveSetSolution(pressure, lag, gap, status, iterations, residual)
-
-
-LEAST_FACING = 0.01
-"""Hats of which less than this part of their length faces the mate carry no pressure."""
 
 
 @dataclass(frozen=True)

@@ -44,6 +44,11 @@ TURNED = 0.5
 """Largest turn of the normal over an element, rad: more leaves elements behind a fillet folded."""
 
 Size = Callable[[FloatArray], FloatArray]
+FEW_TEETH, MANY_TEETH = 5, 9
+"""Real teeth; the larger number for contact ratios above 2 and in ring gears."""
+AHEAD = (-1, 1)
+"""Number of the tooth that is one pair ahead, on gear 1 and gear 2: teeth are numbered counter-clockwise."""
+SECONDS = 120.0
 
 
 @dataclass(frozen=True)
@@ -187,13 +192,6 @@ def _held_circle(gear: Toothing, resolution: Resolution) -> Outline:
     step = min(size / radius, LARGEST_ARC)
     ends = divide(0.0, 2.0 * np.pi, lambda angle: np.full_like(angle, step))
     return Outline((piece("circle", arc(radius), ends),))
-
-
-FEW_TEETH, MANY_TEETH = 5, 9
-"""Real teeth; the larger number for contact ratios above 2 and in ring gears."""
-AHEAD = (-1, 1)
-"""Number of the tooth that is one pair ahead, on gear 1 and gear 2: teeth are numbered counter-clockwise."""
-SECONDS = 120.0
 
 
 @dataclass(frozen=True)

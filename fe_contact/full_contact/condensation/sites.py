@@ -23,6 +23,14 @@ GROWTH = 1.08
 INNER_GROWTH = 1.2
 USUAL = 6.0
 COARSEST = 1.25
+STRIP, MATE_STRIP = 2.0, 2.5
+"""Half-lengths of the strips on slave and master, in Hertz half-widths of the whole load on one pair."""
+TOUCHING, MARGINS = 1.6, (0.4, 0.9)
+"""On the path: how far apart flanks are at the ends of strips, as such widths; what is added to either."""
+SEARCHED, SAMPLES, EVERY = 12.0, 1201, 8
+"""Half-widths on either side in which the closest place is searched; samples, and those that carry a size."""
+NEAR_EDGE, PER_DISTANCE = 2.5, 0.1
+"""Half-widths from a tip edge within which its elements are fine, and their size over the distance to it."""
 
 
 @dataclass(frozen=True)
@@ -97,16 +105,6 @@ def kinks(gear: Toothing) -> FloatArray:
     close = 1e-6 * gear.normal_module
     inner = np.unique(inner[(inner > profile.s_space + close) & (inner < profile.s_tip - close)])
     return np.asarray(inner[np.diff(inner, prepend=-np.inf) > close])
-
-
-STRIP, MATE_STRIP = 2.0, 2.5
-"""Half-lengths of the strips on slave and master, in Hertz half-widths of the whole load on one pair."""
-TOUCHING, MARGINS = 1.6, (0.4, 0.9)
-"""On the path: how far apart flanks are at the ends of strips, as such widths; what is added to either."""
-SEARCHED, SAMPLES, EVERY = 12.0, 1201, 8
-"""Half-widths on either side in which the closest place is searched; samples, and those that carry a size."""
-NEAR_EDGE, PER_DISTANCE = 2.5, 0.1
-"""Half-widths from a tip edge within which its elements are fine, and their size over the distance to it."""
 
 
 @dataclass(frozen=True)

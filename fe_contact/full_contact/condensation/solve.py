@@ -32,6 +32,9 @@ from model_studies.stage_clock import StageClock
 MOST_EVALUATIONS, SETTLED, ENOUGH = 6, 1e-6, 2e-4
 """Geometries of the deformed bodies; changes of the lag that end them, and that are the most allowed."""
 LARGEST_RESIDUAL = 1e-8
+ATTEMPTS = 4
+WIDER = 1.6
+COARSER = 1.5
 
 
 def _solve_loads(
@@ -129,10 +132,6 @@ def _status(state: _Settled, residual: float) -> tuple[Status, str]:
 # One position under all torques: one mesh and one condensation of each gear.
 
 
-ATTEMPTS = 4
-WIDER = 1.6
-
-
 def _solve_position(
     model: ContactModel,
     pair: ParallelAxes,
@@ -180,9 +179,6 @@ def _solved(
             break
         held = Range(loads, max(held.lag, 1.3 * lag), held.longer * (WIDER if cut_off else 1.0))
     return SolvedPosition(solved, unknowns)
-
-
-COARSER = 1.5
 
 
 def solve_full_contact(

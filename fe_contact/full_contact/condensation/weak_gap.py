@@ -24,6 +24,8 @@ from fe_contact.types import FloatArray, IntArray
 
 
 _STEPS = 12
+_GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+Velocity = Callable[[FloatArray], FloatArray]
 
 
 class _CurvePoints(NamedTuple):
@@ -105,10 +107,6 @@ class FlankCurve:
             step = step / np.einsum("qx,qx->q", points.slope, tangents)
             t = np.clip(t + step, piece - 1.0, piece + 2.0)
         return np.asarray(t)
-
-
-_GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
-Velocity = Callable[[FloatArray], FloatArray]
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,14 @@ from fe_contact.types import Status
 from model_studies.progress import Report
 from model_studies.stage_clock import StageClock
 
+COARSER = 1.4
+STRIP = 1.5
+"""Half-width of the strips over Hertz' half-width of the whole load on one pair, in the first attempt."""
+WIDER, ATTEMPTS = 1.5, 3
+_CORNER = 0.15
+"""Base pitches beyond the path of contact at which tip edges may touch."""
+LARGEST_RESIDUAL = 1e-8
+
 
 @dataclass(frozen=True)
 class HelicalMesh:
@@ -58,15 +66,6 @@ class HelicalMesh:
         counts = {name: round(getattr(self, name) / COARSER) for name in ("layers", "across", "along")}
         sizes = COARSER * self.flank, self.per_half_width / COARSER
         return HelicalMesh(sizes[0], per_half_width=sizes[1], spread=self.spread, **counts)
-
-
-COARSER = 1.4
-STRIP = 1.5
-"""Half-width of the strips over Hertz' half-width of the whole load on one pair, in the first attempt."""
-WIDER, ATTEMPTS = 1.5, 3
-_CORNER = 0.15
-"""Base pitches beyond the path of contact at which tip edges may touch."""
-LARGEST_RESIDUAL = 1e-8
 
 
 @dataclass(frozen=True)

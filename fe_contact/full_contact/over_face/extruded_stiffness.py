@@ -22,6 +22,8 @@ from fe_contact.types import FloatArray, IntArray
 
 
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
+Term = tuple[sp.csr_array, FloatArray]
+X, Y, Z = range(3)
 
 
 @dataclass(frozen=True)
@@ -86,10 +88,6 @@ def graded_layers(face_width: float, count: int, outermost: float = 0.25) -> Lay
     thickness = np.geomspace(1.0, outermost, count) if count > 1 else np.ones(1)
     planes = np.concatenate([[0.0], np.cumsum(thickness)])
     return Layers(0.5 * face_width * planes / planes[-1])
-
-
-Term = tuple[sp.csr_array, FloatArray]
-X, Y, Z = range(3)
 
 
 @dataclass(frozen=True)

@@ -45,6 +45,9 @@ from model_studies.progress import Report
 Section = Callable[[float], tuple[WeakGap, float]]
 """The weak gap at a face position from mid-face, m, and the angle by which gear 2 is turned there, rad."""
 
+_ACROSS = 201
+USUAL = Resolution(per_half_width=2.5, layers=7)
+
 
 @dataclass(frozen=True)
 class _FaceGap:
@@ -252,9 +255,6 @@ class _Sections:
 # The whole face: misalignments that share the bodies of a position.
 
 
-_ACROSS = 201
-
-
 @dataclass(frozen=True)
 class _WholeFace:
     """A contact for each misalignment."""
@@ -317,9 +317,6 @@ class _WholeFace:
             for gear, roll in zip((pair.pinion, pair.wheel), rolls, strict=True)
         )
         return np.asarray(np.outer(self.misalignments, z / pair.face_width) + removed)
-
-
-USUAL = Resolution(per_half_width=2.5, layers=7)
 
 
 def solve_full_contact_over_face(

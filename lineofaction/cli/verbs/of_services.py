@@ -27,6 +27,20 @@ DataDirectory = Annotated[
     Path | None, typer.Option(help="Directory of jobs and results [LOA_DATA_DIRECTORY].")
 ]
 Workers = Annotated[int | None, typer.Option(help="Jobs at the same time [LOA_WORKERS].")]
+access_keys = typer.Typer(help="Access keys of a service.", no_args_is_help=True)
+Name = Annotated[str, typer.Argument(help="Name of the key's owner.")]
+KeysFile = Annotated[
+    Path | None,
+    typer.Option("--file", help="File of keys [LOA_KEYS_FILE; keys.json in the data directory]."),
+]
+Expires = Annotated[
+    str | None, typer.Option(help="Hours, days or weeks for which the key is good: 12h, 90d, 26w.")
+]
+database = typer.Typer(help="The database of jobs: its schema.", no_args_is_help=True)
+store = typer.Typer(help="The store of results: verify, collect, reindex.", no_args_is_help=True)
+cache = typer.Typer(
+    help="The cache of gears, results, searches and studies on this machine.", no_args_is_help=True
+)
 
 
 @verbs.command("serve", rich_help_panel="service", epilog="Example: loa serve --port 8321 --workers 2")
@@ -165,18 +179,6 @@ def _dismiss(
 # Verbs of access keys: ``loa keys add``, ``rotate``, ``list`` and ``remove``.
 
 
-access_keys = typer.Typer(help="Access keys of a service.", no_args_is_help=True)
-
-Name = Annotated[str, typer.Argument(help="Name of the key's owner.")]
-KeysFile = Annotated[
-    Path | None,
-    typer.Option("--file", help="File of keys [LOA_KEYS_FILE; keys.json in the data directory]."),
-]
-Expires = Annotated[
-    str | None, typer.Option(help="Hours, days or weeks for which the key is good: 12h, 90d, 26w.")
-]
-
-
 @dataclass(frozen=True)
 class _KeyLimits:
     """The limits of a key; None: none."""
@@ -245,15 +247,6 @@ def _remove(name: Name, file: KeysFile = None) -> None:
 
 
 # Verbs of the database and the store of a service.
-
-
-database = typer.Typer(help="The database of jobs: its schema.", no_args_is_help=True)
-
-store = typer.Typer(help="The store of results: verify, collect, reindex.", no_args_is_help=True)
-
-cache = typer.Typer(
-    help="The cache of gears, results, searches and studies on this machine.", no_args_is_help=True
-)
 
 
 @database.command("upgrade", epilog="Example: LOA_DATABASE_URL=postgresql://loa@db/loa loa database upgrade")

@@ -18,6 +18,12 @@ from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.problems import JobFailed
 from lineofaction.gearbox.units import MM, MPA, UM, as_typed, boundary_ledger
 
+GEARS = "pinion", "wheel"
+_RIPPLE = np.linspace(0.0, 2.0, 49)
+"""Positions of a ripple that is drawn small, base pitches: six for a period of the fourth harmonic."""
+_NOTHING = 1e-12
+"""m: what rounding leaves."""
+
 
 def curve_json(
     database: SteDatabase,
@@ -95,9 +101,6 @@ def _typed(values: FloatArray, unit: float) -> list[float]:
     return [as_typed(float(value), unit) for value in values]
 
 
-GEARS = "pinion", "wheel"
-
-
 def tooth_loads_json(database: SteDatabase, point: OperatingPoint) -> Json:
     """Return the loads of the teeth by the names of the gears whose teeth differ."""
     loads = database.tooth_loads(**asdict(point), allow_failed=True)
@@ -143,10 +146,6 @@ def _figures(curve: Curve) -> Json:
         figures["peak_to_peak_over_face_error_um"] = ripple.error / UM
     known = np.isfinite([item.error for item in (curve.mean, curve.peak_to_peak, *curve.harmonics)]).all()
     return {name: value for name, value in figures.items() if known or "error" not in name}
-
-
-_RIPPLE = np.linspace(0.0, 2.0, 49)
-"""Positions of a ripple that is drawn small, base pitches: six for a period of the fourth harmonic."""
 
 
 def headline_json(table: SteDatabase) -> Json:
@@ -218,10 +217,6 @@ def _tooth_loads_by_load(database: SteDatabase) -> list[Json]:
     if database.n_failed:
         return []
     return [tooth_loads_json(database, OperatingPoint(float(f), *aligned)) for f in database.force]
-
-
-_NOTHING = 1e-12
-"""m: what rounding leaves."""
 
 
 def source_rows(receipt: Json, load: int) -> list[tuple[str, float, float, float]]:

@@ -44,6 +44,11 @@ if TYPE_CHECKING:
 Toothed = TypeVar("Toothed", bound=Toothing)
 Inputs = TypeVar("Inputs")
 Requested = TypeVar("Requested")
+THICK = 10.0
+"""Face widths from bore to root up to which `check_request` refuses no disc: rounding leaves less than a
+tenth of what it allows."""
+PLANE = ("plane_strain", "plane_stress")
+"""Models that a case may state, and that have no misalignment."""
 
 
 def gear_pair(case: Case) -> ParallelAxes:
@@ -191,10 +196,6 @@ def case_as_filed(case: Case) -> Json:
 
 # Whether a case can be computed: what a schema cannot check and a request can afford.
 
-THICK = 10.0
-"""Face widths from bore to root up to which `check_request` refuses no disc: rounding leaves less than a
-tenth of what it allows."""
-
 
 @dataclass(frozen=True)
 class CheckedCase:
@@ -265,10 +266,6 @@ class CheckedCase:
                 known = self._requests[make] = inputs, make(self, inputs)
         made: Requested = known[1]
         return made
-
-
-PLANE = ("plane_strain", "plane_stress")
-"""Models that a case may state, and that have no misalignment."""
 
 
 def across_face(checked: CheckedCase) -> CheckedCase:

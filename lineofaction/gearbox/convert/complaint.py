@@ -41,6 +41,7 @@ NEAREST, NAMED = 6, 3
 EXCITATION, HARMONIC = "excitation", "harmonic number"
 """Ranks of what passes: by the force that excites; where that is not known, as if it fell with the number."""
 _SURFACE = "Give a housing by step_file, mesh_file or modes_file, or leave the microphone out."
+_SEVERAL = {MESH: "meshes", SIDEBAND: "meshes", SHAFT: "shafts", BEARING: "bearings"}
 
 
 @dataclass(frozen=True)
@@ -325,9 +326,6 @@ def grouped(every: Iterable[Passing]) -> list[tuple[Passing, ...]]:
         alike = of.kind, of.part, each.harmonic, f"{each.order:.9g}"
         groups.setdefault(alike, []).append(each)
     return [tuple(group) for group in groups.values()]
-
-
-_SEVERAL = {MESH: "meshes", SIDEBAND: "meshes", SHAFT: "shafts", BEARING: "bearings"}
 
 
 def words(alike: Sequence[Passing]) -> str:

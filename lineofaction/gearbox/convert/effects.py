@@ -12,6 +12,9 @@ from model_studies.ablation import TRIFLE
 
 
 Entry = Mapping[str, Any]
+Json = Mapping[str, Any]
+LEAST = 1e-3  # um, of the static displacement of an effect whose influence is not estimated
+_RELATIVE = ("relative_mean", "relative_peak_to_peak", "relative_bearing_force")
 
 
 def by_size(ledger: Iterable[Entry]) -> tuple[list[Entry], list[Entry]]:
@@ -96,10 +99,6 @@ def run_lines(attributes: Mapping[str, Any]) -> Iterator[str]:
 
 
 # The effect ledger of a scene in lines for people.
-
-Json = Mapping[str, Any]
-LEAST = 1e-3  # um, of the static displacement of an effect whose influence is not estimated
-_RELATIVE = ("relative_mean", "relative_peak_to_peak", "relative_bearing_force")
 
 
 def effect_size(ledger: Json, effect: str) -> str:

@@ -63,6 +63,9 @@ _CASE = {figure.name: f"pair.{figure.field}" for figure in (*SHARED, *figures(Ge
     "receipt": "accuracy.receipt",
     "on_violation": "accuracy.on_violation",
 }
+_OF_TABLE = {"drives": ImposedRotation, "integration": Integration, "temperatures": Temperatures}
+"""What declares fields whose names mean something else in other tables."""
+_IN_WORDS = ("_n_per_mm3", "_gpa", "_deg", "_rpm")
 
 
 def _with_parts(parts: Mapping[str, Declared]) -> Iterator[type]:
@@ -80,8 +83,6 @@ _ANYWHERE = (
     *(RollingBearing, BallBearing, RollerBearing, CatalogLine, RingFits),
 )
 """What declares its fields, by names that mean the same in every table."""
-_OF_TABLE = {"drives": ImposedRotation, "integration": Integration, "temperatures": Temperatures}
-"""What declares fields whose names mean something else in other tables."""
 DECLARED = (*_ANYWHERE, *_OF_TABLE.values())
 
 
@@ -172,9 +173,6 @@ def _split_index(part: str) -> tuple[str, str]:
 
 
 # Errors of the libraries as the boundary shows them: its field names, its units.
-
-
-_IN_WORDS = ("_n_per_mm3", "_gpa", "_deg", "_rpm")
 
 
 @dataclass(frozen=True)

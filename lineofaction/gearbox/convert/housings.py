@@ -33,6 +33,13 @@ if TYPE_CHECKING:
 
 
 STEP_BEGINS = b"ISO-10303-21"
+FOLDER = "housings"
+"""Of the cache: meshes and reductions."""
+_MOTIONS = 5
+"""Of a seat that a bearing holds."""
+ANY_STIFFNESS, _ANY_MASS = 1e8, 1.0
+"""N/m, kg; checks that need no reduction and no table do not read them."""
+_NUMBERED = re.compile(r"^housings\[(\d+)\]")
 
 
 def solid_file(housing: HousingInput) -> tuple[str, str, bytes]:
@@ -74,15 +81,6 @@ def _unpacked(field: str, file: FileContentInput, suffixes: Sequence[str]) -> tu
     except ValueError as error:
         length = f"{len(file.content)} characters"
         raise BadInput.of(f"{field}.content", length, str(error), "The client packs files.") from None
-
-
-FOLDER = "housings"
-"""Of the cache: meshes and reductions."""
-
-_MOTIONS = 5
-"""Of a seat that a bearing holds."""
-ANY_STIFFNESS, _ANY_MASS = 1e8, 1.0
-"""N/m, kg; checks that need no reduction and no table do not read them."""
 
 
 @dataclass(frozen=True)
@@ -149,9 +147,6 @@ def numbered_as_written(housings: Sequence[HousingInput]) -> Iterator[None]:
     except InputError as error:
         field = _NUMBERED.sub(lambda match: f"housings[{numbers[int(match[1])]}]", error.field)
         raise InputError(field, error.value, error.bound, error.suggestion) from None
-
-
-_NUMBERED = re.compile(r"^housings\[(\d+)\]")
 
 
 @identity_cached

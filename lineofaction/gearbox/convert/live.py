@@ -40,6 +40,17 @@ from lineofaction.gearbox.units import DEGREE, MM, MPA, UM, factor, in_um
 if TYPE_CHECKING:
     from fe_contact.microgeometry.drawn_ripple import DrawnRipple
 
+_N_PER_MM = 1e3
+_DIGITS = 5
+_STEPS, _COLUMNS = 32, 64
+"""Positions in a base pitch and most columns over the face of a passage."""
+_PLACES = ("pair.", "load.", "errors.")
+_OF_BAND = {
+    *("torque_n_m", "misalignment_um", "center_distance_change_mm", "pinion", "wheel", "tolerance_class")
+}
+_KEPT_DRAWN = 4
+_FLANK_POINTS, _ROOT_POINTS, _TIP_POINTS = 24, 24, 5
+
 
 def plan_of(case: CheckedCase, time_budget_s: float | None, cache: Path | None) -> RunPlan:
     """Plan a case; `time_budget_s` stands beside a tolerance of the case.
@@ -104,10 +115,6 @@ def _flank(flank: FlankDerivatives, k: int) -> Json:
 # What happens on the flanks of a live question: pressure over the flank, load over the face, K_Hbeta.
 
 
-_N_PER_MM = 1e3
-_DIGITS = 5
-
-
 def _flanks_json(flanks: LoadDistribution) -> Json:
     """Return the results on the flanks; K_Hbeta is null in the plane, whose load is even by assumption."""
     roll, pressure = pressure_map(flanks, flanks.roll_length_1)
@@ -125,10 +132,6 @@ def _flanks_json(flanks: LoadDistribution) -> Json:
         "worst_load_n_per_mm": _short(load[worst] / _N_PER_MM),
         "worst_position": float(flanks.position[worst]),
     }
-
-
-_STEPS, _COLUMNS = 32, 64
-"""Positions in a base pitch and most columns over the face of a passage."""
 
 
 def _passage_json(flanks: LoadDistribution, apart: FloatArray) -> Json:
@@ -177,9 +180,6 @@ def _short(values: FloatArray) -> Any:
 
 
 # Live questions: from a stored table and a change of its flanks to curves.
-
-
-_PLACES = ("pair.", "load.", "errors.")
 
 
 def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> tuple[Case, CondensedPair]:
@@ -251,12 +251,6 @@ def _add_band(
         drawn.popitem(last=False)
     answer["curves"][0]["band"] = _band(drawn[name], chosen)
     answer["cost"]["band_cpu_seconds"] = cpu_seconds() - begin
-
-
-_OF_BAND = {
-    *("torque_n_m", "misalignment_um", "center_distance_change_mm", "pinion", "wheel", "tolerance_class")
-}
-_KEPT_DRAWN = 4
 
 
 def _band(ripple: DrawnRipple, tolerance_class: int) -> Json:
@@ -350,9 +344,6 @@ def _by_question(fault: Fault) -> Fault:
 
 
 # The two gears in mesh as a drawing: transverse outlines in mm, turned so that their flanks touch.
-
-
-_FLANK_POINTS, _ROOT_POINTS, _TIP_POINTS = 24, 24, 5
 
 
 def outline_json(case: Case) -> Json:

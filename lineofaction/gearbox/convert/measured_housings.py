@@ -34,6 +34,9 @@ _KEPT = 8
 _PLAIN = re.compile(r"\w[\w .+-]{0,99}")
 """Names that a copy of a file may have on any system."""
 
+_PLACES = {"response": 0, "reference": 2}
+"""Where the nodes of a function have those of a kind."""
+
 
 def read_responses(scene: SceneInput) -> None:
     """Read the files of the measured housings of a scene, so that their faults come before its tables.
@@ -128,10 +131,6 @@ def _mobility_of(
     except InputError as error:
         value = f"{name}: {error.field}"
         raise BadInput.of(field, value, str(error.bound), str(error.suggestion)) from None
-
-
-_PLACES = {"response": 0, "reference": 2}
-"""Where the nodes of a function have those of a kind."""
 
 
 def _check_nodes(

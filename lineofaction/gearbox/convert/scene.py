@@ -43,6 +43,7 @@ if TYPE_CHECKING:
 ANY_TEETH = StandardTeeth((20, 20), 0.04, 0.35, 0.0, 0.02)
 """Teeth of placeholders of tables: these have sliding data."""
 _SAME = 1e-6  # relative; lengths that are typed with a few digits agree to this
+NO_SOLIDS: Mapping[str, ReducedHousing] = {}
 
 
 def _teeth_of(scene: SceneInput, facts: Mapping[str, PairFacts]) -> dict[str, GearTeeth]:
@@ -176,9 +177,6 @@ def _curve(law: PeriodicInput, unit: float) -> PeriodicCurve:
     phases = law.phase_deg or (0.0,) * len(law.amplitude)
     sizes = [number * unit for number in law.amplitude]
     return PeriodicCurve.harmonic(value[0], sizes, [phase * DEGREE for phase in phases])
-
-
-NO_SOLIDS: Mapping[str, ReducedHousing] = {}
 
 
 @dataclass(frozen=True)

@@ -50,6 +50,11 @@ STAGE = "housing"
 _MESHED = 0.3
 """Usual share of the mesh in the time of a housing."""
 Vector = tuple[float, float, float]
+_NAMES = {
+    re.compile(r"^(seats\[\d+\])\.bore\.(\w+)"): r"\1.bore_\2",
+    re.compile(r"^(feet\[\d+\])\.face\.(\w+)"): r"\1.\2",
+    re.compile(r"^mesh_file\.size$"): "mesh_file.size_mm",
+}
 
 
 def reduced_housings(
@@ -110,13 +115,6 @@ def _own_name(field: str, housing: HousingInput) -> str:
     names |= {f"seats.{seat.bearing}": f"seats[{i}]" for i, seat in enumerate(housing.seats)}
     source = "step_file" if housing.step_file is not None else "mesh_file"
     return re.sub(r"^mesh_file", source, names.get(field, field))
-
-
-_NAMES = {
-    re.compile(r"^(seats\[\d+\])\.bore\.(\w+)"): r"\1.bore_\2",
-    re.compile(r"^(feet\[\d+\])\.face\.(\w+)"): r"\1.\2",
-    re.compile(r"^mesh_file\.size$"): "mesh_file.size_mm",
-}
 
 
 def _mesh(housing: HousingInput, cache: Path | None) -> TetrahedralMesh:

@@ -13,6 +13,10 @@ from lineofaction.gearbox.rexs.vocabulary import table, units
 VERSIONS = ("1.0", "1.1", "1.2", "1.3", "1.4", "1.5", "1.6", "1.7", "2.0.0")
 NEWEST = VERSIONS[-1]
 _SHORT = {"2.0": "2.0.0"}
+_Step = dict[str, Any]
+"""What a version renamed, moved, retyped and removed: a file of `steps`."""
+_Changed = tuple[Attribute, str, bool]
+_UNWRAPPED = ("floating_point_array", "floating_point_matrix")
 
 
 @dataclass(frozen=True)
@@ -29,10 +33,6 @@ class Change:
     """Whether it stays as it was, since the newer version has nothing that says the same."""
     words: str
     """What became of it, or why it is kept."""
-
-
-_Step = dict[str, Any]
-"""What a version renamed, moved, retyped and removed: a file of `steps`."""
 
 
 def upgrade(model: Model, version: str = NEWEST) -> tuple[Model, tuple[Change, ...]]:
@@ -77,10 +77,6 @@ def _component(
             changes.append(Change(version, place, attribute.id, name == attribute.id, words))
         attributes.append(replace(attribute, id=name))
     return replace(component, attributes=tuple(attributes))
-
-
-_Changed = tuple[Attribute, str, bool]
-_UNWRAPPED = ("floating_point_array", "floating_point_matrix")
 
 
 def _name(component: str, name: str, step: _Step, names: set[str]) -> tuple[str, str]:

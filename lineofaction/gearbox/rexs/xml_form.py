@@ -35,6 +35,11 @@ _ENCODINGS = ("utf-8", "utf-16", "utf-16le", "utf-16be", "us-ascii", "iso-8859-1
 _KIND_FIELD = "valueType"
 """Our field of XML's attributes, with the kind of a value whose text shows another; REXS allows it."""
 
+_STEP = "  "
+_NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_WRAPPED = {"model": ("relations", "components"), "load_spectrum": ("accumulation",)}
+"""Groups that are elements of their own."""
+
 
 @dataclass(slots=True)
 class _XmlElement(Element):
@@ -221,12 +226,6 @@ class _Builder:
     def _document_type(self, name: str, *rest: object) -> NoReturn:
         del rest
         raise BadInput.of("document type", name, "left out: REXS has none, and entities are not read")
-
-
-_STEP = "  "
-_NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-_WRAPPED = {"model": ("relations", "components"), "load_spectrum": ("accumulation",)}
-"""Groups that are elements of their own."""
 
 
 def xml_of(model: Model) -> bytes:

@@ -28,6 +28,12 @@ from lineofaction.gearbox.schemas.model import (
 from lineofaction.gearbox.units import MRAD, UM
 
 ROWS = ("ball", "roller", "catalog")
+_TILTS_OR_NOT = {
+    "if": {"properties": {"direction": {"enum": ["x", "y", "z"]}}},
+    "then": both(given("displacement_um", "force_n"), left_out("tilt_mrad", "moment_n_m")),
+    "else": both(given("tilt_mrad", "moment_n_m"), left_out("displacement_um", "force_n")),
+}
+_Curve = Annotated[Listed[Number], Field(min_length=2, max_length=1000)]
 
 
 @with_fields(declared_in(BallBearing))
@@ -76,16 +82,6 @@ class RollingBearingInput(BoundaryModel):
         if len(rows) != 1:
             refuse("ball", rows or None, f"given once, as one of {', '.join(ROWS)}", "Keep one of them.")
         return self
-
-
-_TILTS_OR_NOT = {
-    "if": {"properties": {"direction": {"enum": ["x", "y", "z"]}}},
-    "then": both(given("displacement_um", "force_n"), left_out("tilt_mrad", "moment_n_m")),
-    "else": both(given("tilt_mrad", "moment_n_m"), left_out("displacement_um", "force_n")),
-}
-
-
-_Curve = Annotated[Listed[Number], Field(min_length=2, max_length=1000)]
 
 
 class BearingInput(BoundaryModel):

@@ -24,6 +24,10 @@ from lineofaction.gearbox.schemas.model import (
     stated,
 )
 
+_PIN = next(figure for figure in figures(PlanetBearing) if figure.name == "radial_error")
+PinErrors = Annotated[tuple[Annotated[float, *_PIN.limits], ...], Strict(False)]
+LENGTHS_AGREE = 1e-6  # relative
+
 
 @with_fields(declared_in(Inertia, all_given=True))
 class InertiaInput(BoundaryModel):
@@ -65,10 +69,6 @@ class CouplingInput(BoundaryModel):
     )
 
 
-_PIN = next(figure for figure in figures(PlanetBearing) if figure.name == "radial_error")
-PinErrors = Annotated[tuple[Annotated[float, *_PIN.limits], ...], Strict(False)]
-
-
 class PlanetsInput(BoundaryModel):
     """Several planets from one, whose shaft, gears, bearings and meshes are in the scene."""
 
@@ -98,9 +98,6 @@ class PlanetsInput(BoundaryModel):
 
 
 # The shafts of a scene: one diameter, several sections, or an inertia.
-
-
-LENGTHS_AGREE = 1e-6  # relative
 
 
 @with_fields(declared_in(BeamSection))

@@ -42,6 +42,19 @@ _GEAR_ONLY = tuple(figure for figure in figures(Gear) if figure.name not in decl
 _IS_RING = {"required": ["internal"], "properties": {"internal": {"const": True}}}
 _RING_HAS = both(given("rim_diameter_mm"), left_out("bore_diameter_mm", "blank", "seat"))
 _GEAR_HAS = both(given("bore_diameter_mm"), left_out(*(figure.field for figure in _RING_ONLY)))
+Load = Annotated[float, Field(ge=1e-9, le=1e9)]  # smaller ones underflow where they are squared
+Misalignment = Annotated[float, Field(ge=-10_000.0, le=10_000.0)]
+Clearance = Annotated[float, Field(ge=0.0, le=10_000.0)]
+CenterDistanceChange = Annotated[float, Field(ge=-10.0, le=10.0)]
+Loads = Annotated[Listed[Load], Field(min_length=1, max_length=256)]
+Misalignments = Annotated[Listed[Misalignment], Field(min_length=1, max_length=64)]
+CenterDistanceChanges = Annotated[Listed[CenterDistanceChange], Field(min_length=1, max_length=64)]
+_WISHES = ("tolerance", "time_budget_s", "level")
+_USUAL_TOLERANCE = 0.01
+Switch = Literal["on", "off", "auto"]
+EffectName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
+OF_PAIR = (*SHARED, *(replace(figure, default=MISSING) for figure in figures(GearPair)))
+"""Figures that a case has in ``[pair]``."""
 
 
 def _of_either_kind(schema: dict[str, Any]) -> None:
@@ -99,23 +112,6 @@ class WheelInput(ToothingInput):
             if getattr(self, name) is not None:
                 advice = "The rim of a ring gear is solid, and held rigidly all round."
                 refuse(name, "given", "left out with internal = true", advice)
-
-
-Load = Annotated[float, Field(ge=1e-9, le=1e9)]  # smaller ones underflow where they are squared
-Misalignment = Annotated[float, Field(ge=-10_000.0, le=10_000.0)]
-Clearance = Annotated[float, Field(ge=0.0, le=10_000.0)]
-CenterDistanceChange = Annotated[float, Field(ge=-10.0, le=10.0)]
-Loads = Annotated[Listed[Load], Field(min_length=1, max_length=256)]
-Misalignments = Annotated[Listed[Misalignment], Field(min_length=1, max_length=64)]
-CenterDistanceChanges = Annotated[Listed[CenterDistanceChange], Field(min_length=1, max_length=64)]
-_WISHES = ("tolerance", "time_budget_s", "level")
-_USUAL_TOLERANCE = 0.01
-Switch = Literal["on", "off", "auto"]
-EffectName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
-
-
-OF_PAIR = (*SHARED, *(replace(figure, default=MISSING) for figure in figures(GearPair)))
-"""Figures that a case has in ``[pair]``."""
 
 
 @with_fields(as_fields(OF_PAIR))

@@ -20,6 +20,13 @@ WHATS, SPEEDS = ("frequency_hz", "order"), ("road_speed_km_h", "speed_rpm")
 OF_ROAD = ("tire_radius_mm", "final_shaft", "final_ratio")
 """What a road speed alone needs."""
 
+_LEAST = (
+    ("frequency_hz", 20.0, ("Hz", "Lower ones are not heard. In kHz? Then write {:g}.")),
+    ("road_speed_km_h", 1.0, ("km/h", "Write kilometers per hour, such as 40.0.")),
+    ("tire_radius_mm", 50.0, ("mm", "In meters? Then write {:g}.")),
+)
+"""Fields, the least value of each, and what is said of lower ones: they are in another unit."""
+
 
 class ComplaintFields(BoundaryModel):
     """Fields of a complaint, each of which may be left out."""
@@ -128,14 +135,6 @@ class ComplaintInput(ComplaintFields):
             if value is not None and value < least:
                 refuse(name, value, f"at least {least:g} {unit[0]}", unit[1].format(1e3 * value))
         return self
-
-
-_LEAST = (
-    ("frequency_hz", 20.0, ("Hz", "Lower ones are not heard. In kHz? Then write {:g}.")),
-    ("road_speed_km_h", 1.0, ("km/h", "Write kilometers per hour, such as 40.0.")),
-    ("tire_radius_mm", 50.0, ("mm", "In meters? Then write {:g}.")),
-)
-"""Fields, the least value of each, and what is said of lower ones: they are in another unit."""
 
 
 def with_options(stated_one: ComplaintInput | None, options: ComplaintFields) -> dict[str, Any]:

@@ -18,6 +18,9 @@ from lineofaction.gearbox.units import BY_SUFFIX, as_typed, suffix_of
 
 Fields = Mapping[str, tuple[Any, Any]]
 Model = TypeVar("Model", bound=BoundaryModel)
+_MODELS: Mapping[type, Any] = {FlankGrid: flank_grid.FlankGridInput}
+"""The models of parts whose fields are lists."""
+_EXAMPLES: Mapping[type, Any] = {FlankGrid: flank_grid.EXAMPLE}
 
 
 @dataclass(frozen=True)
@@ -143,11 +146,6 @@ def _part_field(fact: Declared, part: type) -> tuple[Any, Any]:
     )
     model = _MODELS.get(part) or _model_of(part)
     return (cast("Any", Listed)[model] if several else model | None), field
-
-
-_MODELS: Mapping[type, Any] = {FlankGrid: flank_grid.FlankGridInput}
-"""The models of parts whose fields are lists."""
-_EXAMPLES: Mapping[type, Any] = {FlankGrid: flank_grid.EXAMPLE}
 
 
 @cache

@@ -37,6 +37,12 @@ _KINDS = {
 }
 
 _LISTS = ("tuple_type", "list_type")
+_LIMITS: dict[str, type] = {
+    "gt": annotated_types.Gt,
+    "ge": annotated_types.Ge,
+    "lt": annotated_types.Lt,
+    "le": annotated_types.Le,
+}
 
 
 def faults_of(error: ValidationError, model: type[BaseModel]) -> tuple[Fault, ...]:
@@ -111,14 +117,6 @@ def _constraints(info: FieldInfo | None) -> dict[str, float]:
             if isinstance(item, kind):
                 limits[name] = getattr(item, name)
     return limits
-
-
-_LIMITS: dict[str, type] = {
-    "gt": annotated_types.Gt,
-    "ge": annotated_types.Ge,
-    "lt": annotated_types.Lt,
-    "le": annotated_types.Le,
-}
 
 
 def _metadata(own: Iterable[object], annotation: object) -> Iterable[object]:

@@ -16,6 +16,7 @@ from lineofaction.gearbox.units import boundary_ledger
 
 Json = dict[str, Any]
 REQUIRED = object()
+LINEAR: Json = {"source": "linear response"}
 
 
 @dataclass(frozen=True)
@@ -159,7 +160,6 @@ class BearingForces(Part):
     other_housings: list[str] | None = None
 
 
-LINEAR: Json = {"source": "linear response"}
 Forces = Annotated[BearingForces, Source("forces", missing=LINEAR)]
 """Where the bearing forces of a study of housings come from."""
 

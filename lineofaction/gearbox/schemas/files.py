@@ -25,6 +25,23 @@ from lineofaction.gearbox.units import MM, as_typed
 Find: TypeAlias = Callable[[str, str], Path]
 """From the name of a file and the field that has it to where it is; raises `BadInput`."""
 _FOLDERS = re.compile(r"[/\\]")
+LARGEST = 64_000_000
+"""Bytes of a file, or of all files of a request, unpacked."""
+_LARGEST_TEXT = 24_000_000
+ROWS = "stiffness_matrix"
+MATRIX_FILE, MODES_FILE = "stiffness_file", "modes_file"
+STEP_FILE, MESH_FILE, RESPONSE_FILE = "step_file", "mesh_file", "frf_file"
+_CONTENT_SUFFIXES = {STEP_FILE: STEP_SUFFIXES, MESH_FILE: MESH_SUFFIXES, RESPONSE_FILE: UNIVERSAL}
+"""How the files end whose content goes along with the scene, by the fields that name them."""
+_BY_CLIENT = "Run the scene by loa or the Python client: they read the file and send its matrices."
+Table = dict[str, Any]
+Content: TypeAlias = tuple[Table, Table]
+"""Fields of a file that those of its housing replace, and fields that replace those of the housing."""
+Contents: TypeAlias = dict[tuple[str, Path], Content]
+FIELD = "flank_grid_csv"
+COLUMNS = ("roll_length_mm", "face_position_mm", "removed_um")
+_HELP = "See docs/case-file.md: one row per node, in any order."
+_LARGEST_FILE, _MOST_NODES = 16_000_000, 1_000_000
 
 
 def beside(folder: Path) -> Find:
@@ -38,10 +55,6 @@ def own_name(name: str) -> str:
 
 
 # A file inside a scene: its name, and what it holds, compressed.
-
-LARGEST = 64_000_000
-"""Bytes of a file, or of all files of a request, unpacked."""
-_LARGEST_TEXT = 24_000_000
 
 
 class FileContentInput(BoundaryModel):
@@ -82,18 +95,6 @@ class FileContentInput(BoundaryModel):
 
 
 # Housings as files beside a scene file: matrices and solids are read and written out in the scene.
-
-
-ROWS = "stiffness_matrix"
-MATRIX_FILE, MODES_FILE = "stiffness_file", "modes_file"
-STEP_FILE, MESH_FILE, RESPONSE_FILE = "step_file", "mesh_file", "frf_file"
-_CONTENT_SUFFIXES = {STEP_FILE: STEP_SUFFIXES, MESH_FILE: MESH_SUFFIXES, RESPONSE_FILE: UNIVERSAL}
-"""How the files end whose content goes along with the scene, by the fields that name them."""
-_BY_CLIENT = "Run the scene by loa or the Python client: they read the file and send its matrices."
-Table = dict[str, Any]
-Content: TypeAlias = tuple[Table, Table]
-"""Fields of a file that those of its housing replace, and fields that replace those of the housing."""
-Contents: TypeAlias = dict[tuple[str, Path], Content]
 
 
 def _with_housing_files(table: Table, find: Find, read: Collection[str]) -> Table:
@@ -234,11 +235,6 @@ SENT = READERS.keys() - {MODES_FILE}
 # Free-form flanks as CSV files beside a case file: read and written out in the case.
 
 
-FIELD = "flank_grid_csv"
-COLUMNS = ("roll_length_mm", "face_position_mm", "removed_um")
-_HELP = "See docs/case-file.md: one row per node, in any order."
-
-
 def _with_flank_grids(
     table: Table, find: Find, read_text: Callable[[Path, str], str], prefix: str = ""
 ) -> dict[str, Any]:
@@ -314,9 +310,6 @@ def _nodes(text: str) -> Nodes:
             raise ValueError(f"a file that gives each node once; line {number} repeats one")
         nodes[roll, face] = removed
     return nodes
-
-
-_LARGEST_FILE, _MOST_NODES = 16_000_000, 1_000_000
 
 
 def read_text(path: Path, name: str) -> str:

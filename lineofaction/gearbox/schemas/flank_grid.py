@@ -12,6 +12,11 @@ Deviation = Annotated[float, Field(ge=-1000.0, le=1000.0)]
 _NODES = Field(min_length=2, max_length=500)
 _GridAxis = Annotated[Listed[Annotated[float, Field(ge=-10_000.0, le=10_000.0)]], _NODES]
 _GridRow = Annotated[Listed[Deviation], _NODES]
+EXAMPLE = {
+    "roll_length_mm": [4.0, 20.0],
+    "face_position_mm": [-12.5, 12.5],
+    "removed_um": [[0.0, 0.0], [5.0, 7.0]],
+}
 
 
 class FlankGridInput(BoundaryModel):
@@ -29,10 +34,3 @@ class FlankGridInput(BoundaryModel):
         description="Material removed in µm, a row per roll length",
         examples=[[[0.0, 2.0], [0.0, 0.0], [5.0, 7.0]]],
     )
-
-
-EXAMPLE = {
-    "roll_length_mm": [4.0, 20.0],
-    "face_position_mm": [-12.5, 12.5],
-    "removed_um": [[0.0, 0.0], [5.0, 7.0]],
-}

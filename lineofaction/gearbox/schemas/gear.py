@@ -34,6 +34,11 @@ from lineofaction.gearbox.schemas.model import (
     stated,
 )
 
+PitchDeviations = Annotated[Listed[Deviation], Field(max_length=4000)]
+SHARED = tuple(figure for figure in figures(Toothing) if figure.name in MATING)
+"""Figures that a case has once, for both gears."""
+_STARTS = {f"{relief}_length_mm": relief for relief in RELIEFS}
+
 
 @with_fields(declared_in(Material))
 class MaterialInput(BoundaryModel):
@@ -43,13 +48,6 @@ class MaterialInput(BoundaryModel):
 @with_fields(declared_in(Shaft))
 class GearShaftInput(BoundaryModel):
     """A round shaft on two bearings that carries a gear."""
-
-
-PitchDeviations = Annotated[Listed[Deviation], Field(max_length=4000)]
-
-
-SHARED = tuple(figure for figure in figures(Toothing) if figure.name in MATING)
-"""Figures that a case has once, for both gears."""
 
 
 def of_gear(kind: type[Toothing]) -> tuple[Figure, ...]:
@@ -63,9 +61,6 @@ class _ToothingFigures(BoundaryModel):
 
     teeth: int
     face_width_mm: float
-
-
-_STARTS = {f"{relief}_length_mm": relief for relief in RELIEFS}
 
 
 def _start_fields(relief: str) -> tuple[str, ...]:

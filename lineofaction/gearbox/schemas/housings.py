@@ -31,6 +31,25 @@ _THREE = Field(min_length=3, max_length=3)
 Direction = Annotated[Listed[Annotated[float, Field(ge=-1.0, le=1.0)]], _THREE]
 Node = Annotated[int, Field(ge=0, le=2**31 - 1)]
 Rates = Annotated[Listed[Annotated[float, Field(ge=0.0, le=1e15)]], _THREE]
+PERPENDICULAR = 1e-6
+"""Cosine of the angle between axes."""
+SOURCES = ("step_file", "mesh_file")
+"""Fields that name the file of a solid."""
+RESPONSES = "frf_file"
+"""The field that names the file of measured responses."""
+_MATRICES = ("stiffness_matrix", "damping_matrix", "mass_matrix", "seat_positions_mm", "modal_coordinates")
+_SOLID = ("material", "seats", "feet")
+_SETTINGS = (figure.field for figure in figures(ReductionSettings))
+_AXES = ("x_axis", "z_axis")
+_OF_SOLID = (*_SOLID, "points", "modal_damping", "mesh_unit", "origin_mm", *_SETTINGS)
+_NODES = ("seat_nodes", "point_nodes")
+_BY_MATRICES, _BY_SOLID = "stiffness_matrix", "step_file or mesh_file"
+_FOREIGN = {
+    _BY_MATRICES: {_BY_SOLID: (*_OF_SOLID, *_AXES), RESPONSES: _NODES},
+    _BY_SOLID: {_BY_MATRICES: _MATRICES, RESPONSES: _NODES},
+    RESPONSES: {_BY_MATRICES: _MATRICES, _BY_SOLID: _OF_SOLID},
+}
+"""By what a housing is given by: the fields that belong to other kinds, by these."""
 
 
 def _material_by_name(value: object) -> object:
@@ -151,14 +170,6 @@ class HousingFootInput(BoundaryModel):
         return self
 
 
-PERPENDICULAR = 1e-6
-"""Cosine of the angle between axes."""
-SOURCES = ("step_file", "mesh_file")
-"""Fields that name the file of a solid."""
-RESPONSES = "frf_file"
-"""The field that names the file of measured responses."""
-
-
 def _left_out(value: object) -> bool:
     """Whether a field that came after results had been stored is not there."""
     return value is None or value == ()
@@ -199,21 +210,6 @@ class _MatrixHousing(BoundaryModel):
         description="Where the seats are in the fixed frame, x, y, z in mm; checked against the bearings",
         exclude_if=_left_out,
     )
-
-
-_MATRICES = ("stiffness_matrix", "damping_matrix", "mass_matrix", "seat_positions_mm", "modal_coordinates")
-_SOLID = ("material", "seats", "feet")
-_SETTINGS = (figure.field for figure in figures(ReductionSettings))
-_AXES = ("x_axis", "z_axis")
-_OF_SOLID = (*_SOLID, "points", "modal_damping", "mesh_unit", "origin_mm", *_SETTINGS)
-_NODES = ("seat_nodes", "point_nodes")
-_BY_MATRICES, _BY_SOLID = "stiffness_matrix", "step_file or mesh_file"
-_FOREIGN = {
-    _BY_MATRICES: {_BY_SOLID: (*_OF_SOLID, *_AXES), RESPONSES: _NODES},
-    _BY_SOLID: {_BY_MATRICES: _MATRICES, RESPONSES: _NODES},
-    RESPONSES: {_BY_MATRICES: _MATRICES, _BY_SOLID: _OF_SOLID},
-}
-"""By what a housing is given by: the fields that belong to other kinds, by these."""
 
 
 @with_fields(declared_in(ReductionSettings))

@@ -13,6 +13,9 @@ from lineofaction.gearbox.schemas.gear import ToothingInput
 from lineofaction.gearbox.schemas.model import BoundaryModel, Listed
 from lineofaction.gearbox.schemas.plan import ModelBias
 
+Torques = Annotated[Listed[Load], Field(min_length=1, max_length=16)]
+Caller = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,64}$")]
+
 
 def _left_out(name: str) -> Any:
     """Return a field of a gear that may be left out: it is then as in the case."""
@@ -28,9 +31,6 @@ FlankChange = create_model(
     __doc__="Flank modifications of one gear; > 0 is material removed.",
     **{figure.field: _left_out(figure.field) for figure in figures(FlankModification)},
 )
-
-Torques = Annotated[Listed[Load], Field(min_length=1, max_length=16)]
-Caller = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,64}$")]
 
 
 class LiveInput(BoundaryModel):

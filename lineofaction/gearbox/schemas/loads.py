@@ -25,6 +25,11 @@ from lineofaction.gearbox.schemas.model import (
     stated,
 )
 
+Orders = Annotated[tuple[Annotated[float, Field(gt=0.0, le=1e4)], ...], Strict(False)]
+Vector = Annotated[tuple[Number, ...], Field(min_length=3, max_length=3), Strict(False)]
+ACTING = ("force_n", "moment_n_m")
+BY = ("time_s", "speed_rpm", "orders", "turn_factor")
+
 
 @with_fields(declared_in(ImposedRotation))
 class DriveInput(BoundaryModel):
@@ -127,11 +132,6 @@ def _check_law(field: str, times: tuple[float, ...], values: tuple[float, ...]) 
 
 
 # Forces and unbalances of a scene.
-
-Orders = Annotated[tuple[Annotated[float, Field(gt=0.0, le=1e4)], ...], Strict(False)]
-Vector = Annotated[tuple[Number, ...], Field(min_length=3, max_length=3), Strict(False)]
-ACTING = ("force_n", "moment_n_m")
-BY = ("time_s", "speed_rpm", "orders", "turn_factor")
 
 
 @with_fields(declared_in(AppliedForce))

@@ -29,6 +29,7 @@ Values = Listed[Value]
 Phases = Annotated[tuple[Annotated[float, Field(ge=-1e6, le=1e6)], ...], Strict(False)]
 Positions = Annotated[tuple[Annotated[float, Field(ge=0.0, lt=1.0)], ...], Strict(False)]
 Teeth = Annotated[int, Field(ge=1, le=100_000)]
+_SOURCES = ("case", "case_file", "database_file", "database_hash", "stiffness")
 
 
 class PeriodicInput(BoundaryModel):
@@ -118,9 +119,6 @@ class StiffnessMeshInput(BoundaryModel):
         description="Transmission error e without load in µm; left out: 0",
         examples=[{"value": [0.0], "amplitude": [5.0]}],
     )
-
-
-_SOURCES = ("case", "case_file", "database_file", "database_hash", "stiffness")
 
 
 class CoastFlankInput(BoundaryModel):

@@ -31,6 +31,29 @@ MOST_FAULTS = 50
 _MOST_ENTRIES = 1000
 """Of tables in a list, and of names in a table, where no other number is declared."""
 _TABLES = ("model", "definition-ref")
+T = TypeVar("T")
+Listed = Annotated[tuple[T, ...], Strict(False)]
+"""A list, which Python has as a tuple."""
+Name = Annotated[str, Field(min_length=1, max_length=64)]
+Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
+Point = Annotated[Listed[Coordinate], Field(min_length=3, max_length=3)]
+Acceleration = Annotated[Listed[Annotated[float, Field(ge=-1e6, le=1e6)]], Field(min_length=3, max_length=3)]
+Number = Annotated[float, Field(ge=-1e9, le=1e9)]
+_MANY = Field(min_length=1, max_length=100_000)
+Times = Annotated[Listed[Annotated[float, Field(ge=0.0, le=1e9)]], _MANY]
+Numbers = Annotated[Listed[Number], _MANY]
+Course = Literal["linear", "smooth"]
+Stiffness = Annotated[float, Field(ge=-1e15, le=1e15)]
+SeatRow = Annotated[Listed[Stiffness], Field(min_length=5, max_length=6)]
+SeatRows = Annotated[Listed[SeatRow], Field(min_length=5, max_length=6)]
+HousingRow = Annotated[Listed[Stiffness], Field(min_length=3, max_length=6000)]
+HousingRows = Annotated[Listed[HousingRow], Field(min_length=3, max_length=6000)]
+CouplingRow = Annotated[Listed[Number], Field(min_length=6, max_length=6)]
+CouplingRows = Annotated[Listed[CouplingRow], Field(min_length=6, max_length=6)]
+Json = dict[str, Any]
+_LEFT_OUT: Json = {"type": "null"}
+_GIVEN: Json = {"not": _LEFT_OUT}
+_NAMED = "x-named"
 
 
 def _with_few_faults(schema: CoreSchema) -> CoreSchema:
@@ -125,38 +148,14 @@ def refuse_unsorted(field: str, values: Sequence[float] | None, shown: int | Non
 
 # Types that tables of case and scene files, and inputs of studies, share.
 
-T = TypeVar("T")
-Listed = Annotated[tuple[T, ...], Strict(False)]
-"""A list, which Python has as a tuple."""
 if TYPE_CHECKING:
     Row = Sequence
 else:
     Row = Listed
     """A `Listed` of a model that Python users fill in: a checker of types lets them write any sequence."""
-Name = Annotated[str, Field(min_length=1, max_length=64)]
-Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
-Point = Annotated[Listed[Coordinate], Field(min_length=3, max_length=3)]
-Acceleration = Annotated[Listed[Annotated[float, Field(ge=-1e6, le=1e6)]], Field(min_length=3, max_length=3)]
-Number = Annotated[float, Field(ge=-1e9, le=1e9)]
-_MANY = Field(min_length=1, max_length=100_000)
-Times = Annotated[Listed[Annotated[float, Field(ge=0.0, le=1e9)]], _MANY]
-Numbers = Annotated[Listed[Number], _MANY]
-Course = Literal["linear", "smooth"]
-Stiffness = Annotated[float, Field(ge=-1e15, le=1e15)]
-SeatRow = Annotated[Listed[Stiffness], Field(min_length=5, max_length=6)]
-SeatRows = Annotated[Listed[SeatRow], Field(min_length=5, max_length=6)]
-HousingRow = Annotated[Listed[Stiffness], Field(min_length=3, max_length=6000)]
-HousingRows = Annotated[Listed[HousingRow], Field(min_length=3, max_length=6000)]
-CouplingRow = Annotated[Listed[Number], Field(min_length=6, max_length=6)]
-CouplingRows = Annotated[Listed[CouplingRow], Field(min_length=6, max_length=6)]
 
 
 # Rules over several fields of a table, as JSON Schema states them; validators of the models enforce them.
-
-Json = dict[str, Any]
-
-_LEFT_OUT: Json = {"type": "null"}
-_GIVEN: Json = {"not": _LEFT_OUT}
 
 
 def stated(*rules: Json) -> Json:
@@ -238,8 +237,6 @@ def _bare(kind: Any) -> Any:
 
 
 # Parts of answers that are passed on as they are, and the schemas by which the description knows them.
-
-_NAMED = "x-named"
 
 
 class Named:

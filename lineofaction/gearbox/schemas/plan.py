@@ -7,6 +7,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, Field
 
+Recipe = dict[str, bool | int | float | list[int] | None]
+"""Settings of a mesh by name; lengths in m."""
+Point = Annotated[tuple[float, ...], Field(min_length=2, max_length=2)]
+
 
 class InputWarning(BaseModel):
     """A value that is accepted and far from practice, or a part that an import left out of a scene."""
@@ -38,10 +42,6 @@ def left_out_warnings(texts: Iterable[str], of: str = "scene") -> list[dict[str,
 
 
 # What a run will be and cost: the answer to a plan, with the effect ledger as answers have it.
-
-
-Recipe = dict[str, bool | int | float | list[int] | None]
-"""Settings of a mesh by name; lengths in m."""
 
 
 class PlannedCost(BaseModel):
@@ -161,8 +161,6 @@ class PlanBody(BaseModel):
 
 
 # The drawing of a pair: the answer to an outline.
-
-Point = Annotated[tuple[float, ...], Field(min_length=2, max_length=2)]
 
 
 class OutlineBody(BaseModel):

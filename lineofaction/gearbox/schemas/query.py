@@ -31,6 +31,8 @@ LIMITS: dict[str, float] = {
 VALIDITY = ("lifted_off", "above_table", "outside_misalignment", "outside_center_distance")
 """Names of the bits of a validity, the lowest first."""
 
+_List = (Strict(False), Field(min_length=1, max_length=MOST_POINTS, fail_fast=True))
+
 
 def validity_words(flags: int) -> str:
     """Return flags in words, such as inside or above_table+outside_misalignment."""
@@ -41,7 +43,6 @@ def _limit(name: str) -> Any:
     return Field(ge=-LIMITS[name], le=LIMITS[name])
 
 
-_List = (Strict(False), Field(min_length=1, max_length=MOST_POINTS, fail_fast=True))
 _Positions = Annotated[tuple[Annotated[float, _limit("position")], ...], *_List]
 _Deflections = Annotated[tuple[Annotated[float, _limit("deflection_um")], ...], *_List]
 _Misalignment = Annotated[float, _limit("misalignment_um")]

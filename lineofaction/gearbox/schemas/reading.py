@@ -20,6 +20,13 @@ from lineofaction.gearbox.schemas.files import READERS, beside, read_text, writt
 from lineofaction.gearbox.schemas.toml import toml_table
 
 M = TypeVar("M", bound=BaseModel)
+_SIGNS = {
+    "pair": ("a case (with [pair])", "loa analyze and its like take it"),
+    "shafts": ("a scene (with [[shafts]])", "loa simulate and its like take it"),
+}
+"""The table by which a file is known: what it holds, and who takes it."""
+_HEADER = re.compile(r"^\s*(\[\[?)\s*([^\[\]#]+?)\s*\]\]?")
+_KEY = re.compile(r"""^\s*((?:[\w-]+|"[^"\n]*"|'[^'\n]*')(?:\s*\.\s*(?:[\w-]+|"[^"\n]*"|'[^'\n]*'))*)\s*=""")
 
 
 def validated(model: type[M], data: object) -> M:
@@ -56,13 +63,6 @@ def _json(text: str, field: str) -> Any:
         raise BadInput.of(field, None, "JSON of less depth", "See docs/case-file.md.") from None
 
 
-_SIGNS = {
-    "pair": ("a case (with [pair])", "loa analyze and its like take it"),
-    "shafts": ("a scene (with [[shafts]])", "loa simulate and its like take it"),
-}
-"""The table by which a file is known: what it holds, and who takes it."""
-
-
 def _check_kind(model: type[BaseModel], table: dict[str, Any], path: Path) -> None:
     """Refuse a case given as a scene, or a scene given as a case, by that one fault."""
     expected = [sign for sign in _SIGNS if sign in model.model_fields]
@@ -86,9 +86,6 @@ def read_model(model: type[M], source: Path | InputFile) -> M:
 
 
 # Where in its file a field stands: the line that a fault is about.
-
-_HEADER = re.compile(r"^\s*(\[\[?)\s*([^\[\]#]+?)\s*\]\]?")
-_KEY = re.compile(r"""^\s*((?:[\w-]+|"[^"\n]*"|'[^'\n]*')(?:\s*\.\s*(?:[\w-]+|"[^"\n]*"|'[^'\n]*'))*)\s*=""")
 
 
 @contextmanager

@@ -31,6 +31,16 @@ _OF_RUN = both(given("run"), {"properties": {"speed_rpm": {"maxItems": 0}}})
 _OVER_SPEEDS = both(
     left_out("run"), {"required": ["speed_rpm"], "properties": {"speed_rpm": {"minItems": 1}}}
 )
+Factor = Annotated[float, Field(ge=0.05, le=20.0)]
+Factors = Row[Factor]
+RANGES = (
+    "housing_damping",
+    "housing_frequency",
+    "mount_stiffness",
+    "bearing_stiffness",
+    "mesh_damping",
+)
+"""Of `dynamics.noise.GUESSES`, which takes longer to load than a service to start."""
 
 
 class OverSpeeds(BoundaryModel):
@@ -89,17 +99,6 @@ class OverSpeedsOrRun(OverOrders):
 
 
 # Ranges of what is only guessed about a scene, and whether the sound is computed over them.
-
-Factor = Annotated[float, Field(ge=0.05, le=20.0)]
-Factors = Row[Factor]
-RANGES = (
-    "housing_damping",
-    "housing_frequency",
-    "mount_stiffness",
-    "bearing_stiffness",
-    "mesh_damping",
-)
-"""Of `dynamics.noise.GUESSES`, which takes longer to load than a service to start."""
 
 
 def _range(low: float, high: float, text: str) -> Factors:

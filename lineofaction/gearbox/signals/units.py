@@ -10,16 +10,6 @@ from lineofaction.gearbox.problems import BadInput
 STANDARD_GRAVITY = 9.80665
 """m/s^2 (ISO 80000-3)."""
 _TURN = 2.0 * math.pi
-
-
-@dataclass(frozen=True)
-class MeasuredUnit:
-    """A unit of a channel: the quantity it measures, and what one of it is in the SI unit of that."""
-
-    quantity: str
-    factor: float
-
-
 ACCELERATION, VELOCITY, FORCE, LENGTH, SPEED, TORQUE, TIME, ANGLE = (
     "acceleration",
     "velocity",
@@ -62,11 +52,6 @@ _SPELLINGS: dict[tuple[str, float], tuple[str, ...]] = {
     (ANGLE, 1.0): ("rad",),
     (ANGLE, math.pi / 180.0): ("deg", "°"),
 }
-_BY_SPELLING = {
-    spelling: MeasuredUnit(quantity, factor)
-    for (quantity, factor), spellings in _SPELLINGS.items()
-    for spelling in spellings
-}
 _ENDINGS = {
     "_m_per_s2": "m/s²",
     "_g": "g",
@@ -83,6 +68,21 @@ _ENDINGS = {
     "_deg": "deg",
 }
 """Unit by the ending of a name, as at the rest of the boundary; longer endings stand before their ends."""
+
+
+@dataclass(frozen=True)
+class MeasuredUnit:
+    """A unit of a channel: the quantity it measures, and what one of it is in the SI unit of that."""
+
+    quantity: str
+    factor: float
+
+
+_BY_SPELLING = {
+    spelling: MeasuredUnit(quantity, factor)
+    for (quantity, factor), spellings in _SPELLINGS.items()
+    for spelling in spellings
+}
 
 
 def unit_of_name(name: str) -> str:

@@ -59,6 +59,14 @@ _DASHES: tuple[Dash, ...] = ("solid", "dash")
 _ERRORS = {"bearing_force": "bearing_force_orders", "dynamic_transmission_error": "transmission_error_orders"}
 """Series whose orders have stated errors, and their name in the receipt of a run."""
 
+_SCALES = {"µm": (LENGTH, 1e6), "N": (FORCE, 1.0), "m/s²": (ACCELERATION, 1.0)}
+"""Quantity of a unit of the page, and what one SI unit is in it."""
+_FORM = "one function (dataset 58) in {unit} over orders, position (base pitches) or angle (degrees)"
+_AXIS_ADVICE = "Say which by the label of the abscissa: Order, Mesh order, Position or Angle."
+_BOUND = "two results of one kind, two folders, or one result and a measurement"
+_ADVICE = "For example: loa compare before.nc after.nc, or loa compare ste.nc measured.csv"
+NAMES = ("first", "second")
+
 
 @dataclass(frozen=True)
 class _Side(Heard):
@@ -175,12 +183,6 @@ def _spectra(sides: tuple[_Side, ...], measured: MeasuredOrders | None) -> Figur
 # Measured transmission errors and order spectra, read from universal files.
 
 
-_SCALES = {"µm": (LENGTH, 1e6), "N": (FORCE, 1.0), "m/s²": (ACCELERATION, 1.0)}
-"""Quantity of a unit of the page, and what one SI unit is in it."""
-_FORM = "one function (dataset 58) in {unit} over orders, position (base pitches) or angle (degrees)"
-_AXIS_ADVICE = "Say which by the label of the abscissa: Order, Mesh order, Position or Angle."
-
-
 def _read_universal(path: Path, teeth: int, unit: str) -> MeasuredCurve | MeasuredOrders:
     return _of_universal(read_recording(path, "measured"), teeth, unit)
 
@@ -211,10 +213,6 @@ def _fits(channel: Channel, quantity: str) -> bool:
     unit = measured_unit(channel.unit)
     over = channel.over == "order" or channel.label.lower().startswith(("position", "angle"))
     return over and unit is not None and unit.quantity == quantity
-
-
-_BOUND = "two results of one kind, two folders, or one result and a measurement"
-_ADVICE = "For example: loa compare before.nc after.nc, or loa compare ste.nc measured.csv"
 
 
 def compare(
@@ -340,9 +338,6 @@ def named_files(files: Sequence[Path]) -> list[tuple[str, Path]]:
     stems = [file.stem for file in files]
     short = len(set(stems)) == len(stems)
     return [((short and file.stem) or str(file), file) for file in files]
-
-
-NAMES = ("first", "second")
 
 
 def stored_comparison(inputs: Json) -> Json:

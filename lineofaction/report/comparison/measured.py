@@ -19,6 +19,24 @@ from lineofaction.report.drawing.figure import FloatArray, Table, number
 COLORS = (palette.BLUE, palette.VERMILLION)
 """Of the first result and of the second."""
 
+POSITIONS = ("position", "angle_deg")
+ORDERS = ("mesh_order", "order")
+"""Names of the first column: base pitches, degrees of the driving gear; mesh orders, orders of its shaft."""
+VALUES = {
+    "transmission_error_um": "µm",
+    "amplitude_um": "µm",
+    "amplitude_n": "N",
+    "amplitude_m_per_s2": "m/s²",
+}
+PER_PITCH = 256
+NEAR = 0.1  # of an order
+_FEWEST = 8  # samples in a base pitch
+_ADVICE = (
+    "The first line names two columns: position (base pitches) or angle_deg (of the driving gear) and "
+    "transmission_error_um; or mesh_order or order (of the driving shaft) and amplitude_um, amplitude_n or "
+    "amplitude_m_per_s2."
+)
+
 
 @dataclass(frozen=True)
 class Difference:
@@ -130,25 +148,6 @@ def _decimals(error: float) -> int:
     if error == 0.0 or not math.isfinite(error):
         return 3
     return max(1 - math.floor(math.log10(abs(error))), 0)
-
-
-POSITIONS = ("position", "angle_deg")
-ORDERS = ("mesh_order", "order")
-"""Names of the first column: base pitches, degrees of the driving gear; mesh orders, orders of its shaft."""
-VALUES = {
-    "transmission_error_um": "µm",
-    "amplitude_um": "µm",
-    "amplitude_n": "N",
-    "amplitude_m_per_s2": "m/s²",
-}
-PER_PITCH = 256
-NEAR = 0.1  # of an order
-_FEWEST = 8  # samples in a base pitch
-_ADVICE = (
-    "The first line names two columns: position (base pitches) or angle_deg (of the driving gear) and "
-    "transmission_error_um; or mesh_order or order (of the driving shaft) and amplitude_um, amplitude_n or "
-    "amplitude_m_per_s2."
-)
 
 
 @dataclass(frozen=True)

@@ -49,6 +49,12 @@ _QUANTITIES = {
 }
 """What a sensor measures of the series of a run."""
 _DASHES: tuple[Dash, ...] = ("solid", "dash")
+_ERRORS = {"bearing_force": "bearing_force_orders", "dynamic_transmission_error": "transmission_error_orders"}
+_LEAD = (
+    "levels over the speeds that both pass, less the noise beside each order; errors are those of the noise, "
+    "two standard deviations, and of the steps of the run where it states them; those of sensors and tables "
+    "are not in them"
+)
 
 
 @dataclass(frozen=True)
@@ -193,9 +199,6 @@ def _orders(sides: tuple[_Side, _Side], signal: Signal) -> tuple[int, ...]:
     return signal.orders or tuple(range(1, int(min(side.blocks.line[-1] for side in sides)) + 1))
 
 
-_ERRORS = {"bearing_force": "bearing_force_orders", "dynamic_transmission_error": "transmission_error_orders"}
-
-
 def _receipt_errors(run: RunResult, signal: Signal, orders: tuple[int, ...]) -> dict[int, float]:
     """Return the stated errors of a run by order, peak in the signal's unit; 0 where it states none."""
     name = _ERRORS.get(signal.quantity.series, "")
@@ -216,13 +219,6 @@ def _span(side: _Side) -> str:
 
 
 # The page.
-
-
-_LEAD = (
-    "levels over the speeds that both pass, less the noise beside each order; errors are those of the noise, "
-    "two standard deviations, and of the steps of the run where it states them; those of sensors and tables "
-    "are not in them"
-)
 
 
 def _page(sides: tuple[_Side, _Side], signal: Signal, differences: tuple[LevelDifference, ...]) -> Page:

@@ -20,6 +20,9 @@ from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.presentation import Presentation
 
 CAUSE_WORDS = ("of shafts", "bearings", "clearance", "housing", "couplings", "set")
+COLORS = (palette.BLUE, palette.VERMILLION, palette.GREEN, palette.PURPLE, palette.MUTED, palette.INK)
+_DASHES: tuple[Dash, ...] = ("solid", "dash")
+LOADED = 1e-3  # of the largest pressure: less is blank
 
 
 def _meshes_worst_first(result: GearboxDeflection) -> list[str]:
@@ -144,11 +147,6 @@ def _life_table(result: GearboxDeflection) -> Table:
         "Basic reference rating life over all load cases (ISO/TS 16281), and loads of equal life (ISO 281)"
     )
     return Table.of(caption, RUN.figures(result)["bearings"], columns)
-
-
-COLORS = (palette.BLUE, palette.VERMILLION, palette.GREEN, palette.PURPLE, palette.MUTED, palette.INK)
-_DASHES: tuple[Dash, ...] = ("solid", "dash")
-LOADED = 1e-3  # of the largest pressure: less is blank
 
 
 def _causes_figure(result: GearboxDeflection) -> Figure:

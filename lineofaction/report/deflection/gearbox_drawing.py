@@ -19,6 +19,24 @@ WAYS = np.array([(math.cos(a), math.sin(a)) for a in np.radians(np.arange(45.0, 
 CHARACTER, ROW = 0.013, 0.03
 """Width and height of a character over the size of the drawing."""
 
+DRAWN = 0.1
+"""Largest deflection as it is drawn, over the extent of the gearbox."""
+STEPS = (1.0, 2.0, 5.0, 10.0)
+ALONG = (
+    "From the side: shafts outlined, gears as boxes of their operating pitch diameter, bearings as "
+    "triangles, the bent axes in red."
+)
+AGAINST = " Against z: operating pitch circles, and where the center of each gear moves."
+NEAR = 0.04
+"""Of the size of the drawing: names at less than this cover each other."""
+VIEWS = np.array([(math.cos(a), math.sin(a)) for a in np.radians(sorted(range(-89, 91), key=abs))])
+"""Directions across z, those near x first."""
+COAXIAL = 1e-6
+"""m; axes at less than this are one."""
+EDGE = 0.04
+"""Of an axis beyond what it holds."""
+CIRCLE = np.linspace(0.0, 2.0 * math.pi, 91)
+
 
 def largest_motion(case: CaseDeflection) -> float:
     """Return the largest deflection of an axis in x or y, m."""
@@ -59,25 +77,6 @@ def _room(points: FloatArray, center: FloatArray, radius: FloatArray, written: F
     circles = np.abs(np.linalg.norm(points[:, None] - center, axis=2) - radius)
     texts = np.linalg.norm(points[:, None] - written, axis=2)
     return float(np.min(np.hstack([circles, texts])))
-
-
-DRAWN = 0.1
-"""Largest deflection as it is drawn, over the extent of the gearbox."""
-STEPS = (1.0, 2.0, 5.0, 10.0)
-ALONG = (
-    "From the side: shafts outlined, gears as boxes of their operating pitch diameter, bearings as "
-    "triangles, the bent axes in red."
-)
-AGAINST = " Against z: operating pitch circles, and where the center of each gear moves."
-NEAR = 0.04
-"""Of the size of the drawing: names at less than this cover each other."""
-VIEWS = np.array([(math.cos(a), math.sin(a)) for a in np.radians(sorted(range(-89, 91), key=abs))])
-"""Directions across z, those near x first."""
-COAXIAL = 1e-6
-"""m; axes at less than this are one."""
-EDGE = 0.04
-"""Of an axis beyond what it holds."""
-CIRCLE = np.linspace(0.0, 2.0 * math.pi, 91)
 
 
 def gearbox_drawing(result: GearboxDeflection, case: CaseDeflection) -> Figure:

@@ -19,6 +19,7 @@ from lineofaction.report.presentation import Presentation
 from model_studies.spread import quantiles
 
 _STEPS = 400
+_CAPTION = " Uppermost: the same of the limited order, with its limit."
 
 
 def _scatter_figure(study: ToleranceStudy) -> Figure:
@@ -37,9 +38,6 @@ def _scatter_figure(study: ToleranceStudy) -> Figure:
         content=(*(_of_order(study, above) for above in [study.above] if above), *_panels(study)),
         table=_quantile_table(study),
     )
-
-
-_CAPTION = " Uppermost: the same of the limited order, with its limit."
 
 
 def _panels(study: ToleranceStudy) -> tuple[Panel, Panel]:

@@ -19,6 +19,8 @@ _PER_CENT, _MICROMETRES = Axis("change of peak to peak, %"), Axis("peak to peak,
 _HEAD = ("pair", "corner contact", "deviation", "peak to peak, µm", "error, µm", "change, %")
 
 Curve = tuple[FloatArray, RippleCurve]
+SAME = 0.02
+"""Change of the contact ratio that 64 positions do not tell from none."""
 
 
 def _sensitivity_figure(studies: Sequence[PairStudy]) -> Figure:
@@ -95,10 +97,6 @@ def _words(studies: Sequence[PairStudy]) -> str:
             how = "with" if curves.corner_contact else "without"
             parts.append(f"{study.name} {how} corner contact {skew:+.0f} % and {distance:+.0f} %")
     return f"Largest change with misalignment and with center distance: {'; '.join(parts)}."
-
-
-SAME = 0.02
-"""Change of the contact ratio that 64 positions do not tell from none."""
 
 
 def _reasons(studies: Sequence[PairStudy]) -> list[str]:

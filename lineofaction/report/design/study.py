@@ -18,6 +18,8 @@ from model_studies.spread import quantiles
 
 SHOWN_RESPONSES, SHOWN_CURVES, SHOWN_FACTORS = 4, 6, 12
 BAR = 9.0
+SHOWN = 12
+"""Lines of the tables of worst and failed runs."""
 
 
 def _label(study: Study, response: int) -> str:
@@ -206,10 +208,6 @@ def _extreme(study: Study) -> str:
         f"{name} = {value:.6g}" for name, value in zip(study.factor, study.value[point], strict=True)
     )
     return f"Largest {study.response[0]}: {number(float(first[point]) / one, 4)} {_unit(study, 0)} at {at}."
-
-
-SHOWN = 12
-"""Lines of the tables of worst and failed runs."""
 
 
 def _study_figures(study: Study) -> tuple[Figure, ...]:

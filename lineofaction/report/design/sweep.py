@@ -25,6 +25,7 @@ from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.presentation import Presentation
 
 MOST_CURVES = 6
+BEYOND = "by more than the errors"
 
 
 def _maps(result: SweepResult) -> Figure:
@@ -87,9 +88,6 @@ def _lines(result: SweepResult, quantity: SweptQuantity) -> tuple[Line, ...]:
 def _alike(result: SweepResult) -> str:
     at = "at the same torque " if TORQUE in result.sweep.axes else ""
     return f"as low as the least {at}within both errors"
-
-
-BEYOND = "by more than the errors"
 
 
 def figure(result: SweepResult) -> Figure:

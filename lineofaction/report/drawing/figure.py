@@ -19,6 +19,13 @@ _Entry = TypeVar("_Entry")
 BLANK = 0.01
 """Part of the largest value of a map with isolines below which it has no color."""
 
+DRAWING_WIDTH, TALLEST = 3.3, 2.0
+"""Width of a panel over its usual height, and the height of the tallest drawing over that."""
+_SLIM = 1.5  # height of a drawing over the usual one from which on half the width does
+_SHORT = 12  # characters of a label at a line beside which a panel of half the width stands
+_MOST_WHOLE = 30  # an axis of whole numbers up to here has no ticks between them
+_FEW_ORDERS = 4.0  # an axis of fewer orders, with fractions of them, has ticks between
+
 
 @dataclass(frozen=True)
 class Axis:
@@ -317,10 +324,6 @@ def largest(sizes: FloatArray, count: int) -> list[int]:
     return sorted(np.argsort(-sizes, kind="stable")[:count].tolist())
 
 
-DRAWING_WIDTH, TALLEST = 3.3, 2.0
-"""Width of a panel over its usual height, and the height of the tallest drawing over that."""
-
-
 def panel_height(panel: Panel, beside: int = 1) -> float:
     """Return the height of a panel over the usual one; a drawing is as tall as it needs to fill the width.
 
@@ -356,10 +359,6 @@ def legend_names(panels: Sequence[Panel]) -> list[str]:
     )
 
 
-_SLIM = 1.5  # height of a drawing over the usual one from which on half the width does
-_SHORT = 12  # characters of a label at a line beside which a panel of half the width stands
-
-
 def _few_marks(shade: HeatMap | Strokes | None) -> bool:
     return shade is None or (isinstance(shade, HeatMap) and not shade.isolines)
 
@@ -378,10 +377,6 @@ def panel_rows(panels: Sequence[Panel], across: int) -> list[list[int]]:
             rows.append([index])
         beside = narrow
     return rows
-
-
-_MOST_WHOLE = 30  # an axis of whole numbers up to here has no ticks between them
-_FEW_ORDERS = 4.0  # an axis of fewer orders, with fractions of them, has ticks between
 
 
 def counts(panel: Panel, name: Literal["x", "y"]) -> bool:

@@ -47,6 +47,21 @@ from lineofaction.report.drawing.figure import (
 from lineofaction.report.drawing.placing import line_labels, rewritten, vertical_limits
 
 THIN, THICK = 0.7, 4.0  # points
+_WIDTH, _DPI = 9.0, 150
+_PANEL_HEIGHT, _NARROW_HEIGHT, _DRAWING_HEIGHT = 2.0, 1.64, 2.6  # inches
+_BESIDE, _BESIDE_COLORS = 0.9, 0.82  # inches for title and legend; width of a panel with a scale of colors
+_LEGEND_CHARACTERS, _HANDLE_CHARACTERS = 120, 9  # of the legend's type: across the sheet, beside a name
+_NOTE_ROW = 10  # points
+_HALF_LABEL, _HIGH_LABEL, _NARROW_LABEL = 46, 26, 20  # characters of a row below and beside panels
+_NARROW_TYPE = 9  # points, of the labels of a panel of half the width
+_LONGEST_WORD = 26  # characters; longer ones would leave panels no width
+_LABEL_ROW = 0.1  # of a row of a label at a line, in parts of the panel's height
+_LEADER = 0.02  # of the panel's width, from the end of a line to its label
+_NARROW = 100.0  # largest over smallest value of a logarithmic axis with plain numbers
+_DECADE = (1.0, 10.0)  # of a logarithmic axis that has nothing to show
+_BOX = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.0}  # under a text on colors
+_TINT = 0.13  # of what an outline holds
+_DASH = {"solid": "-", "dash": "--", "dot": ":"}
 
 
 def _color_map(colors: Sequence[str] = palette.CIVIDIS) -> LinearSegmentedColormap:
@@ -105,23 +120,6 @@ def _strokes(ax: Axes, shade: Strokes) -> Any:
     ax.add_collection(loaded)
     ax.autoscale_view()
     return loaded
-
-
-_WIDTH, _DPI = 9.0, 150
-_PANEL_HEIGHT, _NARROW_HEIGHT, _DRAWING_HEIGHT = 2.0, 1.64, 2.6  # inches
-_BESIDE, _BESIDE_COLORS = 0.9, 0.82  # inches for title and legend; width of a panel with a scale of colors
-_LEGEND_CHARACTERS, _HANDLE_CHARACTERS = 120, 9  # of the legend's type: across the sheet, beside a name
-_NOTE_ROW = 10  # points
-_HALF_LABEL, _HIGH_LABEL, _NARROW_LABEL = 46, 26, 20  # characters of a row below and beside panels
-_NARROW_TYPE = 9  # points, of the labels of a panel of half the width
-_LONGEST_WORD = 26  # characters; longer ones would leave panels no width
-_LABEL_ROW = 0.1  # of a row of a label at a line, in parts of the panel's height
-_LEADER = 0.02  # of the panel's width, from the end of a line to its label
-_NARROW = 100.0  # largest over smallest value of a logarithmic axis with plain numbers
-_DECADE = (1.0, 10.0)  # of a logarithmic axis that has nothing to show
-_BOX = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.0}  # under a text on colors
-_TINT = 0.13  # of what an outline holds
-_DASH = {"solid": "-", "dash": "--", "dot": ":"}
 
 
 def png(figure: Figure, across: int = 1) -> bytes:

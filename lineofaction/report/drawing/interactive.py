@@ -34,6 +34,17 @@ from lineofaction.report.drawing.placing import line_labels, rewritten, vertical
 
 STEPS = 12  # colors of strokes: a curve of plotly has one color
 THIN, THICK = 1.0, 6.0  # pixels
+_PANEL_HEIGHT, _BELOW, _BETWEEN = 280, 60, 62  # pixels
+_LABEL = 26  # pixels of an axis label between panels
+_LEGEND_ROW = 22  # pixels
+_NOTE_ROW = 15  # pixels
+_LABEL_ROW, _LEADER, _LABEL_CHARACTER = 15, 18, 6.6  # pixels of a label at a line: row, way to it, character
+_BAND_ALPHA = "33"  # of an error band, after the six digits of its color
+_ROW_CHARACTERS, _HANDLE_CHARACTERS = 120, 7  # of the legend's type: across the page, beside a name
+_TINT = "22"  # of what an outline holds
+_BOX = "rgba(255,255,255,0.8)"  # under a text on colors
+_FONT = {"family": "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', sans-serif", "size": 14}
+_MOST_TICKS = 10
 
 
 def _color_scale(colors: Sequence[str] = palette.CIVIDIS) -> list[list[Any]]:
@@ -124,18 +135,6 @@ def _step(shade: Strokes, chosen: Any, k: int, unit: str) -> Json:
             "width": THIN + (THICK - THIN) * max(fraction, 0.0),
         },
     }
-
-
-_PANEL_HEIGHT, _BELOW, _BETWEEN = 280, 60, 62  # pixels
-_LABEL = 26  # pixels of an axis label between panels
-_LEGEND_ROW = 22  # pixels
-_NOTE_ROW = 15  # pixels
-_LABEL_ROW, _LEADER, _LABEL_CHARACTER = 15, 18, 6.6  # pixels of a label at a line: row, way to it, character
-_BAND_ALPHA = "33"  # of an error band, after the six digits of its color
-_ROW_CHARACTERS, _HANDLE_CHARACTERS = 120, 7  # of the legend's type: across the page, beside a name
-_TINT = "22"  # of what an outline holds
-_BOX = "rgba(255,255,255,0.8)"  # under a text on colors
-_FONT = {"family": "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', sans-serif", "size": 14}
 
 
 def plotly_figure(figure: Figure) -> Json:
@@ -252,9 +251,6 @@ def _axis(axis: Axis) -> Json:
     if axis.limits:
         made["range"] = [float(v) for v in (np.log10(axis.limits) if axis.scale == "log" else axis.limits)]
     return made
-
-
-_MOST_TICKS = 10
 
 
 def _whole(panel: Panel, name: Literal["x", "y"]) -> Json:

@@ -11,6 +11,17 @@ import numpy as np
 
 from lineofaction.report.drawing.figure import Axis, FloatArray, Note, Panel
 
+# of an 8 point text in a panel of the usual size, in parts of its width and height
+_CHARACTER, _HEIGHT, _GAP, _RISE = 0.0072, 0.07, 0.008, 0.05
+_POINT_WIDTH, _POINT_HEIGHT = 0.012, 0.05
+_MARGIN = 0.05
+"""Of the panel above its curves, and below them where the axis has no limits: what goes beyond it runs into
+the title or the axis."""
+_PLACES = [(row, left) for row in (0, -1, 1, -2, 2, -3, 3) for left in (False, True)]
+"""Rows above (> 0) or below a note's usual place, and whether the text ends at the point."""
+_ROOM = 0.05  # of the height beyond the curves where the axis has no limits
+Description = TypeVar("Description")
+
 
 def envelope(time: FloatArray, values: FloatArray, columns: int = 1200) -> tuple[FloatArray, FloatArray]:
     """Keep the lowest and the highest sample of each of `columns` stretches, in their order in time.
@@ -24,16 +35,6 @@ def envelope(time: FloatArray, values: FloatArray, columns: int = 1200) -> tuple
     kept = [a + np.sort([np.argmin(values[a:b]), np.argmax(values[a:b])]) for a, b in pairwise(edges)]
     index = np.unique(np.concatenate([[0], *kept, [size - 1]]))
     return time[index], values[index]
-
-
-# of an 8 point text in a panel of the usual size, in parts of its width and height
-_CHARACTER, _HEIGHT, _GAP, _RISE = 0.0072, 0.07, 0.008, 0.05
-_POINT_WIDTH, _POINT_HEIGHT = 0.012, 0.05
-_MARGIN = 0.05
-"""Of the panel above its curves, and below them where the axis has no limits: what goes beyond it runs into
-the title or the axis."""
-_PLACES = [(row, left) for row in (0, -1, 1, -2, 2, -3, 3) for left in (False, True)]
-"""Rows above (> 0) or below a note's usual place, and whether the text ends at the point."""
 
 
 class _Box(NamedTuple):
@@ -87,9 +88,6 @@ def _is_free(box: _Box, taken: Sequence[_Box], lowest: float) -> bool:
     across = box.left >= 0.0 and box.right <= 1.0
     along = box.low >= lowest and box.high <= 1.0 + _MARGIN
     return across and along and not any(box.covers(other) for other in taken)
-
-
-_ROOM = 0.05  # of the height beyond the curves where the axis has no limits
 
 
 class _LineLabel(NamedTuple):
@@ -158,9 +156,6 @@ def vertical_limits(panel: Panel) -> tuple[float, float]:
 
 def _shown(values: FloatArray, axis: Axis) -> FloatArray:
     return values[np.isfinite(values) & ((values > 0.0) | (axis.scale == "linear"))]
-
-
-Description = TypeVar("Description")
 
 
 def rewritten(description: Description, write: Callable[[str], str]) -> Description:

@@ -16,6 +16,12 @@ _UNITS = {
     "_um": "µm", "_mm": "mm", "_deg": "°", "_rpm": "rpm", "_gpa": "GPa", "_hz": "Hz", "_kg": "kg",
     "_mib": "MiB", "_mb": "MB", "_n": "N", "_m": "m", "_s": "s",
 }  # fmt: skip
+EffectRow = tuple[str, str, bool, str, str]
+"""An effect: its name, what it acts in, whether it is simulated, its influence in words, and why."""
+Json = dict[str, Any]
+GIGABYTE = 1e9
+HEAD = ("work", "CPU s", "CPU s predicted", "GB", "GB predicted")
+UNKNOWN, LEAST = "-", 1e-3
 
 
 def facts(caption: str, content: Mapping[str, Any]) -> Table:
@@ -72,10 +78,6 @@ def _cell(value: object) -> str:
     return str(value)
 
 
-EffectRow = tuple[str, str, bool, str, str]
-"""An effect: its name, what it acts in, whether it is simulated, its influence in words, and why."""
-
-
 def effect_table(caption: str, rows: Iterable[EffectRow]) -> Table:
     """Tabulate effects, by their names in words."""
     head = ("effect", "in", "simulated", "without it", "because")
@@ -123,12 +125,6 @@ def ledger_section(ledger: Mapping[str, Any]) -> Section:
     assumed = Table("Assumed of phases", ("part", "assumed"), phases)
     folded = (*((small,) if trifles else ()), *((assumed,) if phases else ()), left_out)
     return effects_section("", rows, folded)
-
-
-Json = dict[str, Any]
-GIGABYTE = 1e9
-HEAD = ("work", "CPU s", "CPU s predicted", "GB", "GB predicted")
-UNKNOWN, LEAST = "-", 1e-3
 
 
 def cost_tables(facts: Mapping[str, Any]) -> tuple[Table, ...]:

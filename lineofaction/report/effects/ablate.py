@@ -30,6 +30,12 @@ from lineofaction.report.drawing.placing import placed
 from lineofaction.report.presentation import Presentation
 from model_studies.ablation import TRIFLE
 
+_CASE_HEAD = (
+    "effect", "case has it", "mean, µm", "estimated", "mean, %", "estimated", "peak to peak, µm", "estimated",
+    "peak to peak, %", "estimated", "first harmonic, µm", "cost, x",
+)  # fmt: skip
+_SMALLEST = 1e-3  # um; smaller changes are nothing
+
 
 @dataclass(frozen=True)
 class _Look:
@@ -70,13 +76,6 @@ def _over_orders(
         lines.append(Line(name.replace("_", " "), order, values, color, "solid", width, markers=True))
     lines = [line for line in lines if not np.isnan(line.y).all()]
     return Panel(Axis("mesh order"), Axis(label, "log"), tuple(lines), title=title)
-
-
-_CASE_HEAD = (
-    "effect", "case has it", "mean, µm", "estimated", "mean, %", "estimated", "peak to peak, µm", "estimated",
-    "peak to peak, %", "estimated", "first harmonic, µm", "cost, x",
-)  # fmt: skip
-_SMALLEST = 1e-3  # um; smaller changes are nothing
 
 
 def _case_table(ablation: Ablation) -> Table:

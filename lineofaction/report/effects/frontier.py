@@ -18,6 +18,9 @@ from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.drawing.placing import placed
 from lineofaction.report.presentation import Presentation
 
+LIVE = "full contact, run on this case"
+Study = Frontier | SceneFrontier
+
 
 @dataclass(frozen=True)
 class _Peer:
@@ -35,9 +38,6 @@ class _Peer:
     color: str
     width: float
     note: str = ""
-
-
-LIVE = "full contact, run on this case"
 
 
 def _peers(study: Frontier) -> list[_Peer]:
@@ -80,9 +80,6 @@ def _peer_caption(study: Frontier) -> str:
         f"{plane}; its time is extrapolated, the mean of a position and load times "
         f"{study.solves}.{beside}"
     )
-
-
-Study = Frontier | SceneFrontier
 
 
 @dataclass(frozen=True)

@@ -38,13 +38,24 @@ from lineofaction.report.ste.page import case_tables, contact_effects, edge_word
 N_PER_MM = 1e3
 """In N/m."""
 
+LINES_SHOWN = 8  # positions
+Gear = Literal["pinion", "wheel"]
+GEARS: tuple[Gear, ...] = ("pinion", "wheel")
+PRESSURE = "Hertz pressure, MPa"
+_MOST_ISOLINES = 6
+_HIGHEST_ISOLINE = 0.92  # of the largest; a curve about a ridge narrower than the positions breaks up
+_Map = tuple[FloatArray, FloatArray]
+"""Roll lengths (R,) in mm and pressures (R, K) in MPa."""
+CURVES_SHOWN = 4  # positions
+_VISIBLE_GAP = 0.01
+"""um; a plot of less shows nothing."""
+_ROUNDING = 1e-9
+"""Part of the face width; a centroid nearer to mid-face is the rounding of a symmetric load."""
+
 
 def _face_axis(flanks: LoadDistribution) -> Axis:
     low, high = (1e3 * end for end in flanks.scene.common_face)
     return Axis("face position, mm (0 = mid-face of the pinion; right: +z end)", limits=(low, high))
-
-
-LINES_SHOWN = 8  # positions
 
 
 def contact_lines(flanks: LoadDistribution) -> Figure:
@@ -117,15 +128,6 @@ def _table(flanks: LoadDistribution, chosen: IntArray) -> Table:
         "largest pressure, MPa": lambda k: number(1e-6 * float(flanks.pressure[k].max())),
     }
     return Table.of("Contact lines by position", chosen, columns)
-
-
-Gear = Literal["pinion", "wheel"]
-GEARS: tuple[Gear, ...] = ("pinion", "wheel")
-PRESSURE = "Hertz pressure, MPa"
-_MOST_ISOLINES = 6
-_HIGHEST_ISOLINE = 0.92  # of the largest; a curve about a ridge narrower than the positions breaks up
-_Map = tuple[FloatArray, FloatArray]
-"""Roll lengths (R,) in mm and pressures (R, K) in MPa."""
 
 
 def contact_pattern_figure(flanks: LoadDistribution) -> Figure:
@@ -236,14 +238,6 @@ def _pattern_table(flanks: LoadDistribution, maps: list[_Map]) -> Table:
         at, largest = maps[0][0], maps[0][1][:, 0]
     rows = tuple(tuple(map(number, row)) for row in zip(at, largest, strict=True))
     return Table(caption, (over, "pressure, MPa"), rows)
-
-
-CURVES_SHOWN = 4  # positions
-
-_VISIBLE_GAP = 0.01
-"""um; a plot of less shows nothing."""
-_ROUNDING = 1e-9
-"""Part of the face width; a centroid nearer to mid-face is the rounding of a symmetric load."""
 
 
 def line_load_figure(flanks: LoadDistribution) -> Figure:

@@ -16,6 +16,9 @@ from lineofaction.report.response.excitations import orders_left_out
 COARSE = 10.0 ** (1.0 / 20.0) - 1.0
 """Smearing by 1 dB: above it a window does not resolve an order."""
 
+DEPTH, LABEL = 60.0, "sound power level, dB(A)"
+"""dB shown below the loudest."""
+
 
 def of_run(facts: Json) -> Json | None:
     """Return the facts `forces` of a result if they are a run's; None for the linear response."""
@@ -60,10 +63,6 @@ def force_words(facts: Json) -> tuple[tuple[str, str], ...]:
         words += f"; above 1 dB in {coarse} windows: run up more slowly"
     rows.append(("smearing by the windows", words))
     return tuple(rows)
-
-
-DEPTH, LABEL = 60.0, "sound power level, dB(A)"
-"""dB shown below the loudest."""
 
 
 def third_octaves_over_time(facts: Json) -> Figure:

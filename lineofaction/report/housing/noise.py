@@ -47,6 +47,8 @@ from lineofaction.report.response.excitations import excitation_figures, excitat
 LINES, SHOWN = 160, 6
 """Cells of the map in frequency; lines of orders and bearings."""
 _MODEL_HEAD = ("model", "level, dB", "stated error, dB", "CPU s", "CPU s predicted", "GB predicted")
+_REGION_POINTS = 3
+"""Loudest points whose regions are listed."""
 
 
 def _sound_map(sound: RadiatedSound) -> Figure:
@@ -326,10 +328,6 @@ def _model(name: str, compared: Json) -> tuple[str, ...]:
         amount(predicted["seconds"]),
         gigabytes(predicted["bytes"]),
     )
-
-
-_REGION_POINTS = 3
-"""Loudest points whose regions are listed."""
 
 
 def _place(region: Mapping[str, Any]) -> str:

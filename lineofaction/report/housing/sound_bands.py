@@ -12,6 +12,18 @@ SHOWN_ORDERS, SHOWN_CAUSES = 6, 3
 LEAST_NARROWED = 0.1
 """dB."""
 
+NARROWER = {
+    "housing_damping": "state the damping of the housing (loss_factor, or measured modal_damping)",
+    "housing_frequency": "measure natural frequencies of the housing",
+    "mount_stiffness": "measure the stiffness of the mounts",
+    "bearing_stiffness": "narrow the stiffness of the bearings",
+    "mesh_damping": "narrow the damping of the meshes",
+    "mode_number": "keep more modes of the housing",
+    "speed_steps": "refine the speeds about the loudest",
+    "radiation_model": "correct more lines by boundary elements",
+}
+"""What a user does about a contribution to a band."""
+
 
 def uncertainty_tables(facts: Json) -> Iterator[Table]:
     """Yield the table of bands and that of sensitivities, as far as they are known."""
@@ -41,19 +53,6 @@ def _causes(level: Json) -> Iterator[str]:
     for name in names[:SHOWN_CAUSES]:
         if max(below[name], above[name]) > 0.0:
             yield f"{name.replace('_', ' ')} -{below[name]:.1f} +{above[name]:.1f}"
-
-
-NARROWER = {
-    "housing_damping": "state the damping of the housing (loss_factor, or measured modal_damping)",
-    "housing_frequency": "measure natural frequencies of the housing",
-    "mount_stiffness": "measure the stiffness of the mounts",
-    "bearing_stiffness": "narrow the stiffness of the bearings",
-    "mesh_damping": "narrow the damping of the meshes",
-    "mode_number": "keep more modes of the housing",
-    "speed_steps": "refine the speeds about the loudest",
-    "radiation_model": "correct more lines by boundary elements",
-}
-"""What a user does about a contribution to a band."""
 
 
 def narrowest(facts: Json) -> Iterator[str]:

@@ -43,6 +43,7 @@ _LARGEST_HEAD = (
     "velocity of", "order", "speed, rpm", "frequency, Hz", "nearest mode, Hz", "rms, mm/s",
     "level, dB re 1 nm/s", "within valid modes",
 )  # fmt: skip
+SHOWN_ORDERS, SHOWN_POINTS, SHOWN_SEATS = 6, 3, 4
 
 
 def _where(analysis: VibrationAnalysis) -> str:
@@ -98,9 +99,6 @@ def _series(result: HousingVibrationResult) -> Table:
         columns.append(np.sqrt(vibration.mean_square_velocity).ravel() / MM_PER_S)
     rows = tuple(tuple(f"{value:.9g}" for value in row) for row in zip(*columns, strict=True))
     return Table("Velocities by speed and order", tuple(head), rows)
-
-
-SHOWN_ORDERS, SHOWN_POINTS, SHOWN_SEATS = 6, 3, 4
 
 
 def _velocity_figure(result: HousingVibrationResult) -> Figure:

@@ -44,6 +44,19 @@ _COLOURS = {
     "backward whirl": palette.VERMILLION,
     "whirl in a plane": palette.ORANGE,
 }
+OTHERS = "others"
+_WIDTH = 0.62
+ALIKE = 1e-3  # of a frequency or a speed: nearer ones share a line of the tables
+SHOWN_PARTS = 2
+SHOWN_MODES, PRINTED_MODES = 10, 20
+HEADROOM = 1.15  # of the highest mode or order: modes that no order reaches are only in the table
+LEAST_TOP = 1.0  # Hz
+ROOM = 0.03  # of the width, for the name of an order; orders that leave closer stay without
+WHIRLS: dict[str, tuple[str, Dash]] = {
+    "forward whirl": (palette.BLUE, "solid"),
+    "backward whirl": (palette.VERMILLION, "dash"),
+    "whirl in a plane": (palette.MUTED, "solid"),
+}
 
 
 @dataclass(frozen=True)
@@ -147,10 +160,6 @@ def _met(mesh: list[float] | None, line: FloatArray, orders: int, ends: tuple[fl
     return ", ".join(met) or "none"
 
 
-OTHERS = "others"
-_WIDTH = 0.62
-
-
 def mode_bars(modes: Sequence[str], shares: Sequence[Mapping[str, float]], energy: str) -> Panel:
     """Draw a bar for each mode, made up of its parts' shares of an energy.
 
@@ -184,19 +193,6 @@ def _largest_parts(shares: Sequence[Mapping[str, float]]) -> list[str]:
         for part, share in of.items():
             total[part] = total.get(part, 0.0) + share
     return sorted(total, key=lambda part: -total[part])[: len(palette.CATEGORIES)]
-
-
-ALIKE = 1e-3  # of a frequency or a speed: nearer ones share a line of the tables
-SHOWN_PARTS = 2
-SHOWN_MODES, PRINTED_MODES = 10, 20
-HEADROOM = 1.15  # of the highest mode or order: modes that no order reaches are only in the table
-LEAST_TOP = 1.0  # Hz
-ROOM = 0.03  # of the width, for the name of an order; orders that leave closer stay without
-WHIRLS: dict[str, tuple[str, Dash]] = {
-    "forward whirl": (palette.BLUE, "solid"),
-    "backward whirl": (palette.VERMILLION, "dash"),
-    "whirl in a plane": (palette.MUTED, "solid"),
-}
 
 
 def _modal_figures(modes: ModalAnalysis) -> tuple[Figure, ...]:

@@ -29,6 +29,14 @@ from lineofaction.report.response.excitations import excitation_figures, excitat
 LEAST_SHARE = 1e-3
 """%, of what is listed."""
 
+SHOWN_ORDERS, SHOWN_PEAKS, PRINTED_PEAKS = 6, 15, 4
+"""Peaks of a quantity on the page and on a terminal."""
+WITH_MESHES = (
+    "Peak amplitudes of the mesh orders about the static equilibrium, linear: stiffness varies with "
+    "position, no loss of contact. Last: the least mesh force; negative means that flanks lift off."
+)
+WITHOUT_MESHES = "Peak amplitudes of the orders of the leading shaft about the static equilibrium, linear."
+
 
 def _loses_power(response: ForcedResponse) -> bool:
     """Whether any part loses power; files of older versions do not know."""
@@ -78,16 +86,6 @@ def _speed_axis(response: ForcedResponse) -> Axis:
 def _total(response: ForcedResponse) -> FloatArray:
     """Return what all parts lose, (S,) W."""
     return np.asarray(np.sum(response.power.loss, axis=(0, 2)))
-
-
-SHOWN_ORDERS, SHOWN_PEAKS, PRINTED_PEAKS = 6, 15, 4
-"""Peaks of a quantity on the page and on a terminal."""
-
-WITH_MESHES = (
-    "Peak amplitudes of the mesh orders about the static equilibrium, linear: stiffness varies with "
-    "position, no loss of contact. Last: the least mesh force; negative means that flanks lift off."
-)
-WITHOUT_MESHES = "Peak amplitudes of the orders of the leading shaft about the static equilibrium, linear."
 
 
 def _response_figure(response: ForcedResponse, mesh: int = 0) -> Figure:

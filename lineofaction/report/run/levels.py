@@ -37,6 +37,12 @@ from lineofaction.report.response.modes import (
 from lineofaction.report.run.view import SCALES, Signal, along_direction, decibels, run_axis, validity
 
 LINES, MAP_DEPTH = 220, 60.0
+POINTS, SHORTEST, OVERLAP, DEPTH = 400, 16, 0.75, 80.0
+MAPPED, NAMED = 10, 5
+"""Mesh orders of an order map, as far as the output holds them, and how many of them are cut unless named."""
+BLOCKS, ORDERS = 90, 8
+ORDER_COLOUR = "#9FB3C8"  # seen on the dark of the map and on paper
+LEAST_PITCHES = 64  # of a run whose orders are shown
 
 
 def level_map(along: FloatArray, line: FloatArray, amplitude: FloatArray, top: float) -> HeatMap:
@@ -57,11 +63,6 @@ def level_map(along: FloatArray, line: FloatArray, amplitude: FloatArray, top: f
     z = np.clip(level + MAP_DEPTH, 0.0, None).T
     height = line[kept].reshape(-1, group).mean(axis=-1)
     return HeatMap(even, height, z, f"level above −{MAP_DEPTH:g} dB of the largest, dB", MAP_DEPTH)
-
-
-POINTS, SHORTEST, OVERLAP, DEPTH = 400, 16, 0.75, 80.0
-MAPPED, NAMED = 10, 5
-"""Mesh orders of an order map, as far as the output holds them, and how many of them are cut unless named."""
 
 
 def _pitches_passed(run: RunResult, mesh: int = 0) -> float:
@@ -177,10 +178,6 @@ def order_map(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
     )
 
 
-BLOCKS, ORDERS = 90, 8
-ORDER_COLOUR = "#9FB3C8"  # seen on the dark of the map and on paper
-
-
 def frequency_blocks(run: RunResult, signal: Signal) -> Waterfall:
     """Return spectra over frequency of short blocks along the run."""
     block = 2.0 * float(run.time[-1]) / BLOCKS
@@ -281,9 +278,6 @@ def mode_shares(run: RunResult, signal: Signal, made: Waterfall) -> Figure | Non
         f"of {part}.",
         content=(mode_bars(names, [mode.shares for mode in shown], "kinetic energy"),),
     )
-
-
-LEAST_PITCHES = 64  # of a run whose orders are shown
 
 
 @dataclass(frozen=True)

@@ -43,6 +43,14 @@ from lineofaction.report.run.signals import (
 from lineofaction.report.run.sound import Heard, sound_of
 from lineofaction.report.run.view import RunView, Signal, along_direction, run_axis, shown_signal
 
+PITCHES = 16
+SHARE, ROWS = 1e-3, 12  # of the largest mesh order
+_ERRORS = {
+    "time_step": ("step error", "nm rms"),
+    "table_interpolation": ("table error", "nm rms"),
+}
+"""Sources of error, and the unit of what they do to transmission errors."""
+
 
 def _planet_sharing(run: RunResult) -> Figure | None:
     """Draw what each planet carries at sun and ring; None without planets."""
@@ -75,9 +83,6 @@ def _panel(run: RunResult, sharing: PlanetLoadSharing) -> Panel:
     return Panel(time, Axis("load sharing ratio"), tuple(lines), title=sharing.central)
 
 
-PITCHES = 16
-
-
 def _dynamic_factor_figure(run: RunResult) -> Figure:
     factor = dynamic_factor(run, PITCHES)
     axis, abscissa = run_axis(run, factor.time)
@@ -100,9 +105,6 @@ def _dynamic_factor_figure(run: RunResult) -> Figure:
     )
 
 
-SHARE, ROWS = 1e-3, 12  # of the largest mesh order
-
-
 def _sideband_tables(run: RunResult, signal: Signal) -> tuple[Table, ...]:
     """Tabulate the largest sidebands of the loudest component; nothing if the run is too short for them."""
     values = max(signal.components(run).values(), key=lambda series: float(np.var(series)))
@@ -122,13 +124,6 @@ def _sideband_tables(run: RunResult, signal: Signal) -> tuple[Table, ...]:
     }
     caption = f"Sidebands of the {signal.name}, once per revolution of a gear and its multiples"
     return (Table.of(caption, beside[:ROWS], columns),)
-
-
-_ERRORS = {
-    "time_step": ("step error", "nm rms"),
-    "table_interpolation": ("table error", "nm rms"),
-}
-"""Sources of error, and the unit of what they do to transmission errors."""
 
 
 def dynamic_headlines(run: RunResult) -> tuple[Headline, ...]:

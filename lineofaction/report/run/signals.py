@@ -42,6 +42,13 @@ from lineofaction.report.run.view import (
 
 AXES = "Components in the fixed frame; of a planet bearing in its carrier's."
 DETAIL = "Second: less the mean of the window."
+WINDOW = (0.9, 0.95)  # of the duration
+ORDERS = 8
+LEAST_SAMPLES = 8  # of a window
+TOO_SHORT = f"Too short for a spectrum: 90 to 95 % of the duration holds fewer than {LEAST_SAMPLES} samples."
+_NAMES = {"hann": "Hann", "rectangular": "rectangular", "flat_top": "flat top"}
+DEPTH = 80.0
+_X = Axis("travel of the driving gear within the window, base pitches", limits=(0, PITCHES))
 
 
 def signal_over_time(run: RunResult, signal: Signal) -> Figure:
@@ -93,13 +100,6 @@ def _table(run: RunResult, signal: Signal) -> Table:
         *(f"deviation {part}, {unit}".replace(" ,", ",") for part in parts),
     )
     return Table("Mean and standard deviation over the run", head, tuple(rows))
-
-
-WINDOW = (0.9, 0.95)  # of the duration
-ORDERS = 8
-LEAST_SAMPLES = 8  # of a window
-TOO_SHORT = f"Too short for a spectrum: 90 to 95 % of the duration holds fewer than {LEAST_SAMPLES} samples."
-_NAMES = {"hann": "Hann", "rectangular": "rectangular", "flat_top": "flat top"}
 
 
 def signal_spectrum(run: RunResult, signal: Signal) -> Figure:
@@ -195,9 +195,6 @@ def _spectrum_table(
     return Table(f"Largest line in the band of each {of} order", head, rows)
 
 
-DEPTH = 80.0
-
-
 def octave_bands(run: RunResult, signal: Signal, blocks: Waterfall) -> Figure | None:
     """Draw the rms of each band over the whole run and in its loudest block; None where no band fits."""
     try:
@@ -237,9 +234,6 @@ def _band_table(made: ThirdOctaves, mean: FloatArray, most: FloatArray, unit: st
     )
     head = ("band, Hz", f"whole run, {unit} rms", f"loudest block, {unit} rms")
     return Table("One-third-octave bands", head, rows)
-
-
-_X = Axis("travel of the driving gear within the window, base pitches", limits=(0, PITCHES))
 
 
 def dynamic_error(run: RunResult, mesh: int = 0) -> Figure:

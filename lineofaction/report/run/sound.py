@@ -31,6 +31,8 @@ from model_studies.record_file import read_record
 PAGE_RATE, PAGE_BYTES, SAMPLE_BYTES = 24_000, 2_000_000, 4
 """Hz of a sound in a page if it passes what the run holds; bytes of the sounds of a plot; of a sample."""
 POINTS = 200  # of the way along an axis
+LONGEST = 300.0
+"""s of a run that the service makes a file of: 58 MB."""
 
 
 @dataclass(frozen=True)
@@ -116,9 +118,6 @@ def _track(heard: Heard, axis: Axis) -> Track:
 
 
 # The sound of a stored run or recording as a WAV file; work of the live worker.
-
-LONGEST = 300.0
-"""s of a run that the service makes a file of: 58 MB."""
 
 
 def stored_sound(inputs: Json) -> Json:

@@ -22,6 +22,11 @@ MONOTONE = 0.2  # least change of speed over the run, of the highest, for a spee
 SCALES = {"rms": float(np.sqrt(0.5)), "peak": 1.0}
 """Of an amplitude."""
 
+PITCHES = 3
+STEADY = 0.1
+"""Greatest change of speed over a run, of the highest, at which it has one speed alone."""
+ROUNDING = 1e-12  # of the largest value: what varies less is constant
+
 
 @dataclass(frozen=True)
 class Quantity:
@@ -249,11 +254,6 @@ def counted_by(run: RunResult) -> str:
     return "mesh" if run.mesh else "shaft"
 
 
-PITCHES = 3
-STEADY = 0.1
-"""Greatest change of speed over a run, of the highest, at which it has one speed alone."""
-
-
 def window_speeds(speed: FloatArray, fractions: tuple[float, ...] = (0.1, 0.4, 0.9)) -> tuple[float, ...]:
     """Choose speeds to look at: fractions of the highest one that the run passes, rounded but never above it.
 
@@ -275,9 +275,6 @@ def _rounded(value: float, highest: float) -> float:
     """Round to one digit, to two where that would exceed the highest."""
     short = float(f"{value:.1g}")
     return short if short <= highest else float(f"{value:.2g}")
-
-
-ROUNDING = 1e-12  # of the largest value: what varies less is constant
 
 
 def along_direction(run: RunResult, signal: Signal) -> RunResult:

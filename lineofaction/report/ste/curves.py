@@ -31,6 +31,17 @@ MOST_PITCHES = 40  # of a long period
 MOST_LINES = 5  # of loads in one panel
 _FEWEST_POINTS = 32
 _LIFT_OFF = 0.002  # loads up to this part of the largest serve lift-off
+_CURVES: WeakKeyDictionary[SteDatabase, dict[int, Curve]] = WeakKeyDictionary()
+"""By load: figures of one page share them."""
+_EQUAL = 1e-6
+MOST_CURVES = 8
+_APART = 1.1  # of what would let two neighbors touch
+_LEAST = 0.15  # of the largest ripple, between neighbors that would not touch anyway
+_ROOM = 0.04  # of the height
+_TONES = 3
+_LEAST_ROOM, _MOST_ROOM = 0.08, 0.45
+"""Of the ripple, above and below it: for its error band, and no more, so that it fills half of the height."""
+_FLAT = 1e-3  # µm, the height of a curve without any ripple
 
 
 def aligned_index(database: SteDatabase) -> tuple[int, int]:
@@ -95,10 +106,6 @@ def _interpolated(database: SteDatabase, pitches: int, per_pitch: int) -> tuple[
     stored = database.position[database.position < pitches]
     once = np.union1d(np.arange(pitches * per_pitch) / per_pitch, stored)
     return once, database.ste(once[:, None], database.force, *aligned(database))
-
-
-_CURVES: WeakKeyDictionary[SteDatabase, dict[int, Curve]] = WeakKeyDictionary()
-"""By load: figures of one page share them."""
 
 
 def load_curve(database: SteDatabase, load: int) -> Curve:
@@ -171,9 +178,6 @@ def headline_load(database: SteDatabase, force: float | None = None) -> int:
     return middle_load(database) if force is None else int(np.argmin(np.abs(database.force - force)))
 
 
-_EQUAL = 1e-6
-
-
 def pairs_in_words(database: SteDatabase, load: int) -> str:
     """Say how many tooth pairs carry one load of the aligned pair: "2 to 4 tooth pairs carry the load"."""
     low, high = pair_range(database, load)
@@ -206,12 +210,6 @@ def _counts(database: SteDatabase, load: int) -> IntArray:
     return np.asarray(database.pairs_in_contact[:, load, m, d], dtype=int)
 
 
-MOST_CURVES = 8
-_APART = 1.1  # of what would let two neighbors touch
-_LEAST = 0.15  # of the largest ripple, between neighbors that would not touch anyway
-_ROOM = 0.04  # of the height
-
-
 @dataclass(frozen=True)
 class HarrisScale:
     """Offset from load to load, and the axis, µm; of maps that are compared one for all."""
@@ -241,12 +239,6 @@ def harris_panel(
     """Draw the curves (n, F) in µm over `x`, each higher than the last, named at its end."""
     lines = ordered_lines(x, names, (curve + k * scale.step for k, curve in enumerate(curves.T)))
     return Panel(across, scale.axis, lines, title=title)
-
-
-_TONES = 3
-_LEAST_ROOM, _MOST_ROOM = 0.08, 0.45
-"""Of the ripple, above and below it: for its error band, and no more, so that it fills half of the height."""
-_FLAT = 1e-3  # µm, the height of a curve without any ripple
 
 
 def ste_curves(database: SteDatabase) -> Figure:

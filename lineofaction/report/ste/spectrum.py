@@ -27,6 +27,9 @@ LONG_ORDERS = 4  # over a period of many pitches, where as many lines lie betwee
 _UM = 1e6
 _DEPTH = 10.0  # dB below the least error, or below the level that counts where none is known
 _UNKNOWN = -80.0  # dB below the largest
+_CELLS = 480  # across the map: a line of one of them is still seen
+_RANGE = 60.0  # dB between the ends of the colors
+_COLUMNS = 8  # of the table
 
 
 def ste_spectrum(database: SteDatabase) -> Figure:
@@ -90,11 +93,6 @@ def _spectrum_words(label: str, names: Sequence[str], amplitude: FloatArray, err
         return f"{text}; the errors were not estimated."
     above = int(np.count_nonzero(amplitude > error))
     return f"{text}; {above} of {amplitude.size} orders exceed their error."
-
-
-_CELLS = 480  # across the map: a line of one of them is still seen
-_RANGE = 60.0  # dB between the ends of the colors
-_COLUMNS = 8  # of the table
 
 
 def ste_waterfall(database: SteDatabase) -> Figure:

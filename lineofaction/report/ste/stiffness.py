@@ -47,6 +47,15 @@ _STANDARD = (
     " The dashed line is the mean mesh stiffness c γα of ISO 6336-1 method B, which includes a correction of "
     "0.8 for real gears."
 )
+_MOST_NAMES = 8  # of pairs that are named in full
+_SHARING_MARGIN = 1.12  # of the largest share: for the names
+_END = 0.03  # of the panel's width
+_CHARACTER = 0.008  # of a name, in parts of the panel's width
+_CARRIES = 1e-6  # a pair with less than this share nowhere carries load
+_BUDGET_MARGIN = 1.2  # of the largest part: for the numbers
+_NOTE = 0.4  # of the distance of bars: for the number of the last one on a narrow screen
+_LEAST = 0.0005
+"""Part of the mean below which there is no bar."""
 
 
 def mesh_stiffness(database: SteDatabase) -> Figure:
@@ -100,13 +109,6 @@ def _stiffness_table(
     if iso is not None:
         rows.append(("ISO 6336-1 method B", "", number(iso * _N_PER_MM_UM, 4), ""))
     return Table("Secant mesh stiffness, N/(mm µm)", ("torque", "lowest", "mean", "highest"), tuple(rows))
-
-
-_MOST_NAMES = 8  # of pairs that are named in full
-_SHARING_MARGIN = 1.12  # of the largest share: for the names
-_END = 0.03  # of the panel's width
-_CHARACTER = 0.008  # of a name, in parts of the panel's width
-_CARRIES = 1e-6  # a pair with less than this share nowhere carries load
 
 
 def load_sharing(database: SteDatabase) -> Figure:
@@ -229,12 +231,6 @@ def _sharing_table(database: SteDatabase) -> Table:
     )
     head = ("position, base pitches", *(_name(int(j)) for j in database.pair))
     return Table(f"Normal force on each pair at {load_labels(database)[load]}, N", head, rows)
-
-
-_BUDGET_MARGIN = 1.2  # of the largest part: for the numbers
-_NOTE = 0.4  # of the distance of bars: for the number of the last one on a narrow screen
-_LEAST = 0.0005
-"""Part of the mean below which there is no bar."""
 
 
 def budget_figure(database: SteDatabase, load: int) -> Figure | None:

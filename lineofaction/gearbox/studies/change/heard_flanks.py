@@ -63,6 +63,11 @@ UNITS = {
     SURFACE_VELOCITY: "dB re 1 nm/s",
     SOUND_PRESSURE: "dB(A) re 20 uPa",
 }
+_AT_REST, _LEVEL = (6e-3, 1.2e-6), 0.01
+"""CPU seconds of a table at rest in the scene, and by freedoms squared; a level over its transfer functions.
+
+5 to 170 freedoms, within a factor of 2.
+"""
 
 
 class FlankLevels(NamedTuple):
@@ -196,13 +201,6 @@ def heard_loads(
         form = _form(subject, transfer, model, question.heard)
         cases.append(HeardLoad(load, OtherFlanks.of(system, index, transfer), transfer, form, lines))
     return tuple(cases)
-
-
-_AT_REST, _LEVEL = (6e-3, 1.2e-6), 0.01
-"""CPU seconds of a table at rest in the scene, and by freedoms squared; a level over its transfer functions.
-
-5 to 170 freedoms, within a factor of 2.
-"""
 
 
 class LevelsCost(NamedTuple):

@@ -28,6 +28,9 @@ ROUNDING, ROUNDING_OF_ALL = 1e-9, 1e-12
 """Parts of the largest force of a bearing, and of all bearings: smaller ones are zero. Moments: times 1 m.
 Displacements as forces of all bearings."""
 
+DIGITS = 3
+"""Of a misalignment in um behind the point."""
+
 
 def _loads_by_case(cases: Sequence[CaseDeflection]) -> list[list[BearingLoad]]:
     """Return the loads of all bearings in every case, forces and displacements within rounding zero."""
@@ -145,10 +148,6 @@ def _mesh_over_cases(result: GearboxDeflection, name: str) -> Json:
         "mean_peak_to_peak_um": float(np.dot(weights, ripple)) if len(ripple) == len(weights) else None,
         "largest_k_h_beta": max(factors, default=None),
     }
-
-
-DIGITS = 3
-"""Of a misalignment in um behind the point."""
 
 
 def _optimization_inputs(result: GearboxDeflection, mesh: str) -> Json:

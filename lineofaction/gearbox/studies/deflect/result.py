@@ -15,6 +15,8 @@ from dynamics.shafts import Shaft
 from model_studies import in_unit
 
 HARMONICS = 5
+RIGID_DIAMETER = 0.08
+"""Of a shaft without sections over its length: it is drawn as a line of some width."""
 
 
 @dataclass(frozen=True)
@@ -121,10 +123,6 @@ class GearboxDeflection:
     """The scene as it was written, without the cases; empty in files of versions that did not keep it."""
     facts: Json = field(default_factory=dict)
     """The bodies that its `unit` is drawn as; empty in files of versions that did not keep it."""
-
-
-RIGID_DIAMETER = 0.08
-"""Of a shaft without sections over its length: it is drawn as a line of some width."""
 
 
 def _pieces(shaft: Shaft) -> list[tuple[float, float, float, float]]:

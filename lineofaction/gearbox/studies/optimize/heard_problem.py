@@ -32,6 +32,8 @@ CUTS, CLOSE = 40, 1e-3
 FOLLOWED = 12
 """Rows that each of them takes cuts of: the largest."""
 
+_Node = tuple[list[LoadFigures], FloatArray]
+
 
 class Powers(NamedTuple):
     """Powers or mean squares P(x) = c + g x + x Q x of designs a step x (d,) away, at S speeds.
@@ -242,9 +244,6 @@ class HeardProblem(SearchProblem):
             (at,) = (k for k, loads in enumerate(of_case) if loads.size)
             own.append(tabled[at].at_loads(of_case[at]))
         return own
-
-
-_Node = tuple[list[LoadFigures], FloatArray]
 
 
 def _node(problem: HeardProblem, values: dict[str, float], node: int) -> _Node:

@@ -57,6 +57,8 @@ from lineofaction.gearbox.studies.optimize.result import HeardOptimization
 from lineofaction.gearbox.units import UM, factor, in_um
 
 MPA = 1e6
+OF_CASE = ("torque_n_m", "misalignment_um", "objective")
+"""Fields that a scene has in its load cases, and in what is heard."""
 
 
 def _write_case(
@@ -191,10 +193,6 @@ class _OptimizeStudy(
             return []
         before, after = result.start.harris_map, result.optimum.harris_map
         return [_worse_load_warning(before, after, int(index)) for index in result.rising]
-
-
-OF_CASE = ("torque_n_m", "misalignment_um", "objective")
-"""Fields that a scene has in its load cases, and in what is heard."""
 
 
 def _heard_of(scene: SceneInput, study: Inputs) -> tuple[HeardObjectiveInput, MeshInput]:

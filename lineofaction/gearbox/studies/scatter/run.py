@@ -35,6 +35,17 @@ _DRAWN_TEETH = 2.2
 MOST_SAMPLES = 100_000
 """Of a job: its result holds every pair, 10 to 100 MB."""
 
+_TOLERATED = {
+    f"{gear}.{figure.field}": f"{gear}.{figure.name}"
+    for gear in GEARS
+    for figure in figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
+}
+"""Figures that a drawing may bound: those of the case file, by their names in the library."""
+_ORDER = re.compile(r"(?:mesh )?(\d{1,6})?\s*(?:([+-])?\s*\b(pinion|wheel)\b\s*(\d{1,6})?)?")
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+_UNITS = {"um": UM, "µm": UM, "μm": UM, "nm": 1e-3 * UM}
+_LIMITS = "For example 1=0.5um, 2=-12dB, 1-pinion=80nm, pinion 3=0.2um."
+
 
 class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
     inputs, answer, file = Inputs, ScatterFigures, record_file(("tolerance study", ToleranceStudy))
@@ -134,14 +145,6 @@ def tolerances_of(pair: ParallelAxes, inputs: ToleranceInputs, *, across_face: b
     return replace(of_class, modification={**of_class.modification, **stated})
 
 
-_TOLERATED = {
-    f"{gear}.{figure.field}": f"{gear}.{figure.name}"
-    for gear in GEARS
-    for figure in figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
-}
-"""Figures that a drawing may bound: those of the case file, by their names in the library."""
-
-
 def _stated(text: str) -> tuple[str, float]:
     """Return the figure and the tolerance in m that ``GEAR.FIGURE=VALUE`` says."""
     name, _, value = (part.strip() for part in text.partition("="))
@@ -176,12 +179,6 @@ def order_limit(text: str) -> OrderLimit:
         raise BadInput.of("limit", text, "an amplitude above 0", _LIMITS)
     beside = int(turns or 1) * (-1 if sign == "-" else 1) if gear else 0
     return OrderLimit(int(mesh or 0), amplitude, gear or "", beside)
-
-
-_ORDER = re.compile(r"(?:mesh )?(\d{1,6})?\s*(?:([+-])?\s*\b(pinion|wheel)\b\s*(\d{1,6})?)?")
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
-_UNITS = {"um": UM, "µm": UM, "μm": UM, "nm": 1e-3 * UM}
-_LIMITS = "For example 1=0.5um, 2=-12dB, 1-pinion=80nm, pinion 3=0.2um."
 
 
 RUN = _ScatterStudy()

@@ -27,6 +27,18 @@ from model_studies import Progress, in_unit
 from model_studies.record_file import read_record, write_record
 
 SCHEMA = "lineofaction sensitivity study"
+_USUAL: tuple[tuple[float, ...], ...] = (
+    (-0.2, -0.1, 0.0, 0.1, 0.2),
+    (-0.1, -0.05, 0.0, 0.05, 0.1),
+    (0.0, 0.05, 0.1, 0.15, 0.2),
+    (-0.2, -0.15, -0.1, -0.05, 0.0),
+)
+"""Changes of the center distance in per cent where none are named: the first at which a pair meshes.
+
+As many of each: pairs of one study have equally many.
+"""
+TABLES = 4
+"""Of a pair: over each deviation, without and with corner contact."""
 
 
 @brief
@@ -59,20 +71,6 @@ def _write_studies(studies: Studies, path: Path) -> None:
 def _read_studies(path: Path) -> Studies:
     stored: _Stored = read_record(path, {SCHEMA: _Stored})
     return stored.pairs
-
-
-_USUAL: tuple[tuple[float, ...], ...] = (
-    (-0.2, -0.1, 0.0, 0.1, 0.2),
-    (-0.1, -0.05, 0.0, 0.05, 0.1),
-    (0.0, 0.05, 0.1, 0.15, 0.2),
-    (-0.2, -0.15, -0.1, -0.05, 0.0),
-)
-"""Changes of the center distance in per cent where none are named: the first at which a pair meshes.
-
-As many of each: pairs of one study have equally many.
-"""
-TABLES = 4
-"""Of a pair: over each deviation, without and with corner contact."""
 
 
 class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):

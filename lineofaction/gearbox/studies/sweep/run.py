@@ -45,6 +45,7 @@ STEPS = 9
 """Values of an axis whose range is not given."""
 _EACH = 3  # fewer torques of a case are no range
 _SKEW_UM, _DISTANCE = 30.0, 0.002  # usual misalignment; part of the center distance
+_FIGURES = figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,6 @@ CONDITIONS = (
     _Swept("misalignment", "errors.misalignment_um", "misalignment"),
     _Swept(CENTER_DISTANCE, "errors.center_distance_change_mm", "change of the center distance"),
 )
-_FIGURES = figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
 SWEEPABLE = {
     swept.name: swept
     for swept in (
