@@ -21,7 +21,7 @@ from dynamics.effects.force_terms import (
 from dynamics.errors import InputError
 from dynamics.forces.elements import Element
 from dynamics.forces.frames import FrameCouplingLaws, FrameTerm, RotatingFrameLaws
-from dynamics.forces.laws import STATED_OF_BEARINGS, ElementLaws, Law
+from dynamics.forces.laws import LAW_BY_ARRAYS, ElementLaws, Law
 from dynamics.kernels.by_address import by_address
 from dynamics.loads.applied_force import AppliedForce
 from dynamics.loads.load_course import BySpeed, Orders
@@ -373,17 +373,17 @@ def _bearing_elements(model: Model) -> tuple[tuple[Element, ...], dict[str, Any]
     passing = [part.name for part in scene.rolling_bearings if part.name in mechanism.passing]
     phases = {name: cages + index for index, name in enumerate(passing)}
     supports, elements = supports_by_name(mechanism.rotors), []
-    entries: dict[Any, list[Any]] = {arrays: [] for arrays in STATED_OF_BEARINGS}
+    entries: dict[Any, list[Any]] = {arrays: [] for arrays in LAW_BY_ARRAYS}
     for part, at in zip(scene.laws_with(mechanism.passing), mechanism.bearings, strict=True):
         rotor, support = supports[at.name]
         gradient = at.way @ seat_motion(mechanism.rotors, rotor, support)
         offset = -at.way @ seat_error(mechanism.rotors, rotor, support)
-        law, own, phase = STATED_OF_BEARINGS[part.arrays], entries[part.arrays], phases.get(at.name, -1)
+        law, own, phase = LAW_BY_ARRAYS[part.arrays], entries[part.arrays], phases.get(at.name, -1)
         elements.append(Element(law, len(own), phase, gradient, offset, stiffness=at.typical))
         own.append(part.laid_out(mechanism.bearing_duty[at.name]))
     packed = {
         law.name.lower(): arrays.packed(own) if (own := entries[arrays]) else _none_of(arrays)
-        for arrays, law in STATED_OF_BEARINGS.items()
+        for arrays, law in LAW_BY_ARRAYS.items()
     }
     return tuple(elements), packed
 
