@@ -395,7 +395,9 @@ class Scene(BearingLawParts):
 
     def with_bearing_laws(self, change: Callable[[Any], BearingLaw]) -> Scene:
         """Return the scene with `change` of each of its `scene_bearing_laws` in its place."""
-        laws = {kind: tuple(change(law) for law in getattr(self, kind)) for kind in BEARING_PARTS}
+        laws: dict[str, Any] = {
+            kind: tuple(change(law) for law in getattr(self, kind)) for kind in BEARING_PARTS
+        }
         return replace(self, **laws)
 
     def require_meshes(self) -> None:
