@@ -144,7 +144,7 @@ class DesignSpace:
     options: AnalysisOptions
     """Their `positions`, `receipt` and `on_violation` do not count."""
     least: Mapping[str, float] = field(default_factory=dict)
-    """``gear.quantity`` to m of the design with the least removed: what its tip edges call for is on for all."""
+    """``gear.quantity`` to m of the design with the least removed; effects that it calls for are on."""
 
     def check(self, torques: Levels, further_torques: Levels = ()) -> Checked:
         """Check the request of a design in which everything acts that may act in any; computes nothing.
