@@ -10,14 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 
 from benchmarks.assessed import Assessed, assessed_at_positions, table_against_peer
 from benchmarks.drawn_pairs import LOADS, drawn_pairs
 from benchmarks.figures import Figure
-from benchmarks.marked_section import replace_section
+from benchmarks.marked_section import MEASURED, replace_section
 from benchmarks.pair_cases import PairCase
 from benchmarks.recorded_peer import record, recorded
 from fe_contact import FlankModification, Gear, GearPair, analyze
@@ -25,9 +24,8 @@ from fe_contact.full_contact import solve_full_contact_helical
 from fe_contact.geometry.backlash import reference_center_distance
 from fe_contact.types import FloatArray
 
-ROOT = Path(__file__).parents[1]
 REFERENCE = "full_contact_helical.csv"
-PAGE, SECTION = ROOT / "docs" / "lab" / "accuracy.md", "helical full contact"
+PAGE, SECTION = MEASURED / "accuracy.md", "helical full contact"
 SUBJECT = "3-D standard against helical full contact"
 AXES = ("load", "position_driver")
 NUMBERS = ("43.2", "43.5", "43.10", "43.15", "43.90", "43.145", "43.7")

@@ -6,7 +6,7 @@ import ast
 from collections import Counter
 from pathlib import Path
 
-import growth
+import line_growth
 import pytest
 import structure
 
@@ -29,21 +29,22 @@ def test_no_file_is_long() -> None:
 
 def test_growth_is_told_by_subject() -> None:
     changes = [("dynamics/meshes", 150, 20), ("service/live", 3, 200), ("host/files.py", 1, 1)]
-    told = growth.table(Counter({"dynamics/meshes": 400, "service/live": 100, "bounds": 7}), iter(changes))
+    today = Counter({"dynamics/meshes": 400, "service/live": 100, "bounds": 7})
+    told = line_growth.table(today, iter(changes))
     assert told.split("\n") == [
         "    507 lines, +154 -221",
         "    400 dynamics/meshes  +150 -20",
         "    100 service/live  +3 -200",
     ]
     names = ("lineofaction/gearbox/schemas/scene.py", "lineofaction/gearbox/units.py", "host/files.py")
-    subjects = [growth.subject_of(Path(name)) for name in names]
+    subjects = [line_growth.subject_of(Path(name)) for name in names]
     assert subjects == ["lineofaction/gearbox/schemas", "lineofaction/gearbox/units.py", "host/files.py"]
     whole = sum(
         file.read_text("utf-8").count("\n")
         for house in structure.HOUSES
         for file in structure.files_of(house)
     )
-    assert growth.lines_of_today().total() == whole
+    assert line_growth.lines_of_today().total() == whole
 
 
 def described_twice(file: Path) -> list[str]:
