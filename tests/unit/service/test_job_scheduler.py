@@ -14,14 +14,15 @@ from running_service import Bench, bench, lives, until
 from service_fake_work import SECRET
 from service_fakes import REGISTRY
 
+from host.children.launcher import ChildProcess, Ends, Launcher, start_child
 from host.directories import cache_home, data_home
 from service.queue import claims
 from service.queue.claims import MOST_LOST_RUNS, Claim
 from service.queue.scheduler import Scheduler
 from service.settings import LEAST_MEMORY_MB, Settings
 from service.store.results import ResultStore, StoredResult
-from service.worker.forks import ChildProcess, Ends, Forks, start_child
 from service.worker.usage import machine_memory_mb
+from service.worker.worker import WORK
 
 
 @pytest.fixture(params=["started anew", "forked"])
@@ -30,7 +31,7 @@ def machine(
 ) -> Iterator[Bench]:
     """A started scheduler with two workers, started anew or forked from a warm process."""
     if request.param == "started anew":
-        monkeypatch.setattr(Forks, "launch", lambda _, ends: start_child(ends))
+        monkeypatch.setattr(Launcher, "launch", lambda _, ends: start_child(WORK, ends))
     made = bench(tmp_path, REGISTRY, workers=2)
     made.scheduler.start()
     yield made
@@ -370,11 +371,11 @@ def test_a_child_that_ends_before_it_begins_costs_no_attempt(
     """Here the first one finds no program."""
     launched: list[int] = []
 
-    def launch(_forks: Forks, ends: Ends) -> ChildProcess:
+    def launch(_launcher: Launcher, ends: Ends) -> ChildProcess:
         launched.append(1)
-        return start_child(ends, "no.such.module" if len(launched) == 1 else "service.worker.child")
+        return start_child("no.such.module" if len(launched) == 1 else WORK, ends)
 
-    monkeypatch.setattr(Forks, "launch", launch)
+    monkeypatch.setattr(Launcher, "launch", launch)
     machine = bench(tmp_path, REGISTRY, attempts=1)
     machine.scheduler.start()
     job = machine.ended(machine.submit(text="late"))
