@@ -104,6 +104,8 @@ class Worker:
             return self._outcome
         assert self._child.ended is not None
         signal = ending_signal(self._child.ended.code)
+        if self.begun and self._child.killed_from_outside:
+            return Outcome(failure=f"The worker was ended by {signal} from outside the service.", lost=True)
         text = f"The worker ended early with exit code {self._child.ended.code}."
         if signal:
             hint = " (it may have run out of memory)" if signal in _SIGNALS_OF_LITTLE_MEMORY else ""

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import errno
+import itertools
 import os
+import signal
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -115,6 +117,36 @@ def test_attempts_are_limited_and_the_reason_is_stated(machine: Bench) -> None:
     job = machine.ended(machine.submit(mode="die"))
     assert (job.status, job.attempts, len(machine.starts(job))) == ("failed", 2, 2)
     assert job.message == "The worker ended early with exit code 7. That was attempt 2 of 2."
+
+
+def test_a_worker_that_is_killed_from_outside_costs_no_attempt(
+    machine: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is killed as often as there are attempts, and once more."""
+    monkeypatch.setattr(claims, "wait_s", lambda _lost_runs: 0.0)
+    job = machine.submit(mode="hang_thrice", text="late")
+    for run in range(3):
+        until(lambda: len(machine.starts(job)) == run + 1)  # noqa: B023 (within this run)
+        until(lambda: machine.submissions.find(job.id).stage == "first")
+        os.kill(worker(machine, job.key), signal.SIGKILL)
+    ended = machine.ended(job)
+    assert (ended.status, ended.attempts) == ("successful", 1)
+
+
+def test_a_worker_that_the_system_kills_for_memory_costs_an_attempt(
+    machine: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Here as its count of such kills says."""
+    counts = itertools.count()
+    monkeypatch.setattr("host.children.child.memory_kills", lambda: next(counts))
+    job = machine.submit(mode="hang")
+    for run in range(2):
+        until(lambda: len(machine.starts(job)) == run + 1)  # noqa: B023 (within this run)
+        until(lambda: machine.submissions.find(job.id).stage == "first")
+        os.kill(worker(machine, job.key), signal.SIGKILL)
+    ended = machine.ended(job)
+    text = "The worker was ended by SIGKILL (it may have run out of memory). That was attempt 2 of 2."
+    assert (ended.status, ended.message) == ("failed", text)
 
 
 def test_failures_raised_on_purpose_are_told_and_not_retried(machine: Bench) -> None:
