@@ -20,7 +20,7 @@ from fe_contact.errors import InputError, finite, integer, within
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.confirmed_figures import confirmed_figures
 from fe_contact.microgeometry.design_problem import DesignProblem
-from fe_contact.microgeometry.evaluator import Evaluation, Evaluator
+from fe_contact.microgeometry.evaluator import Evaluation, Evaluator, deviating
 from fe_contact.microgeometry.objective import NO_LIMITS, Limits
 from fe_contact.microgeometry.root_influence import RootInfluence
 from fe_contact.microgeometry.scatter import MISALIGNMENT, ONE_NODE, Scatter
@@ -37,6 +37,8 @@ SAME = 1e-12
 """Misalignments that differ by less, in m, are one: sums of the same two differ in their last bits."""
 Misalignments = float | Levels
 """One value for all loads, or one for each, m."""
+CALLED_FOR = "called for by designs that remove less"
+"""The reason of an effect that is on although the design by which effects are decided does without."""
 
 
 @dataclass(frozen=True)
@@ -141,6 +143,8 @@ class DesignSpace:
     """Equally spaced in a base pitch."""
     options: AnalysisOptions
     """Their `positions`, `receipt` and `on_violation` do not count."""
+    least: Mapping[str, float] = field(default_factory=dict)
+    """``gear.quantity`` to m of the design with the least removed; effects that it calls for are on."""
 
     def check(self, torques: Levels, further_torques: Levels = ()) -> Checked:
         """Check the request of a design in which everything acts that may act in any; computes nothing.
@@ -155,14 +159,29 @@ class DesignSpace:
         present = {name: figure(self.pair, name) for name in scattered} | dict(self.varied)
         acting = {name: own + _toward(name) * scattered.get(name, 0.0) for name, own in present.items()}
         skews = misalignment_axis(loads.misalignment, self.scatter.nodes().misalignment)
-        checked = check_request(
-            modified(self.pair, acting),
-            TableAxes(np.union1d(loads.torque, further_torques), misalignments=skews),
-            replace(self.options, positions=None, receipt="full", on_violation="report"),
-            neglect=False,
-        )
+        axes = TableAxes(np.union1d(loads.torque, further_torques), misalignments=skews)
+        options = replace(self.options, positions=None, receipt="full", on_violation="report")
+        checked = check_request(modified(self.pair, acting), axes, options, neglect=False)
         _refuse_off(checked, self.varied, self.scatter)
+        barest = check_request(self._with_the_least_removed(), axes, options, neglect=False)
+        return _with_effects_of(barest, checked)
+
+    def _with_the_least_removed(self) -> ParallelAxes:
+        """Return the pair with every variable at its lower bound, less what scatters."""
+        present = {name: figure(self.pair, name) for name in self.scatter.modification} | dict(self.varied)
+        removed = present | dict(self.least)
+        deviation = {name: -amount for name, amount in self.scatter.modification.items()}
+        return deviating(modified(self.pair, removed), deviation)
+
+
+def _with_effects_of(barest: Checked, checked: Checked) -> Checked:
+    """Turn on what only the design with the least removed calls for: tip edges that a relief keeps apart."""
+    missing = [entry.name for entry in checked.ledger if entry.choice == "auto" and not entry.on]
+    reasons = {name: CALLED_FOR for name in missing if barest.decided[name] == "on"}
+    if not reasons:
         return checked
+    turned_on = {**checked.request.turned_on, **reasons}
+    return checked_request(replace(checked.request, turned_on=turned_on), neglect=False)
 
 
 def _toward(name: str) -> float:

@@ -30,7 +30,7 @@ Of 12 pairs in plane strain, 17 to 90 teeth, external and internal, steel and 9 
 
 FLOOR = (4e-4, 4.6e-4, 2.2e-3)
 """Of mean, peak-to-peak and harmonics of plain flanks: more than the 0.03 and 0.04 % that calibrating pairs
-ask for (docs/lab/accuracy.md)."""
+ask for (docs/lab/index.md)."""
 MODIFIED_FLOOR = (4e-4, 4.6e-4, 2.2e-3)
 """The same where flanks are modified: in the plane points on reliefs are as far off as on plain flanks, the
 mean of four pairs by 0.01 %."""

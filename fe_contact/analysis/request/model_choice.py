@@ -31,7 +31,7 @@ from fe_contact.types import Json
 
 WIDTH_SHARE = 0.8
 """Part of the tolerance that the estimated change by the finite width may reach: estimates for
-peak-to-peak are 0.8 of the measured change in the median (docs/lab/influence.md)."""
+peak-to-peak are 0.8 of the measured change in the median (docs/lab/index.md)."""
 
 
 TRIED_WORK = 0.1
