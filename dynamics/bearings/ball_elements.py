@@ -26,8 +26,6 @@ from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
 from dynamics.types import FloatArray, IntArray
 
-# How a row of rolling elements is laid out for compiled functions, and the grooves its balls lie between.
-
 HOLDS = ALONG | AGAINST
 STEPS = 100
 SETTLED = 1e-12  # of the sum of the loads of all balls
@@ -126,19 +124,6 @@ def _grooves(
     return v_r, v_z, math.sqrt(v_r * v_r + v_z * v_z)
 
 
-# The axial seat of a ring: where a ring that its seat does not hold slides to.
-#
-# It has neither mass nor friction: it stands where the balls push it nowhere, at the least energy. With
-# E(y, z) that of the balls at the axial displacement z of the rings, the bearing's is
-#
-#     E*(y) = min E(y, z)    over all z, or over those in the direction in which the seat does not hold.
-#
-# E has no hollows in y and z together, nor has E* in y.
-
-
-# The angle of a bearing's cage among the positions of a local state.
-
-
 @inner
 def cage_angle(local: LocalState, turned: int) -> float:
     """Return the angle of the position `turned`, which is in revolutions, rad; 0 if it is -1: averaged."""
@@ -209,9 +194,6 @@ def _thrust(laws: BallElements, entry: int, angle: float, y: FloatArray, row: in
         ktx -= tilting * s
         kty += tilting * c
     return thrust, kx, ky, kz, ktx, kty, total
-
-
-# Forces, derivatives and energy of all balls.
 
 
 @routine

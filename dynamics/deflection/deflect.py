@@ -28,7 +28,7 @@ from dynamics.deflection.mesh_alignment import (
     mesh_alignment,
     rest_over,
 )
-from dynamics.linearize.operating_speeds import common_period
+from dynamics.linearize.common_period import common_period
 from dynamics.mechanism.bearing_elements import supports_by_name
 from dynamics.mechanism.shaft_axes import ShaftAxes, shaft_axes
 from dynamics.scene.scene import Scene

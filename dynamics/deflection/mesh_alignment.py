@@ -19,7 +19,7 @@ from dynamics.kernels.local_state import LocalState
 from dynamics.mechanism.bearing_elements import supports_by_name
 from dynamics.mechanism.columns import elastic_columns, section_rows
 from dynamics.mechanism.connections import condensed_housings, seat_compliance
-from dynamics.mechanism.line_of_action import (
+from dynamics.mechanism.flank_gradients import (
     common_face_width,
     distance_gradient,
     middle_from_driver,

@@ -7,8 +7,8 @@ import numpy as np
 from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedRotor
 from dynamics.errors import InputError
-from dynamics.mechanism.bodies import Rotor
 from dynamics.mechanism.mechanism import Mechanism
+from dynamics.mechanism.rotor import Rotor
 
 BALANCED = 1e-6
 """Part of the single thrusts below which those on a shaft cancel: lines of action are known to rounding."""

@@ -12,12 +12,12 @@ from dynamics.bearings.seat import SEAT
 from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedRotor
 from dynamics.loads.load_course import mean_factor
-from dynamics.mechanism.bodies import Rotor
 from dynamics.mechanism.columns import column_count, elastic_columns, elastic_terms, section_rows, turn_row
 from dynamics.mechanism.connections import gather_connections, seated
+from dynamics.mechanism.flank_gradients import approach, misalignment_gradient
 from dynamics.mechanism.flanks import Flanks
-from dynamics.mechanism.line_of_action import approach, misalignment_gradient
 from dynamics.mechanism.mechanism import Mechanism
+from dynamics.mechanism.rotor import Rotor
 from dynamics.mechanism.sampling import shaft_resolution
 from dynamics.scene.scene import Scene
 from dynamics.shafts import Disc, ElasticShaft, PointOfApplication, elastic_shaft

@@ -8,12 +8,13 @@ from functools import cached_property
 
 import numpy as np
 
-from dynamics.mechanism.bodies import Rotor
 from dynamics.mechanism.connections import Connections, elastic_matrices
+from dynamics.mechanism.flank_gradients import approach, distance_gradient, misalignment_gradient
 from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.freedoms import Freedoms
-from dynamics.mechanism.line_of_action import approach, distance_gradient, misalignment_gradient
-from dynamics.mechanism.mechanism import Mechanism, mean_forces
+from dynamics.mechanism.mean_forces import mean_forces
+from dynamics.mechanism.mechanism import Mechanism
+from dynamics.mechanism.rotor import Rotor
 from dynamics.meshes.gear_mesh import GearMesh
 from dynamics.shafts.shaft import OnShaft
 from dynamics.types import FloatArray

@@ -6,7 +6,7 @@ import numpy as np
 
 from dynamics.effects.effect import MeshEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedMesh
-from dynamics.mechanism.thermal_expansion import warmed_meshes
+from dynamics.mechanism.warm_meshes import warmed_meshes
 from dynamics.scene.scene import Scene
 from dynamics.temperatures import WarmMesh
 from dynamics.types import FloatArray

@@ -133,9 +133,6 @@ def make_local(elements: Elements, meshes: int) -> LocalState:
     return LocalState.empty(elements.offset.size, most, meshes, elements.law.size, elements.drift.shape[0])
 
 
-# The dispatch is written from the list of laws: a chain of comparisons, each with the call of its law.
-
-
 def _call(law: Law, function: Callable[..., Any]) -> str:
     own = {**_ARGUMENTS, "laws": f"elements.laws.{law.name.lower()}"}
     return f"{function.__name__}({', '.join(own[name] for name in signature(function).parameters)})"

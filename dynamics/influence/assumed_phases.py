@@ -10,7 +10,8 @@ from bounds import engineering
 from dynamics.assembly.assemble import System
 from dynamics.errors import DynamicsError
 from dynamics.influence.level_change import decibels
-from dynamics.influence.linear_figures import FEWER, POSITIONS, operating_conditions
+from dynamics.influence.linear_figures import POSITIONS
+from dynamics.influence.operating_conditions import FEWER, operating_conditions
 from dynamics.linearize.harmonic_response import bearing_forces
 from dynamics.linearize.operating_speeds import leading_law
 from dynamics.linearize.steady_vibration import Excited, excited, flank_forces, swept_vibration

@@ -22,14 +22,12 @@ from dynamics.influence.level_change import (
     in_relative,
     level_change,
 )
-from dynamics.influence.linear_figures import (
-    COMPARED,
+from dynamics.influence.linear_figures import COMPARED, LinearFigures, linear_figures
+from dynamics.influence.operating_conditions import (
     FEWER,
     SPEEDS,
-    LinearFigures,
     OperatingCondition,
     conditions_at,
-    linear_figures,
     operating_conditions,
 )
 from dynamics.kernels.by_address import by_value
@@ -42,8 +40,6 @@ from dynamics.scene import Scene
 from dynamics.types import FloatArray, Json
 from model_studies import in_unit
 from model_studies.stage_clock import TimeTaken
-
-# The change by leaving an effect out, by linear theory: an ablation before integration.
 
 _Key = tuple[bytes | None, float, bool]
 _KNOWN: dict[_Key, dict[str, Influence]] = {}
@@ -351,9 +347,6 @@ def _largest(change: FloatArray, value: FloatArray | float) -> float:
     size = np.broadcast_to(np.abs(np.asarray(value, dtype=float)), change.shape)
     part = np.divide(np.abs(change), size, out=np.zeros(change.shape), where=size > 0.0)
     return float(np.max(part, initial=0.0))
-
-
-# The decision of "auto" by a tolerance: effects too small to be seen are neglected, larger ones are on.
 
 
 @dataclass(frozen=True)

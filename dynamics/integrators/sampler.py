@@ -25,12 +25,12 @@ from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
 from dynamics.meshes.packed_tables import PackedTables
 from dynamics.meshes.table_lookup import deflection_from, level_below
+from dynamics.motion.local_accelerations import set_acceleration
 from dynamics.motion.motion import (
     MOTION_COLUMNS,
     QUANTUM,
     add_motion,
     move_free_trains,
-    set_acceleration,
     set_drift,
     set_phases,
     write_motion,

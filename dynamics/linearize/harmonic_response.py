@@ -16,7 +16,6 @@ from dynamics.checks import integer, one_of, positive
 from dynamics.forces.laws import Law
 from dynamics.linearize.flank_cycles import SAMPLES
 from dynamics.linearize.line_floor import LineFloor, floor_frequencies, floor_inputs
-from dynamics.linearize.load_harmonics import load_multiples
 from dynamics.linearize.operating_speeds import LARGEST_DENOMINATOR
 from dynamics.linearize.steady_vibration import (
     EXCITATIONS,
@@ -27,16 +26,11 @@ from dynamics.linearize.steady_vibration import (
     receptances,
     speed_blocks,
     steady_vibration,
-    swept_vibration,
 )
 from dynamics.linearize.strongest_lines import Lines, strongest_lines
-from dynamics.linearize.varying_stiffness import varied
 from dynamics.motion.force_balance import block_diagonal
 from dynamics.results.array_file import stored
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
-
-# Harmonic forced response to the transmission error, about the static equilibrium, over speeds.
-
 
 GRID = ("speed", "order")
 MOST_SAMPLES, MOST_PER_LINE, MOST_PARTED = 16_384, 1_000, 300
@@ -332,44 +326,3 @@ def _harmonics(order: tuple[float, ...]) -> IntArray:
     scale = math.lcm(*(part.denominator for part in parts))
     multiples = [int(part * scale) for part in parts]
     return np.array(multiples, dtype=np.int64) // max(math.gcd(*multiples), 1)
-
-
-def parametric_response(
-    at: Excited,
-    speed: FloatArray,
-    rate: FloatArray,
-    orders: int = 10,
-    gyroscopic: bool = False,
-    varying: bool = True,
-) -> tuple[HarmonicResponse, FloatArray]:
-    """Return the response of a system to its errors and loads, the stiffness varying with position: `varied`.
-
-    And by how much the mean transmission errors differ from the mean static ones, (m, S), m.
-
-    Parameters
-    ----------
-    speed, rate : (S,) arrays
-        Of the leading law, rad/s, and how fast it changes, rad/s^2.
-    orders : int
-        Harmonics of each mesh.
-    gyroscopic : bool
-        With gyroscopic and frame terms.
-    varying : bool
-        False: with mean tangents, whose errors have the static means.
-    """
-    harmonics = _all_harmonics(at, orders, speed)
-    steady = swept_vibration(at, speed, rate, harmonics, gyroscopic)
-    if not varying:
-        return response_of(at, speed, steady), np.zeros((len(at.cycles), speed.size))
-    steady, shift = varied(at, steady)
-    return response_of(at, speed, steady), shift
-
-
-def _all_harmonics(at: Excited, orders: int, speed: FloatArray) -> IntArray:
-    """Return the multiples of the common period's frequency at which meshes (to `orders`) or loads excite."""
-    multiples = set(load_multiples(at.system, at.period, float(np.max(np.abs(speed))), at.time).tolist())
-    for pitches, mesh in zip(at.period.pitches, at.system.scene.meshes, strict=True):
-        period = mesh.table.period
-        step = abs(pitches) // period
-        multiples |= {step * k for k in range(1, orders * period + 1)} if step else set()
-    return strongest_lines(at, np.array(sorted(multiples), dtype=np.int64), speed).harmonics

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dynamics.linearize.linear_system import natural_modes
+from dynamics.linearize.natural_modes import natural_modes
 from dynamics.linearize.steady_vibration import Excited, flank_forces
 from dynamics.types import ComplexArray, FloatArray, IntArray
 

@@ -31,6 +31,7 @@ from dynamics.forces.laws import Law
 from dynamics.linearize.flank_cycles import SAMPLES
 from dynamics.linearize.harmonic_response import bearing_forces, extremes
 from dynamics.linearize.load_harmonics import load_harmonics, load_multiples
+from dynamics.linearize.modal_elimination import solved
 from dynamics.linearize.operating_speeds import checked_speeds
 from dynamics.linearize.steady_vibration import (
     ROUNDED,
@@ -38,7 +39,6 @@ from dynamics.linearize.steady_vibration import (
     excited,
     flank_forces,
     gyroscopic_terms,
-    solved,
     with_receptances,
 )
 from dynamics.linearize.strongest_lines import require_memory, strongest_lines

@@ -11,14 +11,13 @@ from scipy.sparse.linalg import LinearOperator, gmres
 
 from dynamics.errors import SolveError
 from dynamics.linearize.flank_cycles import FlankCycle
-from dynamics.linearize.linear_system import unbounded
+from dynamics.linearize.modal_elimination import ROUNDING, solved
+from dynamics.linearize.natural_modes import unbounded
 from dynamics.linearize.steady_vibration import (
     ROUNDED,
-    ROUNDING,
     Excited,
     Steady,
     harmonics_of,
-    solved,
     speed_blocks,
     with_blocked,
 )

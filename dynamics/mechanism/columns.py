@@ -9,7 +9,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from dynamics.mechanism.bodies import Bodies, Rotor
+from dynamics.mechanism.bodies import Bodies
+from dynamics.mechanism.rotor import Rotor
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from dynamics.loads.applied_force import AppliedForce, Unbalance
 from dynamics.loads.load_course import Orders
-from dynamics.mechanism.connections import frame_couplings
+from dynamics.mechanism.frame_couplings import frame_couplings
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.scene.scene import Scene
@@ -85,9 +85,6 @@ def _rates(phase: LoadPhase) -> FloatArray:
     return np.abs([float(rate) for rate in phase.rate])
 
 
-# How frames that couplings cross turn against each other.
-
-
 def frame_turns(scene: Scene, kinematics: Kinematics) -> tuple[tuple[Fraction, ...], ...]:
     """Return the revolutions of the second frame against the first per revolution of each law, for each."""
     turns = []
@@ -96,9 +93,6 @@ def frame_turns(scene: Scene, kinematics: Kinematics) -> tuple[tuple[Fraction, .
         first, second = (_turns(kinematics, frame) for frame in frames)
         turns.append(tuple(b - a for a, b in zip(first, second, strict=True)))
     return tuple(turns)
-
-
-# How the cages of bearings turn in the kinematic motion.
 
 
 def cage_turns(
@@ -119,9 +113,6 @@ def cage_turns(
             pairs = zip(kinematics.ratio[shaft], held, strict=True)
             cages.append(tuple(inner * own - around for own, around in pairs))
     return tuple(cages)
-
-
-# All phases of a scene, in their order.
 
 
 def repeating_phases(scene: Scene, kinematics: Kinematics) -> tuple[LoadPhase, ...]:

@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 
-from dynamics.mechanism.bodies import Bodies, Rotor
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count, elastic_columns
+from dynamics.mechanism.rotor import Rotor
 from dynamics.types import FloatArray
 
 LEAST_SHIFT = 1e-4

@@ -9,8 +9,9 @@ import numpy as np
 
 from dynamics.bearings import Bushing, PlanetBearing
 from dynamics.bearings.seat import SEAT
-from dynamics.mechanism.bodies import Bodies, Rotor
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count, housing_columns, section, section_rows
+from dynamics.mechanism.rotor import Rotor
 from dynamics.types import BoolArray, FloatArray
 
 

@@ -183,9 +183,6 @@ def _assumed(train: _Train, number: int) -> AssumedAngle:
     return AssumedAngle(second.shaft, (first.name, second.name), moves)
 
 
-# What is stated, and what the teeth require.
-
-
 def _state(train: _Train, index: int, position: float) -> None:
     """Place a mesh at a stated position, or refuse it."""
     driver, _ = train.pairs[index]
@@ -247,9 +244,6 @@ def _misfit(field: str, name: str, off: float, others: str) -> InputError:
         "Change tooth numbers, tooth thickness or axes, or stated positions: nobody can assemble the train."
     )
     return InputError(field, name, bound, advice)
-
-
-# What is assumed, and the angles that shafts state.
 
 
 def _assume(train: _Train) -> None:

@@ -9,47 +9,12 @@ import numpy as np
 
 from dynamics.identity_cache import identity_cached
 from dynamics.kernels.by_address import by_address, with_numbers
-from dynamics.kernels.compiled import compiled
+from dynamics.meshes.level_energies import ORDER, energy_below
 from dynamics.meshes.mesh_table import MeshTable
 from dynamics.types import FloatArray, IntArray
 
-# Energy that a packed table stores below each of its levels, as a polynomial in the position.
-
-
-ORDER = 9
-"""Degree in the position: a width, cubic, squared, times a stiffness, cubic."""
-
 BUCKETS_PER_KNOT = 4
 LEAST = 4  # knots of a table that can be decimated
-
-
-def _energy_below(row: FloatArray, level: FloatArray) -> FloatArray:
-    """Return ascending coefficients (P L, ORDER + 1), J, of a table of P `row`s at the levels (L,).
-
-    With levels F_k at deflections d_k(u) and stiffness K_k(u), an interval of width h = d_k+1 - d_k holds
-    h (F_k + F_k+1)/2 + h^2 (K_k - K_k+1)/12; row k has the sum over the intervals below level k.
-    """
-    energy = np.zeros((row.shape[0], ORDER + 1))
-    _add_intervals(row, level, energy)
-    return energy
-
-
-@compiled
-def _add_intervals(row: FloatArray, level: FloatArray, energy: FloatArray) -> None:
-    """Fill the coefficients of one table; its rows run through the levels position by position."""
-    levels = level.size
-    for start in range(0, row.shape[0], levels):
-        for k in range(levels - 1):
-            low, high, mean = start + k, start + k + 1, 0.5 * (level[k] + level[k + 1])
-            for power in range(energy.shape[1]):
-                energy[high, power] = energy[low, power]
-            for a in range(4):
-                width = row[high, a] - row[low, a]
-                energy[high, a] += mean * width
-                for b in range(4):
-                    square = width * (row[high, b] - row[low, b]) / 12.0
-                    for c in range(4):
-                        energy[high, a + b + c] += square * (row[low, 4 + c] - row[high, 4 + c])
 
 
 @with_numbers("offset")
@@ -79,7 +44,7 @@ class PackedTables(NamedTuple):
     level: FloatArray
     """Forces, N. Flat."""
     energy: FloatArray
-    """See `_energy_below`. Shape (sum of P L, 10)."""
+    """See `energy_below`. Shape (sum of P L, 10)."""
 
     def decimated(self, every: int = 2) -> PackedTables:
         """Return the tables on each `every`-th knot of position, with the values and slopes they have there.
@@ -103,7 +68,7 @@ class PackedTables(NamedTuple):
         own = _part(self, flank)
         own.level[:] = table.level
         own.row[:] = _rows(table, np.diff(own.knot))
-        own.energy[:] = _energy_below(own.row, own.level)
+        own.energy[:] = energy_below(own.row, own.level)
 
 
 def kept_knots(knots: int, every: int) -> IntArray:
@@ -152,7 +117,7 @@ def _decimated(table: _Table, every: int) -> _Table:
     step = last.sum(axis=-1) - value
     rows = np.stack([value, rise, 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step], axis=-1)
     rows = np.ascontiguousarray(rows.reshape(-1, 8))
-    return _Table(knot[kept], _bucket_starts(knot[kept]), rows, level, _energy_below(rows, level))
+    return _Table(knot[kept], _bucket_starts(knot[kept]), rows, level, energy_below(rows, level))
 
 
 def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
@@ -200,7 +165,7 @@ def _laid_out(table: MeshTable) -> _Table:
     knot = np.append(np.asarray(table.position, dtype=float), table.position[0] + table.period)
     knot -= knot[0]
     rows, level = _rows(table, np.diff(knot)), np.array(table.level, dtype=float)
-    return _Table(knot, _bucket_starts(knot), rows, level, _energy_below(rows, level))
+    return _Table(knot, _bucket_starts(knot), rows, level, energy_below(rows, level))
 
 
 def _rows(table: MeshTable, width: FloatArray) -> FloatArray:

@@ -24,9 +24,9 @@ from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled, inner
 from dynamics.kernels.cubics import Cubics
 from dynamics.linearize import Modes, natural_modes
+from dynamics.linearize.common_period import CommonPeriod, common_period
 from dynamics.linearize.linear_system import about_running, require_freedoms
 from dynamics.linearize.load_harmonics import load_cycles
-from dynamics.linearize.operating_speeds import CommonPeriod, common_period
 from dynamics.mechanism.additions import ELEMENT_PASSING
 from dynamics.meshes.packed_tables import BUCKETS_PER_KNOT
 from dynamics.types import BoolArray, FloatArray, IntArray

@@ -11,8 +11,8 @@ from dynamics.assembly.assemble import System
 from dynamics.bearings.seat import SEAT
 from dynamics.forces.elements import SPATIAL_FLANK
 from dynamics.mechanism.additions import CENTER_DISTANCE_CHANGE, LOAD_ARM, MISALIGNMENT
-from dynamics.mechanism.freedoms import ROTATION
-from dynamics.mechanism.line_of_action import common_face_width, table_sense
+from dynamics.mechanism.carried_planets import ROTATION
+from dynamics.mechanism.flank_gradients import common_face_width, table_sense
 from dynamics.motion.motion import ACCELERATION, FRACTION, QUANTA_PER_TURN, SPEED, WHOLE
 from dynamics.motion.observation import Observed, static_deflections
 from dynamics.motion.sampled_states import States

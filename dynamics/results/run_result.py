@@ -271,9 +271,6 @@ SERIES = OVER_TIME | _STORED
 """All series of a result, in the order of its files."""
 
 
-# The netCDF-4 file of a run, written block by block: memory does not grow with the run.
-
-
 class RunFile:
     """Writes beside the final name; `publish` moves the file there whole, leaving without it removes it."""
 

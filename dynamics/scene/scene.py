@@ -32,9 +32,6 @@ from dynamics.shafts.shaft import PLACED, on_length
 from dynamics.temperatures import Temperatures
 from dynamics.types import FloatArray
 
-# Housings and bushings with matrices: what they can carry, and where.
-
-
 ISOTROPY = 1e-9  # relative
 SEAT_AGREEMENT = 1e-3  # m; a bearing acts at its middle, which need not be that of its bore
 IRRATIONAL = 1.0  # rad; what this turn leaves alone any turn does
@@ -108,9 +105,6 @@ def _alike_across(matrix: FloatArray) -> bool:
     turn[:2, :2] = turn[3:5, 3:5] = [[c, -s], [s, c]]
     off = np.abs(turn @ matrix @ turn.T - matrix)
     return bool(np.all(off <= ISOTROPY * np.max(np.abs(matrix), initial=0.0)))
-
-
-# Shafts of different frames: which lie on one axis, and what may join them.
 
 
 def _check_frames(scene: Scene) -> None:

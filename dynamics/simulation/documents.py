@@ -32,7 +32,8 @@ from dynamics.integrators.workspace import Count
 from dynamics.kernels.local_state import LocalState
 from dynamics.linearize import natural_modes
 from dynamics.linearize.campbell import branches_up_to
-from dynamics.linearize.linear_system import LinearSystem, freedom_parts, linearize
+from dynamics.linearize.linear_system import LinearSystem, linearize
+from dynamics.linearize.mode_energy import freedom_parts
 from dynamics.linearize.operating_speeds import leading_law, mesh_frequencies
 from dynamics.mechanism.additions import SPEED_DEPENDENCE
 from dynamics.mechanism.bearing_elements import BearingElement

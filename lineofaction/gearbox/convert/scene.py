@@ -12,7 +12,8 @@ from dynamics.identity_cache import identity_cached
 from dynamics.joints import Housing
 from dynamics.mechanism import with_planets
 from dynamics.mechanism.base_pitches import PRINTED
-from dynamics.mechanism.kinematics import at_steady_speeds, check_motion
+from dynamics.mechanism.kinematics import at_steady_speeds
+from dynamics.mechanism.motion_checks import check_motion
 from dynamics.meshes import GearMesh, MeshTable
 from dynamics.meshes.standard_sliding import StandardTeeth
 from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table, straight_table

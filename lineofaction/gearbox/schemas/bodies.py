@@ -9,7 +9,8 @@ from pydantic import ConfigDict, Field, Strict, model_validator
 from dynamics.bearings.seat import PlanetBearing
 from dynamics.joints.coupling import Coupling
 from dynamics.shafts.beam_section import BeamSection
-from dynamics.shafts.bodies import DiscBody, GearBody, Inertia
+from dynamics.shafts.bodies import Inertia
+from dynamics.shafts.rigid_bodies import DiscBody, GearBody
 from dynamics.shafts.shaft import Shaft
 from lineofaction.gearbox.schemas.declared import declared_in, figures, with_fields
 from lineofaction.gearbox.schemas.model import (

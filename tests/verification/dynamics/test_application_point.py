@@ -17,7 +17,7 @@ from sliced_face import rigid_share_database, sliced_database
 from dynamics.assembly.assemble import System, assemble
 from dynamics.integrators import static_equilibrium
 from dynamics.loads import TimeLaw
-from dynamics.mechanism.bodies import build_rotor
+from dynamics.mechanism.rotor import build_rotor
 from dynamics.motion.force_balance import force_balance
 from dynamics.scene import Scene
 from fe_contact.ste.extraction import SMOOTHING
