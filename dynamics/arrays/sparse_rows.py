@@ -166,8 +166,8 @@ def subtract_resistance(sparse: SparseMatrices, q: FloatArray, v: FloatArray, fo
     """Subtract what dampers and springs exert at `q` and `v` (n,) from `force`."""
     damping, stiffness = sparse.damping.weight, sparse.stiffness.weight
     for i in range(sparse.modal.first):
-        damped, held = row_products(sparse.damping, i, damping, v, stiffness, q)
-        force[i] -= damped + held
+        damped, elastic = row_products(sparse.damping, i, damping, v, stiffness, q)
+        force[i] -= damped + elastic
     subtract_modal_resistance(sparse.modal, q, v, force)
 
 

@@ -82,7 +82,7 @@ class BallElements(NamedTuple):
             balls=np.array([bearing.count * place.copies for bearing, place in rows], dtype=np.int64),
             held=np.array([HELD[place.locating] for _, place in rows], dtype=np.int64),
             **{
-                name: np.array([own[name] for own in figures], dtype=float)
+                name: np.array([values[name] for values in figures], dtype=float)
                 for name in cls._fields
                 if name not in ("balls", "held")
             },
@@ -144,10 +144,10 @@ def axial_seat(laws: BallElements, entry: int, local: LocalState, row: int, turn
         thrust on the seat (N), 0 of a ring that slides; the derivatives of the thrust in the five
         displacements at this z.
     """
-    y, angle, held = local.coordinate, cage_angle(local, turned), laws.held[entry]
-    if held != 0:
+    y, angle, hold = local.coordinate, cage_angle(local, turned), laws.held[entry]
+    if hold != 0:
         thrust, kx, ky, kz, ktx, kty, _ = _thrust(laws, entry, angle, y, row, y[row + 2])
-        if (thrust >= 0.0 and held & ALONG) or (thrust <= 0.0 and held & AGAINST):
+        if (thrust >= 0.0 and hold & ALONG) or (thrust <= 0.0 and hold & AGAINST):
             return 1.0, y[row + 2], thrust, kx, ky, kz, ktx, kty
     reach = laws.arm_radius[entry] * math.sqrt(y[row + 3] * y[row + 3] + y[row + 4] * y[row + 4])
     z = -laws.axial[entry]
@@ -216,9 +216,9 @@ def balls(laws: BallElements, entry: int, local: LocalState, row: int, turned: i
             local.tangent[row + i, j], local.viscous[row + i, j] = 0.0, 0.0
     y, angle, loose = local.coordinate, cage_angle(local, turned), laws.held[entry] != HOLDS
     z, axial_rate = y[row + AXIAL], 0.0 if loose else local.rate[row + AXIAL]
-    held, thrust, kx, ky, kz, ktx, kty = 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    hold, thrust, kx, ky, kz, ktx, kty = 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     if loose:
-        held, z, thrust, kx, ky, kz, ktx, kty = axial_seat(laws, entry, local, row, turned)
+        hold, z, thrust, kx, ky, kz, ktx, kty = axial_seat(laws, entry, local, row, turned)
     radius, height = laws.arm_radius[entry], laws.arm_axial[entry]
     step = 2.0 * math.pi / laws.balls[entry]
     for ball in range(laws.balls[entry]):
@@ -233,7 +233,7 @@ def balls(laws: BallElements, entry: int, local: LocalState, row: int, turned: i
         g = (e_r * c, e_r * s, e_z, -s * along, c * along)
         h = (-e_z * c, -e_z * s, e_r, -s * across, c * across)
         _add(local, row, g, h, rigid, press, laws.damping[entry], length, axial_rate)
-    if loose and held > 0.0:
+    if loose and hold > 0.0:
         _press_seat(local, row, thrust, (kx, ky, kz, ktx, kty), laws.damping[entry])
     elif loose:
         _condense(local, row, (kx, ky, kz, ktx, kty))
@@ -330,9 +330,9 @@ def _energy(
             continue
         load = laws.stiffness[entry] * math.sqrt(press) * press
         turning = y[row + 4] * s + y[row + 3] * c
-        beside = y[row + 1] * c - y[row] * s - laws.arm_axial[entry] * turning
+        across = y[row + 1] * c - y[row] * s - laws.arm_axial[entry] * turning
         energy += 0.4 * load * press
-        slope += load * (v_r * beside + v_z * laws.arm_radius[entry] * turning) / length
+        slope += load * (v_r * across + v_z * laws.arm_radius[entry] * turning) / length
     return energy, 2.0 * math.pi * slope
 
 

@@ -42,5 +42,5 @@ def element_passing(
     loaded = LoadedBearing(bearing)
     pitch = 2.0 * math.pi / bearing.count
     angle = np.arange(angles) * pitch / angles
-    moved = [loaded.displacement(load, float(turned)) for turned in angle]
-    return _ElementPassing(bearing.count * bearing.cage_ratio, angle, np.array(moved))
+    displacements = [loaded.displacement(load, float(turned)) for turned in angle]
+    return _ElementPassing(bearing.count * bearing.cage_ratio, angle, np.array(displacements))

@@ -80,9 +80,9 @@ def frame_coupling(laws: FrameCouplingLaws, entry: int, local: LocalState, row: 
             sign = 1.0 if j % 2 == 0 else -1.0
             # d d'/d b = -psi' J R adds C psi' J to the stiffness that b sees
             seen = k[entry, i, j] + turn * sign * damping[entry, i, other]
-            beside = k[entry, i, other] - turn * sign * damping[entry, i, j]
+            cross = k[entry, i, other] - turn * sign * damping[entry, i, j]
             tangent[row + i, j] = k[entry, i, j]
-            tangent[row + i, n + j] = -(c * seen + sign * s * beside)
+            tangent[row + i, n + j] = -(c * seen + sign * s * cross)
             tangent[row + n + i, n + j] = seen
             # R^T K = K R^T
             tangent[row + n + i, j] = -(c * k[entry, i, j] - sign * s * k[entry, i, other])

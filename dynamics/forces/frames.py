@@ -77,14 +77,14 @@ def rotating_frame(laws: RotatingFrameLaws, entry: int, local: LocalState, row: 
     drag = c[entry, 4] * frame
     for k in range(2):
         other, sign = 1 - k, 2.0 * k - 1.0  # J y = (-y_2, y_1)
-        here, there = coordinate[row + k], coordinate[row + other]
-        elastic[row + k] = hold * here - laws.load[entry, k] * frame * frame
-        force[row + k] = sign * (swirl * rate[row + other] + drag * there) + elastic[row + k]
+        along, across = coordinate[row + k], coordinate[row + other]
+        elastic[row + k] = hold * along - laws.load[entry, k] * frame * frame
+        force[row + k] = sign * (swirl * rate[row + other] + drag * across) + elastic[row + k]
         tangent[row + k, k], tangent[row + k, other] = hold, sign * drag
         viscous[row + k, other] = sign * swirl
         if rows == 2:
             continue
-        by_spin = sign * c[entry, 0] * rate[row + other] + c[entry, 2] * frame * here
+        by_spin = sign * c[entry, 0] * rate[row + other] + c[entry, 2] * frame * along
         viscous[row + k, 2] = by_spin / laws.lever[entry]
 
 

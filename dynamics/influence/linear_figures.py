@@ -125,8 +125,8 @@ def _by_loads(at: Excited, condition: OperatingCondition, response: HarmonicResp
     """Return what loads alone excite of every bearing's force, (b,) N."""
     multiples = load_multiples(at.system, at.period, float(condition.speed[-1]), at.time)
     counted = np.arange(1, COMPARED + 1) * at.period.counted
-    own = np.isin(np.rint(response.order * at.period.counted), np.setdiff1d(multiples, counted))
-    largest = np.max(np.abs(response.bearing_force[:, :3, :, own]), axis=2)
+    load_lines = np.isin(np.rint(response.order * at.period.counted), np.setdiff1d(multiples, counted))
+    largest = np.max(np.abs(response.bearing_force[:, :3, :, load_lines]), axis=2)
     return np.asarray(np.sqrt(np.sum(largest**2, axis=(1, 2))))
 
 

@@ -138,12 +138,12 @@ class Influence:
     def to_json(self) -> Json:
         """Return plain JSON without numbers that are not known; whoever shows it says `on` beside it."""
         facts: Json = {"words": self.words}
-        for each in fields(self):
-            value, unit = getattr(self, each.name), each.metadata.get("unit")
+        for item in fields(self):
+            value, unit = getattr(self, item.name), item.metadata.get("unit")
             if isinstance(value, LevelChange):
-                facts[each.name] = asdict(value)
-            elif each.name not in ("on", "parts") and (not isinstance(value, float) or np.isfinite(value)):
-                facts[f"{each.name}_{unit}" if unit else each.name] = np.asarray(value).tolist()
+                facts[item.name] = asdict(value)
+            elif item.name not in ("on", "parts") and (not isinstance(value, float) or np.isfinite(value)):
+                facts[f"{item.name}_{unit}" if unit else item.name] = np.asarray(value).tolist()
         return facts
 
 
@@ -233,8 +233,8 @@ def response_cost(system: System, speed: FloatArray, orders: int) -> ResponseCos
     freedoms, switched = system.freedoms.column.size, len(_switchable(system))
     at = excited(system, 0.0, max(orders, FEWER))
     lines = (possible_lines(at, count, speed).size for count in (orders, FEWER))
-    each, fewer = (_VARYING + _SOLVED * freedoms**2 * count for count in lines)
-    return ResponseCost(each, _BEGUN + fewer * min(speed.size, SPEEDS), 1 + switched)
+    seconds, fewer = (_VARYING + _SOLVED * freedoms**2 * count for count in lines)
+    return ResponseCost(seconds, _BEGUN + fewer * min(speed.size, SPEEDS), 1 + switched)
 
 
 def _influences(

@@ -88,9 +88,9 @@ def operating_conditions(scene: Scene, law: int, settled: float = 0.0) -> tuple[
 def conditions_at(speed: FloatArray, time: float) -> tuple[OperatingCondition, ...]:
     """Return what a linear response at speeds (S,) > 0, rad/s, passes: at most `SPEEDS` of them."""
     rising = np.unique(speed)
-    own = rising[np.unique(np.linspace(0, rising.size - 1, min(SPEEDS, rising.size)).round().astype(int))]
-    still, alike = np.zeros(own.size), np.full(own.size, 1.0 / own.size)
-    return (OperatingCondition(time, own, still, alike, own[[0, -1]], FEWER),)
+    chosen = rising[np.unique(np.linspace(0, rising.size - 1, min(SPEEDS, rising.size)).round().astype(int))]
+    still, alike = np.zeros(chosen.size), np.full(chosen.size, 1.0 / chosen.size)
+    return (OperatingCondition(time, chosen, still, alike, chosen[[0, -1]], FEWER),)
 
 
 def _loads_vary(scene: Scene, time: FloatArray) -> bool:

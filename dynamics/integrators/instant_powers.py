@@ -47,9 +47,9 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
         for i in range(modal.first):
             rate += system.load.direction[load, i] * velocity[i]
         loads += value * rate
-    bushing, mesh, friction, supplied, kept, position, axes = _in_elements(system, work)
+    bushing, mesh, friction, supplied, frames, position, axes = _in_elements(system, work)
     loads += supplied
-    drives -= kept
+    drives -= frames
     damping = system.sparse.damping
     for i in range(modal.first):
         bushing += velocity[i] * row_product(damping, damping.weight, i, velocity)
@@ -90,7 +90,7 @@ def _in_elements(
     Then that which the kinematic motion exchanges with rotating frames: kinetic energy in the product of
     displacements and speeds, which the balance does not hold. Last, what the position and the axes supply.
     """
-    bearing, mesh, friction, supplied, kept, position, axes = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    bearing, mesh, friction, supplied, frames, position, axes = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     elements, force, elastic = system.elements, work.force, work.local.elastic
     rate, drift = work.local.rate, work.local.drift
     for e in range(elements.law.size):
@@ -102,7 +102,7 @@ def _in_elements(
         if law == ROTATING_FRAME:
             for r in range(first, end):
                 bearing += (force[r] - elastic[r]) * rate[r]
-                kept += force[r] * drift[r]
+                frames += force[r] * drift[r]
             position += _by_frame_speed(system, work, e)
             continue
         position += power_by_frames(elements, work.local, e)
@@ -117,12 +117,12 @@ def _in_elements(
                 lost += (force[r] - elastic[r]) * rate[r]
         if law == SPATIAL_FLANK:
             mesh += lost
-            given, stored = power_along_axes(elements, work.local, e)
-            axes += stored - given
+            power, stored = power_along_axes(elements, work.local, e)
+            axes += stored - power
             position -= elastic[first] * rate[first] + stored
         else:
             bearing += lost
-    return bearing, mesh, friction, supplied, kept, position, axes
+    return bearing, mesh, friction, supplied, frames, position, axes
 
 
 @inner

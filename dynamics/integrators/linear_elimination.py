@@ -56,9 +56,9 @@ def _invert(work: Workspace, level: int, span: float) -> None:
 def _strain(work: Workspace, level: int, span: float, a: int, row: int) -> float:
     """Return the entry of B W in the linear row number `a` for a force in `row`."""
     local, total = work.local, 0.0
-    own, first, end = work.linear[a, 0], work.linear[a, 1], work.linear[a, 2]
+    element, first, end = work.linear[a, 0], work.linear[a, 1], work.linear[a, 2]
     for c in range(first, end):
-        gain = span * (span * local.tangent[own, c - first] + local.viscous[own, c - first])
+        gain = span * (span * local.tangent[element, c - first] + local.viscous[element, c - first])
         total += gain * work.approach[level, row, work.linear[c, 0]]
     return total
 

@@ -101,8 +101,8 @@ def _move(work: Workspace, span: float) -> None:
 @inner
 def _gain(work: Workspace, span: float, k: int, j: int) -> float:
     """Return how the law of row k changes with what moves the coordinate j of its own element."""
-    moved = span * (span * work.local.tangent[k, j] + work.local.viscous[k, j])
-    return float(moved + work.local.inertial[k, j])
+    slope = span * (span * work.local.tangent[k, j] + work.local.viscous[k, j])
+    return float(slope + work.local.inertial[k, j])
 
 
 @inner

@@ -47,8 +47,8 @@ def _invert_modal(system: SystemArrays, work: Workspace, level: int, span: float
     """Write the modal freedoms' part of the inverse of the stage matrix, an entry each."""
     modal = system.sparse.modal
     for i in range(modal.mass.size):
-        own = modal.mass[i] + span * (modal.damping[i] + span * modal.stiffness[i])
-        work.inverse[level, system.sparse.coupling.first[modal.first + i]] = 1.0 / own
+        pivot = modal.mass[i] + span * (modal.damping[i] + span * modal.stiffness[i])
+        work.inverse[level, system.sparse.coupling.first[modal.first + i]] = 1.0 / pivot
 
 
 @compiled

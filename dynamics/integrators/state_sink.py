@@ -96,9 +96,9 @@ class StateSpool:
 
     def keep(self, first: int, count: int) -> None:
         """Append."""
-        kept = self._room.rows(0, count)
+        rows = self._room.rows(0, count)
         self._file.seek(8 * self._record * first)
-        self._file.write(np.hstack([part.view(np.float64) for part in kept]).tobytes())
+        self._file.write(np.hstack([part.view(np.float64) for part in rows]).tobytes())
 
     def states(self, first: int, stop: int) -> States:
         """Read the records back."""
@@ -111,10 +111,10 @@ class StateSpool:
         self._file.seek(8 * record * first)
         content = self._file.read(8 * record * (stop - first))
         table: FloatArray = np.frombuffer(content).reshape(stop - first, record)
-        q, v, carried, moved, *rest = (
+        q, v, carried, quanta, *rest = (
             np.ascontiguousarray(part) for part in np.split(table, np.cumsum(columns)[:-1], axis=1)
         )
-        return States(q, v, carried, moved.view(np.int64), *rest)
+        return States(q, v, carried, quanta.view(np.int64), *rest)
 
     def rewrite(self, before: Widths, samples: int, convert: Callable[[States], States]) -> None:
         """Replace `samples` records of the narrower widths `before` by what `convert` makes of them.

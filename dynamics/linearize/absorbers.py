@@ -49,10 +49,10 @@ def element_absorbers(
     for e, (first, end) in enumerate(zip(elements.first[:-1], elements.first[1:], strict=True)):
         if elements.law[e] == Law.ROTATING_FRAME:
             continue
-        own = slice(first, end)
-        tangent = cycles[e].tangent if e < len(cycles) else tangents[own, : end - first]
-        damping = local.viscous[own, : end - first]
-        yield _Absorber(*_element_part(system, e), arrays.direction[own], tangent, damping)
+        element_rows = slice(first, end)
+        tangent = cycles[e].tangent if e < len(cycles) else tangents[element_rows, : end - first]
+        damping = local.viscous[element_rows, : end - first]
+        yield _Absorber(*_element_part(system, e), arrays.direction[element_rows], tangent, damping)
 
 
 def _element_part(system: System, element: int) -> tuple[str, str]:
@@ -75,11 +75,11 @@ def _element_part(system: System, element: int) -> tuple[str, str]:
 def bearing_absorbers(system: System) -> Iterator[_Absorber]:
     """Yield linear bearings: those that are springs, and groups with matrices, on a massless housing one."""
     supports, seats, keep = system.supports, system.seats, system.freedoms.keep
-    held = ~supports.carried
-    for index in np.flatnonzero(held):
+    grounded = ~supports.carried
+    for index in np.flatnonzero(grounded):
         damping = np.diag(supports.damping[index])
         yield _damper(supports.name[index], "bearing", keep(supports.motion[index]), damping)
-    on = np.repeat(held[seats.support], SEAT)
+    on = np.repeat(grounded[seats.support], SEAT)
     for name, at in seats.group:
         yield _damper(name, "bearing", keep(seats.motion[at]), seats.damping[at, at] * on[at])
 
@@ -98,8 +98,8 @@ def body_absorbers(system: System) -> Iterator[_Absorber]:
     rotors, dampers = system.rotors, elastic_terms(system.rotors)[1]
     columns = [(rotor.shaft.name, "shaft", elastic_columns(rotors, i)) for i, rotor in enumerate(rotors)]
     columns += [(part.name, "housing", housing_columns(rotors, i)) for i, part in enumerate(rotors.housings)]
-    for name, kind, own in columns:
-        yield _damper(name, kind, system.freedoms.motion[own], dampers[own, own])
+    for name, kind, body_columns in columns:
+        yield _damper(name, kind, system.freedoms.motion[body_columns], dampers[body_columns, body_columns])
 
 
 def _damper(name: str, kind: str, rows: FloatArray, damping: FloatArray) -> _Absorber:

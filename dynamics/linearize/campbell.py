@@ -94,7 +94,7 @@ def _clear(linear: LinearSystem, before: WhirlModes, modes: WhirlModes) -> bool:
     if before.frequency.size != modes.frequency.size:
         return False
     alike, rows, columns = _assigned(linear, before, modes)
-    first, second = (_repeated(each.frequency) for each in (before, modes))
+    first, second = (_repeated(branch_modes.frequency) for branch_modes in (before, modes))
     together = np.maximum(first @ alike, alike @ second)
     return bool(np.min(together[rows, columns], initial=1.0) >= ALIKE)
 
@@ -137,10 +137,10 @@ def _assigned(
     linear: LinearSystem, before: WhirlModes, modes: WhirlModes
 ) -> tuple[FloatArray, IntArray, IntArray]:
     """Return the likeness of modes (a, b), and which of the first continues in which of the second."""
-    apart = np.abs(before.frequency[:, None] - modes.frequency)
-    apart = apart / (before.frequency[:, None] + modes.frequency)
+    distance = np.abs(before.frequency[:, None] - modes.frequency)
+    distance = distance / (before.frequency[:, None] + modes.frequency)
     alike = likeness(linear, before.shape, modes.shape)
-    rows, columns = scipy.optimize.linear_sum_assignment(TIE * apart - alike)
+    rows, columns = scipy.optimize.linear_sum_assignment(TIE * distance - alike)
     return alike, rows, columns
 
 

@@ -150,12 +150,12 @@ def _newton(linear: LinearSystem, matrices: SpeedMatrices, between: _Between) ->
         both = np.array([columns.real, columns.imag])
         if abs(np.linalg.det(both)) == 0.0 or not np.all(np.isfinite(both)):
             return None
-        change, moved = np.linalg.solve(both, [-1.0, 0.0])
-        x = -(by_value * (change + 1j * per_speed * moved) + by_speed * moved)
-        decay, speed = decay + float(change), speed + float(moved)
+        change, shift = np.linalg.solve(both, [-1.0, 0.0])
+        x = -(by_value * (change + 1j * per_speed * shift) + by_speed * shift)
+        decay, speed = decay + float(change), speed + float(shift)
         if not low - (high - low) <= speed <= high + (high - low):
             return None
-        if abs(complex(change, per_speed * moved)) <= CLOSE * abs(value):
+        if abs(complex(change, per_speed * shift)) <= CLOSE * abs(value):
             return _accepted(linear, matrices, between, x, complex(decay, per_speed * speed))
     return None
 

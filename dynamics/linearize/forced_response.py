@@ -225,11 +225,11 @@ def peaks(response: ForcedResponse) -> tuple[_Peak, ...]:
         gains = gain if quantity == "mesh_force" else [np.max(gain, axis=0, initial=0.0)] * len(names)
         inner = amplitude[:, 1:-1]
         maxima = np.nonzero((inner > amplitude[:, :-2]) & (inner >= amplitude[:, 2:]))
-        own = [
+        candidates = [
             _peak(response, quantity, names[k], (s + 1, h), float(amplitude[k, s + 1, h]), gains[k])
             for k, s, h in zip(*(index.tolist() for index in maxima), strict=True)
         ]
-        rows += sorted(own, key=lambda peak: -peak.amplitude)
+        rows += sorted(candidates, key=lambda peak: -peak.amplitude)
     return tuple(rows)
 
 

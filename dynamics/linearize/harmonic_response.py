@@ -201,8 +201,8 @@ def varied_floor(
     listed = 0.5 * np.sum(np.abs(shared[:, :3]) ** 2, axis=(1, 3))
     change = 0.5 * np.sum(np.abs(changed[:, :3]) ** 2, axis=(1, 3))
     part = np.sqrt(change / np.maximum(listed, 1e-300))
-    beside = 1.0 + np.sqrt(listed / np.maximum(squares, 1e-300))
-    return replace(floor, changed=2.0 * part * beside + part**2)
+    factor = 1.0 + np.sqrt(listed / np.maximum(squares, 1e-300))
+    return replace(floor, changed=2.0 * part * factor + part**2)
 
 
 def response_of(at: Excited, speed: FloatArray, steady: Steady) -> HarmonicResponse:
@@ -235,7 +235,7 @@ def response_of(at: Excited, speed: FloatArray, steady: Steady) -> HarmonicRespo
 
 def _static_loads(at: Excited, harmonics: IntArray) -> ComplexArray:
     """Return the harmonics of moments (N m) and friction (N) of the static mesh forces, (2, m, H)."""
-    elements, found = at.system.arrays.elements, np.zeros((2, len(at.cycles), harmonics.size), dtype=complex)
+    elements, loads = at.system.arrays.elements, np.zeros((2, len(at.cycles), harmonics.size), dtype=complex)
     laws = elements.laws.spatial_flank
     for mesh, cycle in enumerate(at.cycles):
         if elements.law[mesh] != Law.SPATIAL_FLANK:
@@ -244,10 +244,10 @@ def _static_loads(at: Excited, harmonics: IntArray) -> ComplexArray:
         tilting, _, sliding = (int(row) for row in laws.row[entry])
         if laws.per_face[entry] > 0.0:
             moment = -cycle.force[:, tilting] / laws.per_face[entry]
-            found[0, mesh] = harmonics_of(at, mesh, moment, harmonics)
+            loads[0, mesh] = harmonics_of(at, mesh, moment, harmonics)
         if sliding > 0:
-            found[1, mesh] = harmonics_of(at, mesh, cycle.force[:, sliding], harmonics)
-    return found
+            loads[1, mesh] = harmonics_of(at, mesh, cycle.force[:, sliding], harmonics)
+    return loads
 
 
 def _mesh_force(at: Excited, steady: Steady) -> ComplexArray:
@@ -300,12 +300,15 @@ def extremes(amplitude: ComplexArray, order: FloatArray) -> tuple[FloatArray, Fl
     """
     harmonic = _harmonics(tuple(order.tolist()))
     samples = 8 * int(harmonic[-1] + 1) if order.size else 1
-    own = harmonic % harmonic[:1] == 0
-    if samples > max(MOST_SAMPLES, MOST_PER_LINE * order.size) and not np.all(own):
+    whole = harmonic % harmonic[:1] == 0
+    if samples > max(MOST_SAMPLES, MOST_PER_LINE * order.size) and not np.all(whole):
         if order.size > MOST_PARTED:
             most = np.sum(np.abs(amplitude), axis=-1)
             return -most, most
-        parts = extremes(amplitude[..., own], order[own]), extremes(amplitude[..., ~own], order[~own])
+        parts = (
+            extremes(amplitude[..., whole], order[whole]),
+            extremes(amplitude[..., ~whole], order[~whole]),
+        )
         return parts[0][0] + parts[1][0], parts[0][1] + parts[1][1]
     if samples > MOST_SAMPLES:
         samples = next_fast_len(samples, real=True)

@@ -132,8 +132,8 @@ def _springs(
     ]
     for index, name in enumerate(supports.name):
         if index not in system.seats.support:
-            own = zip("xyz", moves[index], supports.stiffness[index], strict=True)
-            springs += [(f"{name}.{axis}", row, value) for axis, row, value in own]
+            direction_of = zip("xyz", moves[index], supports.stiffness[index], strict=True)
+            springs += [(f"{name}.{axis}", row, value) for axis, row, value in direction_of]
     for name, motion, matrix in _matrices(system, time, tangent):
         values, vectors = np.linalg.eigh(matrix)
         principal = zip(values, vectors.T, strict=True)

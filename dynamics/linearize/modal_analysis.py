@@ -146,8 +146,8 @@ class ModalAnalysis(ArrayFile):
         "free" for a motion that nothing resists.
         """
         motion = _named(_summed([kind for _, kind in freedom_parts(self.freedom)], kinetic_energy), "-")
-        held = _summed(self.spring_kind, strain_energy)
-        return f"{motion} on {_named(held, ' and ')}" if sum(held.values()) > 0.0 else f"{motion}, free"
+        energy = _summed(self.spring_kind, strain_energy)
+        return f"{motion} on {_named(energy, ' and ')}" if sum(energy.values()) > 0.0 else f"{motion}, free"
 
 
 def modal_analysis(

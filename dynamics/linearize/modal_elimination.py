@@ -52,10 +52,10 @@ class _ModalElimination:
         matrix[..., first:, first:] = np.eye(len(self.shape)) + receptance @ along
         answer = right[..., first:, :] * inverse[..., None]
         pushed = np.concatenate([right[..., :first, :], self.shape @ answer], axis=-2)
-        found = solved(matrix, pushed)
-        moved, along_rows = found[..., :first, :], found[..., first:, :]
-        force = into @ moved + along @ along_rows
-        return np.concatenate([moved, answer - (self.shape.T @ force) * inverse[..., None]], axis=-2)
+        solution = solved(matrix, pushed)
+        displacement, along_rows = solution[..., :first, :], solution[..., first:, :]
+        force = into @ displacement + along @ along_rows
+        return np.concatenate([displacement, answer - (self.shape.T @ force) * inverse[..., None]], axis=-2)
 
     def _receptance(self, inverse: ComplexArray) -> ComplexArray:
         """Return V diag(inverse) V^T (S, H, s, s) of `inverse` (S, H, b): one real product for all."""
@@ -72,8 +72,8 @@ class _ModalElimination:
         out, into, along = (_sum(omega, part) for part in (self.outward, self.inward, self.along))
         bodies, modes = moved[..., :first, :], moved[..., first:, :]
         rows = self.shape @ modes
-        own = _sum(omega, self.modal)[..., None] * modes
-        pushed = own + self.shape.T @ (into @ bodies + along @ rows)
+        modal_sum = _sum(omega, self.modal)[..., None] * modes
+        pushed = modal_sum + self.shape.T @ (into @ bodies + along @ rows)
         return np.concatenate([self._of_bodies(omega, swept) @ bodies + out @ rows, pushed], axis=-2)
 
     def _of_bodies(self, omega: FloatArray | ComplexArray, swept: Sequence[FloatArray]) -> ComplexArray:
@@ -112,21 +112,21 @@ def modal_elimination(
         return None
     back, square = np.linalg.pinv(shape), unit[first:] ** 2
     parts = []
-    for matrix, own in ((stiffness, modal.stiffness * square), (damping, modal.damping * square)):
+    for matrix, diagonal in ((stiffness, modal.stiffness * square), (damping, modal.damping * square)):
         out, into = matrix[:first, first:] @ back, back.T @ matrix[first:, :first]
-        coupled = matrix[first:, first:] - np.diag(own)
+        coupled = matrix[first:, first:] - np.diag(diagonal)
         along = back.T @ coupled @ back
         misses = (out @ shape - matrix[:first, first:], shape.T @ into - matrix[first:, :first])
-        missed = max(
+        error = max(
             np.max(np.abs(part), initial=0.0) for part in (*misses, shape.T @ along @ shape - coupled)
         )
-        if missed > ROUNDING * np.max(np.abs(matrix)):
+        if error > ROUNDING * np.max(np.abs(matrix)):
             return None
-        parts.append((out, into, along, own))
-    out, into, along, own = (np.stack(pair) for pair in zip(*parts, strict=True))
+        parts.append((out, into, along, diagonal))
+    out, into, along, diagonal = (np.stack(pair) for pair in zip(*parts, strict=True))
     bodies = np.stack([matrix[:first, :first] for matrix in (stiffness, damping, mass)])
     return _ModalElimination(
-        bodies, np.concatenate([own, np.diag(mass)[None, first:]]), shape, out, into, along
+        bodies, np.concatenate([diagonal, np.diag(mass)[None, first:]]), shape, out, into, along
     )
 
 

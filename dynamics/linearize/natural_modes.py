@@ -85,14 +85,16 @@ def unbounded(linear: LinearSystem, omega: FloatArray | ComplexArray) -> SolveEr
     It names the mode with the least distance from a frequency and damping, both in parts of its own.
     """
     modes, excited = natural_modes(linear), np.unique(np.abs(omega)) / (2.0 * math.pi)
-    held = np.flatnonzero(modes.frequency)
+    elastic = np.flatnonzero(modes.frequency)
     words = "a harmonic of the speed excites an undamped mode"
-    if held.size:
-        own = modes.frequency[held]
-        off = np.abs(excited[:, None] / own - 1.0) + modes.damping_ratio[held]
+    if elastic.size:
+        hertz = modes.frequency[elastic]
+        off = np.abs(excited[:, None] / hertz - 1.0) + modes.damping_ratio[elastic]
         at, mode = np.unravel_index(np.argmin(off), off.shape)
-        part = modes.freedom[int(np.argmax(modes.kinetic_energy[held[mode]]))]
-        words = f"{excited[at]:.6g} Hz excite the mode at {own[mode]:.6g} Hz, in which {part} moves most and "
-        words += f"whose damping ratio is {engineering(modes.damping_ratio[held[mode]], 1)}"
+        part = modes.freedom[int(np.argmax(modes.kinetic_energy[elastic[mode]]))]
+        words = (
+            f"{excited[at]:.6g} Hz excite the mode at {hertz[mode]:.6g} Hz, in which {part} moves most and "
+        )
+        words += f"whose damping ratio is {engineering(modes.damping_ratio[elastic[mode]], 1)}"
     advice = "Give the meshes, shafts or supports damping, or leave that speed out"
     return SolveError(f"the vibration is unbounded: {words}. {advice}")

@@ -41,9 +41,9 @@ class PowerBalance:
     @property
     def fields(self) -> dict[str, Any]:
         """The fields of `ForcedResponse` that hold it."""
-        own = {"source": self.source, "input": self.input, "sink": self.sink}
-        own |= {"sink_kind": self.kind, "loss": self.loss}
-        return {f"power_{name}": value for name, value in own.items()}
+        powers = {"source": self.source, "input": self.input, "sink": self.sink}
+        powers |= {"sink_kind": self.kind, "loss": self.loss}
+        return {f"power_{name}": value for name, value in powers.items()}
 
     @property
     def residual(self) -> float:
@@ -71,7 +71,7 @@ def power_balance(at: Excited, speed: FloatArray, steady: Steady) -> PowerBalanc
     lost: dict[tuple[str, str], list[FloatArray]] = {}
     loaded = False
     for part in speed_blocks(steady.omega.shape, steady.displacement.shape[2]):
-        u, own = steady.displacement[part], dict[tuple[str, str], FloatArray]()
+        u, absorbed = steady.displacement[part], dict[tuple[str, str], FloatArray]()
         rate = 1j * steady.omega[part, :, None] * u
         for name, cycle in zip(gained, at.cycles, strict=False):
             along = rate @ at.system.arrays.direction[cycle.rows].T
@@ -81,17 +81,17 @@ def power_balance(at: Excited, speed: FloatArray, steady: Steady) -> PowerBalanc
         loaded = loaded or bool(np.any(loads))
         gained.setdefault(LOADS, []).append(_power(loads, rate))
         for name, kind, power in _losses(at, speed[part], u, rate):
-            own[name, kind] = own.get((name, kind), 0.0) + power
-        for key, power in own.items():
+            absorbed[name, kind] = absorbed.get((name, kind), 0.0) + power
+        for key, power in absorbed.items():
             lost.setdefault(key, []).append(power)
     if not loaded:
         gained.pop(LOADS, None)
     return PowerBalance(
         tuple(gained),
-        np.array([np.concatenate(each) for each in gained.values()]).reshape(-1, *steady.omega.shape),
+        np.array([np.concatenate(powers) for powers in gained.values()]).reshape(-1, *steady.omega.shape),
         tuple(name for name, _ in lost),
         tuple(kind for _, kind in lost),
-        np.array([np.concatenate(each) for each in lost.values()]).reshape(-1, *steady.omega.shape),
+        np.array([np.concatenate(powers) for powers in lost.values()]).reshape(-1, *steady.omega.shape),
     )
 
 

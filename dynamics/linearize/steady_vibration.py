@@ -108,10 +108,10 @@ def heard_harmonics(
 ) -> IntArray:
     """Return those of `harmonics` (H,) that flanks, by any of `excitations`, or loads excite."""
     loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
-    heard = _heard(np.moveaxis(loads / at.linear.scale, 1, 2))
+    excited_lines = _heard(np.moveaxis(loads / at.linear.scale, 1, 2))
     for excitation in excitations:
-        heard = heard | _heard(flank_forces(at, harmonics, excitation)[1])
-    return harmonics[heard]
+        excited_lines = excited_lines | _heard(flank_forces(at, harmonics, excitation)[1])
+    return harmonics[excited_lines]
 
 
 def with_blocked(
@@ -126,8 +126,8 @@ def with_blocked(
 
 def _heard(force: ComplexArray) -> BoolArray:
     """Return which of H harmonics excite: of forces (..., H)."""
-    heard = np.max(np.abs(force), axis=tuple(range(force.ndim - 1)), initial=0.0)
-    return np.asarray(~(heard <= NOTHING * np.max(heard, initial=0.0)))  # what is not a number excites
+    largest = np.max(np.abs(force), axis=tuple(range(force.ndim - 1)), initial=0.0)
+    return np.asarray(~(largest <= NOTHING * np.max(largest, initial=0.0)))  # what is not a number excites
 
 
 def _pushed(at: Excited, force: ComplexArray) -> ComplexArray:
@@ -227,8 +227,8 @@ def flank_forces(
         for p, row in enumerate(range(cycle.rows.start, cycle.rows.stop)):
             if kind == "static_error":
                 # the first force is the same all along
-                held = harmonics_of(at, f, cycle.force[:, p], harmonics) if p else 0.0
-                force[row] = cycle.tangent[p, 0] * static[f] - held
+                preload = harmonics_of(at, f, cycle.force[:, p], harmonics) if p else 0.0
+                force[row] = cycle.tangent[p, 0] * static[f] - preload
             else:
                 force[row] = -harmonics_of(at, f, cycle.blocked[:, p], harmonics)
     return static, force
@@ -271,10 +271,12 @@ def _solve(
         per_meter[:, None] * a * per_meter for a in (linear.mass, linear.damping, linear.stiffness)
     )
     pushed = _right_sides(force, rows, beside) * per_meter[:, None]
-    kept, watched = 1 if rows is None else 1 + len(rows), at.system.arrays.direction[at.system.driving_rows]
+    saved, watched = 1 if rows is None else 1 + len(rows), at.system.arrays.direction[at.system.driving_rows]
     largest = np.zeros((len(watched), omega.shape[1]))
     # a freedom at a time in memory, as results have it
-    displacement = np.moveaxis(np.empty((pushed.shape[2], kept, *omega.shape), dtype=complex), (2, 3), (0, 1))
+    displacement = np.moveaxis(
+        np.empty((pushed.shape[2], saved, *omega.shape), dtype=complex), (2, 3), (0, 1)
+    )
     modal = at.system.arrays.sparse.modal
     first = _first_eliminated(modal.first, terms)
     small = modal_elimination(modal, per_meter, total, damping, mass) if first else None
@@ -301,9 +303,9 @@ def _solve(
                 miss = np.abs(small.product(omega[part], moved[..., :1], turning) - right[..., :1])
         left = np.maximum(left, np.max(miss, initial=0.0))  # not a number, if any of them is
         farthest = np.maximum(farthest, np.max(np.abs(moved[..., 0]), axis=(0, 1), initial=0.0))
-        displacement[part] = moved[..., :kept] * per_meter[:, None]
+        displacement[part] = moved[..., :saved] * per_meter[:, None]
         if beside is not None:
-            along = np.max(np.abs(moved[..., kept] * per_meter @ watched.T), axis=0, initial=0.0)
+            along = np.max(np.abs(moved[..., saved] * per_meter @ watched.T), axis=0, initial=0.0)
             largest = np.maximum(largest, along.T)
         if progress is not None:
             progress(min(part.stop, omega.shape[0]) / omega.shape[0])
@@ -347,6 +349,6 @@ def _dense(
     by_part = np.concatenate([np.ones_like(w), -w * w, 1j * w], axis=-1)
     matrix = (by_part[..., 0, :] @ parts.reshape(3, -1)).reshape(*w.shape[:2], size, size)
     matrix += turning_terms(w, swept)
-    moved = solved(matrix, right)
-    miss = np.abs(np.einsum("shij,shj->shi", matrix, moved[..., 0]) - right[..., 0])
-    return moved, np.asarray(miss, dtype=float)
+    u = solved(matrix, right)
+    miss = np.abs(np.einsum("shij,shj->shi", matrix, u[..., 0]) - right[..., 0])
+    return u, np.asarray(miss, dtype=float)

@@ -63,13 +63,13 @@ def whirl_modes(system: System, time: float = 0.0) -> WhirlModes:
 def whirl_modes_with(linear: LinearSystem, gyroscopic: FloatArray, stiffening: FloatArray) -> WhirlModes:
     """Return the modes of `linear` with the terms G and S (n, n) of its speeds."""
     eigenvalue, vector = _eigen(linear, linear.damping + gyroscopic, linear.stiffness + stiffening)
-    kept = np.flatnonzero(eigenvalue.imag > OSCILLATING * np.max(np.abs(eigenvalue), initial=0.0))
-    kept = kept[np.argsort(eigenvalue[kept].imag)]
-    shape = vector[: linear.scale.size, kept].T
+    oscillating = np.flatnonzero(eigenvalue.imag > OSCILLATING * np.max(np.abs(eigenvalue), initial=0.0))
+    oscillating = oscillating[np.argsort(eigenvalue[oscillating].imag)]
+    shape = vector[: linear.scale.size, oscillating].T
     largest = np.take_along_axis(shape, np.argmax(np.abs(shape), axis=1)[:, None], axis=1)
     return WhirlModes(
-        eigenvalue[kept].imag / (2.0 * math.pi),
-        -eigenvalue[kept].real / np.abs(eigenvalue[kept]),
+        eigenvalue[oscillating].imag / (2.0 * math.pi),
+        -eigenvalue[oscillating].real / np.abs(eigenvalue[oscillating]),
         shape / largest / linear.scale,
         linear.freedom,
         linear.scale,
@@ -185,7 +185,7 @@ def _senses(
         for rotor in range(len(system.rotors))
         for kinds in ((0, 1), (3, 4))
     ]
-    pairs = np.array([each for each in candidates if min(each[1:]) >= 0], dtype=np.int64).reshape(-1, 3)
+    pairs = np.array([pair for pair in candidates if min(pair[1:]) >= 0], dtype=np.int64).reshape(-1, 3)
     if pairs.size == 0 or not clusters:
         return np.zeros(len(clusters))
     (rotor, i, j), first = pairs.T, [cluster[0] for cluster in clusters]

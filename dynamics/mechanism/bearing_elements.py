@@ -78,8 +78,8 @@ def bearing_locations(
     locations = []
     for law in scene.bearing_laws:
         name, duty = law.bushing, duties[law.bushing]
-        own = law.rows(duty)
-        locations.append(BearingElement(name, support_index[name], own @ axes[name], own, law.typical(duty)))
+        way = law.rows(duty)
+        locations.append(BearingElement(name, support_index[name], way @ axes[name], way, law.typical(duty)))
     return tuple(locations)
 
 

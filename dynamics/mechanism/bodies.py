@@ -69,8 +69,8 @@ def modal_housing(housing: Housing) -> _ModalHousing:
     damping = np.diag(2.0 * housing.damping_ratio * np.sqrt(square))
     if housing.damping is not None:
         damping = shape.T @ _symmetric(housing.damping) @ shape
-        own = np.sqrt(np.maximum(np.diag(damping), 0.0))
-        damping = np.where(np.abs(damping) > ROUNDING * np.outer(own, own), damping, 0.0)
+        root = np.sqrt(np.maximum(np.diag(damping), 0.0))
+        damping = np.where(np.abs(damping) > ROUNDING * np.outer(root, root), damping, 0.0)
     seats = np.zeros((SEAT * len(housing.bushings), square.size))
     seats[list(housing.columns)] = shape[list(housing.own_columns)]
     of_seats = seats.reshape(-1, SEAT, square.size)

@@ -65,7 +65,7 @@ def seated(scene: Scene, rotors: Bodies) -> frozenset[str]:
 
 def condensed_housings(scene: Scene, rotors: Bodies) -> list[Housing]:
     """Return the housings that are no freedoms."""
-    return [part for part in scene.housings if part.name not in {own.name for own in rotors.housings}]
+    return [part for part in scene.housings if part.name not in {housing.name for housing in rotors.housings}]
 
 
 def _gather_seats(scene: Scene, rotors: Bodies, names: Sequence[str]) -> Seats:
@@ -122,10 +122,10 @@ def condense_housing(
     loss, follow = housing.matrices()[1], seat_compliance(housing, stiffness) @ stiffness
     left = np.eye(stiffness.shape[0]) - follow
     series = stiffness @ left
-    moved = follow[list(housing.columns)]
+    amplitudes = follow[list(housing.columns)]
     return (
         0.5 * (series + series.T),
-        left.T @ damping @ left + moved.T @ loss @ moved,
+        left.T @ damping @ left + amplitudes.T @ loss @ amplitudes,
         left.T @ preload,
     )
 
@@ -161,18 +161,18 @@ class Connections:
         Bearings in housings that move are force elements instead; their preload is in the constant force.
         """
         supports, seats, couplings = self.supports, self.seats, self.couplings
-        moves, held = freedoms.keep(supports.motion), ~supports.carried
-        stiffness = supports.matrix(supports.stiffness * held[:, None], moves, moves)
-        damping = supports.matrix(supports.damping * held[:, None], moves, moves)
+        moves, grounded = freedoms.keep(supports.motion), ~supports.carried
+        stiffness = supports.matrix(supports.stiffness * grounded[:, None], moves, moves)
+        damping = supports.matrix(supports.damping * grounded[:, None], moves, moves)
         if couplings.name:
             strains = freedoms.keep(couplings.motion)
             stiffness += couplings.matrix(couplings.stiffness, strains, strains)
             damping += couplings.matrix(couplings.damping, strains, strains)
         constant = np.einsum("bki,bk,bk->i", moves, supports.stiffness, supports.error)
         if seats.name:
-            strains, held = freedoms.keep(seats.motion), np.repeat(held[seats.support], SEAT)
-            stiffness += strains.T @ (seats.stiffness * held) @ strains
-            damping += strains.T @ (seats.damping * held) @ strains
+            strains, grounded = freedoms.keep(seats.motion), np.repeat(grounded[seats.support], SEAT)
+            stiffness += strains.T @ (seats.stiffness * grounded) @ strains
+            damping += strains.T @ (seats.damping * grounded) @ strains
             constant += seats.preload @ strains
         return stiffness, damping, constant
 
@@ -182,11 +182,11 @@ class Connections:
         With moments (`tilted`) both, (b, 6, n). Bearings in housings that move are force elements: 0 here.
         """
         supports, seats = self.supports, self.seats
-        held = (~supports.carried)[:, None]
-        rows = np.repeat(held[seats.support, 0], SEAT)
+        grounded = (~supports.carried)[:, None]
+        rows = np.repeat(grounded[seats.support, 0], SEAT)
         return (
-            self._pushed(freedoms, supports.stiffness * held, seats.stiffness * rows, tilted),
-            self._pushed(freedoms, supports.damping * held, seats.damping * rows, tilted),
+            self._pushed(freedoms, supports.stiffness * grounded, seats.stiffness * rows, tilted),
+            self._pushed(freedoms, supports.damping * grounded, seats.damping * rows, tilted),
         )
 
     def _pushed(

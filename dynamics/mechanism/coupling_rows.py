@@ -69,9 +69,9 @@ def _constant(scene: Scene, coupling: Coupling, matrix: FloatArray) -> FloatArra
     """Return what of a coupling's `matrix` (6, 6) no frame turns: all, or axial motion and rotation."""
     if not scene.crosses_frames(coupling):
         return matrix
-    kept = matrix.copy()
-    kept[list(ACROSS)], kept[:, list(ACROSS)] = 0.0, 0.0
-    return kept
+    across = matrix.copy()
+    across[list(ACROSS)], across[:, list(ACROSS)] = 0.0, 0.0
+    return across
 
 
 def full_matrix(matrix: Matrix | None, torsional: float) -> FloatArray:

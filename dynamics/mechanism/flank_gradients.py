@@ -72,10 +72,10 @@ def distance_gradient(scene: Scene, rotors: Bodies, index: int, line: LineOfActi
     """Return the derivative of the center distance at mid-face in all rotors' freedoms, (N,)."""
     mesh = scene.meshes[index]
     first, second = (scene.shaft(scene.gear(name).shaft) for name in (mesh.driver, mesh.driven))
-    apart = np.subtract(second.origin, first.origin)
-    apart = apart * np.array([1.0, 1.0, 0.0]) / np.hypot(apart[0], apart[1])
+    offset = np.subtract(second.origin, first.origin)
+    offset = offset * np.array([1.0, 1.0, 0.0]) / np.hypot(offset[0], offset[1])
 
     def pulled(center: FloatArray) -> FloatArray:
-        return np.concatenate([apart, cross((line.point[2] - center[2]) * UNIT_Z, apart)])
+        return np.concatenate([offset, cross((line.point[2] - center[2]) * UNIT_Z, offset)])
 
     return gear_row(scene, rotors, [(mesh.driver, lambda c: -pulled(c)), (mesh.driven, pulled)])

@@ -53,12 +53,12 @@ def find_freedoms(rotors: Bodies, kinematics: Kinematics, added: Sequence[Collec
         free = {*added[index], *rotor.rigid_kinds}
         if index not in kinematics.imposed:
             free.add("rotation")
-        own = [(kind, 6 * index + k, k == ROTATION) for k, kind in enumerate(FREEDOMS) if kind in free]
+        candidates = [(kind, 6 * index + k, k == ROTATION) for k, kind in enumerate(FREEDOMS) if kind in free]
         if rotor.elastic is not None:
             first, twists = elastic_columns(rotors, index).start, rotor.elastic.twists
-            own += [(kind, first + k, bool(twists[k])) for k, kind in enumerate(rotor.elastic.kinds)]
-            own.sort(key=lambda part: COUPLED.index(part[0].rstrip("_0123456789")))
-        freedoms += [(f"{rotor.shaft.name}.{kind}", column, turns) for kind, column, turns in own]
+            candidates += [(kind, first + k, bool(twists[k])) for k, kind in enumerate(rotor.elastic.kinds)]
+            candidates.sort(key=lambda part: COUPLED.index(part[0].rstrip("_0123456789")))
+        freedoms += [(f"{rotor.shaft.name}.{kind}", column, turns) for kind, column, turns in candidates]
     for index, housing in enumerate(rotors.housings):
         first = housing_columns(rotors, index).start
         freedoms += [(f"{housing.name}.{kind}", first + k, False) for k, kind in enumerate(housing.kinds)]

@@ -28,8 +28,8 @@ def with_couplings(scene: Scene, rotors: Sequence[Rotor]) -> tuple[Rotor, ...]:
     while True:
         for side in sides:
             coupling, floating, behind = side
-            index, held = scene.shaft_index(floating), supported[scene.shaft_index(behind)]
-            kinds = _lent(supported[index], held, coupling)
+            index, support = scene.shaft_index(floating), supported[scene.shaft_index(behind)]
+            kinds = _lent(supported[index], support, coupling)
             if kinds:
                 supported[index] = _holding(scene, supported[index], coupling, kinds)
                 sides.remove(side)
@@ -52,8 +52,8 @@ def _lent(rotor: Rotor, behind: Rotor, coupling: Coupling) -> tuple[int, ...]:
 
 
 def _holding(scene: Scene, rotor: Rotor, coupling: Coupling, kinds: tuple[int, ...]) -> Rotor:
-    matrix, kept = full_matrix(coupling.stiffness, 0.0)[:SEAT, :SEAT], np.zeros((SEAT, SEAT))
+    matrix, across = full_matrix(coupling.stiffness, 0.0)[:SEAT, :SEAT], np.zeros((SEAT, SEAT))
     at = np.ix_(kinds, kinds)
-    kept[at] = matrix[at]
+    across[at] = matrix[at]
     lever = float(scene.shaft(coupling.first).origin[2] + coupling.position - rotor.center[2])
-    return replace(rotor, curved=(*rotor.curved, (kept, lever)))
+    return replace(rotor, curved=(*rotor.curved, (across, lever)))

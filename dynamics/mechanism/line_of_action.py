@@ -70,8 +70,8 @@ def line_of_action(scene: Scene, index: int, sense: int) -> LineOfAction:
     field = f"meshes[{index}].driven"
     _check_fit(field, driver, driven)
     first, second = _center(scene, driver), _center(scene, driven)
-    apart = (second - first) * np.array([1.0, 1.0, 0.0])
-    distance = float(np.hypot(apart[0], apart[1]))
+    offset = (second - first) * np.array([1.0, 1.0, 0.0])
+    distance = float(np.hypot(offset[0], offset[1]))
     bases = _acting_base_radii(driver, driven)
     if distance <= bases:
         combined = "difference" if driver.internal or driven.internal else "sum"
@@ -79,7 +79,7 @@ def line_of_action(scene: Scene, index: int, sense: int) -> LineOfAction:
         raise InputError(field, Quantity(distance, "m"), bound)
     angle = math.acos(bases / distance)
     e = (
-        apart / distance * (-1.0 if driven.internal else 1.0)
+        offset / distance * (-1.0 if driven.internal else 1.0)
     )  # a pinion meets its ring away from the ring's center
     across = np.array([-e[1], e[0], 0.0])
     inwards = -1.0 if driver.internal else 1.0

@@ -43,11 +43,11 @@ def frame_phase(scene: Scene, kinematics: Kinematics, force: AppliedForce) -> Lo
     """Return how a force turns against the frame in which its shaft is described; None: it does not."""
     if not any((*force.force[:2], *force.moment[:2])):
         return None  # along the axis alone
-    own = scene.frame_index(scene.shaft_index(force.shaft))
+    frame = scene.frame_index(scene.shaft_index(force.shaft))
     shaft = None if force.turns_with is None else scene.shaft_index(force.turns_with)
-    if own is None and shaft is None:
+    if frame is None and shaft is None:
         return None
-    turned, back = _turns(kinematics, shaft), _turns(kinematics, own)
+    turned, back = _turns(kinematics, shaft), _turns(kinematics, frame)
     rate = tuple(a - b for a, b in zip(turned, back, strict=True))
     return LoadPhase(rate, 1, shaft, _position(force, force.turns_with))
 
@@ -109,9 +109,9 @@ def cage_turns(
             inner = Fraction(bearing.row.cage_ratio).limit_denominator(LARGEST_DENOMINATOR)
             shaft = scene.shaft_index(bearing.shaft)
             # the outer ring is at rest, so in a frame it turns against that
-            held = _turns(kinematics, scene.frame_index(shaft))
-            pairs = zip(kinematics.ratio[shaft], held, strict=True)
-            cages.append(tuple(inner * own - around for own, around in pairs))
+            pin_turn = _turns(kinematics, scene.frame_index(shaft))
+            pairs = zip(kinematics.ratio[shaft], pin_turn, strict=True)
+            cages.append(tuple(inner * turn - around for turn, around in pairs))
     return tuple(cages)
 
 

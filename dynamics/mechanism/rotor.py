@@ -100,8 +100,8 @@ class Rotor:
     @cached_property
     def _matrices(self) -> list[tuple[FloatArray, float]]:
         """Stiffness on top of the isotropic one, with levers; means of x and y are used."""
-        stated = [(b.added_stiffness, self.lever(b)) for b in self.supports if b.stiffness is not None]
-        return [*stated, *self.curved]
+        matrices = [(b.added_stiffness, self.lever(b)) for b in self.supports if b.stiffness is not None]
+        return [*matrices, *self.curved]
 
 
 def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:

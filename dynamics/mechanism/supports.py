@@ -46,8 +46,8 @@ def seat_axes(rotors: Sequence[Rotor], index: int, support: Bushing | PlanetBear
     """
     if not isinstance(support, PlanetBearing):
         return np.eye(SEAT)
-    apart = rotors[index].center - rotors[_carrier_of(rotors[index], support)].center
-    c, s = apart[:2] / np.hypot(apart[0], apart[1])
+    offset = rotors[index].center - rotors[_carrier_of(rotors[index], support)].center
+    c, s = offset[:2] / np.hypot(offset[0], offset[1])
     turn = np.eye(SEAT)
     turn[:2, :2] = turn[3:, 3:] = [[c, s], [-s, c]]
     return turn
@@ -57,8 +57,8 @@ def seat_error(rotors: Sequence[Rotor], index: int, support: Bushing | PlanetBea
     """Return the strains at which a support exerts no force, (5,): of a pin off its nominal position, m."""
     if not isinstance(support, PlanetBearing):
         return np.zeros(SEAT)
-    own = np.array([support.radial_error, support.tangential_error, 0.0, 0.0, 0.0])
-    return np.asarray(seat_axes(rotors, index, support).T @ own)
+    errors = np.array([support.radial_error, support.tangential_error, 0.0, 0.0, 0.0])
+    return np.asarray(seat_axes(rotors, index, support).T @ errors)
 
 
 def _carrier_of(rotor: Rotor, bearing: PlanetBearing) -> int:

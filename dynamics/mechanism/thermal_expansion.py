@@ -81,8 +81,8 @@ def _seat(warm: Temperatures, shaft: Shaft, position: float) -> Cylinder:
 
 def _wall(warm: Temperatures, bearing: RollingBearing) -> Cylinder:
     outer = bearing.fits.housing_diameter if bearing.fits else 1.0
-    own, strain = warm.housing_material, warm.housing_strain(bearing.seat_temperature)
-    return Cylinder(0.0, outer, own.youngs_modulus, own.poissons_ratio, strain)
+    material, strain = warm.housing_material, warm.housing_strain(bearing.seat_temperature)
+    return Cylinder(0.0, outer, material.youngs_modulus, material.poissons_ratio, strain)
 
 
 def _outgrown(scene: Scene, warm: Temperatures, bearing: Bushing | RollingBearing) -> float:
@@ -90,14 +90,14 @@ def _outgrown(scene: Scene, warm: Temperatures, bearing: Bushing | RollingBearin
 
     Where it is held along z it moves by nothing on the average: one bearing locates it, a pair shares.
     """
-    own = on_ground(scene, bearing.shaft)
-    held = [part.position for part in own if _holds_axially(scene, part)]
-    if not _holds_axially(scene, bearing) or len(held) < 2:
+    bearings = on_ground(scene, bearing.shaft)
+    axial_positions = [part.position for part in bearings if _holds_axially(scene, part)]
+    if not _holds_axially(scene, bearing) or len(axial_positions) < 2:
         return 0.0
     shaft = scene.shaft(bearing.shaft)
-    housing = float(np.mean([warm.housing_strain(part.seat_temperature) for part in own]))
+    housing = float(np.mean([warm.housing_strain(part.seat_temperature) for part in bearings]))
     strain = warm.strain(shaft.thermal_expansion, shaft.temperature) - housing
-    return strain * (bearing.position - float(np.mean(held)))
+    return strain * (bearing.position - float(np.mean(axial_positions)))
 
 
 def on_ground(scene: Scene, shaft: str) -> list[Bushing | RollingBearing]:

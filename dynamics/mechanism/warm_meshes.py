@@ -57,13 +57,13 @@ def _at_temperature(mesh: GearMesh, change: WarmMesh) -> GearMesh:
 
 def _along_axis(mesh: GearMesh, name: str, moved: float) -> float:
     """Return the operating point of a mesh along an axis of its table, moved if the table has the axis."""
-    own, knots = float(getattr(mesh, name)), np.asarray(getattr(mesh.table, name), dtype=float)
+    value, knots = float(getattr(mesh, name)), np.asarray(getattr(mesh.table, name), dtype=float)
     if knots.size == 1:
-        return own
-    if not knots[0] <= own + moved <= knots[-1]:
+        return value
+    if not knots[0] <= value + moved <= knots[-1]:
         bound = from_to(float(knots[0]), float(knots[-1]), "m")
-        raise InputError(name, own + moved, bound, "Widen this axis of the table to the temperatures.")
-    return own + moved
+        raise InputError(name, value + moved, bound, "Widen this axis of the table to the temperatures.")
+    return value + moved
 
 
 def _warm_mesh(scene: Scene, warm: Temperatures, index: int) -> WarmMesh:
@@ -85,9 +85,9 @@ def _warm_mesh(scene: Scene, warm: Temperatures, index: int) -> WarmMesh:
     grown = [warm.strain(gear.thermal_expansion, gear.temperature) for gear in gears]
     radii = [sign * gear.base_radius * distance / acting for sign, gear in zip(signs, gears, strict=True)]
     strain, slope = _wall_strain(scene, warm, index)
-    apart = distance * strain - sum(r * e for r, e in zip(radii, grown, strict=True))
-    backlash = 2.0 * math.sqrt(1.0 - (acting / distance) ** 2) * apart * (-1.0 if internal else 1.0)
-    return WarmMesh(apart, backlash, _misaligned(scene, index, slope))
+    growth = distance * strain - sum(r * e for r, e in zip(radii, grown, strict=True))
+    backlash = 2.0 * math.sqrt(1.0 - (acting / distance) ** 2) * growth * (-1.0 if internal else 1.0)
+    return WarmMesh(growth, backlash, _misaligned(scene, index, slope))
 
 
 def _wall_strain(scene: Scene, warm: Temperatures, index: int) -> tuple[float, float]:
@@ -110,13 +110,13 @@ def _wall_strain(scene: Scene, warm: Temperatures, index: int) -> tuple[float, f
 
 
 def _along(scene: Scene, warm: Temperatures, shaft: Shaft, position: float) -> tuple[float, float]:
-    own = on_ground(scene, shaft.name)
-    strain = [warm.housing_strain(part.seat_temperature) for part in own] or [warm.housing_strain()]
-    at = [part.position for part in own] or [position]
+    bearings = on_ground(scene, shaft.name)
+    strain = [warm.housing_strain(part.seat_temperature) for part in bearings] or [warm.housing_strain()]
+    at = [part.position for part in bearings] or [position]
     if np.ptp(strain) == 0.0 or np.ptp(at) == 0.0:
         return float(np.mean(strain)), 0.0
-    slope, here = np.polyfit(np.subtract(at, position), strain, 1)
-    return float(here), float(slope)
+    slope, mean_strain = np.polyfit(np.subtract(at, position), strain, 1)
+    return float(mean_strain), float(slope)
 
 
 def _misaligned(scene: Scene, index: int, slope: float) -> float:
@@ -126,6 +126,6 @@ def _misaligned(scene: Scene, index: int, slope: float) -> float:
     sense = solve_kinematics(scene).mesh_sense[index]
     line, mesh = line_of_action(scene, index, sense), scene.meshes[index]
     first, second = (scene.shaft(scene.gear(name).shaft).origin for name in (mesh.driver, mesh.driven))
-    apart: FloatArray = np.subtract(second, first) * np.array([1.0, 1.0, 0.0])
-    tilt = slope * np.cross(UNIT_Z, apart)
+    offset: FloatArray = np.subtract(second, first) * np.array([1.0, 1.0, 0.0])
+    tilt = slope * np.cross(UNIT_Z, offset)
     return -float(tilt @ misalignment_per_tilt(scene, index, line, sense))

@@ -65,18 +65,18 @@ class PackedTables(NamedTuple):
 
     def overwrite(self, flank: int, table: MeshTable) -> None:
         """Write another table of the same positions and number of levels into the arrays of a flank's."""
-        own = _part(self, flank)
-        own.level[:] = table.level
-        own.row[:] = _rows(table, np.diff(own.knot))
-        own.energy[:] = energy_below(own.row, own.level)
+        part = _part(self, flank)
+        part.level[:] = table.level
+        part.row[:] = _rows(table, np.diff(part.knot))
+        part.energy[:] = energy_below(part.row, part.level)
 
 
 def kept_knots(knots: int, every: int) -> IntArray:
     """Return the knots that stay, and the one that closes the period."""
-    kept = np.arange(0, knots, every)
-    if kept.size < LEAST:
-        kept = np.arange(knots)
-    return np.append(kept, knots)
+    indices = np.arange(0, knots, every)
+    if indices.size < LEAST:
+        indices = np.arange(knots)
+    return np.append(indices, knots)
 
 
 class _Table(NamedTuple):
@@ -106,18 +106,18 @@ def _part(tables: PackedTables, flank: int) -> _Table:
 def _decimated(table: _Table, every: int) -> _Table:
     """Return a table on each `every`-th knot."""
     knot, level = table.knot, table.level
-    kept = kept_knots(knot.size - 1, every)
-    if kept.size == knot.size:
+    indices = kept_knots(knot.size - 1, every)
+    if indices.size == knot.size:
         return table
     cubic = table.row.reshape(knot.size - 1, level.size, 2, 4)
-    start, stop, width = kept[:-1], kept[1:] - 1, np.diff(knot)[:, None, None]
-    first, last, span = cubic[start], cubic[stop], np.diff(knot[kept])[:, None, None]
+    start, stop, width = indices[:-1], indices[1:] - 1, np.diff(knot)[:, None, None]
+    first, last, span = cubic[start], cubic[stop], np.diff(knot[indices])[:, None, None]
     value, rise = first[..., 0], first[..., 1] / width[start] * span
     fall = (last @ np.array([0.0, 1.0, 2.0, 3.0])) / width[stop] * span
     step = last.sum(axis=-1) - value
     rows = np.stack([value, rise, 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step], axis=-1)
     rows = np.ascontiguousarray(rows.reshape(-1, 8))
-    return _Table(knot[kept], _bucket_starts(knot[kept]), rows, level, energy_below(rows, level))
+    return _Table(knot[indices], _bucket_starts(knot[indices]), rows, level, energy_below(rows, level))
 
 
 def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
@@ -127,8 +127,8 @@ def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
 
 @identity_cached
 def _packed(tables: tuple[MeshTable, ...]) -> PackedTables:
-    kept = {id(table): table for table in tables}  # flanks of one table share its part
-    parts = {key: _laid_out(table) for key, table in kept.items()}
+    distinct = {id(table): table for table in tables}  # flanks of one table share its part
+    parts = {key: _laid_out(table) for key, table in distinct.items()}
     index = {key: k for k, key in enumerate(parts)}
     shift = np.array([float(table.position[0]) for table in tables])
     period = np.array([float(table.period) for table in tables])

@@ -116,8 +116,8 @@ def _load_arm(laws: SpatialFlankLaws, entry: int, cell: Cell, force: GridForce) 
     if laws.per_face[entry] == 0.0:
         return Lever(0.0, 0.0, 0.0, 0.0)
     lever, per_face = _lever(laws, entry, cell, force, LOAD_ARM), laws.per_face[entry]
-    moved = lever.value - laws.mid_face[entry]
-    return Lever(moved * per_face, lever.d * per_face, lever.m * per_face, lever.a * per_face)
+    offset = lever.value - laws.mid_face[entry]
+    return Lever(offset * per_face, lever.d * per_face, lever.m * per_face, lever.a * per_face)
 
 
 @inner
@@ -210,21 +210,21 @@ def _in_proportion(
     tangent: FloatArray,
     viscous: FloatArray,
     row: int,
-    here: int,
+    target: int,
     rows: int,
     factor: Lever,
     to_m: int,
     to_a: int,
 ) -> None:
-    force[here] = factor.value * force[row]
+    force[target] = factor.value * force[row]
     for k in range(rows):
-        tangent[here, k] = factor.value * tangent[row, k]
-        viscous[here, k] = factor.value * viscous[row, k]
-    tangent[here, 0] += factor.d * force[row]
+        tangent[target, k] = factor.value * tangent[row, k]
+        viscous[target, k] = factor.value * viscous[row, k]
+    tangent[target, 0] += factor.d * force[row]
     if to_m > 0:
-        tangent[here, to_m] += factor.m * force[row]
+        tangent[target, to_m] += factor.m * force[row]
     if to_a > 0:
-        tangent[here, to_a] += factor.a * force[row]
+        tangent[target, to_a] += factor.a * force[row]
 
 
 @routine

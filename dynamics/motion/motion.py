@@ -121,8 +121,8 @@ def add_body_motion(
     """Do what `add_motion` does without modal freedoms, which `q` and `v` need not have."""
     bodies, turn = system.sparse.bodies, system.sparse.turn
     for r in range(coordinate.size):
-        moved, moving = row_products(bodies, r, bodies.weight, q, bodies.weight, v)
-        coordinate[r], rate[r] = system.elements.offset[r] + moved, moving
+        displacement, moving = row_products(bodies, r, bodies.weight, q, bodies.weight, v)
+        coordinate[r], rate[r] = system.elements.offset[r] + displacement, moving
     for m in range(position.size):
         position[m] += row_product(turn, turn.weight, m, q)
 

@@ -185,8 +185,8 @@ def _knots(system: System, period: CommonPeriod) -> FloatArray:
         passed = (knot[:, None] + span * np.arange(cycles)) / pitches
         phases.append(np.ravel(passed) % 1.0)
     phase = np.sort(np.concatenate(phases))
-    kept = np.diff(phase, prepend=-1.0) > SAME
-    phase = phase[kept]
+    distinct = np.diff(phase, prepend=-1.0) > SAME
+    phase = phase[distinct]
     phase[-1] = 1.0
     return phase
 
@@ -245,10 +245,10 @@ def _stiffest(system: System) -> float:
 
 def _resonant_gain(system: System, modes: Modes) -> float:
     """Return by how much loads move a system without meshes more at a resonance than at rest; with them 1."""
-    held = modes.damping_ratio[modes.frequency > 0.0]
-    if system.scene.meshes or not held.size:
+    ratios = modes.damping_ratio[modes.frequency > 0.0]
+    if system.scene.meshes or not ratios.size:
         return 1.0
-    return min(MOST_GAIN, 0.5 / max(float(np.min(held)), 0.5 / MOST_GAIN))
+    return min(MOST_GAIN, 0.5 / max(float(np.min(ratios)), 0.5 / MOST_GAIN))
 
 
 @dataclass(frozen=True)

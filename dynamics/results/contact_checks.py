@@ -31,14 +31,14 @@ class ContactChecks:
         before = self._samples
         self._samples += position.shape[1]
         for index in self._watched:
-            apart = least[index] <= 0.0
-            if self._first[index] < 0 and np.any(apart):
-                self._first[index] = before + int(np.argmax(apart))
+            parted = least[index] <= 0.0
+            if self._first[index] < 0 and np.any(parted):
+                self._first[index] = before + int(np.argmax(parted))
             touch = np.empty(position.shape[1])
             table = self._system.arrays.elements.laws.flank.table
             static_deflections(table, index, position[index], 0.0, touch)
             self._parted[index] += np.count_nonzero(force[index] <= 0.0)
-            gap = float(np.max((touch - deflection[index])[apart], initial=0.0))
+            gap = float(np.max((touch - deflection[index])[parted], initial=0.0))
             self._gap[index] = max(self._gap[index], gap)
 
     def checks(self) -> list[Check]:

@@ -109,9 +109,9 @@ def histories(
     those of the unfiltered motion.
     """
     scene = system.scene
-    q, v, moved = signals.q, signals.v, states.moved
+    q, v, quanta = signals.q, signals.v, states.moved
     outputs = scene.outputs
-    force, moment = _on_the_ground(system, laws, signals.force, q, v, moved)
+    force, moment = _on_the_ground(system, laws, signals.force, q, v, quanta)
     driving = system.driving_rows
     return {
         "time": time,
@@ -140,7 +140,7 @@ def histories(
         "displacement": np.ascontiguousarray(q.T) if outputs.displacements else np.empty((0, time.size)),
         "velocity": np.ascontiguousarray(v.T) if outputs.displacements else np.empty((0, time.size)),
         "nominal_force": system.flanks.nominal_force,
-        **_accelerations(system, laws, time, signals, moved),
+        **_accelerations(system, laws, time, signals, quanta),
     }
 
 

@@ -39,9 +39,12 @@ class HeldOperatingPointChecks:
     def see(self, _series: SeriesBlock, states: States) -> None:
         """Widen the range of the operating points by a block of states."""
         for k, (_, _, gradient) in enumerate(self._watched):
-            moved = states.q @ gradient[: states.q.shape[1]]
+            point = states.q @ gradient[: states.q.shape[1]]
             low, high = self._range[k]
-            self._range[k] = (float(np.min(moved, initial=low)), float(np.max(moved, initial=high)))
+            self._range[k] = (
+                float(np.min(point, initial=low)),
+                float(np.max(point, initial=high)),
+            )
 
     def checks(self) -> list[Check]:
         """Return one per mesh and axis.

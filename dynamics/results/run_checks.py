@@ -165,14 +165,14 @@ class RunChecks:
     """All checks of a run on its own model; `further` ones look at it too."""
 
     def __init__(self, system: System, further: Sequence[_RunCheck] = ()) -> None:
-        own = (ContactChecks, _AxisChecks, _ForceChecks, BearingLoadChecks, HeldOperatingPointChecks)
+        kinds = (ContactChecks, _AxisChecks, _ForceChecks, BearingLoadChecks, HeldOperatingPointChecks)
         small = SmallMotionCheck(system)
-        self._all: tuple[_RunCheck, ...] = (*(kind(system) for kind in own), small, *further)
+        self._all: tuple[_RunCheck, ...] = (*(kind(system) for kind in kinds), small, *further)
 
     def see(self, series: SeriesBlock, states: States) -> None:
         """Take a block of unfiltered series, and the states they are of."""
-        for each in self._all:
-            each.see(series, states)
+        for check in self._all:
+            check.see(series, states)
 
     def checks(self) -> list[Check]:
         """Return the checks of all that was seen."""

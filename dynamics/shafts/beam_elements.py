@@ -99,14 +99,15 @@ def _bending(length: FloatArray, at: _Along, inside: _Along) -> tuple[FloatArray
         np.sum(step * far / at.bent, axis=1),
         np.sum(step / at.bent, axis=1),
     )
-    one, none = np.ones_like(length), np.zeros_like(length)
+    unit, zero = np.ones_like(length), np.zeros_like(length)
     relative = np.stack(
-        [np.stack([-one, -length, one, none], axis=-1), np.stack([none, -one, none, one], axis=-1)], axis=1
+        [np.stack([-unit, -length, unit, zero], axis=-1), np.stack([zero, -unit, zero, unit], axis=-1)],
+        axis=1,
     )
-    held = np.linalg.solve(tip, relative)
-    stiffness = relative.transpose(0, 2, 1) @ held
+    clamped = np.linalg.solve(tip, relative)
+    stiffness = relative.transpose(0, 2, 1) @ clamped
     s = length[:, None] * _SHARE
-    shape = _deflection(length, inside) @ held[:, None]
+    shape = _deflection(length, inside) @ clamped[:, None]
     shape[..., 0, 0] += 1.0
     shape[..., 0, 1] += s
     shape[..., 1, 1] += 1.0
@@ -134,8 +135,8 @@ def _rod(
     """Mass and stiffness (k, 2, 2) of what is pulled or twisted; `at`, `inside` stiffnesses of a length."""
     step = length[:, None] * _WEIGHT
     whole = np.sum(step / at, axis=1)
-    moved = np.sum(length[:, None, None] * _SHARE[:, None] * _WEIGHT / inside, axis=-1) / whole[:, None]
-    shape = np.stack([1.0 - moved, moved], axis=-1)
+    extension = np.sum(length[:, None, None] * _SHARE[:, None] * _WEIGHT / inside, axis=-1) / whole[:, None]
+    shape = np.stack([1.0 - extension, extension], axis=-1)
     stiffness = np.array([[1.0, -1.0], [-1.0, 1.0]]) / whole[:, None, None]
     return np.einsum("kpi,kp,kpj->kij", shape, step * mass, shape), stiffness
 

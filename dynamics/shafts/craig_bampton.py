@@ -54,27 +54,29 @@ def craig_bampton(
     """
     from scipy.linalg import eigh  # noqa: PLC0415 (start-up time)
 
-    held = np.asarray(interface, dtype=np.int64)
-    if np.unique(held).size != held.size:
-        raise InputError("interface", held.tolist(), "without repeats")
+    fixed = np.asarray(interface, dtype=np.int64)
+    if np.unique(fixed).size != fixed.size:
+        raise InputError("interface", fixed.tolist(), "without repeats")
     limit = math.inf if highest == math.inf else positive("highest", highest)
-    inside = np.setdiff1d(np.arange(mass.shape[0]), held)
-    own, at = np.ix_(inside, inside), np.ix_(inside, held)
+    inside = np.setdiff1d(np.arange(mass.shape[0]), fixed)
+    block, at = np.ix_(inside, inside), np.ix_(inside, fixed)
     try:
-        square, shape = eigh(stiffness[own], mass[own]) if inside.size else (np.zeros(0), np.zeros((0, 0)))
+        square, shape = (
+            eigh(stiffness[block], mass[block]) if inside.size else (np.zeros(0), np.zeros((0, 0)))
+        )
     except np.linalg.LinAlgError as error:
         raise InputError("mass", "singular", "positive definite inside the interface") from error
     if square.size and square[0] <= 1e-12 * square[-1]:
         suggestion = "Add freedoms: inside, nothing may move as a rigid body."
-        raise InputError("interface", held.tolist(), "one that holds the body", suggestion)
+        raise InputError("interface", fixed.tolist(), "one that holds the body", suggestion)
     frequency = np.sqrt(square) / (2.0 * math.pi)
-    kept = frequency <= limit
-    motion = np.zeros((mass.shape[0], held.size + int(np.count_nonzero(kept))))
-    motion[held, np.arange(held.size)] = 1.0
+    low = frequency <= limit
+    motion = np.zeros((mass.shape[0], fixed.size + int(np.count_nonzero(low))))
+    motion[fixed, np.arange(fixed.size)] = 1.0
     if inside.size:
-        motion[inside, : held.size] = -shape @ ((shape.T @ stiffness[at]) / square[:, None])
-        motion[inside, held.size :] = shape[:, kept]
-    return _ReducedBody(motion, motion.T @ mass @ motion, motion.T @ stiffness @ motion, frequency[kept])
+        motion[inside, : fixed.size] = -shape @ ((shape.T @ stiffness[at]) / square[:, None])
+        motion[inside, fixed.size :] = shape[:, low]
+    return _ReducedBody(motion, motion.T @ mass @ motion, motion.T @ stiffness @ motion, frequency[low])
 
 
 @dataclass(frozen=True)
@@ -123,7 +125,7 @@ def elastic_modes(family: Family, acting: Sequence[int], highest: float) -> Elas
     freedom held, whose motion is imposed, the motions that leave it at rest. `highest` is the frequency of
     interest, Hz.
     """
-    mass, stiffness, rigid, held = family.mass, family.stiffness, family.rigid, family.held
+    mass, stiffness, rigid, fixed = family.mass, family.stiffness, family.rigid, family.held
     interface = np.array(sorted(set(acting)), dtype=np.int64)
     if interface.size == 0:
         n, k = rigid.shape
@@ -132,8 +134,8 @@ def elastic_modes(family: Family, acting: Sequence[int], highest: float) -> Elas
     for cut_off in CUT_OFFS:
         reduced = craig_bampton(mass, stiffness, interface, cut_off * highest)
         none = np.zeros((reduced.frequency.size, rigid.shape[1]))  # rigid motions are of the interface alone
-        moved, at = np.concatenate([rigid[interface], none]), np.flatnonzero(interface == held)
-        square, vectors = _split(reduced.mass, reduced.stiffness, moved, int(at[0]) if held >= 0 else -1)
+        motion, at = np.concatenate([rigid[interface], none]), np.flatnonzero(interface == fixed)
+        square, vectors = _split(reduced.mass, reduced.stiffness, motion, int(at[0]) if fixed >= 0 else -1)
         truncation = worst_error(_hertz(square), whole, highest)
         if truncation <= TRUNCATION:
             break
@@ -144,7 +146,7 @@ def elastic_modes(family: Family, acting: Sequence[int], highest: float) -> Elas
         shape,
         modal,
         modal * square,
-        shape.T @ mass @ rigid if held >= 0 else np.zeros((square.size, rigid.shape[1])),
+        shape.T @ mass @ rigid if fixed >= 0 else np.zeros((square.size, rigid.shape[1])),
         reduced.frequency.size,
         cut_off * highest,
         truncation,
@@ -155,11 +157,11 @@ def free_frequencies(family: Family) -> FloatArray:
     """Return the elastic natural frequencies of a whole family, Hz."""
     from scipy.linalg import eigh  # noqa: PLC0415 (start-up time)
 
-    mass, held = family.mass, family.held
-    kept = np.delete(np.arange(mass.shape[0]), held) if held >= 0 else np.arange(mass.shape[0])
-    own = np.ix_(kept, kept)
-    square = eigh(family.stiffness[own], mass[own], eigvals_only=True)
-    return _hertz(square if held >= 0 else square[family.rigid.shape[1] :])
+    mass, fixed = family.mass, family.held
+    free = np.delete(np.arange(mass.shape[0]), fixed) if fixed >= 0 else np.arange(mass.shape[0])
+    block = np.ix_(free, free)
+    square = eigh(family.stiffness[block], mass[block], eigvals_only=True)
+    return _hertz(square if fixed >= 0 else square[family.rigid.shape[1] :])
 
 
 def worst_error(coarse: FloatArray, exact: FloatArray, highest: float) -> float:

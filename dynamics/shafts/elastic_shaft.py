@@ -55,15 +55,15 @@ def _families(
     bent = (first[:, None] + np.array(ACROSS)).ravel()
     ones = np.ones((nodes, 1))
     tilted = np.stack([beam.position - beam.position.mean(), np.ones(nodes)], axis=1).ravel()
-    moved = np.stack([np.ones(nodes), np.zeros(nodes)], axis=1).ravel()
+    rigid_motion = np.stack([np.ones(nodes), np.zeros(nodes)], axis=1).ravel()
     turned = -1 if held is None else int(np.argmin(np.abs(beam.position - held)))
 
     def part(columns: IntArray, rigid: FloatArray, at: int = -1) -> Family:
-        own = np.ix_(columns, columns)
-        return Family(mass[own], beam.stiffness[own], rigid, at)
+        block = np.ix_(columns, columns)
+        return Family(mass[block], beam.stiffness[block], rigid, at)
 
     return (
-        part(bent, np.stack([moved, tilted], axis=1)),
+        part(bent, np.stack([rigid_motion, tilted], axis=1)),
         part(first + ALONG, ones),
         part(first + TURN, ones, turned),
     )

@@ -88,8 +88,8 @@ def timoshenko_beam(
 def _nodes(ends: FloatArray, stations: Sequence[float], longest: float) -> FloatArray:
     """Return ends of sections, `stations`, and equal parts between them where these are too long."""
     positions = np.sort(np.concatenate([ends, np.asarray(stations, dtype=float)]))
-    apart = np.concatenate([[True], np.diff(positions) > SAME_POSITION * ends[-1]])
-    nodes = positions[apart]
+    distinct_nodes = np.concatenate([[True], np.diff(positions) > SAME_POSITION * ends[-1]])
+    nodes = positions[distinct_nodes]
     parts = []
     for left, right in pairwise(nodes):
         count = max(math.ceil((right - left) / longest * (1.0 - SAME_POSITION)), 1)
@@ -105,13 +105,13 @@ def _coupled(elements: ElementMatrices) -> tuple[FloatArray, FloatArray]:
     for first, tilt, slope in ((0, 4, 1.0), (1, 3, -1.0)):
         sign = np.array([1.0, slope, 1.0, slope])
         sign = sign[:, None] * sign
-        own = np.array([first, tilt, first + PER_NODE, tilt + PER_NODE])
-        mass[:, own[:, None], own] = sign * elements.bending_mass
-        stiffness[:, own[:, None], own] = sign * elements.bending
+        dofs = np.array([first, tilt, first + PER_NODE, tilt + PER_NODE])
+        mass[:, dofs[:, None], dofs] = sign * elements.bending_mass
+        stiffness[:, dofs[:, None], dofs] = sign * elements.bending
     for first, rod_mass, rod in (
         (2, elements.axial_mass, elements.axial),
         (5, elements.torsional_mass, elements.torsion),
     ):
-        own = np.array([first, first + PER_NODE])
-        mass[:, own[:, None], own], stiffness[:, own[:, None], own] = rod_mass, rod
+        dofs = np.array([first, first + PER_NODE])
+        mass[:, dofs[:, None], dofs], stiffness[:, dofs[:, None], dofs] = rod_mass, rod
     return mass, stiffness

@@ -191,8 +191,8 @@ def _content(element: MeshElement, name: str) -> dict[str, bytes]:
     # of each kind those that can be set first
     chosen = (*_inputs(element), *_parameters(element), *_REAL_OUTPUTS, *_INTEGER_OUTPUTS)
     table = _table_content(element.table)
-    own = {item.name: item.read_bytes() for item in files(__package__).joinpath("sources").iterdir()}
-    compiled = sorted(file for file in own if file.endswith(".c"))
+    sources = {item.name: item.read_bytes() for item in files(__package__).joinpath("sources").iterdir()}
+    compiled = sorted(file for file in sources if file.endswith(".c"))
 
     def described(guid: str) -> dict[str, bytes]:
         return {
@@ -201,7 +201,7 @@ def _content(element: MeshElement, name: str) -> dict[str, bytes]:
         }
 
     content = {
-        **{f"sources/{file}": text for file, text in own.items() if file.endswith((".c", ".h"))},
+        **{f"sources/{file}": text for file, text in sources.items() if file.endswith((".c", ".h"))},
         f"resources/{TABLE_FILE}": MAGIC + _identity_of(table).encode("ascii") + table,
     }
     digest, whole = hashlib.sha256(), {**content, **described("")}
