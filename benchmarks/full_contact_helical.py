@@ -21,9 +21,9 @@ from benchmarks.marked_section import replace_section
 from benchmarks.pair_cases import PairCase
 from benchmarks.recorded_peer import record, recorded
 from fe_contact import FlankModification, Gear, GearPair, ste_database
-from fe_contact.full_contact import solve_full_contact_helical
 from fe_contact.geometry.backlash import reference_center_distance
 from fe_contact.types import FloatArray
+from verification.full_contact import solve_full_contact_helical
 
 ROOT = Path(__file__).parents[1]
 REFERENCE = "full_contact_helical.csv"

@@ -17,7 +17,9 @@ from scipy.sparse.linalg import splu
 
 from benchmarks.figures import Figure
 from fe_contact.contact.free_end import FreeEnds, end_excess, end_softness
-from fe_contact.full_contact.over_face.extruded_stiffness import (
+from fe_contact.material import Material
+from fe_contact.types import BoolArray, FloatArray, IntArray
+from verification.full_contact.over_face.extruded_stiffness import (
     ExtrudedStiffness,
     Layers,
     X,
@@ -26,8 +28,6 @@ from fe_contact.full_contact.over_face.extruded_stiffness import (
     extruded_stiffness,
     graded_layers,
 )
-from fe_contact.material import Material
-from fe_contact.types import BoolArray, FloatArray, IntArray
 
 SUBJECT = "free end of a quarter space"
 MODULUS = 1e9
