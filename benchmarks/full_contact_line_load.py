@@ -32,7 +32,7 @@ from verification.full_contact import (
     solve_full_contact_helical,
     solve_full_contact_over_face,
 )
-from verification.full_contact.table import LineLoad
+from verification.full_contact.line_load import LineLoad
 
 REFERENCE = Path(__file__).parents[1] / "tests" / "reference" / "full_contact_line_load.csv"
 SUBJECT = "line load at free ends against full contact"

@@ -21,13 +21,12 @@ from fe_contact.material import Material
 from fe_contact.types import BoolArray, FloatArray, IntArray
 from verification.full_contact.over_face.extruded_stiffness import (
     ExtrudedStiffness,
-    Layers,
     X,
     Y,
     Z,
     extruded_stiffness,
-    graded_layers,
 )
+from verification.full_contact.over_face.layers import Layers, graded_layers
 
 SUBJECT = "free end of a quarter space"
 MODULUS = 1e9

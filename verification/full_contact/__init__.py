@@ -3,7 +3,7 @@
 It shares geometry and mesher with the rest of the project, and nothing of its contact.
 """
 
-from verification.full_contact.condensation.sites import Resolution
+from verification.full_contact.condensation.resolution import Resolution
 from verification.full_contact.condensation.solve import solve_full_contact
 from verification.full_contact.helical.solve import HelicalMesh, solve_full_contact_helical
 from verification.full_contact.over_face.solve import solve_full_contact_over_face

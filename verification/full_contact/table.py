@@ -2,55 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from bounds.brief import brief
 from fe_contact.types import FloatArray, IntArray, Json, Status
-
-# The transmission error of a pair at one position under one torque, by full finite-element contact.
-
+from verification.full_contact.line_load import LineLoad
 
 NOTHING = float("nan")
-_SAMPLES = 4001
-"""Places of a load over the face between which its means are searched."""
-
-
-@dataclass(frozen=True)
-class LineLoad:
-    """Load of a pair of teeth along the face, linear between stations."""
-
-    ahead: int
-    """Pair index."""
-    face_position: FloatArray
-    """From mid-face, m. Shape (k,)."""
-    load: FloatArray
-    """Normal force per length of contact line, N/m. Shape (k,)."""
-
-    def largest_mean(self, length: float) -> float:
-        """Return the largest mean over a length of the face within the stations, N/m."""
-        face = np.linspace(self.face_position[0], self.face_position[-1], _SAMPLES)
-        load = np.interp(face, self.face_position, self.load)
-        force = np.concatenate([[0.0], np.cumsum(0.5 * (load[1:] + load[:-1]) * np.diff(face))])
-        start = np.linspace(face[0], face[-1] - length, _SAMPLES)
-        within = np.interp(start + length, face, force) - np.interp(start, face, force)
-        return float(within.max() / length)
-
-
-def line_loads(ahead: IntArray, face: FloatArray, force: FloatArray) -> tuple[LineLoad, ...]:
-    """Return the line loads of pairs from forces (h,) in N on hats at face positions (h,), m.
-
-    Forces are those along the face: per unit of the contact line's projection on the axis.
-    """
-    loads = []
-    for pair in np.unique(ahead):
-        stations, number = np.unique(face[ahead == pair], return_inverse=True)
-        between = np.diff(stations)
-        width = 0.5 * (np.append(between, 0.0) + np.insert(between, 0, 0.0))
-        loads.append(LineLoad(int(pair), stations, np.bincount(number, force[ahead == pair]) / width))
-    return tuple(loads)
 
 
 @dataclass(frozen=True)
@@ -139,50 +100,3 @@ class FullContactTable:
     def failed(self) -> tuple[FullContactPoint, ...]:
         """Points without a solution."""
         return tuple(point for row in self.points for point in row if not point.status.usable)
-
-
-# Tables of several contacts, say misalignments, that were solved together position by position.
-
-
-Loads = tuple[FullContactPoint, ...]
-"""One position of one contact under all torques."""
-
-
-@dataclass(frozen=True)
-class SolvedPosition:
-    """Points of each contact under all torques, the unknowns of both bodies, and CPU seconds."""
-
-    contacts: tuple[Loads, ...]
-    unknowns: int
-    cpu_seconds: float = 0.0
-
-    def with_error(self, coarse: SolvedPosition) -> SolvedPosition:
-        """Return the same points; their differences from those of a coarser mesh are their errors."""
-        both = zip(self.contacts, coarse.contacts, strict=True)
-        return replace(self, contacts=tuple(_apart(own, other) for own, other in both))
-
-
-def _apart(fine: Loads, coarse: Loads) -> Loads:
-    return tuple(
-        replace(own, error_estimate=abs(own.transmission_error - other.transmission_error))
-        if own.status.usable
-        else own
-        for own, other in zip(fine, coarse, strict=True)
-    )
-
-
-def tables_of(
-    positions: Sequence[float], torques: Sequence[float], solved: Sequence[SolvedPosition]
-) -> tuple[FullContactTable, ...]:
-    """Return a table for each contact; they share CPU seconds evenly."""
-    count = len(solved[0].contacts)
-    return tuple(
-        FullContactTable(
-            position=np.array(positions, dtype=float),
-            torque=np.array(torques, dtype=float),
-            points=tuple(position.contacts[number] for position in solved),
-            unknowns=np.array([position.unknowns for position in solved], dtype=np.int64),
-            cpu_seconds=np.array([position.cpu_seconds for position in solved]) / count,
-        )
-        for number in range(count)
-    )

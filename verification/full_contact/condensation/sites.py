@@ -10,19 +10,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.errors import integer, within
 from fe_contact.geometry import CornerContact, ParallelAxes, Toothing, corner_contact, tooth_profile
 from fe_contact.hertz import contact_modulus, half_width
 from fe_contact.types import FloatArray
+from verification.full_contact.condensation.modified_flank import material_removed
+from verification.full_contact.condensation.resolution import Resolution
 
-# Resolution of the contact and of the bodies behind it.
-
-
-GROWTH = 1.08
-"""Growth of the elements per unit distance, over the elements per half-width: 0.18 at six."""
-INNER_GROWTH = 1.2
-USUAL = 6.0
-COARSEST = 1.25
 STRIP, MATE_STRIP = 2.0, 2.5
 """Half-lengths of the strips on slave and master, in Hertz half-widths of the whole load on one pair."""
 TOUCHING, MARGINS = 1.6, (0.4, 0.9)
@@ -31,80 +24,6 @@ SEARCHED, SAMPLES, EVERY = 12.0, 1201, 8
 """Half-widths on either side in which the closest place is searched; samples, and those that carry a size."""
 NEAR_EDGE, PER_DISTANCE = 2.5, 0.1
 """Half-widths from a tip edge within which its elements are fine, and their size over the distance to it."""
-
-
-@dataclass(frozen=True)
-class Resolution:
-    """Element sizes of a resolved contact; everything is refined in proportion."""
-
-    per_half_width: float = USUAL
-    """Quadratic elements in a Hertz half-width, 1.5 to 16."""
-    corner: float = 8.0
-    """How many times finer the elements at a tip edge are."""
-    layers: int = 6
-    """Layers over half the face, 1 to 24; the plane has none."""
-    outermost: float = 0.25
-    """Thickness of the layer at the face over that at mid-face, 0.01 to 1: 0.05 resolves the free ends."""
-
-    def __post_init__(self) -> None:
-        within("per_half_width", self.per_half_width, 1.5, 16.0, "6 is usual.")
-        within("corner", self.corner, 1.0, 32.0, "8 is usual.")
-        integer("layers", self.layers, 1, 24)
-        within("outermost", self.outermost, 0.01, 1.0, "0.25 is usual.")
-
-    @property
-    def growth(self) -> float:
-        """Growth of the elements per unit distance from the contacts."""
-        return GROWTH / self.per_half_width
-
-    @property
-    def inner_growth(self) -> float:
-        """Growth from the boundary inwards."""
-        return min(0.3, INNER_GROWTH / self.per_half_width)
-
-    def edge_size(self, least: float, largest: float) -> float:
-        """Return the size at a tip edge, m, from the half-widths of least and largest load."""
-        return math.sqrt(least * largest) / (self.corner * self.per_half_width)
-
-    def part(self, share: float, module: float) -> float:
-        """Return a size away from the contacts, m: a share of the module on the usual mesh."""
-        return share * module * min(USUAL / self.per_half_width, COARSEST)
-
-    def coarser(self, factor: float = 1.5) -> Resolution:
-        """Return the same with elements larger by `factor`."""
-        layers = max(1, round(self.layers / factor))
-        return Resolution(self.per_half_width / factor, self.corner, layers, self.outermost)
-
-
-# The loaded flank with its modification: exact profile less the material removed along its normal.
-
-
-def material_removed(gear: Toothing, s: FloatArray, face: float = 0.0) -> FloatArray:
-    """Return what is removed along the normal at flank coordinates, m; it fades out over the fillet.
-
-    `face` is the face position from mid-face, m.
-    """
-    profile = tooth_profile(gear)
-    roll = profile.roll_length(np.clip(s, profile.s_form, profile.s_tip))
-    return removed_at_roll(gear, roll, face) * np.clip((s - profile.s_root) / profile.fillet_length, 0.0, 1.0)
-
-
-def removed_at_roll(gear: Toothing, roll: FloatArray, face: float = 0.0) -> FloatArray:
-    """Return what is removed at roll lengths, m; beyond the ends of the involute as much as there."""
-    ends = gear.form_roll_length, gear.tip_roll_length
-    within = np.clip(roll, min(ends), max(ends))
-    return np.asarray(gear.modification.material_removed(gear, within, face), dtype=float)
-
-
-def kinks(gear: Toothing) -> FloatArray:
-    """Return the flank coordinates where the slope or the curvature of the flank jumps, m, rising."""
-    profile = tooth_profile(gear)
-    starts = [float(start.roll_length) for start in gear.modification.relief_starts(gear)]
-    reliefs = gear.sign * 0.5 * np.square(starts) / gear.base_radius
-    inner = np.concatenate([[profile.s_root, profile.s_form], reliefs])
-    close = 1e-6 * gear.normal_module
-    inner = np.unique(inner[(inner > profile.s_space + close) & (inner < profile.s_tip - close)])
-    return np.asarray(inner[np.diff(inner, prepend=-np.inf) > close])
 
 
 @dataclass(frozen=True)

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-
-import numpy as np
+from dataclasses import replace
 
 from fe_contact.errors import InputError, MeshError, SolveError
 from fe_contact.geometry import ParallelAxes
@@ -13,123 +11,17 @@ from fe_contact.types import Status
 from model_studies.progress import Report
 from model_studies.stage_clock import StageClock
 from verification.full_contact.condensation.contact_model import ContactModel, PlaneStrain, softness
-from verification.full_contact.condensation.linearized_contact import (
-    ActiveSetSolution,
-    Configuration,
-    ContactGeometry,
-    LinearizedContact,
-    Solution,
-    solve_active_set,
-)
 from verification.full_contact.condensation.placed_mesh import placed_bodies
-from verification.full_contact.condensation.sites import Range, Resolution, contact_sites, least_gap_left_out
-from verification.full_contact.table import FullContactPoint, FullContactTable, SolvedPosition, tables_of
+from verification.full_contact.condensation.resolution import Resolution
+from verification.full_contact.condensation.settled_contact import solve_loads
+from verification.full_contact.condensation.sites import Range, contact_sites, least_gap_left_out
+from verification.full_contact.solved_position import SolvedPosition, tables_of
+from verification.full_contact.table import FullContactPoint, FullContactTable
 from verification.full_contact.validity import check_axes, refusal
 
-# One position of one contact geometry under all torques, settled on the deformed gears.
-
-
-MOST_EVALUATIONS, SETTLED, ENOUGH = 6, 1e-6, 2e-4
-"""Geometries of the deformed bodies; changes of the lag that end them, and that are the most allowed."""
-LARGEST_RESIDUAL = 1e-8
 ATTEMPTS = 4
 WIDER = 1.6
 COARSER = 1.5
-
-
-def _solve_loads(
-    geometry: ContactGeometry, torques: Sequence[float], position: float
-) -> tuple[FullContactPoint, ...]:
-    """Solve all torques from the same compliance, then check them together."""
-    undeformed = geometry.linearized(geometry.undeformed)
-    states = [_settled(geometry, undeformed, torque) for torque in torques]
-    solutions = [
-        Solution(state.contact, state.solution.pressure, torque / geometry.thickness)
-        for state, torque in zip(states, torques, strict=True)
-    ]
-    checks = geometry.checks(solutions)
-    return tuple(
-        _point(geometry, state, position, torque, check)
-        for state, torque, check in zip(states, torques, checks, strict=True)
-    )
-
-
-@dataclass(frozen=True)
-class _Settled:
-    """Solution on the deformed geometry, iterations of all solves, and the lag's last relative change."""
-
-    contact: LinearizedContact
-    solution: ActiveSetSolution
-    iterations: int
-    change: float
-
-
-def _settled(geometry: ContactGeometry, undeformed: LinearizedContact, torque: float) -> _Settled:
-    """Solve on the undeformed geometry, then on that which the solution before it makes."""
-    line_torque = torque / geometry.thickness
-    contact, solution = undeformed, solve_active_set(undeformed.system, line_torque)
-    iterations, change = solution.iterations, np.inf
-    for _ in range(MOST_EVALUATIONS):
-        moved = contact.moved[0] @ solution.pressure, contact.moved[1] @ solution.pressure
-        contact = geometry.linearized(Configuration(solution.lag, moved))
-        following = solve_active_set(contact.system, line_torque)
-        iterations += following.iterations
-        change = abs(following.lag / solution.lag - 1.0)
-        solution = following
-        if change < SETTLED:
-            break
-    return _Settled(contact, solution, iterations, change)
-
-
-def _point(
-    geometry: ContactGeometry, state: _Settled, position: float, torque: float, check: tuple[float, float]
-) -> FullContactPoint:
-    contact, solution = state.contact, state.solution
-    residual = max(solution.residual, check[0])
-    status, reason = _status(state, residual)
-    if not status.usable:
-        return FullContactPoint.failed(status, reason, state.iterations, torque)
-    moments = contact.system.lever * solution.pressure
-    share = {
-        site.ahead: float(moments[contact.site == number].sum() / moments.sum())
-        for number, site in enumerate(geometry.sites)
-    }
-    return FullContactPoint(
-        position=position,
-        transmission_error=solution.lag,
-        status=status,
-        reason="",
-        iterations=state.iterations,
-        residual=residual,
-        torque_ratio=check[1],
-        torque=torque,
-        load_share=share,
-        max_pressure=_largest_pressure(contact, solution),
-        line_loads=geometry.line_loads(contact, solution.pressure),
-    )
-
-
-def _largest_pressure(contact: LinearizedContact, solution: ActiveSetSolution) -> float:
-    """Return the largest mean pressure over the length of an element, Pa: two hats stand on each."""
-    largest = 0.0
-    for number in np.unique(contact.line):
-        pressure = solution.pressure[contact.line == number]
-        means = np.convolve(pressure, [0.25, 0.5, 0.25], mode="same")
-        largest = max(largest, float(means.max()))
-    return largest
-
-
-def _status(state: _Settled, residual: float) -> tuple[Status, str]:
-    if not state.solution.status.usable or not residual < LARGEST_RESIDUAL:
-        return Status.ITERATION_LIMIT, f"the active set did not settle: residual {residual:.1e}"
-    if not state.change < ENOUGH:
-        return Status.ITERATION_LIMIT, f"the deformed geometry did not settle: change {state.change:.1e}"
-    if np.any(state.solution.pressure[state.contact.at_end] > 0.0):
-        return Status.OUT_OF_MODEL, "the contact reaches the end of the strip that is meshed for it"
-    return Status.CONVERGED, ""
-
-
-# One position under all torques: one mesh and one condensation of each gear.
 
 
 def _solve_position(
@@ -170,7 +62,7 @@ def _solved(
         sites = contact_sites(pair, phase, held, resolution)
         meshes = placed_bodies(pair, phase, sites, resolution)
         geometries, unknowns = model.geometries(pair, sites, meshes, resolution.layers)
-        solved = tuple(_solve_loads(geometry, torques, position) for geometry in geometries)
+        solved = tuple(solve_loads(geometry, torques, position) for geometry in geometries)
         points = [point for contact in solved for point in contact]
         lags = [point.transmission_error for point in points if point.status.usable]
         lag = max(lags, default=0.0) + closer

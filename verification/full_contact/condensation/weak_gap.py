@@ -18,95 +18,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fe_contact.types import FloatArray, IntArray
+from fe_contact.types import FloatArray
+from verification.full_contact.condensation.flank_curve import CurvePoints, FlankCurve
 
-# A strip of flank as a curve of quadratic pieces, and where normals of one strip meet another.
-
-
-_STEPS = 12
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 Velocity = Callable[[FloatArray], FloatArray]
-
-
-class _CurvePoints(NamedTuple):
-    """Points of a curve: places (q, 2) and derivatives (q, 2), m; node numbers and weights (q, 3)."""
-
-    at: FloatArray
-    slope: FloatArray
-    nodes: IntArray
-    weights: FloatArray
-
-    @property
-    def tangents(self) -> FloatArray:
-        """Unit tangents towards the tip, (q, 2)."""
-        return np.asarray(self.slope / np.linalg.norm(self.slope, axis=1, keepdims=True))
-
-    @property
-    def normals(self) -> FloatArray:
-        """Outward unit normals, (q, 2)."""
-        return np.asarray(self.tangents[:, ::-1] * [1.0, -1.0])
-
-
-@dataclass(frozen=True)
-class FlankCurve:
-    """Quadratic pieces through nodes (2 e + 1, 2), m, towards the tip; piece i has parameters i to i + 1."""
-
-    nodes: FloatArray
-
-    @property
-    def pieces(self) -> int:
-        """Number of pieces."""
-        return len(self.nodes) // 2
-
-    def points(self, t: FloatArray) -> _CurvePoints:
-        """Evaluate at parameters (q,); beyond the ends the last piece goes on."""
-        first = np.clip(np.floor(t).astype(np.int64), 0, self.pieces - 1)
-        x = t - first
-        weights = np.stack([(1.0 - x) * (1.0 - 2.0 * x), 4.0 * x * (1.0 - x), x * (2.0 * x - 1.0)], axis=-1)
-        slopes = np.stack([4.0 * x - 3.0, 4.0 - 8.0 * x, 4.0 * x - 1.0], axis=-1)
-        nodes = 2 * first[:, None] + np.arange(3)
-        at = np.einsum("qa,qax->qx", weights, self.nodes[nodes])
-        return _CurvePoints(at, np.einsum("qa,qax->qx", slopes, self.nodes[nodes]), nodes, weights)
-
-    def met_along(self, origins: FloatArray, tangents: FloatArray) -> FloatArray:
-        """Return the parameters at which this curve meets the normals of another one.
-
-        Parameters
-        ----------
-        origins, tangents : (q, 2) arrays
-            Points of the other curve and its unit tangents, which point the other way along.
-
-        Returns
-        -------
-        (q,) array
-            NaN where a normal passes the curve by.
-        """
-        corners = self.nodes[::2]
-        ahead = np.einsum("qcx,qx->qc", corners[None] - origins[:, None], tangents)
-        piece = np.count_nonzero(ahead > 0.0, axis=1) - 1
-        hit = (piece >= 0) & (ahead[:, -1] <= 0.0)
-        t = np.clip(piece, 0, self.pieces - 1) + 0.5
-        for _ in range(_STEPS):
-            points = self.points(t)
-            value = np.einsum("qx,qx->q", points.at - origins, tangents)
-            t = t - value / np.einsum("qx,qx->q", points.slope, tangents)
-            t = np.clip(t, piece, piece + 1.0)
-        return np.where(hit, t, np.nan)
-
-    def foot_of(self, others: FloatArray, reference: FlankCurve) -> FloatArray:
-        """Return the parameters at whose normals, those of `reference`, other points (q, 2) lie."""
-        corners = np.arange(self.pieces + 1.0)
-        tangents = reference.points(corners).tangents
-        ahead = np.einsum("qcx,cx->qc", others[:, None] - self.nodes[None, ::2], tangents)
-        piece = np.clip(np.count_nonzero(ahead > 0.0, axis=1) - 1, 0, self.pieces - 1)
-        t = piece + 0.5
-        for _ in range(_STEPS):
-            points = self.points(t)
-            tangents = reference.points(t).tangents
-            step = np.einsum("qx,qx->q", others - points.at, tangents)
-            step = step / np.einsum("qx,qx->q", points.slope, tangents)
-            t = np.clip(t + step, piece - 1.0, piece + 2.0)
-        return np.asarray(t)
 
 
 @dataclass(frozen=True)
@@ -127,8 +43,8 @@ class WeakGap:
 class _Facing(NamedTuple):
     """Quadrature points of the slave (q,) and what they face; normals (q, 2), hats (q, h), lengths (q,)."""
 
-    slave: _CurvePoints
-    master: _CurvePoints
+    slave: CurvePoints
+    master: CurvePoints
     normals: FloatArray
     hats: FloatArray
     lengths: FloatArray
@@ -187,7 +103,7 @@ def _facing(slave: FlankCurve, master: FlankCurve, reference: FlankCurve) -> _Fa
     return _Facing(points, master.points(met[hit]), undeformed.normals, hats, lengths)
 
 
-def _nodal(points: _CurvePoints, direction: FloatArray, weighted: FloatArray, count: int) -> FloatArray:
+def _nodal(points: CurvePoints, direction: FloatArray, weighted: FloatArray, count: int) -> FloatArray:
     """Return the consistent nodal forces (2 count, h) of unit pressures along a direction."""
     shape = np.zeros((len(points.at), count))
     np.put_along_axis(shape, points.nodes, points.weights, axis=1)

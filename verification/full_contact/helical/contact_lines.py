@@ -15,7 +15,7 @@ import numpy as np
 
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray
-from verification.full_contact.condensation.sites import removed_at_roll
+from verification.full_contact.condensation.modified_flank import removed_at_roll
 
 _STEPS, _SEARCHED = 8, 801
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(3)

@@ -19,17 +19,19 @@ from fe_contact.mesh.gear_mesh import real_teeth
 from fe_contact.mesh.quadratic_mesh import quadratic_meshes
 from fe_contact.mesh.quality import QualityLimits
 from fe_contact.types import FloatArray, IntArray
-from verification.full_contact.condensation.contact_model import dissected, mesh_graph
-from verification.full_contact.condensation.placed_mesh import SECONDS, _gear_boundary
-from verification.full_contact.condensation.sites import Resolution, SizedStrip
+from verification.full_contact.condensation.condensed_body import dissected, mesh_graph
+from verification.full_contact.condensation.gear_boundary import gear_boundary
+from verification.full_contact.condensation.placed_mesh import SECONDS
+from verification.full_contact.condensation.resolution import Resolution
+from verification.full_contact.condensation.sites import SizedStrip
 from verification.full_contact.helical.twisted_stiffness import (
     Section,
     outward,
     section_stiffness,
     twisted_stiffness,
 )
-from verification.full_contact.over_face.extruded_body import _ColumnMatrix, _schur_complement
-from verification.full_contact.over_face.extruded_stiffness import Layers
+from verification.full_contact.over_face.layers import Layers
+from verification.full_contact.over_face.schur_complement import ColumnMatrix, schur_complement
 
 TEETH = 7
 """Real teeth of a section."""
@@ -101,7 +103,7 @@ def meshed_section(
     sizes = np.minimum(size, at_tip + 0.15 * (profile.s_tip - at))
     wanted = {tooth: SizedStrip(low, profile.s_tip, at, sizes) for tooth in loaded}
     teeth = real_teeth(gear.teeth, max(TEETH, len(loaded) + 2))
-    boundary = _gear_boundary(gear, teeth, wanted, resolution)
+    boundary = gear_boundary(gear, teeth, wanted, resolution)
     outlines = {"gear": (boundary.toothed, boundary.held)}
     (mesh,) = quadratic_meshes(
         outlines, gear.normal_module, resolution.inner_growth, QualityLimits(), SECONDS
@@ -210,8 +212,8 @@ def face_body(meshed: MeshedSection, layers: Layers, material: Material, spread:
     free = free[np.argsort(rank[stiffness.node[free]], kind="stable")]
     starts = np.searchsorted(rank[stiffness.node[free]], np.arange(len(order) + 1))
     lower = sp.csc_array(sp.tril(stiffness.matrix[free][:, free]))
-    complement = _schur_complement(
-        _ColumnMatrix(lower, starts, sp.csr_array(graph[order][:, order])), len(nodes)
+    complement = schur_complement(
+        ColumnMatrix(lower, starts, sp.csr_array(graph[order][:, order])), len(nodes)
     )
     kept = free[starts[len(inner)] :]
     loads, first = _normal_loads(

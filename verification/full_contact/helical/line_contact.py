@@ -15,7 +15,7 @@ import scipy.sparse as sp
 
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray
-from verification.full_contact.condensation.linearized_contact import ContactSystem
+from verification.full_contact.condensation.active_set import ContactSystem
 from verification.full_contact.condensation.placed_mesh import AHEAD
 from verification.full_contact.helical.contact_lines import FacingFlanks, hats
 from verification.full_contact.helical.flank_bodies import HelicalGear

@@ -14,17 +14,13 @@ from fe_contact.hertz import contact_modulus, half_width
 from fe_contact.types import Status
 from model_studies.progress import Report
 from model_studies.stage_clock import StageClock
-from verification.full_contact.condensation.linearized_contact import ActiveSetSolution, solve_active_set
-from verification.full_contact.condensation.sites import Resolution
+from verification.full_contact.condensation.active_set import ActiveSetSolution, solve_active_set
+from verification.full_contact.condensation.resolution import Resolution
 from verification.full_contact.helical.flank_bodies import BodyMesh, HelicalGear, helical_gear
 from verification.full_contact.helical.line_contact import LineContact, line_contact
-from verification.full_contact.table import (
-    FullContactPoint,
-    FullContactTable,
-    SolvedPosition,
-    line_loads,
-    tables_of,
-)
+from verification.full_contact.line_load import line_loads
+from verification.full_contact.solved_position import SolvedPosition, tables_of
+from verification.full_contact.table import FullContactPoint, FullContactTable
 from verification.full_contact.validity import check_axes, refusal_helical
 
 COARSER = 1.4

@@ -10,9 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import reduce
-from itertools import product
 from operator import add
-from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -20,76 +18,19 @@ import scipy.sparse as sp
 from fe_contact.material import Material
 from fe_contact.mesh.quality import shape_derivatives
 from fe_contact.types import FloatArray, IntArray
-from verification.full_contact.condensation.contact_model import POINTS, WEIGHTS
+from verification.full_contact.condensation.plane_strain_stiffness import POINTS, WEIGHTS
+from verification.full_contact.helical.displacement_gradient import Part, along_line, part_pairs, turning
 from verification.full_contact.over_face.extruded_stiffness import (
     ExtrudedStiffness,
-    Layers,
     X,
     Y,
     Z,
-    _linear_functions,
-    _products,
-    _scattered,
-    _shapes,
+    layered_products,
+    linear_functions,
+    quadratic_shapes,
+    scattered,
 )
-
-# A derivative of a displacement as a sum of parts, and what any two parts contribute.
-
-
-class _Part(NamedTuple):
-    """One part: a component, what the plane does to its functions, whether z differentiates, a factor."""
-
-    component: int
-    plane: str
-    along: bool
-    factor: float
-
-
-_Gradient = dict[tuple[int, int], list[_Part]]
-
-
-def _gradient(along: dict[int, list[_Part]]) -> _Gradient:
-    """Return all nine derivatives from those along z."""
-    plane = {
-        (i, j): [_Part(i, name, along=False, factor=1.0)]
-        for i in (X, Y, Z)
-        for j, name in ((X, "x"), (Y, "y"))
-    }
-    return plane | {(i, Z): along[i] for i in (X, Y, Z)}
-
-
-def _turning(twist: float) -> _Gradient:
-    """Return the derivatives in the frame that turns by `twist`, rad/m."""
-    along = {
-        i: [_Part(i, "1", along=True, factor=1.0), _Part(i, "d", along=False, factor=-twist)]
-        for i in (X, Y, Z)
-    }
-    along[X].append(_Part(Y, "1", along=False, factor=-twist))
-    along[Y].append(_Part(X, "1", along=False, factor=twist))
-    return _gradient(along)
-
-
-def _along_line() -> _Gradient:
-    """Return those of a field that does not vary along the contact line."""
-    return _gradient({i: [_Part(i, "t", along=False, factor=1.0)] for i in (X, Y, Z)})
-
-
-def _pairs(
-    gradient: _Gradient, material: Material
-) -> dict[tuple[int, int], list[tuple[_Part, _Part, float]]]:
-    """Return for any two components the pairs of parts of linear elasticity with their moduli, Pa."""
-    modulus, nu = material.youngs_modulus, material.poissons_ratio
-    shear = modulus / (2.0 * (1.0 + nu))
-    bulk = modulus * nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
-    found: dict[tuple[int, int], list[tuple[_Part, _Part, float]]] = {
-        (i, k): [] for i in (X, Y, Z) for k in (X, Y, Z)
-    }
-    for i, j, k, n in product((X, Y, Z), repeat=4):
-        value = bulk * (i == j) * (k == n) + shear * ((i == k) * (j == n) + (i == n) * (j == k))
-        if value:
-            for one, other in product(gradient[i, j], gradient[k, n]):
-                found[one.component, other.component].append((one, other, value * one.factor * other.factor))
-    return found
+from verification.full_contact.over_face.layers import Layers
 
 
 def outward(points: FloatArray, base_radius: float) -> FloatArray:
@@ -105,7 +46,9 @@ def _plane_matrices(section: Section, names: set[tuple[str, str]]) -> dict[tuple
     """Return the integrals of P f Q g over a plane mesh, by the names of P and Q."""
     nodes = section.points[section.triangles]
     totals = {both: np.zeros((len(nodes), 6, 6)) for both in names}
-    for slope, value, weight in zip(shape_derivatives(POINTS), _shapes(POINTS), WEIGHTS, strict=True):
+    for slope, value, weight in zip(
+        shape_derivatives(POINTS), quadratic_shapes(POINTS), WEIGHTS, strict=True
+    ):
         jacobian = slope @ nodes
         area = (weight * np.linalg.det(jacobian))[:, None, None]
         x, y = np.moveaxis(np.linalg.solve(jacobian, np.broadcast_to(slope, (len(nodes), 2, 6))), 1, 0)
@@ -120,7 +63,7 @@ def _plane_matrices(section: Section, names: set[tuple[str, str]]) -> dict[tuple
         }
         for one, other in names:
             totals[one, other] += area * applied[one][:, :, None] * applied[other][:, None, :]
-    return {both: _scattered(local, section.triangles, len(section.points)) for both, local in totals.items()}
+    return {both: scattered(local, section.triangles, len(section.points)) for both, local in totals.items()}
 
 
 @dataclass(frozen=True)
@@ -141,8 +84,8 @@ def twisted_stiffness(section: Section, layers: Layers, material: Material) -> E
     """Assemble linear elasticity over all layers; displacements are those in the frame of the section."""
     hats, bubbles = np.split(np.arange(2 * layers.count + 1), [layers.count + 1])
     count, corners = len(section.points), np.unique(section.triangles[:, :3])
-    shapes = (sp.eye_array(count, format="csr"), _linear_functions(section.triangles, corners, count))
-    pairs = _pairs(_turning(section.twist), material)
+    shapes = (sp.eye_array(count, format="csr"), linear_functions(section.triangles, corners, count))
+    pairs = part_pairs(turning(section.twist), material)
     plane = _plane_matrices(section, _names(pairs))
     mass, mixed, steep = layers.integrals()
     over = {(False, False): mass, (True, False): mixed, (False, True): mixed.T, (True, True): steep}
@@ -156,7 +99,7 @@ def twisted_stiffness(section: Section, layers: Layers, material: Material) -> E
                 term = value * plane[one.plane, other.plane]
                 sums[key] = sums[key] + term if key in sums else term
             terms = [(term, over[key]) for key, term in sums.items()]
-            row.append(_products(terms, shapes, (hats, bubbles)))
+            row.append(layered_products(terms, shapes, (hats, bubbles)))
         rows.append(sp.hstack(row))
     numbering = ((np.arange(count), hats), (corners, bubbles))
     node = np.concatenate([np.repeat(nodes, len(own)) for nodes, own in numbering])
@@ -168,7 +111,7 @@ def twisted_stiffness(section: Section, layers: Layers, material: Material) -> E
 
 def section_stiffness(section: Section, material: Material) -> sp.csc_array:
     """Assemble what does not vary along the contact line, (3 n, 3 n), N/m per m; freedom 3 i + c."""
-    pairs = _pairs(_along_line(), material)
+    pairs = part_pairs(along_line(), material)
     plane = _plane_matrices(section, _names(pairs))
     rows = []
     for i in (X, Y, Z):
@@ -182,5 +125,5 @@ def section_stiffness(section: Section, material: Material) -> sp.csc_array:
     return sp.csc_array(matrix[order][:, order])
 
 
-def _names(pairs: dict[tuple[int, int], list[tuple[_Part, _Part, float]]]) -> set[tuple[str, str]]:
+def _names(pairs: dict[tuple[int, int], list[tuple[Part, Part, float]]]) -> set[tuple[str, str]]:
     return {(one.plane, other.plane) for each in pairs.values() for one, other, _ in each}

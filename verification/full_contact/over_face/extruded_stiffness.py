@@ -16,78 +16,11 @@ import scipy.sparse as sp
 from fe_contact.material import Material
 from fe_contact.mesh.quality import shape_derivatives
 from fe_contact.types import FloatArray, IntArray
-from verification.full_contact.condensation.contact_model import POINTS, WEIGHTS
+from verification.full_contact.condensation.plane_strain_stiffness import POINTS, WEIGHTS
+from verification.full_contact.over_face.layers import Layers
 
-# Layers over half the face: hats on their planes, a bubble in each, and integrals of both.
-
-
-_GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 Term = tuple[sp.csr_array, FloatArray]
 X, Y, Z = range(3)
-
-
-@dataclass(frozen=True)
-class Layers:
-    """Planes from mid-face to the face, p = layers + 1; functions of z >= 0: p hats, then p - 1 bubbles.
-
-    `planes` (p,): rising from 0, m.
-    """
-
-    planes: FloatArray
-
-    @property
-    def count(self) -> int:
-        """Number of layers."""
-        return len(self.planes) - 1
-
-    @property
-    def quadrature(self) -> tuple[FloatArray, FloatArray]:
-        """Positions over half the face and their weights, three in each layer, m."""
-        middle, half = 0.5 * (self.planes[1:] + self.planes[:-1]), 0.5 * np.diff(self.planes)
-        positions = middle[:, None] + half[:, None] * _GAUSS
-        return positions.ravel(), (half[:, None] * _WEIGHTS).ravel()
-
-    def hats(self, z: FloatArray) -> FloatArray:
-        """Return the linear hats (q, p) at positions (q,)."""
-        return np.stack([np.interp(z, self.planes, hat) for hat in np.eye(len(self.planes))], axis=-1)
-
-    def functions(self, z: FloatArray) -> FloatArray:
-        """Return hats and bubbles (q, 2 p - 1) at positions (q,)."""
-        hats = self.hats(z)
-        return np.concatenate([hats, 4.0 * hats[:, :-1] * hats[:, 1:]], axis=1)
-
-    def slopes(self, z: FloatArray) -> FloatArray:
-        """Return their derivatives (q, 2 p - 1) at positions (q,) inside layers, 1/m."""
-        hats, layer = self.hats(z), np.searchsorted(self.planes, z) - 1
-        rates = np.zeros_like(hats)
-        rows, steep = np.arange(len(z)), 1.0 / np.diff(self.planes)[layer]
-        rates[rows, layer], rates[rows, layer + 1] = -steep, steep
-        bubbles = 4.0 * (rates[:, :-1] * hats[:, 1:] + hats[:, :-1] * rates[:, 1:])
-        return np.concatenate([rates, bubbles], axis=1)
-
-    def integrals(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return the integrals of f g in m, f' g, and f' g' in 1/m, of all functions f and g."""
-        z, weights = self.quadrature
-        value, slope = self.functions(z), self.slopes(z)
-        weighted = weights[:, None] * value
-        return value.T @ weighted, slope.T @ weighted, slope.T @ (weights[:, None] * slope)
-
-
-def graded_layers(face_width: float, count: int, outermost: float = 0.25) -> Layers:
-    """Return layers over half of a face that grow in proportion from the face inwards.
-
-    Parameters
-    ----------
-    face_width : float
-        m.
-    count : int
-        Over half the face, >= 1.
-    outermost : float
-        Thickness of the layer at the face over that at mid-face.
-    """
-    thickness = np.geomspace(1.0, outermost, count) if count > 1 else np.ones(1)
-    planes = np.concatenate([[0.0], np.cumsum(thickness)])
-    return Layers(0.5 * face_width * planes / planes[-1])
 
 
 @dataclass(frozen=True)
@@ -120,9 +53,9 @@ def extruded_stiffness(
     """
     hats, bubbles = np.split(np.arange(2 * layers.count + 1), [layers.count + 1])
     corners = np.unique(triangles[:, :3])
-    shapes = (sp.eye_array(len(points), format="csr"), _linear_functions(triangles, corners, len(points)))
+    shapes = (sp.eye_array(len(points), format="csr"), linear_functions(triangles, corners, len(points)))
     rows = [
-        sp.hstack([_products(terms, shapes, (hats, bubbles)) for terms in row])
+        sp.hstack([layered_products(terms, shapes, (hats, bubbles)) for terms in row])
         for row in _terms(points[triangles], triangles, len(points), layers, material)
     ]
     numbering = ((np.arange(len(points)), hats), (corners, bubbles))
@@ -133,7 +66,7 @@ def extruded_stiffness(
     return ExtrudedStiffness(matrix, np.tile(node, 3), component, np.tile(function, 3), layers.count)
 
 
-def _products(
+def layered_products(
     terms: list[Term], shapes: tuple[sp.csr_array, sp.csr_array], over: tuple[IntArray, IntArray]
 ) -> sp.csr_array:
     """Return the sum of products of plane and layer integrals: quadratics x hats, then linears x bubbles."""
@@ -156,7 +89,7 @@ def _products(
     )
 
 
-def _linear_functions(triangles: IntArray, corners: IntArray, count: int) -> sp.csr_array:
+def linear_functions(triangles: IntArray, corners: IntArray, count: int) -> sp.csr_array:
     """Return the linear functions of corners in quadratic ones, (n, c): 1 there, 1/2 at mid-side nodes."""
     number = np.full(count, -1)
     number[corners] = np.arange(len(corners))
@@ -176,7 +109,7 @@ def _terms(
     modulus, nu = material.youngs_modulus, material.poissons_ratio
     shear = modulus / (2.0 * (1.0 + nu))
     bulk = modulus * nu / ((1.0 + nu) * (1.0 - 2.0 * nu))  # Lame's first constant
-    plane = {name: _scattered(local, triangles, count) for name, local in _integrals(nodes).items()}
+    plane = {name: scattered(local, triangles, count) for name, local in _integrals(nodes).items()}
     mass, mixed, steep = layers.integrals()
     gradients = plane["xx"] + plane["yy"]
     for a in "xyz":
@@ -197,7 +130,7 @@ def _terms(
 
 def _integrals(nodes: FloatArray) -> dict[str, FloatArray]:
     """Return the element integrals (e, 6, 6) of f g, f,x g, f,y g and f,a g,b of nodes (e, 6, 2)."""
-    slopes, values = shape_derivatives(POINTS), _shapes(POINTS)
+    slopes, values = shape_derivatives(POINTS), quadratic_shapes(POINTS)
     integrals = {name: np.zeros((len(nodes), 6, 6)) for name in ("1", "x", "y", "xx", "xy", "yx", "yy")}
     for slope, value, weight in zip(slopes, values, WEIGHTS, strict=True):
         jacobian = slope @ nodes  # (e, d, x)
@@ -212,7 +145,7 @@ def _integrals(nodes: FloatArray) -> dict[str, FloatArray]:
     return integrals
 
 
-def _shapes(at: FloatArray) -> FloatArray:
+def quadratic_shapes(at: FloatArray) -> FloatArray:
     """Return the quadratic functions (q, 6) at reference points (q, 2)."""
     x, y = at.T
     z = 1.0 - x - y
@@ -220,7 +153,7 @@ def _shapes(at: FloatArray) -> FloatArray:
     return np.stack(parts, axis=-1)
 
 
-def _scattered(local: FloatArray, triangles: IntArray, count: int) -> sp.csr_array:
+def scattered(local: FloatArray, triangles: IntArray, count: int) -> sp.csr_array:
     """Add element matrices to one of all nodes."""
     rows = np.broadcast_to(triangles[:, :, None], local.shape).ravel()
     columns = np.broadcast_to(triangles[:, None, :], local.shape).ravel()

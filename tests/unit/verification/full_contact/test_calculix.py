@@ -24,7 +24,8 @@ from spur_gears import GEAR
 from fe_contact import GearPair
 from fe_contact.types import Status
 from verification.full_contact.condensation.placed_mesh import placed_bodies
-from verification.full_contact.condensation.sites import Range, Resolution, contact_sites
+from verification.full_contact.condensation.resolution import Resolution
+from verification.full_contact.condensation.sites import Range, contact_sites
 
 
 def program(folder: Path, body: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from verification.full_contact.table import LineLoad, line_loads
+from verification.full_contact.line_load import LineLoad, line_loads
 
 
 def test_a_linear_load_comes_back_from_the_forces_on_its_hats() -> None:

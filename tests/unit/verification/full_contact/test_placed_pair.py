@@ -12,9 +12,10 @@ from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, Ring
 from fe_contact.geometry import ParallelAxes
 from fe_contact.mesh.quality import _least_jacobian
 from fe_contact.types import FloatArray
-from verification.full_contact.condensation.contact_model import freedoms
+from verification.full_contact.condensation.condensed_body import freedoms
 from verification.full_contact.condensation.placed_mesh import PlacedBody, placed_bodies
-from verification.full_contact.condensation.sites import Range, Resolution, contact_sites, least_gap_left_out
+from verification.full_contact.condensation.resolution import Resolution
+from verification.full_contact.condensation.sites import Range, contact_sites, least_gap_left_out
 
 PINION = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 WHEEL = Gear(teeth=31, normal_module=4e-3, face_width=25e-3, bore_diameter=60e-3)

@@ -33,7 +33,8 @@ from verification.full_contact.helical.twisted_stiffness import (
     section_stiffness,
     twisted_stiffness,
 )
-from verification.full_contact.over_face.extruded_stiffness import Layers, X, Y, Z, extruded_stiffness
+from verification.full_contact.over_face.extruded_stiffness import X, Y, Z, extruded_stiffness
+from verification.full_contact.over_face.layers import Layers
 
 COARSE = HelicalMesh(flank=0.35, layers=2, across=9, along=9, per_half_width=2.0)
 TORQUES = [20.0, 150.0]

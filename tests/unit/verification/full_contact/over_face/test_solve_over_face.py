@@ -20,7 +20,7 @@ from verification.full_contact import (
     solve_full_contact_over_face,
 )
 from verification.full_contact.condensation.contact_model import softness
-from verification.full_contact.over_face.extruded_stiffness import graded_layers
+from verification.full_contact.over_face.layers import graded_layers
 from verification.full_contact.over_face.solve import _WholeFace
 
 SLOPE, TORQUE, POSITION = 20e-6, 150.0, 0.1
