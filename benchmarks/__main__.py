@@ -11,6 +11,7 @@ from pathlib import Path
 from types import ModuleType
 
 from benchmarks.machine import describe
+from benchmarks.marked_section import MEASURED
 from benchmarks.page import page, with_figures
 from benchmarks.record import Measured, read_record, write_record
 
@@ -71,11 +72,12 @@ def _keep(record: Mapping[str, Measured], order: Sequence[str]) -> None:
 
 
 def _publish(record: Mapping[str, Measured], order: Sequence[str]) -> None:
-    """Put the subjects into docs/lab/benchmarks.json; write benchmarks.md beside it and README.md from it."""
+    """Put the subjects into docs/lab/benchmarks.json; write the page of all and README.md from it."""
     store, readme = ROOT / "docs" / "lab" / "benchmarks.json", ROOT / "README.md"
     write_record(store, {**read_record(store), **record}, order)
     published = read_record(store)
-    (ROOT / "docs" / "lab" / "benchmarks.md").write_text(page(published), encoding="utf-8")
+    MEASURED.mkdir(parents=True, exist_ok=True)
+    (MEASURED / "benchmarks.md").write_text(page(published), encoding="utf-8")
     readme.write_text(with_figures(readme.read_text(encoding="utf-8"), published), encoding="utf-8")
 
 

@@ -162,7 +162,7 @@ def _bearings(run: RunFigures) -> FloatArray:
 
 
 def markdown(found: Sequence[AssessedLevel]) -> str:
-    """Return the section of docs/lab/influence.md."""
+    """Return the section of influence.md."""
     scenes = list(dict.fromkeys(one.where for one in found))
     head = (
         f"{len(found)} ablations in time: {len(scenes)} scenes, every effect that can be switched in them.\n"

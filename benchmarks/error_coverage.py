@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 
 from benchmarks.assessed import Assessed, coverage_figures, coverage_table, error_cell
 from benchmarks.drawn_pairs import assessed_pairs, in_plane
 from benchmarks.figures import Figure
-from benchmarks.marked_section import replace_section
+from benchmarks.marked_section import MEASURED, replace_section
 from benchmarks.pair_cases import PairCase
 from benchmarks.stored_runs import finest_run, table_run
 from fe_contact.ste.curve import METHOD
 
-PAGE = Path(__file__).parents[1] / "docs" / "lab" / "accuracy.md"
+PAGE = MEASURED / "accuracy.md"
 SECTION = "finest"
 SUBJECT = "stated errors against the finest solution"
 LEVELS = ("draft", "standard")
@@ -57,7 +56,7 @@ def _kind(case: PairCase, level: str) -> str:
 
 
 def markdown(found: Sequence[Assessed], whole: Sequence[Assessed]) -> str:
-    """Return the section of docs/lab/accuracy.md; `whole` are the tables with all that they state."""
+    """Return the section of accuracy.md; `whole` are the tables with all that they state."""
     groups = {"all, with `method`": list(whole), "all": list(found)}
     groups |= {kind: [one for one in found if one.level == kind] for kind in sorted({o.level for o in found})}
     return coverage_table(groups) + "\n" + _worst(found)

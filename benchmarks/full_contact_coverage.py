@@ -13,7 +13,7 @@ import numpy as np
 from benchmarks.assessed import QUANTITIES, STATED, Assessed, coverage_figures, coverage_table, error_cell
 from benchmarks.figures import Figure
 from benchmarks.full_contact_cases import FullContactCase, full_contact_cases
-from benchmarks.marked_section import replace_section
+from benchmarks.marked_section import MEASURED, replace_section
 from fe_contact import SteDatabase, analyze
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.model_error import in_small_displacements
@@ -27,7 +27,7 @@ from verification.full_contact import solve_full_contact
 
 ROOT = Path(__file__).parents[1]
 REFERENCE = ROOT / "tests" / "reference" / "full_contact_curves.csv"
-PAGE, SECTION = ROOT / "docs" / "lab" / "accuracy.md", "full contact"
+PAGE, SECTION = MEASURED / "accuracy.md", "full contact"
 SUBJECT = "stated errors against full contact"
 LEVELS = ("standard", "fine")
 PICTURE = ROOT / "docs" / "images" / "accuracy.png"
@@ -110,7 +110,7 @@ def quantities(position: FloatArray, ste: FloatArray) -> FloatArray:
 
 
 def markdown(found: Sequence[AssessedCase]) -> str:
-    """Return the section of docs/lab/accuracy.md."""
+    """Return the section of accuracy.md."""
     groups = {"all": list(found), "set no constant": [one for one in found if one.case.held_out]}
     return coverage_table(groups) + "\n" + _cases(found)
 

@@ -10,24 +10,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 
 from benchmarks.assessed import Assessed, assessed_at_positions, table_against_peer
 from benchmarks.drawn_pairs import LOADS, drawn_pairs
 from benchmarks.figures import Figure
-from benchmarks.marked_section import replace_section
+from benchmarks.marked_section import MEASURED, replace_section
 from benchmarks.pair_cases import PairCase
 from benchmarks.recorded_peer import record, recorded
-from fe_contact import FlankModification, Gear, GearPair, ste_database
+from fe_contact import FlankModification, Gear, GearPair, analyze
 from fe_contact.geometry.backlash import reference_center_distance
 from fe_contact.types import FloatArray
 from verification.full_contact import solve_full_contact_helical
 
-ROOT = Path(__file__).parents[1]
 REFERENCE = "full_contact_helical.csv"
-PAGE, SECTION = ROOT / "docs" / "lab" / "accuracy.md", "helical full contact"
+PAGE, SECTION = MEASURED / "accuracy.md", "helical full contact"
 SUBJECT = "3-D standard against helical full contact"
 AXES = ("load", "position_driver")
 NUMBERS = ("43.2", "43.5", "43.10", "43.15", "43.90", "43.145", "43.7")
@@ -71,7 +69,7 @@ def assessed() -> tuple[Assessed, ...]:
 def assess(case: PairCase, level: str = "standard") -> Assessed:
     """Hold mean and peak-to-peak of a table at the positions of the peer against it, (2, loads) m."""
     exact, error = reference(case)
-    table = ste_database(case.pair, *case.request(level=level))
+    table = analyze(case.pair, *case.request(level=level))
     (skew,) = case.options.get("misalignments", (0.0,))
     curves = [table.curve(force=force, misalignment=skew, at=POSITIONS.tolist()) for force in case.forces]
     return assessed_at_positions(case.name, level, curves, exact, error)

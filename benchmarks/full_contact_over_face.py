@@ -9,13 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 
 from benchmarks.assessed import Assessed, assessed_at_positions, table_against_peer
 from benchmarks.figures import Figure
-from benchmarks.marked_section import replace_section
+from benchmarks.marked_section import MEASURED, replace_section
 from benchmarks.recorded_peer import record, recorded
 from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear, analyze
 from fe_contact.geometry import ParallelAxes
@@ -23,9 +22,8 @@ from fe_contact.types import FloatArray
 from verification.full_contact import Resolution, solve_full_contact_over_face
 from verification.full_contact.over_face.solve import USUAL
 
-ROOT = Path(__file__).parents[1]
 REFERENCE = "full_contact_over_face.csv"
-PAGE, SECTION = ROOT / "docs" / "lab" / "accuracy.md", "full contact over the face"
+PAGE, SECTION = MEASURED / "accuracy.md", "full contact over the face"
 CURVES = "curves over the face"
 SUBJECT = "3-D standard against full contact over the face"
 AXES = ("misalignment_um", "torque_n_m", "position_driver")
@@ -153,7 +151,7 @@ def reference(case: FaceCase, misalignment: float) -> tuple[FloatArray, FloatArr
 
 
 def markdown(found: Sequence[AssessedFace]) -> str:
-    """Return the section of docs/lab/accuracy.md: a row for each pair and misalignment."""
+    """Return the section of accuracy.md: a row for each pair and misalignment."""
     lines = [
         "| pair | misaligned, um | loads, N m | peer's mean, um | its own error, um | worst point off, um "
         "| stated there, um | covered |",

@@ -22,7 +22,7 @@ from benchmarks.assessed_influence import (
 )
 from benchmarks.figures import Figure
 from benchmarks.influence_cases import influence_cases
-from benchmarks.marked_section import replace_section
+from benchmarks.marked_section import MEASURED, replace_section
 from benchmarks.pair_cases import PairCase
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.request.model_choice import decide
@@ -33,7 +33,7 @@ from fe_contact.effects.finite_width import FiniteWidth
 from fe_contact.effects.influence.estimate import EstimatedInfluence, estimate_influences
 from fe_contact.options import Run
 
-PAGE = Path(__file__).parents[1] / "docs" / "lab" / "influence.md"
+PAGE = MEASURED / "influence.md"
 SECTION = "influence estimates"
 TOLERANCES = (0.01, 0.05)
 STUDY = InfluenceStudy(
@@ -112,7 +112,7 @@ def _assessed(
 
 
 def markdown(found: Sequence[LoadedInfluence]) -> str:
-    """Return the section of docs/lab/influence.md."""
+    """Return the section of influence.md."""
     cases = list(dict.fromkeys(one.where for one in found))
     head = (
         f"{len(found)} ablations: {len(cases)} pairs, every effect that they hold, two loads "

@@ -145,7 +145,7 @@ def _condensed(bodies: Bodies, level: str) -> CondensedPair:
 
 
 def publish(found: Sequence[Assessed], machine: Mapping[str, str]) -> None:
-    """Write the section of docs/lab/accuracy.md."""
+    """Write the section of accuracy.md."""
     groups = {"all": list(found)}
     groups |= {mesh: [one for one in found if one.level == mesh] for mesh in sorted({o.level for o in found})}
     versions = ", ".join(f"{name} {machine[name]}" for name in ("lineofaction", "numpy", "scipy"))

@@ -5,19 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 
 from benchmarks.drawn_pairs import assessed_pairs, fresh_pairs, in_plane
 from benchmarks.figures import Figure
-from benchmarks.marked_section import replace_section
+from benchmarks.marked_section import MEASURED, replace_section
 from benchmarks.pair_cases import PairCase
 from benchmarks.stored_runs import StoredRun, table_run
 from benchmarks.tolerance_kept import ALLOWED
 from fe_contact.allowed_error import RELATIVE
 
-PAGE, SECTION = Path(__file__).parents[1] / "docs" / "lab" / "accuracy.md", "predicted errors"
+PAGE, SECTION = MEASURED / "accuracy.md", "predicted errors"
 SUBJECT = "predicted over stated errors"
 FACTOR = 3.0
 _WITHIN = 90.0
@@ -76,7 +75,7 @@ def within(ratio: float) -> bool:
 
 
 def markdown(found: Sequence[Predicted]) -> str:
-    """Return the section of docs/lab/accuracy.md."""
+    """Return the section of accuracy.md."""
     kinds = ["all", *dict.fromkeys(one.kind for one in found)]
     lines = ["| runs | number | relative | mean, um | peak-to-peak, um |", "|---|---:|---:|---:|---:|"]
     for kind in kinds:

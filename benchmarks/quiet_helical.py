@@ -115,7 +115,7 @@ def _curve(checked: Checked, folder: Path) -> tuple[float, float]:
 
 
 def markdown(found: Sequence[AssessedInfluence]) -> str:
-    """Return the section of docs/lab/influence.md."""
+    """Return the section of influence.md."""
     said = ", ".join(
         f"{share_right(group):.0f} % of {len(group)} on pairs {title} when the estimates were made"
         for title, group in groups(found).items()

@@ -8,20 +8,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 
 from benchmarks.drawn_pairs import assessed_pairs, fresh_pairs
 from benchmarks.figures import Figure
-from benchmarks.marked_section import replace_section
+from benchmarks.marked_section import MEASURED, replace_section
 from benchmarks.pair_cases import PairCase
 from benchmarks.stored_runs import finest_run, table_run
 from fe_contact import AllowedError
 from fe_contact.ste.curve import METHOD
 from fe_contact.types import FloatArray
 
-PAGE, SECTION = Path(__file__).parents[1] / "docs" / "lab" / "accuracy.md", "tolerance"
+PAGE, SECTION = MEASURED / "accuracy.md", "tolerance"
 ALLOWED = AllowedError(0.01)
 SUBJECT = f"tolerance = {ALLOWED.relative:g} against the finest solution"
 LEVELS = ("draft", "standard")
@@ -137,7 +136,7 @@ def _dear(prices: Sequence[float]) -> list[bool]:
 
 
 def markdown(found: Sequence[ToleranceRun]) -> str:
-    """Return the section of docs/lab/accuracy.md."""
+    """Return the section of accuracy.md."""
     lines = [
         f"| {len(found)} pairs | |",
         "|---|---:|",

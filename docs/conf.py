@@ -12,6 +12,8 @@ from sphinx.application import Sphinx
 from sphinx.errors import PycodeError
 from sphinx.pycode import ModuleAnalyzer
 
+EXTRA = Path(__file__).parents[1] / "out" / "site"  # pages that scripts write: docs/lab/index.md
+
 project = "lineofaction"
 author = "the lineofaction authors"
 version = release = installed("lineofaction")
@@ -24,8 +26,8 @@ extensions = [
     "sphinx_copybutton",
 ]
 source_suffix = {".md": "markdown"}
-# In the source tree alone: decisions, and what scripts write: measurements, hard cases, licenses.
-exclude_patterns = ["decisions/*", "lab/*", "licenses.md"]
+# In the source tree alone: decisions, notes on measurements, licenses.
+exclude_patterns = ["decisions/*", "lab/*", "paper/*", "licenses.md"]
 myst_enable_extensions = ["deflist", "dollarmath"]
 myst_heading_anchors = 4
 
@@ -36,6 +38,7 @@ napoleon_use_ivar = True  # attributes are a list, not entries of the index
 
 html_theme = "furo"
 html_static_path = ["_static", "images/relief.wav"]
+html_extra_path = [str(folder) for folder in [EXTRA] if folder.exists()]
 html_css_files = ["formulas.css"]
 html_title = "lineofaction"
 html_copy_source = False

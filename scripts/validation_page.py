@@ -1,4 +1,4 @@
-"""Make docs/lab/validation.md from the figures that the tests recorded.
+"""Make the page of validation from the figures that the tests recorded.
 
 Usage: validation_page.py RECORDS PAGE
 """

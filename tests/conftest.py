@@ -1,4 +1,4 @@
-"""What all tests share: bodies condensed once, and the recorder of figures for docs/lab/validation.md."""
+"""What all tests share: bodies condensed once, and the recorder of figures for the page of validation."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def record_figure(request: pytest.FixtureRequest) -> RecordFigure:
 
     `name` says what was measured, `value` is the number, `target` the criterion in words or a number
     ("at most 0.3 %", 755.9), `unit` the unit of `value`, `source` where the target comes from. Each figure
-    becomes one JSON file in out/validation; `scripts/validation-page` makes docs/lab/validation.md from them.
+    becomes one JSON file in out/validation; `scripts/validation-page` makes a page of them.
     The fixture records and asserts nothing: the test does.
     """
 

@@ -20,7 +20,7 @@ from fe_contact.errors import InputError, finite, integer, within
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.confirmed_figures import confirmed_figures
 from fe_contact.microgeometry.design_problem import DesignProblem
-from fe_contact.microgeometry.evaluator import Evaluation, Evaluator
+from fe_contact.microgeometry.evaluator import Evaluation, Evaluator, deviating
 from fe_contact.microgeometry.objective import NO_LIMITS, Limits
 from fe_contact.microgeometry.root_influence import RootInfluence
 from fe_contact.microgeometry.scatter import MISALIGNMENT, ONE_NODE, Scatter
@@ -37,6 +37,8 @@ SAME = 1e-12
 """Misalignments that differ by less, in m, are one: sums of the same two differ in their last bits."""
 Misalignments = float | Levels
 """One value for all loads, or one for each, m."""
+CALLED_FOR = "called for by designs that remove less"
+"""The reason of an effect that is on although the design by which effects are decided does without."""
 
 
 @dataclass(frozen=True)
@@ -79,14 +81,14 @@ class DesignLoads:
         return everything, np.flatnonzero(order < self.torque.size)
 
 
-def _misalignment_axis(misalignment: FloatArray, deviation: FloatArray) -> FloatArray:
+def misalignment_axis(misalignment: FloatArray, deviation: FloatArray) -> FloatArray:
     """Return the axis of a table that holds misalignments (L,) with none and with each deviation (S,), m."""
     own = np.concatenate([misalignment, np.add.outer(deviation, misalignment).ravel()])
     rising = np.unique(own)
     return np.asarray(rising[np.append(True, np.diff(rising) > SAME)])
 
 
-def _on_axis(axis: FloatArray, misalignment: FloatArray) -> FloatArray:
+def snapped_to_axis(axis: FloatArray, misalignment: FloatArray) -> FloatArray:
     """Return misalignments, those of the axis (M,) to its last bit, m."""
     nearest = axis[np.abs(axis - misalignment[..., None]).argmin(axis=-1)]
     return np.where(np.abs(nearest - misalignment) <= SAME, nearest, misalignment)
@@ -141,6 +143,8 @@ class DesignSpace:
     """Equally spaced in a base pitch."""
     options: AnalysisOptions
     """Their `positions`, `receipt` and `on_violation` do not count."""
+    least: Mapping[str, float] = field(default_factory=dict)
+    """``gear.quantity`` to m of the design with the least removed; effects that it calls for are on."""
 
     def check(self, torques: Levels, further_torques: Levels = ()) -> Checked:
         """Check the request of a design in which everything acts that may act in any; computes nothing.
@@ -154,15 +158,30 @@ class DesignSpace:
         scattered = self.scatter.modification
         present = {name: figure(self.pair, name) for name in scattered} | dict(self.varied)
         acting = {name: own + _toward(name) * scattered.get(name, 0.0) for name, own in present.items()}
-        skews = _misalignment_axis(loads.misalignment, self.scatter.nodes().misalignment)
-        checked = check_request(
-            modified(self.pair, acting),
-            TableAxes(np.union1d(loads.torque, further_torques), misalignments=skews),
-            replace(self.options, positions=None, receipt="full", on_violation="report"),
-            neglect=False,
-        )
+        skews = misalignment_axis(loads.misalignment, self.scatter.nodes().misalignment)
+        axes = TableAxes(np.union1d(loads.torque, further_torques), misalignments=skews)
+        options = replace(self.options, positions=None, receipt="full", on_violation="report")
+        checked = check_request(modified(self.pair, acting), axes, options, neglect=False)
         _refuse_off(checked, self.varied, self.scatter)
+        barest = check_request(self._with_the_least_removed(), axes, options, neglect=False)
+        return _with_effects_of(barest, checked)
+
+    def _with_the_least_removed(self) -> ParallelAxes:
+        """Return the pair with every variable at its lower bound, less what scatters."""
+        present = {name: figure(self.pair, name) for name in self.scatter.modification} | dict(self.varied)
+        removed = present | dict(self.least)
+        deviation = {name: -amount for name, amount in self.scatter.modification.items()}
+        return deviating(modified(self.pair, removed), deviation)
+
+
+def _with_effects_of(barest: Checked, checked: Checked) -> Checked:
+    """Turn on what only the design with the least removed calls for: tip edges that a relief keeps apart."""
+    missing = [entry.name for entry in checked.ledger if entry.choice == "auto" and not entry.on]
+    reasons = {name: CALLED_FOR for name in missing if barest.decided[name] == "on"}
+    if not reasons:
         return checked
+    turned_on = {**checked.request.turned_on, **reasons}
+    return checked_request(replace(checked.request, turned_on=turned_on), neglect=False)
 
 
 def _toward(name: str) -> float:
@@ -341,7 +360,7 @@ def full_table(
 ) -> SteDatabase:
     """Compute the table of a design over torques and the misalignments of all nodes and of none."""
     request = decided.checked.request
-    skews = _misalignment_axis(search.misalignment, search.nodes.misalignment)
+    skews = misalignment_axis(search.misalignment, search.nodes.misalignment)
     full = replace(
         request,
         pair=modified(search.contact.pair, values),
@@ -361,7 +380,7 @@ def ripple_errors(table: SteDatabase, fine: Evaluator) -> FloatArray:
     def error(load: float, skew: float) -> float:
         return table.peak_to_peak(force=load, misalignment=skew).error
 
-    rows = _on_axis(table.misalignment, fine.misalignments).tolist()
+    rows = snapped_to_axis(table.misalignment, fine.misalignments).tolist()
     return np.array([[error(*point) for point in zip(fine.load.tolist(), row, strict=True)] for row in rows])
 
 

@@ -62,8 +62,8 @@ class OptimizationRequest:
     """Method, seed, starts, evaluations, positions."""
     options: AnalysisOptions = AnalysisOptions()  # noqa: RUF009 (frozen)
     """`positions`, `receipt` and `on_violation` are ignored. Effects are decided once, for the design with
-    every variable at the middle of its bounds and the scattered misalignment: all designs are assessed by one
-    model.
+    every variable at the middle of its bounds and the scattered misalignment, and for the design with the
+    least removed: all designs are assessed by one model.
     """
     map_torques: Levels | None = None
     """Further torques of the Harris maps, N m; default: up to 1.25 times the largest design torque."""
@@ -78,7 +78,8 @@ class OptimizationRequest:
         """The designs, by one in which every variable acts."""
         acting = {variable.name: variable.acting for variable in self.variables}
         scattered = self.scatter, self.misalignment
-        return DesignSpace(self.pair, acting, *scattered, self.search.positions, self.options)
+        least = {variable.name: variable.low for variable in self.variables}
+        return DesignSpace(self.pair, acting, *scattered, self.search.positions, self.options, least)
 
     @property
     def outside(self) -> tuple[str, ...]:

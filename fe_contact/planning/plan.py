@@ -35,7 +35,7 @@ FINER_SLICES = (23, 31)
 PLANE_RESOLVED, FACE_RESOLVED = 3.0, 1.5
 """Elements in the half-width of a load patch at least. A wider one spreads a load over more of the flank than
 its strip does: over the face two elements cost 1.3 % of peak-to-peak, one and a half 0.3 %. With less the
-mesh errs by more: in the plane 0.1 % of the mean of drafts at one and a half (docs/lab/accuracy.md)."""
+mesh errs by more: in the plane 0.1 % of the mean of drafts at one and a half (docs/lab/index.md)."""
 WIDER = 1.25
 """Width over that of a patch at which the change is measured at least."""
 PATCHES_SEEN = 0.7

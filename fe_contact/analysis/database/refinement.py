@@ -36,7 +36,7 @@ SMALL = 0.3
 """Part of the tolerance, a tenth of what may be used, that is refined only where it decides."""
 
 MESH_STEP = {"plane": {"draft": 0.45, "standard": 0.2}, "face": {"draft": 0.4, "standard": 0.45}}
-"""Error of the next level over that of a level, from the pairs of docs/lab/accuracy.md, "Constants"."""
+"""Error of the next level over that of a level, from the pairs of docs/lab/index.md, "Constants"."""
 
 CLOSER = 0.25
 """Error between positions that a step allows over that before it."""

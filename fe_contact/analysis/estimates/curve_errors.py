@@ -48,7 +48,7 @@ elements half as large; over the face of a spur pair of solid gears, what second
 two thirds; of one with a thin rim, more; of a helical pair, over what second order leaves of that change
 (`FaceDiscretization.remaining`). Coarse meshes are not in the range yet in which errors fall with a power of
 the size: a draft in the plane leaves less of its change than a finer mesh, one over the face more. Set on the
-pairs of docs/lab/accuracy.md ("Constants"); the level fine has the parts of standard."""
+pairs of docs/lab/index.md ("Constants"); the level fine has the parts of standard."""
 
 HARMONIC_SHARE = 0.3
 """Least change of harmonic k of a helical pair over that of peak-to-peak, times the root of k: half the
@@ -61,7 +61,7 @@ transmission error: where the load lies follows from differences of compliance a
 BALANCE = 0.5
 """Least change of the mean arm over the mean size of the change about it. An arm balances one end of the
 face against the other, so that the change of its mean may cross zero by accident. Both were set on the pairs
-over the face of docs/lab/accuracy.md, three loads on two meshes, against 31 slices on the mesh fine."""
+over the face of docs/lab/index.md, three loads on two meshes, against 31 slices on the mesh fine."""
 
 
 def curve_errors(

@@ -28,7 +28,7 @@ from fe_contact.types import FloatArray, Json, Status
 
 CORRECTION_ERROR = 0.03
 """Error of the correction for a finite width in parts of the correction itself. The largest seen of mean,
-peak-to-peak and harmonics on its pairs (docs/lab/accuracy.md, "Constants") is 0.033, of peak-to-peak at a
+peak-to-peak and harmonics on its pairs (docs/lab/index.md, "Constants") is 0.033, of peak-to-peak at a
 face of 1.2 modules, of which the mesh covers its part."""
 
 

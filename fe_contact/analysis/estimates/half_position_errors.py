@@ -20,7 +20,7 @@ stand anywhere in an interval."""
 
 PASSED_BY = 1.25
 """Peak-to-peak that is missed over the corners at which chords beside an interval meet: flanks bend towards
-them. Both parts were set on the pairs of docs/lab/accuracy.md ("Constants"), against eight times as many
+them. Both parts were set on the pairs of docs/lab/index.md ("Constants"), against eight times as many
 positions on the same meshes."""
 
 

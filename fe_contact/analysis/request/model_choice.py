@@ -31,7 +31,7 @@ from fe_contact.types import Json
 
 WIDTH_SHARE = 0.8
 """Part of the tolerance that the estimated change by the finite width may reach: estimates for
-peak-to-peak are 0.8 of the measured change in the median (docs/lab/influence.md)."""
+peak-to-peak are 0.8 of the measured change in the median (docs/lab/index.md)."""
 
 
 TRIED_WORK = 0.1
@@ -106,7 +106,7 @@ def decide(
     options = checked.request.options
     if options.tolerance is not None and options.time_budget is not None:
         return _within_time(checked, cache, keep_model=keep_model, tried=tried)
-    models = [checked] if keep_model else _alternatives(checked)
+    models = [checked] if keep_model else alternative_requests(checked)
     curves = expected_curves(checked) if _wishes(checked) or checked.model.across_face else None
     chosen = _best(_meshes(models, curves, cache))
     if tried and options.tolerance is not None and (first := _trial(models, chosen[1], curves)):
@@ -188,7 +188,7 @@ def _wishes(checked: Checked) -> bool:
     return options.tolerance is not None or options.time_budget is not None
 
 
-def _alternatives(checked: Checked) -> list[Checked]:
+def alternative_requests(checked: Checked) -> list[Checked]:
     """Return the request with every model that may stand in for its own; itself where it is bound."""
     request = checked.request
     face, width = request.model_effects

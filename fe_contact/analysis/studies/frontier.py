@@ -140,7 +140,7 @@ def frontier(
     solves = outcomes[-1].result.status.size
     known = known_full_contact(checked.request.pair)
     study = Frontier(
-        results, left_out, knee_above(results), _chosen_fidelity(checked), solves, known_full_contact=known
+        results, left_out, knee_above(results), chosen_fidelity(checked), solves, known_full_contact=known
     )
     tables = {outcome.fidelity.name: outcome.result for outcome in outcomes}
     if full_contact is None:
@@ -180,7 +180,7 @@ def _whole_table(checked: Checked, fidelity: Fidelity) -> SteDatabase:
     return table
 
 
-def _chosen_fidelity(checked: Checked) -> str | None:
+def chosen_fidelity(checked: Checked) -> str | None:
     """Return the name of the fidelity that a request's own model and mesh are; None if none is.
 
     Plane strain has one fidelity, whose error is the model's: it stands for all its meshes.

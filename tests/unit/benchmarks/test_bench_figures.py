@@ -79,6 +79,7 @@ def test_publishing_replaces_the_figures_and_nothing_else(
     before, after = f"# Title\n\n{MARKS[0]}\n", f"{MARKS[1]}\n\nRest.\n"
     readme.write_text(before + "stale row\n" + after)
     monkeypatch.setattr(bench, "ROOT", tmp_path)
+    monkeypatch.setattr(bench, "MEASURED", tmp_path / "out")
     for _ in range(2):  # publishing again changes nothing
         bench._publish({"static_table": _measured("2026-01-02", *FIGURES)}, ORDER)
         text = readme.read_text()
@@ -87,18 +88,19 @@ def test_publishing_replaces_the_figures_and_nothing_else(
         assert "stale row" not in text
         assert text.count("| table | cold |") == 1
         assert "memory" not in text  # no target, so no place in the README
-    assert "| table | memory |" in (tmp_path / "docs" / "lab" / "benchmarks.md").read_text()
+    assert "| table | memory |" in (tmp_path / "out" / "benchmarks.md").read_text()
 
 
 def test_publishing_one_subject_keeps_the_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "docs" / "lab").mkdir(parents=True)
     (tmp_path / "README.md").write_text(f"{MARKS[0]}\n{MARKS[1]}\n")
     monkeypatch.setattr(bench, "ROOT", tmp_path)
+    monkeypatch.setattr(bench, "MEASURED", tmp_path / "out")
     other = Figure("run", "run-up", 0.5, "CPU s", 1.0)
     bench._publish({"static_table": _measured("2026-01-02", *FIGURES)}, ORDER)
     bench._publish({"run_up": _measured("2026-01-03", other), "gone": _measured("2026-01-03")}, ORDER)
     bench._publish({"static_table": _measured("2026-01-04", FIGURES[0])}, ORDER)
-    published = (tmp_path / "docs" / "lab" / "benchmarks.md").read_text()
+    published = (tmp_path / "out" / "benchmarks.md").read_text()
     assert [line for line in published.splitlines() if line.startswith(("## ", "2026"))] == [
         "## static_table",
         "2026-01-04",
@@ -116,6 +118,7 @@ def test_only_named_subjects_are_measured(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(bench, "ROOT", tmp_path)
+    monkeypatch.setattr(bench, "MEASURED", tmp_path / "out")
     monkeypatch.setattr("benchmarks.finite_width.figures", lambda: [FIGURES[0]])
     assert bench.main(["finite_width"]) == 0
     printed = capsys.readouterr().out

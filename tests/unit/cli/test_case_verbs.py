@@ -81,7 +81,7 @@ def test_roots_are_stressed_by_the_load_and_drawn_with_their_peaks(tmp_path: Pat
         assert tension["stress_mpa"] == pytest.approx(73.0, rel=0.03)  # 25 MPa of F_t/(b m) by 1.71 by 1.78
         assert half[gear]["tension"]["stress_mpa"] == pytest.approx(0.5 * tension["stress_mpa"], rel=0.02)
         assert found[gear]["compression"]["stress_mpa"] < 0.0
-        assert 0.0 < tension["error_mpa"] < 0.03 * tension["stress_mpa"]
+        assert 0.0 < tension["error_mpa"] < 0.04 * tension["stress_mpa"]  # roots, positions and contact
         assert 30.0 < tension["tangent_angle_deg"] < 40.0
         assert max(panel.lines[0].y) == pytest.approx(tension["stress_mpa"], rel=1e-9)
         assert min(panel.lines[2].y) == pytest.approx(found[gear]["compression"]["stress_mpa"], rel=1e-9)

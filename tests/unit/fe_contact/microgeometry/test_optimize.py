@@ -120,6 +120,16 @@ def test_wider_bounds_never_end_worse(found: Optimization) -> None:
     )
 
 
+def test_edges_count_where_a_design_of_the_bounds_reaches_them() -> None:
+    """Reliefs at the middle of the bounds keep edges apart, those at the lower bounds do not."""
+    low, high = (
+        design_request(LONG_RELIEFS, [TORQUE], [replace(one, low=low) for one in AMOUNTS], **DRAFT).space
+        for low in (0.0, 50e-6)
+    )
+    assert low.check([TORQUE]).decided["corner_contact"] == "on"
+    assert high.check([TORQUE]).decided["corner_contact"] == "off"
+
+
 @pytest.mark.law
 def test_equal_seeds_give_equal_results(found: Optimization) -> None:
     again, other = (searched(search=replace(FEW, seed=seed)) for seed in (FEW.seed, 7))

@@ -10,7 +10,7 @@ from calculix import no_load_gap, placed_pair
 
 from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear
 from fe_contact.geometry import ParallelAxes
-from fe_contact.mesh.quality import _least_jacobian
+from fe_contact.mesh.quality import least_jacobian
 from fe_contact.types import FloatArray
 from verification.full_contact.condensation.condensed_body import freedoms
 from verification.full_contact.condensation.placed_mesh import PlacedBody, placed_bodies
@@ -88,7 +88,7 @@ def test_modified_flanks_are_apart_by_what_was_removed_and_turn_no_element_over(
     assert no_load_gap(PAIR, 0.3) == 0.0
     relieved = replace(PINION, modification=FlankModification(tip_relief=60e-6, tip_relief_length=1.7e-3))
     for body in bodies_at(GearPair(relieved, PINION, center_distance=80e-3), 0.2):
-        assert _least_jacobian(body.points[body.triangles]).min() > 0.1
+        assert least_jacobian(body.points[body.triangles]).min() > 0.1
 
 
 def test_teeth_off_the_path_are_held_where_the_lag_brings_them_to_touch() -> None:

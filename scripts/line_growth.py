@@ -1,6 +1,6 @@
 """Print how many lines the subjects of each house have, and what came and went since a revision.
 
-Usage: growth.py [REVISION]   without one: the lines of today. A subject is a folder or a file of a house.
+Usage: line_growth.py [REVISION]   without one: the lines of today. A subject is a folder or file of a house.
 """
 
 from __future__ import annotations
