@@ -21,8 +21,8 @@ import structure
 ROOT = structure.ROOT
 TABLE = Path(__file__).with_name("instruments.toml")
 REGISTRY = "lineofaction.gearbox.registry"
-REGISTRIES = (REGISTRY, "lineofaction.cli.commands")
-"""Modules of rows: the studies, and the families of verbs."""
+REGISTRIES = (REGISTRY, "lineofaction.gearbox.computations", "lineofaction.cli.commands")
+"""Modules of rows: the studies, their computations, and the families of verbs."""
 ROWS = "Studies"
 """Class of the registry whose attributes are the rows."""
 
