@@ -45,6 +45,7 @@ def random_problem(seed: int, n: int, kind: str, gaps: str, twins: bool, arms: b
     rng = np.random.default_rng(seed)
     size = {"none": [0.0], "mixed": [0.0, 1e-8, 1e-6, 1e-5, 1e-4], "wide": [1e-3]}[gaps]
     motion = rng.uniform(0.97, 1.0, n) if arms else np.ones(n)
+    length = rng.uniform(1e-4, 4e-4)
     problem = Problem(
         compliance=compliance(rng, kind, n),
         gap=rng.choice(size, n) * rng.uniform(size=n),
@@ -52,7 +53,8 @@ def random_problem(seed: int, n: int, kind: str, gaps: str, twins: bool, arms: b
         torque_arm=motion * rng.uniform(0.98, 1.02, n) if arms else motion,
         gap_about=random_gaps(rng, n),
         width=np.full(n, 25e-3 / max(1, n // 5)),
-        length=rng.uniform(1e-4, 4e-4),
+        length=length,
+        reference_length=np.full(n, length),
         modulus=MODULUS / rng.choice([1.0, 1.44], n),
     )
     return with_twins(problem) if twins and n > 1 else problem
@@ -80,7 +82,7 @@ def with_twins(problem: Problem) -> Problem:
 
 
 def picked(problem: Problem, index: np.ndarray) -> Problem:
-    names = ("gap", "motion_arm", "torque_arm", "width", "modulus")
+    names = ("gap", "motion_arm", "torque_arm", "width", "modulus", "reference_length")
     arrays = {name: getattr(problem, name)[index] for name in names}
     arrays["gap_about"] = GapAbout(*(part[index] for part in vars(problem.gap_about).values()))
     return replace(problem, compliance=problem.compliance[np.ix_(index, index)], **arrays)
