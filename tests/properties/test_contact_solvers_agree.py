@@ -15,7 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fe_contact.contact.edge_strip import no_edges
-from fe_contact.contact.local_law import local_law
+from fe_contact.contact.local_law import REFERENCE_LENGTH, local_law
 from fe_contact.contact.newton import CONVERGED, solve_point
 from fe_contact.contact.point_problem import PointProblem
 from fe_contact.contact.strip import Gap, gap_table
@@ -100,6 +100,7 @@ class Solved:
         gap = Gap(*vars(p.gap_about).values())
         there = np.flatnonzero(np.isfinite(p.gap))
         law = local_law(gap_table(gap)[there], p.width[there], p.modulus[there], p.length)
+        law.strip[:, REFERENCE_LENGTH] = p.reference_length[there]
         point = PointProblem(
             p.compliance,
             *untilted(n),
@@ -139,6 +140,15 @@ def assert_agreement(problem: Problem, load: float, solved: Solved) -> None:
     assert solved.deflection == pytest.approx(answer.deflection, rel=1e-9, abs=0.0)
     assert solved.force == pytest.approx(answer.force, abs=1e-7 * load)
     assert np.all(solved.residual < 1e-9)
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("kind", ["smooth", "body"])
+def test_two_solvers_agree_on_four_contacts_near_free_ends(kind):
+    problem = random_problem(76, 4, kind, "mixed", False, True)
+    near = replace(problem, reference_length=problem.length * np.array([1.0, 1.3, 1.8, 1.0]))
+    assert_agreement(near, NOMINAL, Solved(near, NOMINAL))
+    assert Solved(near, NOMINAL).deflection > Solved(problem, NOMINAL).deflection  # ends yield more
 
 
 @pytest.mark.law
