@@ -25,8 +25,8 @@ DOCS = "docs"
 PAGE = "service/page/static"
 """Folder of the page's scripts."""
 REGISTRY = "lineofaction.gearbox.registry"
-REGISTRIES = (REGISTRY, "lineofaction.cli.commands")
-"""Modules of rows: the studies, and the families of verbs."""
+REGISTRIES = (REGISTRY, "lineofaction.gearbox.computations", "lineofaction.cli.commands")
+"""Modules of rows: the studies, their computations, and the families of verbs."""
 ROWS = "Studies"
 """Class of the registry whose attributes are the rows."""
 
@@ -133,8 +133,8 @@ def _home(whole: str, files: Mapping[str, Path], offers: Mapping[str, Mapping[st
 
 
 def is_product(module: str) -> bool:
-    """Whether a module is part of a house, and not of tests or benchmarks."""
-    return module.partition(".")[0] in {house.partition(".")[0] for house in structure.HOUSES}
+    """Whether a module is part of the product, and not of references, tests or benchmarks."""
+    return module.partition(".")[0] in {house.partition(".")[0] for house in structure.PRODUCT}
 
 
 def is_row(module: str) -> bool:

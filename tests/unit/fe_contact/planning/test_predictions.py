@@ -86,7 +86,7 @@ def test_a_tolerance_takes_the_cheapest_mesh_or_slices_that_meet_it():
 def test_a_plan_computes_nothing(monkeypatch):
     """Neither a mesh nor a compliance nor a contact is requested."""
     for place in (
-        "host.json_child.subprocess.run",
+        "host.children.json_child.subprocess.Popen",
         "fe_contact.analysis.pairs.pair_contact.solve_contact",
         "fe_contact.compliance.flank_compliance_2d.compute_flank_compliance",
         "fe_contact.compliance.cyclic_compliance.compute_flank_compliance_3d",

@@ -1,0 +1,244 @@
+"""Child processes that work on one order each: started anew, or forked from a warm process.
+
+A child forked from it needs no imports and no compilation. It is started for the first child, which waits for
+it: both take what that child alone would. Where it cannot be had, or not in time, children are started anew.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import select
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeAlias
+
+from host.children.environment import child_environment
+from host.children.fork_server import MESSAGE_BYTES, READY
+from host.sessions import Ended, ending_signal, has_exited, reap
+
+_FORK_SERVER = (sys.executable, "-P", "-m", "host.children.fork_server")
+"""Without the folder in which its starter was started: its modules may be another program's."""
+MOST_FORKS = 500
+"""Children of one warm process; then a new one takes its place."""
+WARM_WITHIN_S = 10.0
+"""How long a child waits for a warm process, which takes two on an idle machine."""
+_PATIENCE_S = 10.0
+"""For an answer, which takes a hundredth of a second."""
+UNSEEN = Ended(-9, 0.0, 0)
+"""A child whose end nobody saw, because the warm process had ended before it."""
+Warn: TypeAlias = Callable[..., object]
+"""Called as ``warn(event, **facts)``."""
+
+
+class Launcher:
+    """Launches children that do ``work(descriptor)`` of a module, forked from a warm process where it can.
+
+    It is for one thread, but for `hurry` and `close`.
+
+    Parameters
+    ----------
+    work : str
+        The module.
+    modules : iterable of str
+        What the warm process has imported.
+    log : Path
+        File that gets the standard output and error of the warm process.
+    warn : callable
+        Called when there is no warm process.
+    """
+
+    def __init__(self, work: str, modules: Iterable[str], log: Path, warn: Warn) -> None:
+        self._modules, self._log, self._work, self._warn = sorted(set(modules)), log, work, warn
+        self._server: WarmProcess | None = None
+        self._waits = True
+
+    def warm_up(self) -> None:
+        """Start the warm process, if the system forks and there is none; return at once."""
+        server = self._server
+        if sys.platform != "linux" or (server is not None and (server.usable or server.living)):
+            return
+        if server is not None:
+            server.close()
+        self._server = None
+        try:
+            self._server = WarmProcess(self._work, self._modules, self._log, self._warn)
+        except OSError as error:
+            self._warn("no warm process", reason=str(error))
+
+    @property
+    def warm(self) -> bool:
+        """Whether the next child is forked."""
+        return self._server is not None and self._server.ready
+
+    def launch(self, ends: Ends, warm_within: float = WARM_WITHIN_S) -> ChildProcess:
+        """Fork a child, or start one; OSError: the system does neither."""
+        self.warm_up()
+        if self._server is not None and self._server.usable and not self._server.ready:
+            self._server.await_word(warm_within if self._waits else 0.0)
+        if self._server is not None and self.warm:
+            with contextlib.suppress(ConnectionError):
+                return self._server.fork(ends)
+        return start_child(self._work, ends)
+
+    def hurry(self) -> None:
+        """Let no child wait for a warm process until all is closed; for any thread."""
+        self._waits = False
+        if (server := self._server) is not None:
+            server.end_unless_ready()
+
+    def close(self) -> None:
+        """End the warm process; its children live on."""
+        if self._server is not None:
+            self._server.close()
+        self._server, self._waits = None, True
+
+
+@dataclass(frozen=True)
+class Ends:
+    """What a child is given: descriptors to read its order, to answer and for its log, and where it works."""
+
+    orders: int
+    channel: int
+    log: int
+    workspace: Path
+
+
+@dataclass(frozen=True)
+class _StartedChild:
+    """A child started anew, the leader of a session of its own: `pid` is also the id of group and session."""
+
+    pid: int
+
+    def has_exited(self) -> bool:
+        """Whether it has ended. Until it is reaped no other process gets its id."""
+        return has_exited(self.pid)
+
+    def reap(self) -> Ended:
+        return reap(self.pid)
+
+
+def start_child(work: str, ends: Ends) -> _StartedChild:
+    """Start a child that runs a module; OSError: the system does not."""
+    process = subprocess.Popen(
+        [sys.executable, "-P", "-m", work, str(ends.channel)],
+        stdin=ends.orders,
+        stdout=ends.log,
+        stderr=ends.log,
+        pass_fds=(ends.channel,),
+        start_new_session=True,
+        env=child_environment(),
+        cwd=ends.workspace,
+    )
+    process.returncode = 0  # `reap` waits for it, not Popen
+    return _StartedChild(process.pid)
+
+
+class WarmProcess:
+    """The process that others are forked from, and the socket to it."""
+
+    def __init__(self, work: str, modules: list[str], log: Path, warn: Warn) -> None:
+        self.warn = warn
+        self._channel, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self._channel.settimeout(_PATIENCE_S)
+        self._ready, self._forks, self.living, self._gone = False, 0, 0, False
+        self._asking = threading.Lock()  # threads of a Dask worker reap their children
+        with theirs, log.open("wb") as stream:
+            try:
+                self._process = subprocess.Popen(
+                    [*_FORK_SERVER, str(theirs.fileno()), work, *modules],
+                    stdin=subprocess.DEVNULL,
+                    stdout=stream,
+                    stderr=stream,
+                    pass_fds=(theirs.fileno(),),
+                    start_new_session=True,
+                    env=child_environment(),
+                )
+            except OSError:
+                self._channel.close()
+                raise
+
+    @property
+    def usable(self) -> bool:
+        """Whether it runs and may fork once more."""
+        return not self._gone and self._forks < MOST_FORKS and self._process.poll() is None
+
+    @property
+    def ready(self) -> bool:
+        """Whether it has said that it is warm, and may fork once more."""
+        if not self._ready and self.usable:
+            heard, _, _ = select.select([self._channel], [], [], 0.0)
+            self._ready = bool(heard) and self._channel.recv(MESSAGE_BYTES) == READY
+        return self._ready and self.usable
+
+    def await_word(self, seconds: float) -> None:
+        """Wait until it says that it is ready, or has ended."""
+        select.select([self._channel], [], [], seconds)
+
+    def fork(self, ends: Ends) -> _ForkedChild:
+        """Fork a child; ConnectionError: the process is gone; OSError: the system forks no more."""
+        descriptors = [ends.orders, ends.channel, ends.log]
+        pid = self.ask({"workspace": str(ends.workspace)}, descriptors)
+        if isinstance(pid, dict):
+            raise OSError(pid["errno"], pid["strerror"])
+        self._forks += 1
+        self.living += 1
+        return _ForkedChild(pid, os.pidfd_open(pid), self)
+
+    def ask(self, request: dict[str, Any], descriptors: Iterable[int] = ()) -> Any:
+        """Return the answer to a request; ConnectionError: the process is gone."""
+        try:
+            with self._asking:
+                socket.send_fds(self._channel, [json.dumps(request).encode()], descriptors)
+                answer = self._channel.recv(MESSAGE_BYTES)
+        except OSError:
+            answer = b""
+        if not answer:
+            self._gone = True
+            raise ConnectionError
+        return json.loads(answer)
+
+    def end_unless_ready(self) -> None:
+        """Kill it while it warms up; for any thread."""
+        if not self._ready:
+            self._process.kill()
+
+    def close(self) -> None:
+        """End it; its children live on."""
+        self._channel.close()
+        self._process.kill()
+        self._process.wait()
+
+
+@dataclass(frozen=True)
+class _ForkedChild:
+    """A child of the warm process; `handle` is a descriptor that becomes readable when it ends."""
+
+    pid: int
+    handle: int
+    parent: WarmProcess
+
+    def has_exited(self) -> bool:
+        return bool(select.select([self.handle], [], [], 0.0)[0])
+
+    def reap(self) -> Ended:
+        """Wait for its end, and let its parent reap it."""
+        select.select([self.handle], [], [])
+        os.close(self.handle)
+        self.parent.living -= 1
+        try:
+            return Ended(*self.parent.ask({"reap": self.pid}))
+        except ConnectionError:
+            self.parent.warn("warm process gone", pid=self.pid, signal=ending_signal(UNSEEN.code))
+            return UNSEEN
+
+
+ChildProcess: TypeAlias = _StartedChild | _ForkedChild
+"""The leader of a session of its own: an id of its own until it is reaped."""
+Launch: TypeAlias = Callable[[Ends], ChildProcess]
