@@ -19,7 +19,7 @@ from dynamics.simulation import simulate
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.report.comparison.compare import _compare_runs, _read_universal, compare
+from lineofaction.report.comparison.compare import _compare_runs, compare
 from lineofaction.report.comparison.measured import (
     PER_PITCH,
     Difference,
@@ -30,6 +30,7 @@ from lineofaction.report.comparison.measured import (
     read_measured,
 )
 from lineofaction.report.comparison.of_tables import compare_tables
+from lineofaction.report.comparison.universal_files import read_universal
 from lineofaction.report.document import read_result
 from lineofaction.report.run.view import RunView
 
@@ -252,7 +253,7 @@ def test_a_transmission_error_is_what_csv_would_say(
     file = universal(
         tmp_path / "m.uff", function(label, PITCHES * scale, 1e-6 * length * MEASURED), length=length
     )
-    found, known = _read_universal(file, TEETH, "µm"), averaged(file, PITCHES, MEASURED)
+    found, known = read_universal(file, TEETH, "µm"), averaged(file, PITCHES, MEASURED)
     assert isinstance(found, MeasuredCurve)
     assert found.pitches == known.pitches
     np.testing.assert_allclose(found.ripple, known.ripple, atol=2e-4)
@@ -262,7 +263,7 @@ def test_orders_of_the_shaft_become_mesh_orders(tmp_path: Path) -> None:
     x = np.arange(0.0, 50.0)
     own: dict[str, Any] = {"abscissa_spec_data_type": 20, "ordinate_spec_data_type": 12}
     file = universal(tmp_path / "o.unv", function("Order", x, 1e3 * x, **own), length=1e3)
-    found = _read_universal(file, TEETH, "m/s²")
+    found = read_universal(file, TEETH, "m/s²")
     assert isinstance(found, MeasuredOrders) and found.unit == "m/s²"
     np.testing.assert_allclose(found.order * TEETH, x, atol=1e-6)
     np.testing.assert_allclose(found.amplitude, x, rtol=1e-6)
@@ -272,7 +273,7 @@ def test_what_this_program_writes_is_read_back(tmp_path: Path) -> None:
     run = simulate(gear_pair_scene(speed=TimeLaw.ramp(0.0, 955.0 * RPM, 0.2), duration=0.2))
     file = tmp_path / "run.unv"
     write_universal_file(run, file, "orders")
-    found = _read_universal(file, TEETH, "µm")
+    found = read_universal(file, TEETH, "µm")
     assert isinstance(found, MeasuredOrders)
     assert found.near(1.0) > 0.0
     (kept,) = (each for each in pyuff.UFF(str(file)).read_sets() if each.get("ordinate_spec_data_type") == 8)
@@ -286,12 +287,12 @@ def test_one_of_several_is_not_guessed(tmp_path: Path) -> None:
         function("Position", PITCHES, MEASURED, id1="second"),
     )
     with pytest.raises(BadInput, match=r"2 in m\.uff: Position, second"):
-        _read_universal(universal(tmp_path / "m.uff", one, other), TEETH, "µm")
+        read_universal(universal(tmp_path / "m.uff", one, other), TEETH, "µm")
     with pytest.raises(BadInput, match="0 in time"):
-        _read_universal(universal(tmp_path / "time.uff", function("Time", PITCHES, MEASURED)), TEETH, "µm")
+        read_universal(universal(tmp_path / "time.uff", function("Time", PITCHES, MEASURED)), TEETH, "µm")
     (tmp_path / "bad.uff").write_text("no universal file")
     with pytest.raises(BadInput, match="measured"):
-        _read_universal(tmp_path / "bad.uff", TEETH, "µm")
+        read_universal(tmp_path / "bad.uff", TEETH, "µm")
 
 
 def test_a_table_is_compared_with_one(database: SteDatabase, tmp_path: Path) -> None:
