@@ -19,7 +19,7 @@ from benchmarks.figures import Figure
 from benchmarks.marked_section import MEASURED, replace_section
 from benchmarks.pair_cases import PairCase
 from benchmarks.recorded_peer import record, recorded
-from fe_contact import FlankModification, Gear, GearPair, ste_database
+from fe_contact import FlankModification, Gear, GearPair, analyze
 from fe_contact.full_contact import solve_full_contact_helical
 from fe_contact.geometry.backlash import reference_center_distance
 from fe_contact.types import FloatArray
@@ -69,7 +69,7 @@ def assessed() -> tuple[Assessed, ...]:
 def assess(case: PairCase, level: str = "standard") -> Assessed:
     """Hold mean and peak-to-peak of a table at the positions of the peer against it, (2, loads) m."""
     exact, error = reference(case)
-    table = ste_database(case.pair, *case.request(level=level))
+    table = analyze(case.pair, *case.request(level=level))
     (skew,) = case.options.get("misalignments", (0.0,))
     curves = [table.curve(force=force, misalignment=skew, at=POSITIONS.tolist()) for force in case.forces]
     return assessed_at_positions(case.name, level, curves, exact, error)

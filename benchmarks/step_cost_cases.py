@@ -20,7 +20,7 @@ from dynamics.kernels.compiled import compiled
 from dynamics.motion.motion import add_motion
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
-from fe_contact import ste_database
+from fe_contact import analyze
 from lineofaction.gearbox.convert.case import analysis_options, gear_pair, table_axes
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.subjects import case_of_mesh, scene_of
@@ -80,7 +80,7 @@ def example(stem: str) -> Scene:
         case = case_of_mesh(mesh, f"meshes[{index}]", folder)
         assert case is not None
         options = replace(analysis_options(case), receipt="minimal")
-        tables[mesh.name] = ste_database(gear_pair(case), table_axes(case), options)
+        tables[mesh.name] = analyze(gear_pair(case), table_axes(case), options)
     return dynamic_scene(scene, tables)
 
 

@@ -27,7 +27,7 @@ extensions = [
 ]
 source_suffix = {".md": "markdown"}
 # In the source tree alone: decisions, notes on measurements, licenses.
-exclude_patterns = ["decisions/*", "lab/*", "licenses.md"]
+exclude_patterns = ["decisions/*", "lab/*", "paper/*", "licenses.md"]
 myst_enable_extensions = ["deflist", "dollarmath"]
 myst_heading_anchors = 4
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from fe_contact.allowed_error import AllowedError
-    from fe_contact.analysis.analyze import analyze, ste_database
+    from fe_contact.analysis.analyze import analyze
     from fe_contact.analysis.deviating_cycle import DeviatingCycle, deviating_cycle
     from fe_contact.analysis.flanks.contact_pattern import ContactPattern, contact_pattern
     from fe_contact.analysis.flanks.deformed_pair import DeformedPair, deformed_pairs
@@ -100,13 +100,12 @@ __all__ = [
     "optimize",
     "root_stress",
     "scatter",
-    "ste_database",
     "study_sensitivity",
 ]
 
 _NAMES = {
     "fe_contact.allowed_error": "AllowedError",
-    "fe_contact.analysis.analyze": "analyze ste_database",
+    "fe_contact.analysis.analyze": "analyze",
     "fe_contact.analysis.deviating_cycle": "DeviatingCycle deviating_cycle",
     "fe_contact.analysis.flanks.contact_pattern": "ContactPattern contact_pattern",
     "fe_contact.analysis.flanks.deformed_pair": "DeformedPair deformed_pairs",

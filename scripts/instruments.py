@@ -1,8 +1,8 @@
 """Instruments: what answers one kind of question on top of the core, and the command that takes one out.
 
 `instruments.toml` lists each instrument with its paths. What names one from outside are rows: of the registry
-of studies, of the families of verbs, and names that the `__init__` of a package offers. `retire` removes
-paths and rows, and the tests that import what went.
+of studies, of the families of verbs, of the page's scripts, and names that an `__init__` offers.
+`retire` removes paths and rows, the tests that import what went, and links to pages that went.
 """
 
 from __future__ import annotations
@@ -17,9 +17,13 @@ from functools import cache
 from pathlib import Path
 
 import structure
+from links import without_pages, without_scripts
 
 ROOT = structure.ROOT
 TABLE = Path(__file__).with_name("instruments.toml")
+DOCS = "docs"
+PAGE = "service/page/static"
+"""Folder of the page's scripts."""
 REGISTRY = "lineofaction.gearbox.registry"
 REGISTRIES = (REGISTRY, "lineofaction.cli.commands")
 """Modules of rows: the studies, and the families of verbs."""
@@ -36,6 +40,8 @@ class Instrument:
     """Folders and files of the tree, product and tests, relative to its root."""
     under: tuple[str, ...] = ()
     """Instruments that stand on this one and are retired before it."""
+    pages: tuple[str, ...] = ()
+    """Pages of the manual that nobody can follow without it, relative to `docs`; one may be of several."""
 
     def files(self, tree: Path = ROOT) -> Iterator[Path]:
         """Yield the files of a tree that belong to it."""
@@ -49,7 +55,8 @@ def instruments() -> Mapping[str, Instrument]:
     """Read the table."""
     rows = tomllib.loads(TABLE.read_text("utf-8"))
     return {
-        name: Instrument(name, tuple(row["paths"]), tuple(row.get("under", ()))) for name, row in rows.items()
+        name: Instrument(name, *(tuple(row.get(key, ())) for key in ("paths", "under", "pages")))
+        for name, row in rows.items()
     }
 
 
@@ -148,7 +155,7 @@ def retire(names: Iterable[str], tree: Path) -> list[str]:
     inside = {module for name in gone for module in modules().within(instruments()[name])}
     importers = {one for module in inside for one in modules().importers().get(module, ())}
     for name in gone:
-        for path in instruments()[name].paths:
+        for path in _paths(name):
             _remove(tree / path)
     for module in importers - inside:
         file = tree / modules().files[module].relative_to(ROOT)
@@ -157,7 +164,15 @@ def retire(names: Iterable[str], tree: Path) -> list[str]:
         elif not is_product(module):
             _remove(file)
     _without_studies(tree / modules().files[REGISTRY].relative_to(ROOT), gone)
+    without_scripts(tree / PAGE, {Path(path).name for name in gone for path in _paths(name)})
+    without_pages(tree, {tree / path for name in gone for path in _paths(name)})
     return gone
+
+
+def _paths(name: str) -> tuple[str, ...]:
+    """Return the paths of an instrument with its pages of the manual."""
+    row = instruments()[name]
+    return (*row.paths, *(f"{DOCS}/{page}" for page in row.pages))
 
 
 def lines_of(name: str) -> tuple[int, int]:

@@ -190,7 +190,7 @@ class Studies:
             ("search", 0.5),
             ("confirmation", 0.15),
         ),
-        version="6",
+        version="7",
         folder="optimum",
         further=(".toml",),
     )
@@ -204,7 +204,7 @@ class Studies:
         group="design",
         kind="scatter",
         stages=(("compliance", 0.2), ("samples", 0.7), ("confirmation", 0.1)),
-        version="6",
+        version="7",
     )
     sweep = StudyOf(
         _case(lambda: SWEEP),
@@ -229,7 +229,7 @@ class Studies:
         group="design",
         kind="change",
         stages=(("analysis", 0.2), ("transfer functions", 0.1), ("radiation", 0.1), ("pairs", 0.6)),
-        version="3",
+        version="4",
     )
     modes = StudyOf(
         _scene(lambda: MODES),

@@ -105,11 +105,11 @@ def database_of(
 
 def checked_table(checked: CheckedCase, run: Run, on_draft: OnDraft | None = None) -> SteDatabase:
     """Compute the STE database of a case, its warnings in the fields and units of the case."""
-    from fe_contact.analysis.analyze import ste_database  # noqa: PLC0415 (start-up time)
+    from fe_contact.analysis.analyze import analyze  # noqa: PLC0415 (start-up time)
 
     request = checked.checked
     with boundary_errors():
-        database = ste_database(request, run=run, case=case_json(checked.case), on_draft=on_draft)
+        database = analyze(request, run=run, case=case_json(checked.case), on_draft=on_draft)
     made = database.metadata
     if (allowed := allowed_misalignment(checked.case)) is not None:
         made = replace(made, receipt=made.receipt | {"misalignment_range": allowed.words})

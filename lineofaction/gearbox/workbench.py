@@ -7,14 +7,18 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from inspect import currentframe
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack, overload
 
 from dynamics.results import RunResult
 from dynamics.scene import Scene
 from dynamics.simulation import simulate as run_scene
 from fe_contact import analyze as analyze_pair
+from fe_contact.analysis.database.kept_tolerance import OnDraft
 from fe_contact.geometry import ParallelAxes
+from fe_contact.keywords import TableKeywords
+from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.ste import SteDatabase
+from fe_contact.types import Json
 from host.directories import cache_home
 from lineofaction.gearbox.convert.checked_case import CheckedCase, CheckedCases
 from lineofaction.gearbox.convert.housings import HousedScene, housings_in
@@ -99,17 +103,34 @@ def _over(overrides: Mapping[str, object], path: Path) -> InputFile:
     return InputFile(path, tuple(Override(name, value) for name, value in overrides.items()))
 
 
-def analyze(subject: ParallelAxes | Subject, **options: Any) -> SteDatabase:
+@overload
+def analyze(
+    subject: ParallelAxes,
+    axes: TableAxes | None = None,
+    options: AnalysisOptions = ...,
+    run: Run = ...,
+    *,
+    case: Json | None = None,
+    on_draft: OnDraft | None = None,
+    **keywords: Unpack[TableKeywords],
+) -> SteDatabase: ...
+@overload
+def analyze(
+    subject: Subject, *, progress: Progress = ..., workers: Workers = ..., on_draft: OnDraft | None = None
+) -> SteDatabase: ...
+def analyze(subject: ParallelAxes | Subject, *request: Any, **keywords: Any) -> SteDatabase:
     """Compute the static transmission error of a gear pair or a case.
 
-    `subject`: a pair takes the keywords of `fe_contact.analyze`; a case states all of it, and takes
-    `progress` and `workers`. Raises `BadInput`, `InputError`, `InfeasibleGeometry`.
+    A pair takes its request in SI: axes, options and run, or their members as keywords, as of
+    `fe_contact.analyze`. A case states all of it but `progress`, `workers` and `on_draft`.
+
+    Raises `BadInput`, `InputError`, `InfeasibleGeometry`.
     """
     if isinstance(subject, ParallelAxes):
-        return analyze_pair(subject, **options)
+        return analyze_pair(subject, *request, **keywords)
     case = CheckedCase(case_of(_source(subject)))
     _warn(case_warnings(case))
-    return database_of(case, cache_home(), **options)
+    return database_of(case, cache_home(), *request, **keywords)
 
 
 def simulate(

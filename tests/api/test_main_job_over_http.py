@@ -17,7 +17,7 @@ from fastapi.testclient import TestClient
 from running_service import until
 
 from dynamics.simulation import simulate
-from fe_contact.analysis.analyze import ste_database
+from fe_contact.analysis.analyze import analyze
 from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.convert.case import analysis_options, case_json, gear_pair, table_axes
 from lineofaction.gearbox.problems import BadInput
@@ -73,7 +73,7 @@ def test_the_service_gives_what_python_gives(client: LineOfActionClient, case: d
     until(ended)
     served = job.result()
     model = validated(Case, case)
-    here = ste_database(gear_pair(model), table_axes(model), analysis_options(model), case=case_json(model))
+    here = analyze(gear_pair(model), table_axes(model), analysis_options(model), case=case_json(model))
     assert np.array_equal(served.static_transmission_error, here.static_transmission_error)
     assert served.metadata.case == here.metadata.case
     progress = [state.progress for state in seen]

@@ -13,6 +13,8 @@ from typing import Any
 import pytest
 
 import lineofaction as loa
+from fe_contact import analyze
+from fe_contact.keywords import TableKeywords
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted(
@@ -52,6 +54,9 @@ def test_every_call_fits_its_signature(page: Path) -> None:
             if (name := ast.unparse(call.func)) in names:
                 keywords = {one.arg: None for one in call.keywords if one.arg}
                 inspect.signature(names[name]).bind(*call.args, **keywords)
+                if getattr(names[name], "__name__", "") == "analyze":
+                    known = {*TableKeywords.__annotations__, *inspect.signature(analyze).parameters}
+                    assert keywords.keys() <= known
 
 
 def test_pages_with_examples_are_found() -> None:

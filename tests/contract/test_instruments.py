@@ -9,6 +9,7 @@ from collections.abc import Set as AbstractSet
 from pathlib import Path
 
 import instruments
+import links
 import pytest
 import structure
 
@@ -66,25 +67,57 @@ def test_what_an_instrument_alone_uses_goes_with_it(name: str) -> None:
 
 
 def test_paths_exist_and_belong_to_one_instrument() -> None:
-    paths = [path for one in instruments.instruments().values() for path in one.paths]
+    rows = instruments.instruments().values()
+    paths = [path for one in rows for path in one.paths]
     assert len(paths) == len(set(paths))
+    paths += [f"docs/{page}" for one in rows for page in one.pages]
     assert [path for path in paths if not (ROOT / path).exists()] == []
+
+
+def test_links_to_a_page_that_goes_leave_their_text_or_their_entry(tmp_path: Path) -> None:
+    (tmp_path / "docs").mkdir()
+    page = tmp_path / "docs" / "page.md"
+    page.write_text(
+        "Read [how](gone.md#x) or [what](left.md).\n\n- [gone](gone.md)\n  further\n- [left](left.md), then "
+        "[gone](gone.md)\n\n| q | [a](gone.md) |\n\n```{toctree}\ngone\nleft\n```\n"
+    )
+    (tmp_path / "docs" / "left.md").write_text("")
+    links.without_pages(tmp_path, {tmp_path / "docs" / "gone.md"})
+    assert page.read_text() == (
+        "Read how or [what](left.md).\n\n- [left](left.md), then gone\n\n\n```{toctree}\nleft\n```\n"
+    )
+    assert links.dangling_links(tmp_path) == []
+
+
+def test_scripts_of_the_page_lose_the_rows_of_those_that_went(tmp_path: Path) -> None:
+    script = tmp_path / "rows.js"
+    script.write_text('import { gone, more } from "./gone.js";\nconst ROWS = [\n  gone,\n  left,\n];\n')
+    links.without_scripts(tmp_path, {"gone.js"})
+    assert script.read_text() == "const ROWS = [\n  left,\n];\n"
+    assert links.dangling_imports(tmp_path) == []
 
 
 def copy_of_tree(folder: Path) -> Path:
     """Copy the houses and what stands on them, as far as it is under version control or new."""
-    for name in ("tests", "benchmarks", "examples", "scripts", *structure.HOUSES):
+    for name in ("tests", "benchmarks", "examples", "scripts", "docs", *structure.HOUSES):
         top = name.partition(".")[0]
         shutil.copytree(
             ROOT / top, folder / top, ignore=shutil.ignore_patterns("__pycache__"), dirs_exist_ok=True
         )
-    shutil.copy(ROOT / "pyproject.toml", folder)
+    for name in ("pyproject.toml", "README.md"):
+        shutil.copy(ROOT / name, folder)
     return folder
+
+
+def dangling(tree: Path) -> set[str]:
+    """Return the broken links of a tree's manual, and the imports of missing scripts of its page."""
+    return {*links.dangling_links(tree), *links.dangling_imports(tree / instruments.PAGE)}
 
 
 def works_without(name: str, folder: Path) -> None:
     tree = copy_of_tree(folder)
     gone = instruments.retire([name], tree)
+    assert dangling(tree) <= dangling(ROOT)
     done = subprocess.run(
         [sys.executable, "-P", "-c", WORK, str(folder / "data")],
         cwd=tree, capture_output=True, text=True, check=False, timeout=300,

@@ -12,8 +12,6 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 MOST, MOST_EXPORTED = 10, 8
-WRAPPERS = {"analyze"}
-"""In keywords, as the README shows them."""
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
@@ -38,12 +36,12 @@ def exported(package: Path) -> set[str]:
 
 @pytest.mark.parametrize("package", ["host", "bounds", "model_studies", "fe_contact", "dynamics"])
 def test_no_function_takes_many_parameters(package: str) -> None:
-    public = exported(ROOT / package) - WRAPPERS
+    public = exported(ROOT / package)
     found = {
         f"{file.relative_to(ROOT)}: {one.name}": parameters(one)
         for file in (ROOT / package).rglob("*.py")
         for one in functions(file)
-        if one.name not in WRAPPERS and parameters(one) > (MOST_EXPORTED if one.name in public else MOST)
+        if parameters(one) > (MOST_EXPORTED if one.name in public else MOST)
     }
     assert found == {}
 

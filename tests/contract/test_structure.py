@@ -16,6 +16,9 @@ LONGEST = 600
 WRITTEN = (".js", ".css", ".html")
 MOST_PRIVATE = 225
 """Imports of names with an underscore by tests, at most: the number may only fall."""
+MOST_SECOND_HEADS = 209
+"""Comments of their own between the definitions of the product's files, at most: the number may only fall."""
+DEFINITIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 
 
 def test_no_file_is_long() -> None:
@@ -65,6 +68,88 @@ def described_twice(file: Path) -> list[str]:
 def test_the_description_of_a_field_stands_below_it() -> None:
     files = (file for house in structure.HOUSES for file in structure.files_of(house))
     assert [name for file in files for name in described_twice(file)] == []
+
+
+def second_heads(code: str) -> list[str]:
+    """Return comments that stand alone at the margin below the first definition: a second subject."""
+    lines = code.split("\n")
+    first = next((node.lineno for node in ast.parse(code).body if isinstance(node, DEFINITIONS)), len(lines))
+    heads, above = [], "\n"
+    for number, line in enumerate(lines, 1):
+        begins = line.startswith("#") and not above
+        if begins and number > first and _block_stands_alone(lines[number:]):
+            heads.append(line)
+        above = line
+    return heads
+
+
+def _block_stands_alone(below: list[str]) -> bool:
+    """Whether a blank line follows the rest of a comment."""
+    return next((line for line in below if not line.startswith("#")), "x") == ""
+
+
+def late_constants(code: str) -> list[str]:
+    """Return constants below the first definition that could stand above it.
+
+    One that reads a definition, directly or by another constant, has to stand below; so does a name that is
+    bound twice.
+    """
+    body = ast.parse(code).body
+    first = next((number for number, node in enumerate(body) if isinstance(node, DEFINITIONS)), len(body))
+    bound = Counter(name for node in body for name in _bound_by(node))
+    below = {
+        name
+        for node in body[first:]
+        if not isinstance(node, ast.Assign | ast.AnnAssign)
+        for name in _bound_by(node)
+    }
+    late = []
+    for node in body[first:]:
+        if isinstance(node, ast.Assign | ast.AnnAssign) and (names := _bound_by(node)):
+            read = {part.id for part in ast.walk(node) if isinstance(part, ast.Name)} - names
+            if read & below or any(bound[name] > 1 for name in names):
+                below |= names
+            else:
+                late += sorted(names)
+    return late
+
+
+def _bound_by(node: ast.stmt) -> set[str]:
+    """Return the names that a statement of a module binds: imports, definitions, constants."""
+    if isinstance(node, DEFINITIONS):
+        return {node.name}
+    if isinstance(node, ast.Import | ast.ImportFrom):
+        return {(alias.asname or alias.name).partition(".")[0] for alias in node.names}
+    if isinstance(node, ast.TypeAlias if hasattr(ast, "TypeAlias") else ()):
+        return {node.name.id}
+    stored = (
+        part for part in ast.walk(node) if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)
+    )
+    return {part.id for part in stored}
+
+
+def test_a_file_has_one_head() -> None:
+    """Two subjects are two files."""
+    code = "# of all\n\ndef f(): ...\n\n\n# a note on g\ndef g(): ...\n\n\n# More\n\n\ndef h(): ...\n"
+    assert second_heads(code) == ["# More"]
+    files = {
+        file: second_heads(file.read_text("utf-8"))
+        for house in structure.HOUSES
+        for file in structure.files_of(house)
+    }
+    heads = [f"{file.relative_to(ROOT)}: {head}" for file, found in files.items() for head in found]
+    assert len(heads) <= MOST_SECOND_HEADS, heads
+
+
+def test_constants_stand_above_the_first_definition() -> None:
+    code = "A = 1\n\n\ndef f(): ...\n\n\nB = f()\nC = A\nD = B\nE: int = 2\n"
+    assert late_constants(code) == ["C", "E"]
+    files = {
+        file: late_constants(file.read_text("utf-8"))
+        for house in structure.HOUSES
+        for file in structure.files_of(house)
+    }
+    assert {str(file.relative_to(ROOT)): names for file, names in files.items() if names} == {}
 
 
 def test_tests_import_fewer_and_fewer_private_names() -> None:

@@ -7,6 +7,7 @@ from typing import assert_type
 
 import lineofaction as loa
 from dynamics.linearize import ModalAnalysis
+from fe_contact import AnalysisOptions, TableAxes, analyze
 from fe_contact.analysis.studies.ablation import Ablation as CaseAblation
 from fe_contact.ste import SteDatabase
 from lineofaction.client import AsyncJob, AsyncLineOfActionClient, Job, LineOfActionClient
@@ -15,6 +16,8 @@ from lineofaction.gearbox.studies.deflect.result import GearboxDeflection
 from lineofaction.gearbox.studies.modes import ModesFigures
 
 SCENE = Path("scene.toml")
+GEAR = loa.Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+PAIR = loa.GearPair(GEAR, GEAR, 80e-3)
 
 
 def called(client: LineOfActionClient) -> None:
@@ -26,6 +29,18 @@ def called(client: LineOfActionClient) -> None:
     assert_type(client.deflect.submit(SCENE), Job[GearboxDeflection, DeflectFigures])
     assert_type(client.analyze(SCENE), SteDatabase)
     assert isinstance(client.ablate(SCENE), CaseAblation)
+
+
+def analyzed() -> None:
+    """A pair by keywords or by records, a case by its file."""
+    assert_type(loa.analyze(PAIR, torques=[100.0], level="draft", cache=Path()), SteDatabase)
+    assert_type(loa.analyze(PAIR, TableAxes([100.0]), AnalysisOptions(level="draft")), SteDatabase)
+    assert_type(analyze(PAIR, torques=[100.0], tolerance=0.01), SteDatabase)
+    assert_type(loa.analyze(SCENE, progress=print), SteDatabase)
+    analyze(PAIR, torque=[100.0])  # type: ignore[call-arg]
+    analyze(PAIR, torques=[100.0], positions="many")  # type: ignore[arg-type]
+    loa.analyze(PAIR, torque=[100.0])  # type: ignore[call-overload]
+    loa.analyze(SCENE, torques=[100.0])  # type: ignore[call-overload]
 
 
 def refused(client: LineOfActionClient) -> None:

@@ -10,7 +10,7 @@ import pytest
 from command_line import loa
 
 from dynamics.simulation import simulate
-from fe_contact import ste_database
+from fe_contact import analyze
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.case import analysis_options, gear_pair, table_axes
 from lineofaction.gearbox.convert.scene import dynamic_scene
@@ -36,7 +36,7 @@ def example(file: Path):
         case = with_case(mesh, f"meshes[{index}]", folder).case
         assert case is not None
         options = replace(analysis_options(case).at_level("draft"), receipt="minimal")
-        tables[mesh.name] = ste_database(gear_pair(case), table_axes(case), options)
+        tables[mesh.name] = analyze(gear_pair(case), table_axes(case), options)
     return dynamic_scene(given, tables)
 
 

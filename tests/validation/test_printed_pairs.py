@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from fe_contact.analysis.analyze import ste_database
+from fe_contact.analysis.analyze import analyze
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.flank.involute import involute_function
 from fe_contact.geometry import ParallelAxes, Toothing
@@ -165,7 +165,7 @@ def test_a_printed_pair_gets_its_table(row: Row) -> None:
 def gets_its_table(row: Row, model: str) -> None:
     case = printed_case(row, model)
     pair = gear_pair(case)
-    table = ste_database(pair, table_axes(case), analysis_options(case))
+    table = analyze(pair, table_axes(case), analysis_options(case))
     assert (table.status == 0).all()
     assert table.static_transmission_error.min() > 0.0
     notes = [one["reason"] for one in table.metadata.receipt["assumptions"]]

@@ -58,14 +58,12 @@ def as_checked(
 ) -> Checked:
     """Check the inputs of a table or of one point, as `check_request` does; what is checked stays as it is.
 
-    Raises `InputError`: a value that cannot be used, by field name; `TypeError`: a pair alone.
+    Raises `InputError`: a value that cannot be used, or no loads, by field name.
     """
     if isinstance(pair, Checked):
         return pair
-    if at is None:
-        raise TypeError("a pair needs the axes of its table, or its operating point")
-    if isinstance(at, TableAxes):
-        return check_request(pair, at, options, neglect=neglect)
+    if at is None or isinstance(at, TableAxes):
+        return check_request(pair, at or TableAxes(), options, neglect=neglect)  # no axes: no loads, refused
     # what does not show in the transmission error may show in pressures and stresses
     return check_request(pair, at.axes, options, whole_table=False, neglect=False)
 

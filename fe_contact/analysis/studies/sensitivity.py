@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from bounds.brief import brief
-from fe_contact.analysis.analyze import ste_database
+from fe_contact.analysis.analyze import analyze
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import as_checked, checked_request
 from fe_contact.effects import EFFECTS, named
@@ -94,9 +94,7 @@ def _curves(checked: Checked, corner_contact: str, run: Run) -> tuple[RippleCurv
     request = replace(whole, options=replace(whole.options, effects=effects), nodes_alone=True)
     skews, changes = (np.union1d(none, each) for each in (whole.misalignment, whole.center_distance_change))
     skewed, moved = (
-        ste_database(
-            checked_request(replace(request, misalignment=skew, center_distance_change=change)), run=run
-        )
+        analyze(checked_request(replace(request, misalignment=skew, center_distance_change=change)), run=run)
         for skew, change in ((skews, none), (none, changes))
     )
     return _ripple(skewed, "misalignment"), _ripple(moved, "center_distance_change")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_contact.analysis.analyze import ste_database
+from fe_contact.analysis.analyze import analyze
 from fe_contact.types import FloatArray
 from host import kill as end
 from lineofaction.gearbox.convert.case import analysis_options, gear_pair, table_axes
@@ -126,4 +126,4 @@ def _worker_killed_always() -> Sequence[Measured]:
 def python_ste() -> FloatArray:
     """Return the STE of the medium case, computed in this process, m."""
     case = validated(Case, MEDIUM)
-    return ste_database(gear_pair(case), table_axes(case), analysis_options(case)).static_transmission_error
+    return analyze(gear_pair(case), table_axes(case), analysis_options(case)).static_transmission_error

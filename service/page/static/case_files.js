@@ -6,6 +6,11 @@ import { offerAsMade } from "./as_made.js";
 import { byId, save } from "./elements.js";
 import { OpenedUnit, isUnit } from "./unit.js";
 
+/** What is offered among the fields of the case: a row each. */
+const OFFERS = [
+  offerAsMade,
+];
+
 export class CaseFiles {
   /**
    * @param {import("./design.js").Design} design
@@ -18,7 +23,7 @@ export class CaseFiles {
       const { toml } = await ask("to-toml", { inputs: { case: design.case } });
       save(toml, `${design.name || "case"}.toml`, "application/toml");
     }));
-    offerAsMade(design, (action) => this.careful(action));
+    for (const offer of OFFERS) offer(design, (action) => this.careful(action));
     byId("import-file").addEventListener("change", ({ target }) => this.careful(() => {
       const reading = this.open(target).finally(() => { if (design.reading === reading) design.reading = null; });
       return (design.reading = reading);

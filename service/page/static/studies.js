@@ -1,11 +1,16 @@
 /** Jobs beside the analysis: a card for each process of the service that studies a case, and what came of any. */
 
-import { get, patiently } from "./api.js";
 import { card } from "./card.js";
-import { button, byId, make } from "./elements.js";
+import { byId } from "./elements.js";
+import { optimization } from "./optimization.js";
 import { showReport } from "./report.js";
 
 const TABS = { optimize: "ripple", sweep: "ripple", flank: "flank", "root-stress": "load", ablate: "errors", frontier: "errors", complaint: "orders" };
+
+/** Kinds of results that are shown with more than their report: a row each. */
+const KINDS = [
+  optimization,
+];
 
 /** The studies among the processes of a service, each as its card shows it. */
 export function studiesOf(processes) {
@@ -15,19 +20,10 @@ export function studiesOf(processes) {
       { process: id, title, text: description, action, subjects, fields }));
 }
 
-/** Show an optimization; `take` is given its flanks. */
-async function showOptimization(target, reference, { take, signal }) {
-  const found = await patiently(() => get(reference.href));
-  if (!(await showReport(target, reference, { making: true, signal }))) return;
-  for (const part of target.querySelectorAll(":scope > details")) part.open = true; // the design and its scatter
-  const taken = button("Take the optimum into the case", () => take(found.optimum.values));
-  target.querySelector(".headline").after(make("div", { class: "row" }, taken));
-}
-
 /** Show a result of any kind but a table; `take` is given the flanks of an optimization. */
 export async function showResult(target, reference, { take, signal }) {
-  if (reference.kind === "optimization") await showOptimization(target, reference, { take, signal });
-  else await showReport(target, reference, { signal });
+  const { show = showReport } = KINDS.find(({ kind }) => kind === reference.kind) ?? {};
+  await show(target, reference, { take, signal });
 }
 
 /**

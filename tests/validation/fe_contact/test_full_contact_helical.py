@@ -11,7 +11,7 @@ from benchmarks.full_contact_helical import POSITIONS, assessed, helical_cases
 from benchmarks.full_contact_helical import reference as reference_of_helical
 from benchmarks.full_contact_over_face import POSITIONS as FACE_POSITIONS
 from benchmarks.full_contact_over_face import face_cases, reference
-from fe_contact import ste_database
+from fe_contact import analyze
 from fe_contact.full_contact import solve_full_contact_helical
 from fe_contact.geometry import Toothing
 
@@ -69,7 +69,7 @@ def test_reliefs_add_to_the_mean_what_they_add_in_full_contact(record_figure) ->
     plain = {gear: without_reliefs(getattr(case.pair, gear)) for gear in ("pinion", "wheel")}
     means = []
     for pair in (case.pair, replace(case.pair, **plain)):
-        table = ste_database(pair, *case.request(level="standard"))
+        table = analyze(pair, *case.request(level="standard"))
         means.append([table.curve(force=force, at=at.tolist()).ste.mean() for force in case.forces])
     exact = reference_of_helical(case)[0][::2].mean(axis=0)
     added = np.array(means[0]) - means[1] - (exact - 1e-6 * np.array(PLAIN))

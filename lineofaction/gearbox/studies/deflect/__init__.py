@@ -16,6 +16,7 @@ from lineofaction.gearbox.schemas.rules import own_or_factor, stated
 
 MOST_CASES = 64
 MOST_FORCES = 256
+RatingLife = Literal["limited", "unlimited", "none: no capacity"]
 
 
 @with_fields(declared_in(CaseForce))
@@ -78,9 +79,6 @@ class Inputs(BoundaryModel):
         if len(set(names)) < len(names):
             refuse("load_cases", names, "names that differ", "Rename one of them.")
         return self
-
-
-RatingLife = Literal["limited", "unlimited", "none: no capacity"]
 
 
 class Flanks(Part):

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from dynamics.meshes import MeshTable
-from fe_contact.analysis.analyze import ste_database
+from fe_contact.analysis.analyze import analyze
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution, load_distribution
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.stored_bodies import condensed_pair
@@ -82,10 +82,10 @@ class MeshContact:
         if not is_plane and (too_low or database.metadata.receipt["plan"]["model"] in PLANE):
             axes = TableAxes(torques=loads, misalignments=[-FIRST_MISALIGNMENT, FIRST_MISALIGNMENT])
             options = replace(analysis_options(case), receipt="minimal", positions=8)
-            across = ste_database(pair, axes, options, run)
+            across = analyze(pair, axes, options, run)
         elif too_low:
             options = replace(analysis_options(case), receipt="minimal")
-            across = ste_database(pair, TableAxes(torques=loads), options, run)
+            across = analyze(pair, TableAxes(torques=loads), options, run)
         bodies = condensed_pair(pair, across, dict(case.effects), run.cache, compute=True)
         assert bodies is not None
         return MeshContact(pair, bodies, levels)

@@ -28,6 +28,7 @@ Torques = Annotated[tuple[Load, ...], *_EACH]
 Misalignments = Annotated[
     Annotated[Misalignment, ONE] | Annotated[tuple[Misalignment, ...], *_EACH, MANY], ONE_OR_MANY
 ]
+_FREE = figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
 
 
 def _ends(figure: Figure) -> tuple[Any, Any]:
@@ -44,9 +45,6 @@ def _ends(figure: Figure) -> tuple[Any, Any]:
 def _deviation(figure: Figure) -> tuple[Any, Any]:
     text = figure.with_unit(f"Standard deviation of the {figure.words}")
     return Optional[Deviation], Field(default=None, description=text, examples=[3.0])  # noqa: UP045
-
-
-_FREE = figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
 
 
 @with_fields({figure.field: _ends(figure) for figure in _FREE})

@@ -19,7 +19,7 @@ from fe_contact import (
     TableAxes,
     ToothFlank,
     Wave,
-    ste_database,
+    analyze,
 )
 from fe_contact.analysis import deviating_cycle as cycle_module
 from fe_contact.analysis.cycle import envelope
@@ -192,9 +192,9 @@ def tables() -> tuple[SteDatabase, SteDatabase]:
     """Return the same table by derivatives, and all its pitches solved."""
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(cost_of_derivatives, "TABLE_SAVES", 0.0)
-        derived = ste_database(made(1.0), AXES, OPTIONS)
+        derived = analyze(made(1.0), AXES, OPTIONS)
         patched.setattr(cost_of_derivatives, "TABLE_SAVES", np.inf)
-        return derived, ste_database(made(1.0), AXES, OPTIONS)
+        return derived, analyze(made(1.0), AXES, OPTIONS)
 
 
 def test_a_table_takes_pitches_by_derivatives_and_says_how_many(tables):
@@ -224,7 +224,7 @@ def test_the_prediction_counts_the_pitches_that_are_solved(in_table, monkeypatch
     monkeypatch.setattr(envelope, "_within", counted)
     monkeypatch.setattr(cost_of_derivatives, "TABLE_SAVES", 0.0)
     if in_table:
-        (solved,) = ste_database(made(1.0), AXES, OPTIONS).metadata.receipt["cycle"]["solved"]
+        (solved,) = analyze(made(1.0), AXES, OPTIONS).metadata.receipt["cycle"]["solved"]
     else:
         solved = deviating_cycle(made(1.0), AXES, OPTIONS).solved.sum()
     fewest, expected = solved_pitches(323, in_table=in_table)
@@ -273,7 +273,7 @@ def test_a_table_by_derivatives_rises_with_load(tables):
 def test_a_table_that_needs_many_pitches_says_why_all_were_solved(monkeypatch):
     monkeypatch.setattr(AnalysisOptions, "allowed", AllowedError(1e-4, 1e-11))
     monkeypatch.setattr(cost_of_derivatives, "TABLE_SAVES", 0.0)
-    table = ste_database(made(1.0), TableAxes(torques=[40.0], pitches=120), OPTIONS)
+    table = analyze(made(1.0), TableAxes(torques=[40.0], pitches=120), OPTIONS)
     assert "do not keep the tolerance" in table.metadata.receipt["cycle"]["reason"]
     assert np.isfinite(table.residuals).all()
 

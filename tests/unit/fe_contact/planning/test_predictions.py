@@ -17,7 +17,6 @@ from fe_contact import (
     RunOut,
     ToothFlank,
     analyze,
-    ste_database,
 )
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request_check import check_request
@@ -282,7 +281,7 @@ def test_positions_of_spur_pairs_are_those_expected_at_one_load_and_at_several(m
     wide = GearPair(*[Gear(20, 4e-3, 8e-3, 40e-3)] * 2, 80e-3)
     for loads in ([5e2], [1e2, 4e2, 1e3, 2e3]):
         asked = check_request(wide, *table_request(normal_forces=loads, level="draft", model=model))
-        solved = ste_database(asked).position.size
+        solved = analyze(asked).position.size
         assert 0.8 < expected_positions(wide, decide(asked).plan) / solved < 1.25
 
 
@@ -295,5 +294,5 @@ def test_positions_of_helical_pairs_do_not_grow_with_the_loads(tolerance, least,
     level = {"level": "draft"} if tolerance is None else {"tolerance": tolerance}
     for loads in ([2e3], [2e2 * 1.3**k for k in range(12)]):
         asked = check_request(gears, *table_request(normal_forces=loads, model="3d", **level))
-        solved = ste_database(asked).position.size
+        solved = analyze(asked).position.size
         assert least < expected_positions(gears, decide(asked).plan) / solved < most

@@ -8,7 +8,6 @@ from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair, SteDatabase, analyze
 from fe_contact.analysis import tables
-from fe_contact.analysis.analyze import ste_database
 from fe_contact.analysis.checks.table_laws import check_laws
 from fe_contact.analysis.database import compute_database
 from fe_contact.analysis.estimates import held_out_alignments, inserted_places
@@ -149,7 +148,7 @@ def test_a_study_that_reads_nodes_alone_gets_nothing_between_them(cache) -> None
     axes, options = table_request(center_distance_changes=CHANGES, **FIXED)
     checked = check_request(PAIR, axes, options)
     alone = checked_request(replace(checked.request, nodes_alone=True))
-    table = ste_database(alone, run=Run(cache=cache))
+    table = analyze(alone, run=Run(cache=cache))
     assert table.center_distance_change.tolist() == list(CHANGES)
     assert table.metadata.receipt["tolerance"]["used_at_nodes"] <= 1.0
 

@@ -1,0 +1,64 @@
+"""The keywords of `analyze`: the members of its axes, options and run by their names.
+
+A type checker reads no fields of a dataclass as keywords of another call, so they stand here with their
+types; `tests/contract/test_keywords_of_analyze.py` holds that these are the fields.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any, TypedDict
+
+from fe_contact.allowed_error import AllowedError
+from fe_contact.options import AnalysisOptions, Levels, OnPlan, Run, TableAxes
+from model_studies import Progress
+from model_studies.workers import Workers
+
+
+class TableKeywords(TypedDict, total=False):
+    """Members of `TableAxes`, `AnalysisOptions` and `Run`.
+
+    A number as `tolerance` is its relative part: 0.01 is 1 % or 20 nm, the larger of both.
+    """
+
+    torques: Levels | None
+    normal_forces: Levels | None
+    misalignments: Levels
+    center_distance_changes: Levels
+    pitches: int | None
+    tolerance: AllowedError | float | None
+    time_budget: float | None
+    level: str | None
+    model: str
+    positions: int | None
+    effects: Mapping[str, str]
+    receipt: str
+    on_violation: str
+    workers: Workers
+    cache: Path | None
+    progress: Progress
+    on_plan: OnPlan
+
+
+def with_keywords(
+    axes: TableAxes | None, options: AnalysisOptions, run: Run, keywords: TableKeywords
+) -> tuple[TableAxes | None, AnalysisOptions, Run]:
+    """Return axes, options and run with those of their members that are given as keywords.
+
+    Raises `InputError`: a value that cannot be used, by field name; `TypeError`: a keyword that is none.
+    """
+    known = TableKeywords.__annotations__
+    if unknown := keywords.keys() - known:
+        raise TypeError(f"analyze() has no keyword {min(unknown)!r}; it has {', '.join(known)}")
+    changes = _members(AnalysisOptions, keywords)
+    if "tolerance" in changes:
+        changes["tolerance"] = AllowedError.given(changes["tolerance"])
+    if levels := _members(TableAxes, keywords):
+        axes = TableAxes(**levels) if axes is None else replace(axes, **levels)
+    return axes, replace(options, **changes), replace(run, **_members(Run, keywords))
+
+
+def _members(record: type, keywords: Mapping[str, Any]) -> dict[str, Any]:
+    return {field.name: keywords[field.name] for field in fields(record) if field.name in keywords}
