@@ -71,7 +71,7 @@ class _Side(Heard):
     blocks: Waterfall
 
 
-def _compare_runs(runs: dict[str, RunResult], view: RunView, measured: MeasuredOrders | None) -> Page:
+def compare_runs(runs: dict[str, RunResult], view: RunView, measured: MeasuredOrders | None) -> Page:
     """Put the comparison of two runs by their names together, or of one with what was measured."""
     sides = tuple(_side(heard) for heard in heard_runs(runs, view))
     signal = sides[0].signal
@@ -281,7 +281,7 @@ def _page(
     measured = _measured(files, teeth, shown_signal(first, view).quantity.unit) if files else None
     if measured is not None and not isinstance(measured, MeasuredOrders):
         raise BadInput.of("measured", "a curve over position", "an order spectrum beside a run")
-    return _compare_runs(runs, view, measured)
+    return compare_runs(runs, view, measured)
 
 
 def _measured(files: Sequence[Path], teeth: int, unit: str) -> MeasuredCurve | MeasuredOrders | None:

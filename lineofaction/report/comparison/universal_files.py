@@ -18,7 +18,7 @@ _AXIS_ADVICE = "Say which by the label of the abscissa: Order, Mesh order, Posit
 
 
 def read_universal(path: Path, teeth: int, unit: str) -> MeasuredCurve | MeasuredOrders:
-    """Return the one function of a universal file that can be compared, as `of_universal`."""
+    """Return the measured curve or orders of a universal file (UFF)."""
     return of_universal(read_recording(path, "measured"), teeth, unit)
 
 

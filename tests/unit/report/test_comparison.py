@@ -19,7 +19,7 @@ from dynamics.simulation import simulate
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.report.comparison.compare import _compare_runs, compare
+from lineofaction.report.comparison.compare import compare, compare_runs
 from lineofaction.report.comparison.measured import (
     PER_PITCH,
     Difference,
@@ -142,7 +142,7 @@ def test_what_is_no_measurement_is_refused(text: str, tmp_path: Path) -> None:
 
 def test_a_run_of_twice_the_force_is_6_db_louder(run: RunResult) -> None:
     twice = replace(run, bearing_force=2.0 * run.bearing_force)
-    page = _compare_runs({"a": run, "b": twice}, RunView(), None)
+    page = compare_runs({"a": run, "b": twice}, RunView(), None)
     assert "changes by +6.0 dB" in page.sections[0].figures[0].alternative
     found = {row[0]: row for row in rows(page, "Differences with their errors")}
     assert found["mesh order 2"][-1] == "no error stated"  # the receipt of this run has none of orders
@@ -152,7 +152,7 @@ def test_stated_errors_of_orders_decide(run: RunResult) -> None:
     receipt = {**run.receipt, "error": {"time_step": {"bearing_force_orders": [0.1, 30.0]}}}
     stated = replace(run, receipt=receipt)
     louder = replace(stated, bearing_force=1.5 * run.bearing_force)
-    page = _compare_runs({"a": stated, "b": louder}, RunView(scale="peak"), None)
+    page = compare_runs({"a": stated, "b": louder}, RunView(scale="peak"), None)
     found = {row[0]: row for row in rows(page, "Differences with their errors")}
     assert found["mesh order 1"][-1] == "the second is larger"  # 5 N, 0.14 N
     assert found["mesh order 2"][-1] == "not shown to differ"  # 10 N, 42 N
