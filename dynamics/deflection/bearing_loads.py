@@ -22,7 +22,7 @@ LIFE_EXPONENT = 10.0 / 3.0
 """Of roller bearings; ball bearings have 3."""
 
 
-def _life_of(bearing: RollingBearing, displacement: FloatArray) -> float:
+def bearing_life(bearing: RollingBearing, displacement: FloatArray) -> float:
     """Return L_10r of a row in revolutions; NaN without a capacity, infinite where no element is loaded.
 
     The inner ring turns against a load that stands still. Loads of the elements are averaged over their
@@ -109,7 +109,7 @@ def bearing_loads(system: System, rest: Rest, strain: BearingStrain) -> tuple[Be
                 elastic=strain.elastic[k],
                 clearance=strain.clearance[k],
                 seat=strain.seat[k],
-                rating_life=_life_of(rows[name], strain.elastic[k] + strain.clearance[k])
+                rating_life=bearing_life(rows[name], strain.elastic[k] + strain.clearance[k])
                 if name in rows
                 else math.nan,
             )

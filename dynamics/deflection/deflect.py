@@ -48,7 +48,7 @@ def _shaft_lines(system: System, motion: FloatArray) -> _ShaftLines:
     return _ShaftLines(axes.shaft, axes.position, axes.motion @ motion)
 
 
-def _cycle_times(system: System, positions: int) -> FloatArray:
+def cycle_times(system: System, positions: int) -> FloatArray:
     """Return the times (K,), s, at which every mesh takes K evenly spaced positions of its cycle, each once.
 
     K evenly spaced moments of the common period of all meshes are a lattice: a mesh of C base pitches in that
@@ -123,7 +123,7 @@ def deflect(
     cases : sequence of LoadCase
         Their names differ. Default: the scene's own loads at t = 0.
     positions : int
-        Least number of positions of the mesh cycle, see `_cycle_times`.
+        Least number of positions of the mesh cycle, see `cycle_times`.
     progress : callable, optional
         Called with the fraction done.
     workers : Workers
@@ -146,7 +146,7 @@ def _deflected(shared: tuple[Scene, int], numbered: tuple[int, LoadCase]) -> Cas
     with inside(f"load_cases[{number}]"):
         loaded = loaded_scene(scene, case)
     system = assemble(loaded)
-    rest = rest_over(system, _cycle_times(system, positions))
+    rest = rest_over(system, cycle_times(system, positions))
     motion = rest.motion.mean(axis=0)
     strain = bearing_strain(system, motion, rest.element.mean(axis=0))
     leader = leader_of(loaded)

@@ -122,7 +122,7 @@ class RootStressHistory:
             values = -self.principal(root)
         else:
             values = np.where(self.near_load, -np.inf, self.principal(root))
-        return _crest_values(self.flank_coordinate, np.moveaxis(values, 2, -1))
+        return crest_values(self.flank_coordinate, np.moveaxis(values, 2, -1))
 
     def passage(self) -> RootPassage:
         """Return what one tooth meets, all its pairs' positions in a row.
@@ -144,24 +144,24 @@ class RootStressHistory:
         return RootPassage(position[order], extremes[0], extremes[1], fixed[0], fixed[1])
 
 
-def _crest_values(s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+def crest_values(s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the largest value (...) along the last axis and its place, by a parabola through its neighbors.
 
     `s` (p >= 3,) increases; in `values` (..., p) minus infinity does not count, and beside it there is no
     parabola.
     """
     middle = np.clip(np.argmax(values, axis=-1), 1, s.size - 2)
-    low, here, high = (s[middle + step] for step in (-1, 0, 1))
+    low, crest, high = (s[middle + step] for step in (-1, 0, 1))
     y = [np.take_along_axis(values, (middle + step)[..., None], axis=-1)[..., 0] for step in (-1, 0, 1)]
     whole = np.all(np.isfinite(y), axis=0)
     first, second = (
         np.subtract(b, a, out=np.zeros_like(a), where=whole) / way
-        for a, b, way in ((y[0], y[1], here - low), (y[1], y[2], high - here))
+        for a, b, way in ((y[0], y[1], crest - low), (y[1], y[2], high - crest))
     )
     bend = (second - first) / (high - low)
-    slope = first + bend * (here - low)  # at the middle
+    slope = first + bend * (crest - low)  # at the middle
     flat = bend >= 0.0  # no crest inside: a rising end, all alike, or no three values
-    way = np.clip(-slope / np.where(flat, -1.0, 2.0 * bend), low - here, high - here)
+    way = np.clip(-slope / np.where(flat, -1.0, 2.0 * bend), low - crest, high - crest)
     value = np.where(flat, np.max(y, axis=0), y[1] + way * (slope + bend * way))
-    position = np.where(flat, np.choose(np.argmax(y, axis=0), [low, here, high]), here + way)
+    position = np.where(flat, np.choose(np.argmax(y, axis=0), [low, crest, high]), crest + way)
     return value, position

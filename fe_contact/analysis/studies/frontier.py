@@ -136,7 +136,7 @@ def frontier(
     solves = outcomes[-1].result.status.size
     known = known_full_contact(checked.request.pair)
     study = Frontier(
-        results, left_out, knee_above(results), _chosen_fidelity(checked), solves, known_full_contact=known
+        results, left_out, knee_above(results), chosen_fidelity(checked), solves, known_full_contact=known
     )
     tables = {outcome.fidelity.name: outcome.result for outcome in outcomes}
     return study if full_contact is None else _beside(study, checked, full_contact, tables, progress)
@@ -154,9 +154,9 @@ def predicted_frontier(
         if not isinstance(fidelity, FiniteElementFidelity) or fidelity.name not in fidelities:
             continue
         if fidelity.refusal(checked) is None:
-            own = fidelity.decided(fidelity.as_computed(checked))
-            request, model = own.checked.request, own.checked.model
-            work = effort(request.pair, own.plan, model, request.alignments)
+            choice = fidelity.decided(fidelity.as_computed(checked))
+            request, model = choice.checked.request, choice.checked.model
+            work = effort(request.pair, choice.plan, model, request.alignments)
             seconds[fidelity.name] = host_slowness(cache) * work
     if full_contact is not None and full_contact_refusal(checked) is None:
         seconds[NAME] = full_contact * position_seconds(checked)
@@ -187,13 +187,13 @@ def _beside(
     return replace(study, left_out=study.left_out | {NAME: reason})
 
 
-def _chosen_fidelity(checked: Checked) -> str | None:
+def chosen_fidelity(checked: Checked) -> str | None:
     """Return the name of the fidelity that a request's own model and mesh are; None if none is.
 
     Plane strain has one fidelity, whose error is the model's: it stands for all its meshes.
     """
-    decided = decide(checked)
-    level, model = decided.mesh.level, decided.checked.model
+    choice = decide(checked)
+    level, model = choice.mesh.level, choice.checked.model
     if model.across_face:
         return f"3d_{level}"
     if model.finite_width:
