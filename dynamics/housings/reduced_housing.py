@@ -245,3 +245,12 @@ def _turned(matrix: FloatArray, turn: FloatArray) -> Matrix:
     """Return the rows of a matrix over motions along the scene's axes; unchanged where they are the same."""
     own = matrix if np.array_equal(turn, np.eye(len(turn))) else turn.T @ matrix @ turn
     return matrix_rows(own)
+
+
+@dataclass(frozen=True)
+class SurfaceHousing:
+    """A housing with a surface: its name, its reduction, and the bearings in the order of its seats."""
+
+    name: str
+    body: ReducedHousing
+    bearings: tuple[str, ...]
