@@ -16,6 +16,7 @@ from scene_files import scene_file
 from sounding_housings import smooth_motion, with_surface
 from wav_files import read_wav
 
+import lineofaction
 from dynamics.acoustics import Recording, SoundFigures, loudness_over_time, sound_figures
 from dynamics.acoustics.sound_quality import is_steady
 from dynamics.housings import ReducedHousing, scene_housing
@@ -26,7 +27,6 @@ from dynamics.orders import driving_speed
 from dynamics.results import RunResult
 from dynamics.types import FloatArray
 from lineofaction.gearbox import workbench
-from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.studies.housings import other_housings
 from lineofaction.gearbox.studies.listen.run import HeardRun
 
@@ -157,7 +157,7 @@ def test_in_python_the_sound_needs_no_table(
 ) -> None:
     monkeypatch.setitem(sys.modules, "mosqito", None)  # its figures take seconds
     monkeypatch.setattr(workbench, "scene_by_tables", None)
-    heard: HeardRun = STUDIES["listen"](scene, run=moved, microphone_mm=(600.0, 800.0, -200.0))
+    heard: HeardRun = lineofaction.listen(scene, run=moved, microphone_mm=(600.0, 800.0, -200.0))
     expected = heard_at(housing, moved)
     assert heard.recording.samples.tolist() == expected.samples.tolist()
 
