@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,7 +13,7 @@ from host import cpu_seconds
 from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.subjects import case_of
 from lineofaction.gearbox.tabled_scene import database_of
-from service.live.child import worked
+from service.live.answer import answer_of
 from service.live.order import LiveOrder
 from service.routes.queries import STE
 
@@ -56,7 +55,7 @@ def _order(name: str, folder: Path, ask: dict[str, Any], relief_um: float) -> Li
 def _spent_ms(order: LiveOrder) -> float:
     """Return the CPU time of an answer with its JSON, ms."""
     begin = cpu_seconds()
-    head, body = worked(order)
-    if head.kind != "answer":
-        raise RuntimeError(json.loads(body or b'"defect"'))
+    answer = answer_of(order)
+    if answer.kind != "answer":
+        raise RuntimeError(answer.body.decode() or answer.kind)
     return 1e3 * (cpu_seconds() - begin)

@@ -61,7 +61,7 @@ class _Vibration:
 
 
 @dataclass(frozen=True)
-class _Blocks:
+class BlockGrid:
     """The output grid that a run is compared on."""
 
     time: FloatArray
@@ -73,7 +73,7 @@ class _Blocks:
     orders: int
 
     @classmethod
-    def of(cls, system: System) -> _Blocks:
+    def of(cls, system: System) -> BlockGrid:
         """Cut the run of `system` into blocks of equal time.
 
         Raises `InputError`: the run turns its first mesh by less than `LEAST_PITCHES`, or has too few samples
@@ -106,7 +106,7 @@ class _Blocks:
         return np.asarray(self.time[self.bounds.mean(axis=1).astype(int)])
 
 
-def _vibration_of(blocks: _Blocks, error: FloatArray, force: FloatArray) -> _Vibration:
+def _vibration_of(blocks: BlockGrid, error: FloatArray, force: FloatArray) -> _Vibration:
     """Return the vibration in transmission errors (m, T), m, and bearing forces (b, 3, T), N."""
     rms, by_error, by_force = [], [], []
     for first, stop in blocks.bounds:
@@ -125,7 +125,7 @@ def _vibration_of(blocks: _Blocks, error: FloatArray, force: FloatArray) -> _Vib
 class _Fidelity(model_studies.Fidelity[Scene], Protocol):
     """A way to the vibration of a scene; its family is "model", "table" or "steps"."""
 
-    def run(self, scene: Scene, blocks: _Blocks) -> _Vibration:
+    def run(self, scene: Scene, blocks: BlockGrid) -> _Vibration:
         """Compute the vibration.
 
         Raises `SolveError`: it ended early; `InputError`: the scene has what this model cannot hold.
@@ -133,7 +133,7 @@ class _Fidelity(model_studies.Fidelity[Scene], Protocol):
 
 
 @dataclass(frozen=True)
-class _TimeIntegration:
+class TimeIntegration:
     """A run of the scene with changes."""
 
     name: str
@@ -166,7 +166,7 @@ class _TimeIntegration:
         outputs = Outputs(scene.outputs.sample_rate, energy_audit=False, receipt="minimal", anti_alias=False)
         return replace(scene, integration=integration, effects=effects, outputs=outputs)
 
-    def run(self, scene: Scene, blocks: _Blocks) -> _Vibration:
+    def run(self, scene: Scene, blocks: BlockGrid) -> _Vibration:
         """Integrate."""
         system = assemble(self.as_run(scene))
         if self.every > 1:
@@ -210,7 +210,7 @@ class _QuasiStatic:
         """Say nothing: it is valid for every scene."""
         return None
 
-    def run(self, scene: Scene, blocks: _Blocks) -> _Vibration:
+    def run(self, scene: Scene, blocks: BlockGrid) -> _Vibration:
         """Read the tables at the positions and forces of every block."""
         system = assemble(scene)
         error = np.zeros_like(blocks.position)
@@ -238,7 +238,7 @@ class _LinearResponse:
         """Say nothing: what it cannot hold shows when it runs."""
         return None
 
-    def run(self, scene: Scene, blocks: _Blocks) -> _Vibration:
+    def run(self, scene: Scene, blocks: BlockGrid) -> _Vibration:
         """Respond at the speed in the middle of every block."""
         system = assemble(scene)
         speeds = np.abs(observe_laws(system.arrays, blocks.middle)[2])
@@ -253,7 +253,7 @@ class _LinearResponse:
         return _Vibration(*(np.array([getattr(part, name) for part in parts]) for name in names))
 
 
-def _of_one_speed(response: HarmonicResponse, system: System, blocks: _Blocks) -> _Vibration:
+def _of_one_speed(response: HarmonicResponse, system: System, blocks: BlockGrid) -> _Vibration:
     """Pick each mesh's own orders, and those of the first mesh for bearings."""
     pace = np.abs(blocks.position[:, -1] - blocks.position[:, 0])
     ratio = pace / pace[0]
@@ -277,15 +277,15 @@ def _at(order: FloatArray, amplitude: FloatArray, ratio: float, orders: int) -> 
 FIDELITIES: tuple[_Fidelity, ...] = (
     _QuasiStatic(),
     _LinearResponse(),
-    _TimeIntegration("torsion", "torsion only", "model", additions=BY_TORSION),
-    _TimeIntegration("in_plane", "torsion and lateral motion", "model", additions=IN_PLANE),
-    _TimeIntegration("table_quarter", "every fourth position node", "table", every=4),
-    _TimeIntegration("table_half", "every second position node", "table", every=2),
-    _TimeIntegration("100_nm", "tolerance 100 nm", "steps", tolerance=100 * NM),
-    _TimeIntegration("10_nm", "tolerance 10 nm", "steps", tolerance=10 * NM),
-    _TimeIntegration("1_nm", "tolerance 1 nm", "steps", tolerance=NM),
-    _TimeIntegration("0.1_nm", "tolerance 0.1 nm", "steps", tolerance=0.1 * NM),
-    _TimeIntegration("0.01_nm", "tolerance 0.01 nm", "steps", tolerance=0.01 * NM),
+    TimeIntegration("torsion", "torsion only", "model", additions=BY_TORSION),
+    TimeIntegration("in_plane", "torsion and lateral motion", "model", additions=IN_PLANE),
+    TimeIntegration("table_quarter", "every fourth position node", "table", every=4),
+    TimeIntegration("table_half", "every second position node", "table", every=2),
+    TimeIntegration("100_nm", "tolerance 100 nm", "steps", tolerance=100 * NM),
+    TimeIntegration("10_nm", "tolerance 10 nm", "steps", tolerance=10 * NM),
+    TimeIntegration("1_nm", "tolerance 1 nm", "steps", tolerance=NM),
+    TimeIntegration("0.1_nm", "tolerance 0.1 nm", "steps", tolerance=0.1 * NM),
+    TimeIntegration("0.01_nm", "tolerance 0.01 nm", "steps", tolerance=0.01 * NM),
 )
 
 
@@ -353,7 +353,7 @@ def frontier(
     """
     scene.require_meshes()
     system = assemble(scene)
-    blocks, scene = _Blocks.of(system), system.resolved(scene)
+    blocks, scene = BlockGrid.of(system), system.resolved(scene)
     names = chosen("fidelities", fidelities, [fidelity.name for fidelity in FIDELITIES])
     outcomes, left_out = run_fidelities(
         [fidelity for fidelity in FIDELITIES if fidelity.name in names],
@@ -376,7 +376,7 @@ def frontier(
     return Frontier(
         results,
         left_out,
-        _knee_of_results(results),
+        knee_of_results(results),
         _chosen_fidelity(scene, [outcome.fidelity for outcome in outcomes]),
         blocks.orders,
         len(blocks.bounds),
@@ -390,8 +390,8 @@ def runs_of_frontier(scene: Scene, names: Sequence[str]) -> tuple[list[float], f
     Raises `InputError`: no mesh, or a run too short to compare.
     """
     scene.require_meshes()
-    _Blocks.of(assemble(scene))
-    runs = (own for own in FIDELITIES if isinstance(own, _TimeIntegration) and own.name in names)
+    BlockGrid.of(assemble(scene))
+    runs = (own for own in FIDELITIES if isinstance(own, TimeIntegration) and own.name in names)
     tolerance = scene.integration.tolerance
     valid = (own.tolerance or tolerance for own in runs if own.refusal(scene) is None)
     return [(tolerance / own) ** STEPS for own in valid], 0.0
@@ -400,25 +400,25 @@ def runs_of_frontier(scene: Scene, names: Sequence[str]) -> tuple[list[float], f
 def _chosen_fidelity(scene: Scene, fidelities: Sequence[_Fidelity]) -> str | None:
     """Return the fidelity of all effects and tables with the scene's tolerance, or the next finer one."""
     for fidelity in fidelities:
-        tolerance = fidelity.tolerance if isinstance(fidelity, _TimeIntegration) else None
+        tolerance = fidelity.tolerance if isinstance(fidelity, TimeIntegration) else None
         if tolerance is not None and tolerance <= scene.integration.tolerance * (1.0 + 1e-9):
             return fidelity.name
     return None
 
 
-def _run(scene: Scene, blocks: _Blocks, fidelity: _Fidelity) -> _Vibration:
+def _run(scene: Scene, blocks: BlockGrid, fidelity: _Fidelity) -> _Vibration:
     return fidelity.run(scene, blocks)
 
 
-def _warm_up(scene: Scene, blocks: _Blocks, fidelities: Sequence[_Fidelity]) -> None:
+def _warm_up(scene: Scene, blocks: BlockGrid, fidelities: Sequence[_Fidelity]) -> None:
     """Compile what the fidelities run."""
     short = replace(scene, duration=min(WARM_UP, scene.duration))
-    system = assemble(_TimeIntegration("warm_up", "", "steps").as_run(short))
+    system = assemble(TimeIntegration("warm_up", "", "steps").as_run(short))
     start = static_equilibrium(system)
     for method in EVALUATIONS if start.status.usable else ():
         integrate(system, start, replace(system.scene.integration, method=method))
     for fidelity in fidelities:
-        if not isinstance(fidelity, _TimeIntegration):
+        if not isinstance(fidelity, TimeIntegration):
             with suppress(InputError, SolveError):
                 fidelity.run(scene, replace(blocks, bounds=blocks.bounds[:1]))
 
@@ -447,6 +447,6 @@ def _remaining(coarser: Sequence[tuple[_Fidelity, Errors]], _finest: _Fidelity) 
     }
 
 
-def _knee_of_results(results: Sequence[FidelityResult]) -> str | None:
+def knee_of_results(results: Sequence[FidelityResult]) -> str | None:
     """Return the knee; differences below what steps and tables of the reference leave say nothing."""
     return knee_above(results, *(TABLE_REST * result.error for result in results if result.name == HALF))

@@ -11,6 +11,8 @@ from __future__ import annotations
 import sys
 from importlib.util import find_spec
 
+from host.children.environment import ONE_THREAD, child_environment, keep_to_one_thread
+from host.children.json_child import ChildFailed, ChildOutOfMemory, ask_child
 from host.confinement import (
     LOOK_S,
     READING,
@@ -24,14 +26,6 @@ from host.confinement import (
 )
 from host.directories import default_cache_directory
 from host.extras import MissingExtra, Unavailable, missing_extra, require
-from host.json_child import (
-    ONE_THREAD,
-    ChildFailed,
-    ChildOutOfMemory,
-    ask_child,
-    child_environment,
-    keep_to_one_thread,
-)
 from host.sessions import (
     Ended,
     ending_signal,

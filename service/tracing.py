@@ -63,7 +63,7 @@ def current_traceparent(sent: str) -> str:
 
 def begun_span(name: str, parent: str, at_s: float, facts: Mapping[str, Fact] | None = None) -> Span:
     """Return a span that began at an instant, s since 1970, within a parent or, without one, a trace."""
-    tracer = (_provider() or trace.get_tracer_provider()).get_tracer("lineofaction", solver_version())
+    tracer = (span_provider() or trace.get_tracer_provider()).get_tracer("lineofaction", solver_version())
     context = _W3C.extract({"traceparent": parent})
     return tracer.start_span(name, context, attributes=dict(facts or {}), start_time=int(at_s * _NS))
 
@@ -79,7 +79,7 @@ def end_span(span: Span, at_s: float, facts: Mapping[str, Fact] | None = None, *
 def telemetry_options() -> TelemetryConfig:
     """Return the options by which the framework makes a span of each request, but of probes."""
     return {
-        "tracer_provider": _provider(),
+        "tracer_provider": span_provider(),
         "metrics": False,
         "logs": False,
         "operation_spans": False,
@@ -90,7 +90,7 @@ def telemetry_options() -> TelemetryConfig:
 
 def flush_spans() -> None:
     """Send what is left; a receiver that does not answer is not waited for."""
-    provider = _provider()
+    provider = span_provider()
     if provider is not None:
         thread = threading.Thread(target=provider.force_flush, daemon=True)
         thread.start()
@@ -98,7 +98,7 @@ def flush_spans() -> None:
 
 
 @cache
-def _provider() -> TracerProvider | None:
+def span_provider() -> TracerProvider | None:
     """Return what sends the spans of this process to the receiver of the environment; None: there is none.
 
     Then they go where the provider of the API sends them, by default nowhere.

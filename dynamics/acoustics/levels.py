@@ -46,6 +46,12 @@ def sound_power_level(power: ArrayLike) -> FloatArray:
     return np.asarray(10.0 * np.log10(np.maximum(values, lowest) / REFERENCE_POWER))
 
 
+def mean_square_level(square: FloatArray) -> FloatArray:
+    """Return the sound pressure level of mean squares in Pa^2 re 20 uPa, dB, at least `FLOOR`."""
+    least = 10.0 ** (FLOOR / 10.0)
+    return np.asarray(10.0 * np.log10(np.maximum(square / REFERENCE_PRESSURE**2, least)))
+
+
 def a_weighting(frequency: ArrayLike) -> FloatArray:
     """Return the A-weighting in dB, 0 at 1 kHz; `FLOOR` at most below at 0 Hz.
 

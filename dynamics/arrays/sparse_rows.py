@@ -44,7 +44,7 @@ class ModalFreedoms(NamedTuple):
     """`mass`, `damping`, `stiffness`: Diagonals. Shape (b,) each."""
 
 
-def _modal_freedoms(
+def modal_freedoms_of(
     mass: FloatArray, damping: FloatArray, stiffness: FloatArray, direction: FloatArray, others: FloatArray
 ) -> ModalFreedoms:
     """Find the modal freedoms of a system: matrices (n, n), `direction` (R, n), all `others` (..., n)."""
@@ -203,10 +203,10 @@ def sparse_matrices(
 
     `others` (..., n) are all further rows that act on its freedoms, or that these act on.
     """
-    coupling = _chained((mass != 0.0) | (damping != 0.0) | (stiffness != 0.0))
-    mobility = np.where(_chained(mass != 0.0), np.linalg.inv(mass), 0.0)
+    coupling = joined_by_chains((mass != 0.0) | (damping != 0.0) | (stiffness != 0.0))
+    mobility = np.where(joined_by_chains(mass != 0.0), np.linalg.inv(mass), 0.0)
     either = (damping != 0.0) | (stiffness != 0.0)
-    modal = _modal_freedoms(mass, damping, stiffness, direction, np.concatenate([turn, *others]))
+    modal = modal_freedoms_of(mass, damping, stiffness, direction, np.concatenate([turn, *others]))
     joined, resisting = _sparse_rows(coupling.astype(float)), _sparse_rows(damping, either)
     return SparseMatrices(
         damping=resisting,
@@ -222,7 +222,7 @@ def sparse_matrices(
     )
 
 
-def _chained(entries: BoolArray) -> BoolArray:
+def joined_by_chains(entries: BoolArray) -> BoolArray:
     """Return which freedoms a chain of `entries` (n, n) joins, either way, (n, n); each is joined to itself.
 
     Each pass doubles the length of the chains.

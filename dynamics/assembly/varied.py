@@ -129,7 +129,7 @@ def starting_at(system: System, time: float, moved: IntArray) -> System:
     )
 
 
-def _operating_points_at(system: System, displacement: FloatArray, time: float = 0.0) -> FloatArray:
+def operating_points_at(system: System, displacement: FloatArray, time: float = 0.0) -> FloatArray:
     """Return misalignment and center-distance change of every mesh in m, (m, 2).
 
     Those of the bodies displaced by `displacement` (n,) where the mesh's table follows them, else the mesh's
@@ -160,7 +160,7 @@ def with_static_reference(system: System, displacement: FloatArray, time: float 
     fixed = np.array(
         [[mesh.misalignment, mesh.center_distance_change] for mesh in system.scene.meshes]
     ).reshape(-1, 2)
-    points = _operating_points_at(system, displacement, time)
+    points = operating_points_at(system, displacement, time)
     moved = np.any(points != fixed, axis=1)
     if not np.any(moved):
         return system

@@ -44,7 +44,7 @@ LIFE_EXPONENT = 10.0 / 3.0
 MOST_POSITIONS = 512
 
 
-def _life_of(bearing: RollingBearing, displacement: FloatArray) -> float:
+def bearing_life(bearing: RollingBearing, displacement: FloatArray) -> float:
     """Return L_10r of a row in revolutions; NaN without a capacity, infinite where no element is loaded.
 
     The inner ring turns against a load that stands still. Loads of the elements are averaged over their
@@ -130,7 +130,7 @@ def _bearing_loads(system: System, rest: Rest, strain: BearingStrain) -> tuple[B
                 elastic=strain.elastic[k],
                 clearance=strain.clearance[k],
                 seat=strain.seat[k],
-                rating_life=_life_of(rows[name], strain.elastic[k] + strain.clearance[k])
+                rating_life=bearing_life(rows[name], strain.elastic[k] + strain.clearance[k])
                 if name in rows
                 else math.nan,
             )
@@ -187,7 +187,7 @@ def _shaft_lines(system: System, motion: FloatArray) -> _ShaftLines:
 # Times at which all meshes of a system stand evenly spread over their cycles.
 
 
-def _cycle_times(system: System, positions: int) -> FloatArray:
+def cycle_times(system: System, positions: int) -> FloatArray:
     """Return the times (K,), s, at which every mesh takes K evenly spaced positions of its cycle, each once.
 
     K evenly spaced moments of the common period of all meshes are a lattice: a mesh of C base pitches in that
@@ -262,7 +262,7 @@ def deflect(
     cases : sequence of LoadCase
         Their names differ. Default: the scene's own loads at t = 0.
     positions : int
-        Least number of positions of the mesh cycle, see `_cycle_times`.
+        Least number of positions of the mesh cycle, see `cycle_times`.
     progress : callable, optional
         Called with the fraction done.
     workers : Workers
@@ -285,7 +285,7 @@ def _deflected(shared: tuple[Scene, int], numbered: tuple[int, LoadCase]) -> Cas
     with inside(f"load_cases[{number}]"):
         loaded = loaded_scene(scene, case)
     system = assemble(loaded)
-    rest = rest_over(system, _cycle_times(system, positions))
+    rest = rest_over(system, cycle_times(system, positions))
     motion = rest.motion.mean(axis=0)
     strain = bearing_strain(system, motion, rest.element.mean(axis=0))
     leader = leader_of(loaded)

@@ -90,7 +90,7 @@ def add_gear_mesh(mbs: Any, mesh: PlanarMesh, nodes: tuple[Any, Any], drive: Dri
         An `ObjectGenericODE2` without mass, with the force and its derivatives as user functions.
     """
     items = _exudyn().itemInterface
-    force, jacobian = _user_functions(mesh, drive)
+    force, jacobian = user_functions(mesh, drive)
     columns = 6 if drive is None else 5
     zero = np.zeros((columns, columns))
     return mbs.AddObject(
@@ -106,7 +106,7 @@ def add_gear_mesh(mbs: Any, mesh: PlanarMesh, nodes: tuple[Any, Any], drive: Dri
     )
 
 
-def _user_functions(mesh: PlanarMesh, drive: Drive | None = None) -> tuple[Force, Jacobian]:
+def user_functions(mesh: PlanarMesh, drive: Drive | None = None) -> tuple[Force, Jacobian]:
     """Return the two functions of the mesh that Exudyn calls.
 
     Force: (system, t, item, q, v) to the generalized forces on the coordinates q, which are x, y, angle of

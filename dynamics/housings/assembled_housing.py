@@ -99,7 +99,7 @@ def _independent_freedoms(points: FloatArray, faces: tuple[_RigidFace, ...]) -> 
 # Mass and stiffness matrices of quadratic tetrahedra.
 
 
-def _mass_and_stiffness(mesh: TetrahedralMesh, material: Material) -> tuple[sp.csr_array, sp.csr_array]:
+def mass_and_stiffness(mesh: TetrahedralMesh, material: Material) -> tuple[sp.csr_array, sp.csr_array]:
     """Return the consistent mass matrix per direction and the stiffness matrix.
 
     Returns
@@ -145,7 +145,7 @@ def assemble(housing: MeshedHousing) -> AssembledHousing:
     _check_faces(housing)
     frames = tuple(seat.frame for seat in housing.seats)
     freedoms = _independent_freedoms(mesh.points, _rigid_faces(housing))
-    nodal_mass, stiffness = _mass_and_stiffness(mesh, housing.material)
+    nodal_mass, stiffness = mass_and_stiffness(mesh, housing.material)
     motion = freedoms.motion
     mass = sp.csr_array(sp.kron(nodal_mass, sp.eye_array(3), format="csr"))
     mounts = _stiffness_and_damping_of_mounts(housing.feet, freedoms)

@@ -37,7 +37,7 @@ TEXTS = ("Abaqus", "Nastran")
 CORNERS = 3
 
 
-def _element_shape(mesh: TetrahedralMesh) -> FloatArray:
+def element_shape(mesh: TetrahedralMesh) -> FloatArray:
     """Return 6 sqrt(2) V / l^3 of each element's corners, l the root mean square of its edges: 1 at best."""
     corner = mesh.points[mesh.tetrahedra[:, :4]]
     edge = corner[:, EDGES[:, 1]] - corner[:, EDGES[:, 0]]
@@ -51,7 +51,7 @@ def _check_quality(mesh: TetrahedralMesh) -> None:
     extent = float(np.ptp(mesh.points, axis=0).max())
     if not SIZE.holds(extent):
         raise InputError(f"{FIELD}.size", extent, SIZE, 'Check the unit of the mesh: "m" or "mm".')
-    shape = _element_shape(mesh)
+    shape = element_shape(mesh)
     if shape.min() < LEAST_SHAPE:
         count, bound = int(np.sum(shape < LEAST_SHAPE)), f"at least {LEAST_SHAPE:g} (1: regular)"
         raise InputError(

@@ -312,7 +312,7 @@ def reduced_housing(
     expected : callable, optional
         Called with the predicted cost before it is computed; not where it is in the cache.
     """
-    file = None if cache is None else cache / f"housing-{_content_key(housing)}.nc"
+    file = None if cache is None else cache / f"housing-{content_key(housing)}.nc"
 
     def reduced() -> ReducedHousing:
         motions = sum(seat.motions for seat in housing.seats)
@@ -331,7 +331,7 @@ def reduced_housing(
     return kept_in(file, ReducedHousing.from_netcdf, reduced, ReducedHousing.to_netcdf, ResultError)
 
 
-def _content_key(housing: MeshedHousing) -> str:
+def content_key(housing: MeshedHousing) -> str:
     """Return the SHA-256 of mesh, settings and versions, hexadecimal."""
     mesh = housing.mesh
     digest = hashlib.sha256()

@@ -89,7 +89,7 @@ def _slow_enough(system: SystemArrays, work: Workspace, level: int) -> int:
 
 
 @inner
-def _next_level(work: Workspace, control: Control, error: float, accepted: bool) -> int:
+def next_level(work: Workspace, control: Control, error: float, accepted: bool) -> int:
     """Return the level of the next step from this step's error over the tolerance.
 
     Proportional-integral control (Gustafsson): the factor depends on the last accepted error too, so that the
@@ -193,7 +193,7 @@ def advance(
         diverged = solved and error * control.tolerance >= DIVERGED
         accepted = error <= 1.0 or (not control.adaptive and solved and not diverged)
         if control.adaptive and not (landing and accepted):
-            count[Count.LEVEL] = _next_level(work, control, error, accepted)
+            count[Count.LEVEL] = next_level(work, control, error, accepted)
         if accepted:
             end = jump if landing else work.time[0] + (work.step_sizes[level] + work.time_rest[0])
             sample_step(system, work, sampler, ring, work.step_sizes[level], end, out)

@@ -66,7 +66,7 @@ def blocks(samples: int) -> Iterator[tuple[int, int]]:
 # Checkpoints of a run: every array its workspace carries, in one file that appears whole or not at all.
 
 
-def _leaves(state: Any, name: str = "") -> Iterator[tuple[str, Any]]:
+def leaves_of(state: Any, name: str = "") -> Iterator[tuple[str, Any]]:
     """Yield the dotted names and values of all that nested (named) tuples hold."""
     state = by_value(state)
     if not isinstance(state, tuple):
@@ -74,13 +74,13 @@ def _leaves(state: Any, name: str = "") -> Iterator[tuple[str, Any]]:
         return
     fields = getattr(state, "_fields", range(len(state)))
     for field, value in zip(fields, state, strict=True):
-        yield from _leaves(value, f"{name}.{field}" if name else str(field))
+        yield from leaves_of(value, f"{name}.{field}" if name else str(field))
 
 
 def fingerprint(*parts: Any) -> str:
     """Return the SHA-256 of names, types, shapes and bytes of everything in `parts`."""
     digest = hashlib.sha256(f"checkpoint {VERSION}".encode())
-    for name, value in _leaves(parts):
+    for name, value in leaves_of(parts):
         array = np.asarray(value)
         digest.update(f"{name} {array.dtype.str} {array.shape};".encode())
         digest.update(np.ascontiguousarray(array).data)
@@ -95,24 +95,24 @@ def restore(state: Any, arrays: Arrays, path: Path) -> None:
     ResultError
         If one is missing or of another shape or type: the file is of another version of the program.
     """
-    for name, target in _leaves(state):
+    for name, target in leaves_of(state):
         stored = arrays.get(name)
         if stored is None or stored.shape != target.shape or stored.dtype != target.dtype:
             raise ResultError(f"{path}: {name} is not that of this version. Start a new run.")
         target[...] = stored
 
 
-def _write_checkpoint(path: Path, state: Any, **facts: Any) -> None:
+def write_checkpoint(path: Path, state: Any, **facts: Any) -> None:
     """Write the arrays of `state`, and `facts`, to a neighbor of `path`; then move it there in one step."""
     part = path.with_suffix(".part")
     with part.open("wb") as file:
-        np.savez(file, **dict(_leaves(state)), **{f"fact {name}": value for name, value in facts.items()})
+        np.savez(file, **dict(leaves_of(state)), **{f"fact {name}": value for name, value in facts.items()})
         file.flush()
         os.fsync(file.fileno())
     part.replace(path)
 
 
-def _read_checkpoint(path: Path) -> tuple[Arrays, Arrays]:
+def read_checkpoint(path: Path) -> tuple[Arrays, Arrays]:
     """Return the arrays of the state, and the facts.
 
     Raises
@@ -202,7 +202,7 @@ class StateSpool:
         """Make all that was kept durable, then write a checkpoint that counts on it."""
         self._file.flush()
         os.fsync(self._file.fileno())
-        _write_checkpoint(self._checkpoint, state, **facts)
+        write_checkpoint(self._checkpoint, state, **facts)
 
     def begin(self) -> None:
         """Forget whatever is there."""
@@ -224,4 +224,4 @@ class StateSpool:
 
     def checkpoint(self) -> tuple[Arrays, Arrays] | None:
         """Return arrays and facts of the last checkpoint, if there is one."""
-        return _read_checkpoint(self._checkpoint) if self._checkpoint.is_file() else None
+        return read_checkpoint(self._checkpoint) if self._checkpoint.is_file() else None

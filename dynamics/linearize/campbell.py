@@ -36,7 +36,7 @@ ALIKE = 0.9
 
 
 @dataclass(frozen=True)
-class _WhirlModes:
+class WhirlModes:
     """Modes that oscillate, by rising frequency, as seen in the frame of each shaft."""
 
     frequency: FloatArray
@@ -51,27 +51,27 @@ class _WhirlModes:
     """Meters per unit of each freedom. Shape (n,)."""
 
 
-def whirl_modes(system: System, time: float = 0.0) -> _WhirlModes:
+def whirl_modes(system: System, time: float = 0.0) -> WhirlModes:
     """Return the modes about the static equilibrium at the speeds of the kinematic motion at `time`.
 
-    M x'' + (C + G) x' + (K + S) x = 0 with G and S of `_speed_terms`, both zero at standstill.
+    M x'' + (C + G) x' + (K + S) x = 0 with G and S of `speed_terms`, both zero at standstill.
 
     Raises
     ------
     SolveError
         If there is no static equilibrium.
     """
-    return _whirl_modes_with(linearize(system, time), *_speed_terms(system, time))
+    return _whirl_modes_with(linearize(system, time), *speed_terms(system, time))
 
 
-def _whirl_modes_with(linear: LinearSystem, gyroscopic: FloatArray, stiffening: FloatArray) -> _WhirlModes:
+def _whirl_modes_with(linear: LinearSystem, gyroscopic: FloatArray, stiffening: FloatArray) -> WhirlModes:
     """Return the modes of `linear` with the terms G and S (n, n) of its speeds."""
     eigenvalue, vector = _eigen(linear, linear.damping + gyroscopic, linear.stiffness + stiffening)
     kept = np.flatnonzero(eigenvalue.imag > OSCILLATING * np.max(np.abs(eigenvalue), initial=0.0))
     kept = kept[np.argsort(eigenvalue[kept].imag)]
     shape = vector[: linear.scale.size, kept].T
     largest = np.take_along_axis(shape, np.argmax(np.abs(shape), axis=1)[:, None], axis=1)
-    return _WhirlModes(
+    return WhirlModes(
         eigenvalue[kept].imag / (2.0 * math.pi),
         -eigenvalue[kept].real / np.abs(eigenvalue[kept]),
         shape / largest / linear.scale,
@@ -80,7 +80,7 @@ def _whirl_modes_with(linear: LinearSystem, gyroscopic: FloatArray, stiffening: 
     )
 
 
-def _speed_terms(system: System, time: float) -> tuple[FloatArray, FloatArray]:
+def speed_terms(system: System, time: float) -> tuple[FloatArray, FloatArray]:
     """Return G and S (n, n), factors of the rates and of the displacements, at the speeds at `time`.
 
     A shaft of spin w in a frame of speed W (0: fixed) feels, with J = z x,
@@ -94,7 +94,7 @@ def _speed_terms(system: System, time: float) -> tuple[FloatArray, FloatArray]:
 
 
 def terms_at(system: System, law_speed: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return G and S (n, n) of `_speed_terms` at the speeds `law_speed` (k,) of the laws, rad/s."""
+    """Return G and S (n, n) of `speed_terms` at the speeds `law_speed` (k,) of the laws, rad/s."""
     speed = system.kinematics.float_ratio @ law_speed
     size = column_count(system.rotors)
     gyroscopic, stiffening = np.zeros((size, size)), np.zeros((size, size))
@@ -179,7 +179,7 @@ class WhirlBranches:
     """`strain_energy`, `kinetic_energy`: Shares, mean over a cycle. (S, A, p), (S, A, n) arrays."""
 
 
-def modes_at(system: System, linear: LinearSystem, speed: float) -> _WhirlModes:
+def modes_at(system: System, linear: LinearSystem, speed: float) -> WhirlModes:
     """Return the whirl modes where the leading law has `speed` in rad/s."""
     return _whirl_modes_with(linear, *terms_at(system, law_speeds(system, speed)))
 
@@ -195,7 +195,7 @@ def whirl_branches(
     A mode continues in the one whose shape is most like it (modal assurance criterion weighted with the
     mass), all assigned together; equal likeness is decided by the nearness of the frequencies.
     """
-    swept: list[_WhirlModes] = []
+    swept: list[WhirlModes] = []
     for index, value in enumerate(speed):
         swept.append(modes_at(system, linear, float(value)))
         if progress is not None:
@@ -224,7 +224,7 @@ def branches_up_to(system: System, linear: LinearSystem, highest: float) -> Whir
     return _followed(system, linear, grid[chosen], [swept[index] for index in chosen])
 
 
-def _clear(linear: LinearSystem, before: _WhirlModes, modes: _WhirlModes) -> bool:
+def _clear(linear: LinearSystem, before: WhirlModes, modes: WhirlModes) -> bool:
     """Whether every mode continues in one like it; repeated ones, as of two planes, count together."""
     if before.frequency.size != modes.frequency.size:
         return False
@@ -240,13 +240,13 @@ def _repeated(frequency: FloatArray) -> FloatArray:
 
 
 def _followed(
-    system: System, linear: LinearSystem, speed: FloatArray, swept: Sequence[_WhirlModes]
+    system: System, linear: LinearSystem, speed: FloatArray, swept: Sequence[WhirlModes]
 ) -> WhirlBranches:
     """Return the branches of the modes `swept` at the speeds (S,)."""
     branches: list[list[int]] = []
     for index, modes in enumerate(swept):
         fresh = list(range(modes.frequency.size))
-        branches.append(_continued(linear, swept[index - 1], branches[-1], modes) if index else fresh)
+        branches.append(continued_branches(linear, swept[index - 1], branches[-1], modes) if index else fresh)
     count = 1 + max((int(np.max(branch, initial=-1)) for branch in branches), default=-1)
     n, p = linear.scale.size, len(linear.spring)
     frequency, ratio, whirl = (np.full((speed.size, count), np.nan) for _ in range(3))
@@ -257,7 +257,7 @@ def _followed(
         shape[row, branch] = modes.shape
         strain[row, branch] = strain_shares(linear, modes.shape)
         kinetic[row, branch] = kinetic_shares(linear, modes.shape)
-        whirl[row, branch] = _whirl(system, linear, float(speed[row]), modes)
+        whirl[row, branch] = whirl_sense(system, linear, float(speed[row]), modes)
     return WhirlBranches(speed, frequency, ratio, whirl, shape, strain, kinetic)
 
 
@@ -269,7 +269,7 @@ def likeness(linear: LinearSystem, first: ComplexArray, second: ComplexArray) ->
 
 
 def _assigned(
-    linear: LinearSystem, before: _WhirlModes, modes: _WhirlModes
+    linear: LinearSystem, before: WhirlModes, modes: WhirlModes
 ) -> tuple[FloatArray, IntArray, IntArray]:
     """Return the likeness of modes (a, b), and which of the first continues in which of the second."""
     apart = np.abs(before.frequency[:, None] - modes.frequency)
@@ -279,7 +279,9 @@ def _assigned(
     return alike, rows, columns
 
 
-def _continued(linear: LinearSystem, before: _WhirlModes, branch: list[int], modes: _WhirlModes) -> list[int]:
+def continued_branches(
+    linear: LinearSystem, before: WhirlModes, branch: list[int], modes: WhirlModes
+) -> list[int]:
     """Return the branch of each mode: that of its predecessor, or a new one."""
     _, rows, columns = _assigned(linear, before, modes)
     known = dict(zip(columns.tolist(), (branch[row] for row in rows), strict=True))
@@ -292,7 +294,7 @@ def _continued(linear: LinearSystem, before: _WhirlModes, branch: list[int], mod
     return numbers
 
 
-def _whirl(system: System, linear: LinearSystem, speed: float, modes: _WhirlModes) -> FloatArray:
+def whirl_sense(system: System, linear: LinearSystem, speed: float, modes: WhirlModes) -> FloatArray:
     """Return the sense of whirl of each mode, (a,).
 
     Modes of one frequency are any combination of each other: they get one sense together, which does not

@@ -203,7 +203,7 @@ def _gather_seats(scene: Scene, rotors: Bodies, names: Sequence[str]) -> Seats:
     first, groups = 0, []
     for housing in condensed:
         rows = slice(first, first + SEAT * len(housing.bushings))
-        yielding = _condense_housing(housing, stiffness[rows, rows], damping[rows, rows], preload[rows])
+        yielding = condense_housing(housing, stiffness[rows, rows], damping[rows, rows], preload[rows])
         stiffness[rows, rows], damping[rows, rows], preload[rows] = yielding
         groups.append((housing.name, rows))
         first = rows.stop
@@ -223,7 +223,7 @@ def _gather_seats(scene: Scene, rotors: Bodies, names: Sequence[str]) -> Seats:
     )
 
 
-def _condense_housing(
+def condense_housing(
     housing: Housing, stiffness: FloatArray, damping: FloatArray, preload: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return stiffness, damping and preload of bearings in series with a housing, its mass neglected.

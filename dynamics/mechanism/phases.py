@@ -88,7 +88,7 @@ def _rates(phase: LoadPhase) -> FloatArray:
 # How frames that couplings cross turn against each other.
 
 
-def _frame_turns(scene: Scene, kinematics: Kinematics) -> tuple[tuple[Fraction, ...], ...]:
+def frame_turns(scene: Scene, kinematics: Kinematics) -> tuple[tuple[Fraction, ...], ...]:
     """Return the revolutions of the second frame against the first per revolution of each law, for each."""
     turns = []
     for part in frame_couplings(scene):
@@ -126,7 +126,7 @@ def cage_turns(
 
 def repeating_phases(scene: Scene, kinematics: Kinematics) -> tuple[LoadPhase, ...]:
     """Return the phases of exact ratio, of frames and, each once, loads, in their order behind the meshes."""
-    frames = tuple(LoadPhase(rate, 1, None) for rate in _frame_turns(scene, kinematics))
+    frames = tuple(LoadPhase(rate, 1, None) for rate in frame_turns(scene, kinematics))
     read: list[LoadPhase | None] = []
     for force in scene.forces:
         read.append(frame_phase(scene, kinematics, force))

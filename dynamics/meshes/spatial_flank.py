@@ -126,7 +126,7 @@ def _scaled(lever: _Lever, factor: float) -> _Lever:
 
 
 @inner
-def _grid_energy(grid: GridTables, flank: int, cell: Cell, deflection: float) -> Sample:
+def grid_energy(grid: GridTables, flank: int, cell: Cell, deflection: float) -> Sample:
     """Return V = integral of the force over the deflection from lift-off, J.
 
     Its derivatives are those at constant deflection. With levels F_k at deflections d_k and stiffness K_k, a
@@ -386,7 +386,7 @@ def spatial_energy(
     m = _along_axis(laws, entry, 0, coordinate, row)
     a = _along_axis(laws, entry, 1, coordinate, row)
     cell = find_cell(laws.grid, entry, local.position[mesh], m, a)
-    energy = _grid_energy(laws.grid, entry, cell, coordinate[row])
+    energy = grid_energy(laws.grid, entry, cell, coordinate[row])
     return (
         energy.value,
         energy.x,

@@ -14,11 +14,15 @@ from dynamics.noise.housing_recordings import (
     sound_limit,
     velocity_recording,
 )
+from dynamics.noise.microphone_pressure import MicrophonePressure, OrderPressure, microphone_pressure
+from dynamics.noise.model_levels import ModelLevels
 from dynamics.noise.panel_sound import PanelSound, Region, models_at, panel_sound, regions
 from dynamics.noise.radiated_sound import LoudPoint, RadiatedSound, loudest, radiated_sound
+from dynamics.noise.scene_sound import HousingRegion, SceneSound, scene_sound
 from dynamics.noise.sensitivities import DesignFigure, Sensitivity, sound_sensitivities
-from dynamics.noise.sound_band import GUESSES, SoundBand, SoundModel, forced_power, sound_band
+from dynamics.noise.sound_band import GUESSES, SoundBand, SoundModel, band_about, forced_power, sound_band
 from dynamics.noise.sound_over_time import SoundOverTime, sound_over_time
+from dynamics.noise.sounding_housing import Radiation, SoundingHousing, SurfaceHousing
 from dynamics.noise.transferred_quantities import (
     BearingForce,
     EquivalentSoundPower,
@@ -41,22 +45,31 @@ __all__ = [
     "EstimatedRadiation",
     "ExactLine",
     "HousingRadiation",
+    "HousingRegion",
     "LoudPoint",
+    "MicrophonePressure",
+    "ModelLevels",
+    "OrderPressure",
     "PanelSound",
     "PointVelocity",
     "Quantity",
     "QuantityForm",
     "QuantityLevel",
     "RadiatedSound",
+    "Radiation",
     "Region",
+    "SceneSound",
     "Sensitivity",
     "SoundBand",
     "SoundModel",
     "SoundOverTime",
     "SoundPower",
     "SoundPressure",
+    "SoundingHousing",
+    "SurfaceHousing",
     "SurfaceVelocity",
     "Together",
+    "band_about",
     "check_microphone",
     "corrected_radiation",
     "estimated_radiation",
@@ -65,6 +78,7 @@ __all__ = [
     "housing_radiation",
     "kept_radiation",
     "loudest",
+    "microphone_pressure",
     "models_at",
     "panel_sound",
     "pressure_recording",
@@ -74,6 +88,7 @@ __all__ = [
     "radiating_hull",
     "regions",
     "scattered_pressure_transfer",
+    "scene_sound",
     "sound_band",
     "sound_limit",
     "sound_over_time",

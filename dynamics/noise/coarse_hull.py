@@ -32,20 +32,20 @@ FEWER = 0.5
 """Nodes of a coarse hull over those of the fine one, at most: otherwise the fine one is taken."""
 
 
-def _surface_cells(hull: Hull, count: int) -> IntArray:
+def surface_cells(hull: Hull, count: int) -> IntArray:
     """Return the cell of every node, (N,), numbers from 0 on; at most `count` of about the same size."""
     share = _node_areas(hull)
     most = min(count, int(np.count_nonzero(share)))
     seeds = np.random.default_rng(0).choice(len(share), most, replace=False, p=share / share.sum())
-    return _settled(hull, seeds, STEPS)
+    return settled_cells(hull, seeds, STEPS)
 
 
-def _split_cells(hull: Hull, cell: IntArray, chosen: BoolArray) -> IntArray:
+def split_cells(hull: Hull, cell: IntArray, chosen: BoolArray) -> IntArray:
     """Return the cell of every node, (N,), where each of the `chosen` (C,) cells has become two."""
     middle = _means(cell, _node_areas(hull), hull.nodes)
     distance = np.linalg.norm(hull.nodes - middle[cell], axis=1)
     nearest, farthest = _first_nodes(cell, distance), _first_nodes(cell, -distance)
-    return _settled(hull, np.union1d(nearest, farthest[chosen]), 1)
+    return settled_cells(hull, np.union1d(nearest, farthest[chosen]), 1)
 
 
 def _cell_positions(hull: Hull, cell: IntArray) -> FloatArray:
@@ -76,7 +76,7 @@ def _first_nodes(cell: IntArray, value: FloatArray) -> IntArray:
     return np.asarray(order[np.unique(cell[order], return_index=True)[1]])
 
 
-def _settled(hull: Hull, seeds: IntArray, steps: int) -> IntArray:
+def settled_cells(hull: Hull, seeds: IntArray, steps: int) -> IntArray:
     """Return the cells of seeds that have moved to the middle of their cells so many times."""
     starts, ends = hull.triangles.ravel(), np.roll(hull.triangles, -1, axis=1).ravel()
     pairs = np.unique(np.sort(np.stack([starts, ends], axis=1), axis=1), axis=0)
@@ -191,13 +191,13 @@ def radiating_hull(
     )
     if count >= most:
         return fine
-    cell = _surface_cells(outer.hull, count)
+    cell = surface_cells(outer.hull, count)
     for _ in range(ATTEMPTS):
         coarse, owner = _coarse_hull(outer, cell)
         poor = np.concatenate([coarse.hull.open_edges, coarse.hull.longer_edges(longest)])
         if not poor.size:
             return coarse
-        cell = _split_cells(outer.hull, cell, np.isin(np.arange(cell.max() + 1), owner[poor]))
+        cell = split_cells(outer.hull, cell, np.isin(np.arange(cell.max() + 1), owner[poor]))
         if cell.max() >= most:
             break
     return fine

@@ -63,7 +63,7 @@ class _Knots:
     error: float
 
 
-def _octaves(low: float, high: float) -> list[tuple[float, float]]:
+def octave_ranges(low: float, high: float) -> list[tuple[float, float]]:
     """Return ranges of at most an octave from `low` to `high`, each a bit above the one before.
 
     Each has its own panels: the highest are too many for the lowest.
@@ -75,7 +75,7 @@ def _octaves(low: float, high: float) -> list[tuple[float, float]]:
     return list(zip(starts, ends[1:], strict=True))
 
 
-def _expected_knots(ka: float) -> float:
+def expected_knots(ka: float) -> float:
     """Return about how many frequencies `_knots_of` takes in an octave up to a wavenumber times radius.
 
     Counted on cast boxes with 40 and 100 coordinates, ka of 0.6 to 28: within a quarter. Few simple modes
@@ -101,7 +101,7 @@ def _missed(
     return float(np.max(np.abs(10.0 * np.log10((expected + floor) / (own + floor))), initial=0.0))
 
 
-class _Octave(NamedTuple):
+class Octave(NamedTuple):
     """A range of frequencies, Hz, and the panels that resolve it."""
 
     first: float
@@ -166,7 +166,7 @@ def _resistance_at(radiators: _Radiators, point: tuple[int, float]) -> ComplexAr
     return resistance(radiators.model, panels.hull, point[1], shapes, radiators.air)
 
 
-def _radiation_cost(octaves: Iterable[_Octave], model: RadiationModel, air: Air) -> Cost:
+def radiation_cost(octaves: Iterable[Octave], model: RadiationModel, air: Air) -> Cost:
     """Predict the cost of `housing_radiation` once its hulls are there, on the reference host."""
     whole = Cost(0.0, 0.0)
     for octave in octaves:
@@ -175,12 +175,12 @@ def _radiation_cost(octaves: Iterable[_Octave], model: RadiationModel, air: Air)
     return whole
 
 
-def _knot_cost(octave: _Octave, model: RadiationModel, air: Air) -> tuple[Cost, float]:
+def _knot_cost(octave: Octave, model: RadiationModel, air: Air) -> tuple[Cost, float]:
     """Predict the cost of a frequency of an octave, and how many it has."""
     panels, coordinates = octave.hull.shapes.shape
     per_hertz = 2.0 * math.pi / air.sound_speed * octave.hull.hull.outer_radius
     cost = model.cost(panels, per_hertz * (USUAL * octave.last), coordinates)
-    return cost, _expected_knots(per_hertz * octave.last)
+    return cost, expected_knots(per_hertz * octave.last)
 
 
 @dataclass(frozen=True)
@@ -226,7 +226,7 @@ class HousingRadiation(ModalResistance, ArrayFile):
     def hull_at(self, outer: OuterHull, frequency: float, sound_speed: float) -> RadiatingHull | None:
         """Return the panels at a computed frequency, Hz; None above those that the mesh resolves."""
         low, high = float(self.frequency[0]), float(self.frequency[-1])
-        for first, last in _octaves(low, min(high, self.facts.resolved_frequency)):
+        for first, last in octave_ranges(low, min(high, self.facts.resolved_frequency)):
             if first <= frequency <= last:
                 return radiating_hull(outer, last, sound_speed)
         return None
@@ -280,8 +280,8 @@ def housing_radiation(
     low, high = positive("frequencies", float(requested.min())) / BAND, float(requested.max()) * BAND
     outer = outer_hull(housing)
     resolved = 0.0 if isinstance(model, EquivalentRadiatedPower) else resolved_frequency(outer, air)
-    ends = _octaves(low, min(high, resolved))
-    parted = [_Octave(*each, radiating_hull(outer, each[1], air.sound_speed)) for each in ends]
+    ends = octave_ranges(low, min(high, resolved))
+    parted = [Octave(*each, radiating_hull(outer, each[1], air.sound_speed)) for each in ends]
     parts, cost = _resolved_parts(parted, model, air, housing.modes[1], progress, expected, cache, workers)
     panels = max((len(octave.hull.shapes) for octave in parted), default=len(outer.hull.triangles))
     if high > resolved:
@@ -300,7 +300,7 @@ def housing_radiation(
 
 
 def _resolved_parts(
-    parted: Sequence[_Octave],
+    parted: Sequence[Octave],
     model: RadiationModel,
     air: Air,
     modes: FloatArray,
@@ -310,7 +310,7 @@ def _resolved_parts(
     workers: Workers,
 ) -> tuple[list[_Knots], WorkCost]:
     """Return the knots of each octave, and their cost."""
-    kind, reference = WORK.format(model.model_name), _radiation_cost(parted, model, air)
+    kind, reference = WORK.format(model.model_name), radiation_cost(parted, model, air)
     expected(on_this_host(kind, reference, cache))
     radiators = _Radiators(model, tuple(octave.hull for octave in parted), air)
     ranges = [(octave.first, octave.last) for octave in parted]

@@ -203,6 +203,17 @@ class RadiatedSound(ArrayFile):
         """Return the power that is left without the force of each bearing, (b, S, H), W."""
         return np.maximum(self.power - 2.0 * self.bearing_share + self.bearing_alone, 0.0)
 
+    @property
+    def bearing_alone_level(self) -> FloatArray:
+        """Return the A-weighted level by the force of each bearing alone, (b, H, S), dB(A)."""
+        power = np.maximum(self.bearing_alone, 0.0)
+        return np.swapaxes(sound_power_level(power) + a_weighting(self.frequency), 1, 2)
+
+    @property
+    def level_without_bearing(self) -> FloatArray:
+        """Return the A-weighted level that is left without each bearing, (b, H, S), dB(A)."""
+        return np.swapaxes(sound_power_level(self.without_bearing) + a_weighting(self.frequency), 1, 2)
+
 
 def _floor_fields(floors: Sequence[FloorPower]) -> dict[str, Any]:
     """Return what `RadiatedSound` has of the orders left out, of all housings together; nothing without."""

@@ -336,6 +336,31 @@ def sound_band(
     return _band(model, np.asarray(speed, dtype=float), varied, others, powers)
 
 
+def band_about(
+    model: SoundModel,
+    speed: FloatArray,
+    orders: int,
+    ranges: Mapping[str, Range],
+    power: OrderPower,
+    error: FloatArray,
+    progress: Progress = silent,
+) -> SoundBand:
+    """Return the bands about the levels of a sound, with the error of its radiation model.
+
+    Parameters
+    ----------
+    model, speed, orders, ranges, progress
+        As of `sound_band`.
+    power : OrderPower
+        Of the sound at these speeds, (H, S).
+    error : (2, S, H) array
+        From and to where its levels may be off, dB; below 0: too quiet.
+    """
+    below, above = np.maximum(error[1].T, 0.0), np.maximum(-error[0].T, 0.0)
+    band = sound_band(model, speed, orders, ranges, progress=progress).about(power)
+    return band.with_power_error("radiation_model", power, below, above)
+
+
 def _band(
     model: SoundModel,
     speed: FloatArray,

@@ -128,7 +128,7 @@ def _keep(work: Workspace, step: int, path: FloatArray) -> None:
 
 
 @dataclass(frozen=True)
-class _PeriodGrid:
+class PeriodGrid:
     """N steps of U different sizes, in common periods; the same at all speeds."""
 
     phase: FloatArray
@@ -139,7 +139,7 @@ class _PeriodGrid:
     """Which size each step has. Shape (N,)."""
 
     @classmethod
-    def of(cls, system: System, period: CommonPeriod, largest: float) -> _PeriodGrid:
+    def of(cls, system: System, period: CommonPeriod, largest: float) -> PeriodGrid:
         """Return steps of at most `largest` common periods, an equal number of them between any two knots.
 
         Tables have a kink in their second derivative at each knot (a jump of stiffness is a narrow interval
@@ -162,11 +162,11 @@ class _PeriodGrid:
         return cls(phase, np.append(size, 0.0), np.asarray(level, dtype=np.int64))
 
     @property
-    def halved(self) -> _PeriodGrid:
+    def halved(self) -> PeriodGrid:
         """The grid with every step halved."""
         middle = 0.5 * (self.phase[1:] + self.phase[:-1])
         phase = np.sort(np.concatenate([self.phase, middle]))
-        return _PeriodGrid(phase, 0.5 * self.size, np.repeat(self.level, 2))
+        return PeriodGrid(phase, 0.5 * self.size, np.repeat(self.level, 2))
 
 
 def _knots(system: System, period: CommonPeriod) -> FloatArray:
@@ -260,7 +260,7 @@ class PeriodicProblem:
 
     system: System
     period: CommonPeriod
-    grid: _PeriodGrid
+    grid: PeriodGrid
     """Steps of one period, the same at all speeds, so that the map depends smoothly on speed."""
     rate: float
     least: float
@@ -288,7 +288,7 @@ class PeriodicProblem:
         """
         _check_speed(self.system, self.period, speed)
         largest = 1.0 / max(self.rate * self.period.duration(speed), self.least)
-        return replace(self, grid=_PeriodGrid.of(self.system, self.period, largest))
+        return replace(self, grid=PeriodGrid.of(self.system, self.period, largest))
 
 
 def periodic_problem(
@@ -325,7 +325,7 @@ def periodic_problem(
     return PeriodicProblem(
         system,
         period,
-        _PeriodGrid.of(system, period, 1.0 / max(rate * period.duration(slowest), least)),
+        PeriodGrid.of(system, period, 1.0 / max(rate * period.duration(slowest), least)),
         rate,
         least,
         repeat,

@@ -207,9 +207,9 @@ def _worst(amplitudes: Sequence[FloatArray]) -> list[float]:
 def _of_levels(traces: Sequence[_Traces], orders: Sequence[_Orders]) -> Json:
     """Return the errors of mean squares over the run, as amplitudes and in dB, and of the largest forces."""
     count = min(part.error.shape[2] for part in orders)
-    rms, rms_level = _level_error(np.array([part.power for part in traces]))
-    by_error, error_level = _level_error(np.array([part.error[..., :count] ** 2 for part in orders]))
-    by_force, force_level = _level_error(np.array([part.force[..., :count] ** 2 for part in orders]))
+    rms, rms_level = level_error(np.array([part.power for part in traces]))
+    by_error, error_level = level_error(np.array([part.error[..., :count] ** 2 for part in orders]))
+    by_force, force_level = level_error(np.array([part.force[..., :count] ** 2 for part in orders]))
     peak = np.array([part.peak for part in traces])
     spread = SPREAD * np.std(peak, axis=(0, 1))
     highest = np.max(peak[:, 0], axis=0, initial=0.0)
@@ -229,7 +229,7 @@ def _of_levels(traces: Sequence[_Traces], orders: Sequence[_Orders]) -> Json:
     }
 
 
-def _level_error(power: FloatArray) -> tuple[FloatArray, FloatArray]:
+def level_error(power: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return errors of amplitudes and of levels (dB) of the mean of `power` (B, 2, ...) over B parts.
 
     Two runs of a chaotic motion are two drawings of it: their difference in a part has twice the variance of

@@ -52,7 +52,7 @@ def unmeasured_nodes(count: int, columns: int) -> PositionNodes:
     return PositionNodes(np.arange(count) / count, unknown, unknown, unknown)
 
 
-def _adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) -> PositionNodes:
+def adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) -> PositionNodes:
     """Bisect the intervals in which the interpolant misses a probe.
 
     `solve` gives the STE (W, P, L) in m at positions (P,): of one base pitch that repeats (W = 1), or of
@@ -134,7 +134,7 @@ def table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreported
     """
     if plan.positions is not None:
         return unmeasured_nodes(plan.positions, len(points.assessed) * plan.load.size)
-    pitches = _assessed_pitches(points.nominal.pair, points.places[0].model, plan.nodes.assessed_pitches)
+    pitches = assessed_pitches(points.nominal.pair, points.places[0].model, plan.nodes.assessed_pitches)
     times = points.period * len(points.places)
     tried, expected = 0, expected_tries(points.nominal.pair, plan, points.period, len(points.places))
 
@@ -153,10 +153,10 @@ def table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreported
             values[1 + way, near] = _curves(points, plan.load, position[near], pitches + way)[0]
         return values
 
-    return _adaptive_nodes(replace(plan.nodes, most=most_positions(plan, times)), solve)
+    return adaptive_nodes(replace(plan.nodes, most=most_positions(plan, times)), solve)
 
 
-def _assessed_pitches(pair: ParallelAxes, model: ContactModel, most: int) -> IntArray:
+def assessed_pitches(pair: ParallelAxes, model: ContactModel, most: int) -> IntArray:
     """Return base pitches to assess.
 
     Where all teeth are alike, the one pitch there is. Else pitches m, at most `most`, evenly taken from all

@@ -37,7 +37,7 @@ class CondensedGear:
     held: HeldSector
     """The sector on its cuts."""
     ring: RingSolution
-    """The gear under the loads `_probe_loads`."""
+    """The gear under the loads `probe_loads`."""
 
     def flank(self, tooth: int, loads: FloatArray) -> FloatArray:
         """Return the flank displacements (nf, p) of a tooth under the probe `loads` (nf, p) on tooth 0."""
@@ -54,7 +54,7 @@ class CondensedGear:
         return np.asarray(self.held.cuts @ self.cuts(tooth) - passed)
 
 
-def _pressure_forces(s: FloatArray, z: FloatArray, index: IntArray, loaded: FloatArray) -> FloatArray:
+def pressure_forces(s: FloatArray, z: FloatArray, index: IntArray, loaded: FloatArray) -> FloatArray:
     """Return the consistent forces (nf,) of a pressure of `loaded` (L, elements) per unit of s and z."""
     forces = np.zeros(index.max() + 1)
     areas = loaded * np.diff(z)[:, None] * (s[2::2] - s[:-2:2])
@@ -67,7 +67,7 @@ def _pressure_forces(s: FloatArray, z: FloatArray, index: IntArray, loaded: Floa
     return forces
 
 
-def _probe_loads(s: FloatArray, z: FloatArray, index: IntArray, s_form: float) -> FloatArray:
+def probe_loads(s: FloatArray, z: FloatArray, index: IntArray, s_form: float) -> FloatArray:
     """Return two loads (nf, 2): unit pressure on the whole involute, and on its uppermost layer.
 
     Elements that begin below `s_form` carry nothing, since their normals miss the base circle.
@@ -75,7 +75,7 @@ def _probe_loads(s: FloatArray, z: FloatArray, index: IntArray, s_form: float) -
     on = np.broadcast_to(s[:-2:2] >= s_form, (len(z) - 1, len(s) // 2)).astype(float)
     end = np.zeros_like(on)
     end[-1] = on[-1]
-    return np.stack([_pressure_forces(s, z, index, part) for part in (on, end)], axis=1)
+    return np.stack([pressure_forces(s, z, index, part) for part in (on, end)], axis=1)
 
 
 def condensed_gear(
@@ -100,7 +100,7 @@ def condensed_gear(
     Returns
     -------
     CondensedGear, (nf, p) array
-        The solution and the loads `_probe_loads` it was solved for, N.
+        The solution and the loads `probe_loads` it was solved for, N.
     """
     tooth, loads = condensed_tooth(gear, section, recipe, support, clock)
     free = free_turn(section, tooth.sector)
@@ -137,7 +137,7 @@ def condensed_tooth(
     held = hold_sector(matrix, len(sector.loaded))
     s_form = tooth_profile(gear).s_form
     loads = np.zeros((len(sector.loaded), 2))
-    loads[: len(sector.flank)] = _probe_loads(section.s, sector.layers.ends, sector.flank_index, s_form)
+    loads[: len(sector.flank)] = probe_loads(section.s, sector.layers.ends, sector.flank_index, s_form)
     return CondensedTooth(sector, stiffness, condensation, held), loads
 
 

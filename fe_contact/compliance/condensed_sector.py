@@ -47,7 +47,7 @@ def freedoms(nodes: IntArray) -> IntArray:
     return (2 * nodes[..., None] + np.arange(2)).reshape(*nodes.shape[:-1], -1)
 
 
-def _inward_loads(size: int, nodes: IntArray, normals: FloatArray) -> sp.csc_array:
+def inward_loads(size: int, nodes: IntArray, normals: FloatArray) -> sp.csc_array:
     """Return unit forces against the outward `normals` at `nodes`, (2 size, k)."""
     rows = freedoms(nodes)
     columns = np.repeat(np.arange(len(nodes)), 2)
@@ -76,11 +76,11 @@ def condense_sector(mesh: GearMesh, matrix: sp.csc_array, normals: FloatArray) -
     shared = np.unique(np.concatenate([sector.right_side, sector.left_side, sector.bottom]))
     boundary = shared if mesh.hub is not None else np.setdiff1d(shared, sector.bottom)
     b, i = freedoms(boundary), freedoms(np.setdiff1d(np.arange(size), shared))
-    loads = _inward_loads(size, sector.flank, normals)
+    loads = inward_loads(size, sector.flank, normals)
     k_ib = matrix[i][:, b].toarray()
     n_i = loads[i].toarray()
     along = _along_flank(sector.points[sector.flank], normals)
-    t_i = _inward_loads(size, sector.flank, -along)[i]
+    t_i = inward_loads(size, sector.flank, -along)[i]
     solve = factorise(sp.csc_array(matrix[i][:, i]), block=2)
     solved = solve(np.concatenate([n_i, k_ib], axis=1))
     by_load, by_boundary = solved[:, : n_i.shape[1]], solved[:, n_i.shape[1] :]

@@ -59,7 +59,7 @@ def _deformed(ring: Ring, field: Field, lame: tuple[float, float], out_of_plane:
     out = field.load - field.internal
     out[mesh.bore_nodes] = 0.0
     quality = mesh_quality(mesh.points, mesh.triangles)
-    stress = _element_stress(mesh, field.displacement, lame, out_of_plane)
+    stress = element_stress(mesh, field.displacement, lame, out_of_plane)
     inward = {
         flank.tooth: -np.sum(field.displacement[flank.nodes] * flank.normals, axis=1) for flank in mesh.flanks
     }
@@ -79,7 +79,7 @@ def _deformed(ring: Ring, field: Field, lame: tuple[float, float], out_of_plane:
     )
 
 
-def _element_stress(
+def element_stress(
     mesh: GearMesh, displacement: FloatArray, lame: tuple[float, float], out_of_plane: float
 ) -> FloatArray:
     """Return the stresses (m, 6, 3, 3) of every element at its nodes, Pa.

@@ -82,7 +82,7 @@ def _working(front: Front) -> int:
     return max(peak, held + inner * (inner + border) + border**2)
 
 
-def _elimination_tree(
+def bisected_tree(
     nodes: IntArray, freedoms: IntArray, position: FloatArray, kept: IntArray, leaf: int = LEAF
 ) -> EliminationTree:
     """Bisect the elements along grid lines and eliminate every freedom as soon as it is complete.
@@ -174,4 +174,4 @@ def sector_tree(sector: SweptSector) -> EliminationTree:
     kept = np.concatenate([sector.loaded, sector.left, sector.right])
     free = sector.freedoms.max(axis=1) >= 0
     nodes = np.where(free[sector.elements], sector.elements, -1)
-    return _elimination_tree(nodes, sector.element_freedoms, sector.place, kept)
+    return bisected_tree(nodes, sector.element_freedoms, sector.place, kept)

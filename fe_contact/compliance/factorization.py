@@ -24,7 +24,7 @@ def factorise(matrix: sp.csc_array, block: int) -> Solve:
     `block` consecutive freedoms. Returns x(b) for b (n, m), dense. Raises `SolveError`: the matrix is
     singular.
     """
-    order = _nested_dissection(matrix, block)
+    order = nested_dissection(matrix, block)
     permuted = sp.csc_array(matrix[order][:, order])
     try:
         factor = splu(permuted, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
@@ -39,7 +39,7 @@ def factorise(matrix: sp.csc_array, block: int) -> Solve:
     return solve
 
 
-def _nested_dissection(matrix: sp.csc_array, block: int) -> IntArray:
+def nested_dissection(matrix: sp.csc_array, block: int) -> IntArray:
     """Return METIS' fill-reducing order of the freedoms, from the graph of their nodes."""
     import pymetis  # noqa: PLC0415 - a cached result needs no ordering
 

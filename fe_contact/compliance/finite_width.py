@@ -58,7 +58,7 @@ class FiniteWidthCompliance:
 
     def added_to(self, flank: FlankCompliance) -> FlankCompliance:
         """Return the compliance of a transverse section in plane strain, corrected for the finite width."""
-        shape = _shape_functions(self.s, flank.s)
+        shape = shape_functions(self.s, flank.s)
         count = flank.teeth.size
         added = {m: shape @ self.block(m) @ shape.T for m in range(1 - count, count)}
         rows = [np.concatenate([added[i - j] for j in range(count)], axis=1) for i in range(count)]
@@ -100,17 +100,17 @@ def _beyond_plane_strain(
     reach = min(teeth - 1, gear.teeth // 2)
     solid = flank_compliance_3d(gear, recipe, reach=reach, cache=cache)
     section = flank_compliance_3d(gear, recipe, reach=reach, support=PlaneStrain(), cache=cache)
-    return FiniteWidthCompliance(solid.s, _under_even_load(solid) - _under_even_load(section), gear.teeth)
+    return FiniteWidthCompliance(solid.s, under_even_load(solid) - under_even_load(section), gear.teeth)
 
 
-def _under_even_load(compliance: FlankCompliance3D) -> FloatArray:
+def under_even_load(compliance: FlankCompliance3D) -> FloatArray:
     """Return b E' S_m E (reach + 1, k, k): mean displacements per even force and unit face width."""
-    even = _even_load(compliance.z, compliance.index)
+    even = even_load(compliance.z, compliance.index)
     width = float(compliance.z[-1] - compliance.z[0])
     return np.asarray(width * (even.T @ compliance.blocks @ even))
 
 
-def _even_load(z: FloatArray, index: IntArray) -> FloatArray:
+def even_load(z: FloatArray, index: IntArray) -> FloatArray:
     """Return the forces (nf, k) of loads that are even across the face, per total force at a profile node.
 
     The mean of an eight-node face over its width is quadratic along the profile, so that it has values at
@@ -131,7 +131,7 @@ def _even_load(z: FloatArray, index: IntArray) -> FloatArray:
     return forces
 
 
-def _shape_functions(nodes: FloatArray, at: FloatArray) -> FloatArray:
+def shape_functions(nodes: FloatArray, at: FloatArray) -> FloatArray:
     """Return the quadratic shape functions (n, k) of flank `nodes` (k,) at the coordinates `at` (n,).
 
     Below the first node its value holds.

@@ -48,7 +48,7 @@ def left_by_rounding(
     return EPSILON * float(residual), EPSILON * float(energy)
 
 
-def _disc_rounding(slenderness: float, helix_angle: float, layers: int, material: Material) -> float:
+def disc_rounding(slenderness: float, helix_angle: float, layers: int, material: Material) -> float:
     """Return about what rounding leaves of the energy of a solid disc, to a factor of 3.
 
     `slenderness` is the depth from bore to root over the width, D/w; the helix angle is in rad.
@@ -65,7 +65,7 @@ def least_face_width(gear: Toothing, layers: int) -> float:
 
     def beyond(power: float) -> float:
         return math.log(
-            _disc_rounding(10.0**power, gear.helix_angle, layers, gear.material) / LARGEST_ROUNDING
+            disc_rounding(10.0**power, gear.helix_angle, layers, gear.material) / LARGEST_ROUNDING
         )
 
     return abs(gear.root_radius - gear.held_radius) / float(10.0 ** scipy.optimize.brentq(beyond, -3.0, 9.0))

@@ -22,7 +22,7 @@ def gear_checks(gear: CondensedGear, loads: FloatArray, lever: float, bore_radiu
     Parameters
     ----------
     gear : CondensedGear
-        Solved for the probe loads `loads` (nf, 2), `_probe_loads`.
+        Solved for the probe loads `loads` (nf, 2), `probe_loads`.
     lever : float
         Moment about the axis per unit force along the involute's inward normal, r_b cos(beta_b), m.
     bore_radius : float
@@ -53,7 +53,7 @@ def gear_checks(gear: CondensedGear, loads: FloatArray, lever: float, bore_radiu
         reciprocity=_reciprocity(gear, loads),
         bore_moment=abs(moment / (lever * float(load.sum() * ring.shares.sum())) - 1.0),
         energy=float(np.ptp(works) / works[0]),
-        least_eigenvalue=_least_eigenvalue(ring.blocks[0]),
+        least_eigenvalue=least_eigenvalue(ring.blocks[0]),
         residual_rounding=unbalanced,
         energy_rounding=energy,
     )
@@ -117,7 +117,7 @@ def _reciprocity(gear: CondensedGear, loads: FloatArray) -> float:
     return max(mutual, float(np.abs(own - own.T).max() / np.abs(own).max()))
 
 
-def _least_eigenvalue(matrix: FloatArray) -> float:
+def least_eigenvalue(matrix: FloatArray) -> float:
     """Return the least eigenvalue of a symmetric matrix by inverse iteration, minus its norm if none."""
     try:
         factor = cho_factor(matrix, lower=True)

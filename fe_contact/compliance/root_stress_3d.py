@@ -64,7 +64,7 @@ def compute_root_stress_3d(
     modes = row_space(even_sector(tooth.held).transmitted, LEAST_TOLD * np.abs(tooth.held.flank).max())
     cuts = loaded_cuts(tooth.held, np.concatenate([modes, loads], axis=1), gear.teeth, reach, modes.shape[1])
     clock.finish("ring")
-    functionals = _root_functionals(gear, section, tooth.sector, root)
+    functionals = root_functionals(gear, section, tooth.sector, root)
     stress = _unit_load_stress(tooth, functionals, modes, cuts, reach)
     clock.finish("stress")
     checks = _checks(tooth, functionals, loads, cuts, stress[reach])
@@ -93,7 +93,7 @@ def compute_root_stress_3d(
     )
 
 
-def _root_functionals(
+def root_functionals(
     gear: Toothing, section: QuadSector, sector: SweptSector, root: RootSurface
 ) -> sp.csr_array:
     """Return the rows that make root stresses of the freedoms of a sector, (2 * 3 * 2 L * p, n).

@@ -23,7 +23,7 @@ ACROSS = np.array([-1.0, -1.0, 1.0, 1.0, -1.0, 0.0, 1.0, 0.0])
 
 def surface_elements(
     section: QuadSector, sector: SweptSector, chain: IntArray, axes: FloatArray, turn_per_length: float
-) -> _SurfaceElements:
+) -> SurfaceElements:
     """Return the quadrilaterals of a chain of the root in the frames of their nodes."""
     first = 2 * np.arange(len(chain) // 2)
     on_section = chain[first[:, None] + (1 + ALONG).astype(int)]  # (e, 8)
@@ -34,7 +34,7 @@ def surface_elements(
         positions.append(nodes)
         frames.append(cylindrical_frames(nodes) @ axes[on_section])
         freedoms.append(sector.freedoms[sector.nodes[2 * layer + (1 + ACROSS).astype(int), on_section]])
-    return _SurfaceElements(np.concatenate(positions), np.concatenate(frames), np.concatenate(freedoms))
+    return SurfaceElements(np.concatenate(positions), np.concatenate(frames), np.concatenate(freedoms))
 
 
 def quad_root(section: QuadSector, profile: FlankProfile) -> RootSurface:
@@ -49,7 +49,7 @@ def quad_root(section: QuadSector, profile: FlankProfile) -> RootSurface:
     return RootSurface(np.array([right, left]), root_coordinate(profile, section.points[right]))
 
 
-class _SurfaceElements(NamedTuple):
+class SurfaceElements(NamedTuple):
     """Eight-node quadrilaterals of a surface."""
 
     nodes: FloatArray
@@ -60,7 +60,7 @@ class _SurfaceElements(NamedTuple):
     """Their numbers; -1 where held. Shape (m, 8, 3)."""
 
 
-def face_stress(elements: _SurfaceElements, material: Material, size: int) -> sp.csr_array:
+def face_stress(elements: SurfaceElements, material: Material, size: int) -> sp.csr_array:
     """Return the stresses of surface elements by the freedoms of a mesh, (3 * 4 m, size) in Pa/m.
 
     All stations of one component stand together, those of an element by position across, then along.

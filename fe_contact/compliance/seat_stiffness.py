@@ -14,7 +14,7 @@ from fe_contact.mesh.sector_grid import SectorGrid
 from fe_contact.types import FloatArray
 
 
-def _face_mass() -> FloatArray:
+def face_mass() -> FloatArray:
     """Return the products of the eight functions of a face integrated over -1 .. 1 squared, (8, 8)."""
     t, weight = np.polynomial.legendre.leggauss(3)
     x, y = (part.ravel() for part in np.meshgrid(t, t))
@@ -30,7 +30,7 @@ def seat_stiffness(gear: Toothing, grid: SectorGrid, thickness: float, seat: Bor
     helical meshes too. Only the finite stiffnesses count; freedoms in rigid directions are held.
     """
     area = gear.held_radius * 2.0 * math.pi / gear.teeth / grid.columns * thickness
-    mass = 0.25 * area * _face_mass()
+    mass = 0.25 * area * face_mass()
     matrix, nodes = np.zeros((20, 3, 20, 3)), np.array(LOWER_FACE)
     for c, stiffness in enumerate(seat.stiffness):
         if math.isfinite(stiffness):

@@ -33,7 +33,7 @@ def twist(gear: Toothing) -> float:
     return abs(math.tan(gear.helix_angle)) / gear.reference_radius
 
 
-def _flank_frames(section: QuadSector, turn_per_length: float) -> FloatArray:
+def flank_frames(section: QuadSector, turn_per_length: float) -> FloatArray:
     """Return the axes (k, 3, 3) at the flank nodes in cylindrical components, one per column.
 
     The first is the outward normal of the helicoid: with the transverse normal (n_r, n_phi),
@@ -53,7 +53,7 @@ def _flank_frames(section: QuadSector, turn_per_length: float) -> FloatArray:
 def node_axes(gear: Toothing, section: QuadSector) -> FloatArray:
     """Return the axes (n, 3, 3) of the freedoms at all nodes of a section, in cylindrical components."""
     axes = np.tile(np.eye(3), (section.grid.nodes, 1, 1))
-    axes[section.grid.flank] = _flank_frames(section, twist(gear))
+    axes[section.grid.flank] = flank_frames(section, twist(gear))
     return axes
 
 

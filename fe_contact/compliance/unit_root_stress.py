@@ -172,11 +172,11 @@ def _compute_in_plane(
 ) -> UnitRootStress:
     clock = StageClock()
     mesh, profile = mesh_gear(gear, recipe), tooth_profile(gear)
-    root = _triangle_root(mesh.sector, profile)
+    root = triangle_root(mesh.sector, profile)
     clock.finish("mesh")
     ring = condensed_ring(gear, mesh, hypothesis)
     clock.finish("factorisation")
-    rows = [_edge_stress(mesh.sector.points, chain, gear.material, hypothesis) for chain in root.nodes]
+    rows = [edge_stress(mesh.sector.points, chain, gear.material, hypothesis) for chain in root.nodes]
     functionals = sp.csr_array(sp.vstack(rows))
     own, index = tooth_indices(mesh, 1), tooth_indices(mesh, teeth)
     stress = _unit_load_stress(ring, functionals, int(own[0]), index)
@@ -236,7 +236,7 @@ def _checks_in_plane(
     )
 
 
-def _triangle_root(sector: ToothSector, profile: FlankProfile) -> RootSurface:
+def triangle_root(sector: ToothSector, profile: FlankProfile) -> RootSurface:
     """Return the root of a sector of six-node triangles; it is found by walking along the boundary."""
     form = int(np.argmin(np.abs(sector.s[::2] - profile.s_form)))
     edges = np.concatenate([sector.triangles[:, [*side, 3 + i]] for i, side in enumerate(SIDES)])
@@ -259,7 +259,7 @@ def _walk(following: dict[int, tuple[int, int]], start: int, stop: int) -> list[
     return nodes
 
 
-def _edge_stress(
+def edge_stress(
     points: FloatArray, nodes: IntArray, material: Material, hypothesis: PlaneHypothesis
 ) -> sp.csr_array:
     """Return the stresses of a chain of quadratic edges by displacements of a plane mesh, (3 * 2e, 2n), Pa/m.

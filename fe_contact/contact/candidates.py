@@ -196,8 +196,8 @@ def _loaded_slices(
         patch_2=replace(patch_2, count=slices.points, bulge=second * curvatures[1]),
         slice_width=slices.width,
         base_helix_angle=pair.base_helix_angle,
-        corner_1=_corner_softness(pair.pinion),
-        corner_2=_corner_softness(pair.wheel),
+        corner_1=corner_softness(pair.pinion),
+        corner_2=corner_softness(pair.wheel),
         tip_inclinations=(_tip_inclination(pair.pinion), _tip_inclination(pair.wheel)),
         law_length=max(rule.half_width, rule.law_length, min(LAW_LENGTH * width, LONGEST_LAW * module)),
         edge_load=rule.edge_load,
@@ -269,7 +269,7 @@ def _tip_inclination(gear: Toothing) -> float:
     return abs(gear.tip_roll_length) / gear.base_radius
 
 
-def _corner_softness(gear: Toothing) -> float:
+def corner_softness(gear: Toothing) -> float:
     """Return what the corner at a gear's tip edge yields over a half plane; see `wedge_softness`.
 
     Flank and tip circle meet at a right angle and the pressure angle at the tip.

@@ -64,7 +64,7 @@ def with_face_tilt(
     return replace(problem, tilt=tilt)
 
 
-class _KeyedFlanks(NamedTuple):
+class KeyedFlanks(NamedTuple):
     """Contribution of a keyed bore: rows (2 s + 1, q, f) by tooth from -s to s, core (q, q)."""
 
     rows: FloatArray
@@ -89,7 +89,7 @@ class _FaceGear:
 
     grid: FaceGrid
     blocks: FloatArray
-    key: _KeyedFlanks
+    key: KeyedFlanks
     patches: Patches
     lever: FloatArray
     teeth: IntArray
@@ -160,7 +160,7 @@ def _face_gears(
         grid = FaceGrid(flank.s, flank.z, flank.index)
         low = np.maximum(along - 0.5 * slices.slice_width, flank.z[0])
         high = np.minimum(along + 0.5 * slices.slice_width, flank.z[-1])
-        key = _KeyedFlanks(flank.key_rows, flank.key_core, couple_teeth)
+        key = KeyedFlanks(flank.key_rows, flank.key_core, couple_teeth)
         yield _FaceGear(grid, blocks, key, patches, lever, teeth, low, high, tip, slices.present)
 
 

@@ -29,7 +29,7 @@ _TOLERANCE, _PLAIN_TOLERANCE = 1e-9, 1e-6
 
 _STEPS = 100
 
-_WIDTH, _FREE, _MODULUS, _MIDDLE, _HALF, REFERENCE_LENGTH = range(6)
+_WIDTH, _FREE, MODULUS, MIDDLE, HALF_STRIP, REFERENCE_LENGTH = range(6)
 """Columns of `LocalLaw.strip`."""
 
 
@@ -53,7 +53,7 @@ def local_law(gap: FloatArray, width: FloatArray, modulus: FloatArray, length: f
     """Return the law of a table of gaps under which no strip is known yet."""
     strip = np.zeros((width.size, 6))
     for i in range(width.size):
-        strip[i, _WIDTH], strip[i, _FREE], strip[i, _MODULUS] = width[i], free_strip(gap, i), modulus[i]
+        strip[i, _WIDTH], strip[i, _FREE], strip[i, MODULUS] = width[i], free_strip(gap, i), modulus[i]
         strip[i, REFERENCE_LENGTH] = length
     return LocalLaw(gap, strip, length)
 
@@ -69,12 +69,14 @@ def approach(law: LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
     beyond : bool
         Whether the strip has outgrown the reference length.
     """
-    width, modulus = law.strip[i, _WIDTH], law.strip[i, _MODULUS]
+    width, modulus = law.strip[i, _WIDTH], law.strip[i, MODULUS]
     p, (k, least, most) = force / width, _limits(law, i)
     half, rigid = 0.0, 0.0
     if p > 0.0:
-        middle, half, rigid = half_strip(law.gap, i, p, modulus, law.strip[i, _MIDDLE], law.strip[i, _HALF])
-        law.strip[i, _MIDDLE], law.strip[i, _HALF] = middle, half
+        middle, half, rigid = half_strip(
+            law.gap, i, p, modulus, law.strip[i, MIDDLE], law.strip[i, HALF_STRIP]
+        )
+        law.strip[i, MIDDLE], law.strip[i, HALF_STRIP] = middle, half
     if half <= least:
         load, rigid = strip_load(law.gap, i, least, modulus)
         slope = rigid / load + k * (-math.log(SMALLEST_STRIP) - 0.25)
@@ -107,8 +109,8 @@ def width_of(law: LocalLaw, i: int) -> float:
 def carrying_strip(law: LocalLaw, i: int, force: float) -> tuple[float, float]:
     """Return middle and half length in m of the strip over which contact `i` carries `force` in N, > 0."""
     _, least, most = _limits(law, i)
-    p, modulus = force / law.strip[i, _WIDTH], law.strip[i, _MODULUS]
-    _, half, _ = half_strip(law.gap, i, p, modulus, law.strip[i, _MIDDLE], law.strip[i, _HALF])
+    p, modulus = force / law.strip[i, _WIDTH], law.strip[i, MODULUS]
+    _, half, _ = half_strip(law.gap, i, p, modulus, law.strip[i, MIDDLE], law.strip[i, HALF_STRIP])
     half = min(max(half, least), most)
     return (0.0 if half <= law.strip[i, _FREE] else strip_middle(law.gap, i, half)), half
 
@@ -121,14 +123,14 @@ def force_at(law: LocalLaw, i: int, value: float) -> tuple[float, float]:
     """
     if value <= 0.0:
         return 0.0, 0.0
-    width, free, modulus = law.strip[i, _WIDTH], law.strip[i, _FREE], law.strip[i, _MODULUS]
-    middle, half, curvature = 0.0, law.strip[i, _HALF], law.gap[i, CURVATURE]
+    width, free, modulus = law.strip[i, _WIDTH], law.strip[i, _FREE], law.strip[i, MODULUS]
+    middle, half, curvature = 0.0, law.strip[i, HALF_STRIP], law.gap[i, CURVATURE]
     if half <= free:
-        half = _plain_strip(curvature, law.strip[i, REFERENCE_LENGTH], value, half)
+        half = plain_strip(curvature, law.strip[i, REFERENCE_LENGTH], value, half)
     else:
-        middle = law.strip[i, _MIDDLE]
+        middle = law.strip[i, MIDDLE]
     if half <= free:
-        load, slope = _plain_load(curvature, law.strip[i, REFERENCE_LENGTH], modulus, half, value)
+        load, slope = plain_load(curvature, law.strip[i, REFERENCE_LENGTH], modulus, half, value)
     else:
         _, least, most = _limits(law, i)
         guess = max(half, least)
@@ -137,10 +139,10 @@ def force_at(law: LocalLaw, i: int, value: float) -> tuple[float, float]:
         )
         carried = 0.5 * math.pi * modulus * half * first
         if not least < half < most:
-            half, middle = _strip_at(law, i, value, guess), 0.0
+            half, middle = half_strip_at(law, i, value, guess), 0.0
             carried, rigid = strip_load(law.gap, i, half, modulus)
         load, slope = _load_on(half, carried, rigid, law.strip[i, REFERENCE_LENGTH], modulus, value)
-    law.strip[i, _MIDDLE], law.strip[i, _HALF] = middle, half
+    law.strip[i, MIDDLE], law.strip[i, HALF_STRIP] = middle, half
     return width * load, width * slope
 
 
@@ -164,11 +166,11 @@ def _load_on(
 def _limits(law: LocalLaw, i: int) -> tuple[float, float, float]:
     """Return k = 2/(pi E*) in 1/Pa, and the least and the largest half strip that the formulas take, m."""
     length = law.strip[i, REFERENCE_LENGTH]
-    return 2.0 / (math.pi * law.strip[i, _MODULUS]), SMALLEST_STRIP * length, LARGEST_STRIP * length
+    return 2.0 / (math.pi * law.strip[i, MODULUS]), SMALLEST_STRIP * length, LARGEST_STRIP * length
 
 
 @inner(error_model="numpy")
-def _plain_strip(curvature: float, length: float, value: float, guess: float) -> float:
+def plain_strip(curvature: float, length: float, value: float, guess: float) -> float:
     """Half strip in m of a parabola at an approach in m: y (1/4 - ln(y)/2) = 2 approach/(q l^2), y = (h/l)^2.
 
     Not above `LARGEST_STRIP` reference lengths. `guess`: half strip to begin with in m, or zero. The last
@@ -191,7 +193,7 @@ def _plain_strip(curvature: float, length: float, value: float, guess: float) ->
 
 
 @inner(error_model="numpy")
-def _plain_load(
+def plain_load(
     curvature: float, length: float, modulus: float, half: float, value: float
 ) -> tuple[float, float]:
     """Line load in N/m of a parabola at an approach in m, its derivative in N/m^2; `half` is its strip."""
@@ -201,7 +203,7 @@ def _plain_load(
 
 
 @inner(error_model="numpy")
-def _strip_at(law: LocalLaw, i: int, value: float, half: float) -> float:
+def half_strip_at(law: LocalLaw, i: int, value: float, half: float) -> float:
     """Half strip in m at an approach in m, from a guess on; at the limits where it would be beyond them."""
     k, low, high = _limits(law, i)
     high = min(high, widest_strip(law.gap, i))
@@ -211,7 +213,7 @@ def _strip_at(law: LocalLaw, i: int, value: float, half: float) -> float:
     below, above, power = low, high, 2.0
     last_half, last_error = 0.0, math.inf
     for _ in range(_STEPS):
-        load, rigid = strip_load(law.gap, i, half, law.strip[i, _MODULUS])
+        load, rigid = strip_load(law.gap, i, half, law.strip[i, MODULUS])
         error = math.log(
             (rigid + k * load * (math.log(law.strip[i, REFERENCE_LENGTH] / half) - 0.25)) / value
         )

@@ -16,7 +16,7 @@ from fe_contact.types import FloatArray, IntArray
 
 
 @dataclass(frozen=True)
-class _PitchGap:
+class PitchGap:
     """Gap of every tooth of a gear along the line of action, m, in the order of meshing.
 
     It has as many entries as teeth, or one for all of them; after `period` base pitches it is taken to show
@@ -85,7 +85,7 @@ class PitchError(Effect):
             -gear.pitch_deviation.on_line_of_action(gear.transverse_pressure_angle)
             for gear in scene.gears.values()
         )
-        gaps = (_PitchGap(index, tuple(each.tolist()), _period(scene)) for index, each in enumerate(late))
+        gaps = (PitchGap(index, tuple(each.tolist()), _period(scene)) for index, each in enumerate(late))
         return replace(model, tooth_gaps=(*model.tooth_gaps, *gaps))
 
     def without(self, scene: ContactScene) -> ContactScene:

@@ -22,7 +22,7 @@ from fe_contact.types import FloatArray
 
 
 @dataclass(frozen=True)
-class _SeatCompliance:
+class SeatCompliance:
     """Displacement of a gear by a unit load on its seat, in any plane through the axis."""
 
     translation: float
@@ -33,7 +33,7 @@ class _SeatCompliance:
     """Tilt per moment, 1/(N m)."""
 
     @classmethod
-    def of_shaft(cls, shaft: Shaft) -> _SeatCompliance:
+    def of_shaft(cls, shaft: Shaft) -> SeatCompliance:
         """Return the compliance of a shaft and its bearings at the gear's mid-face."""
         modulus, ratio = shaft.material.youngs_modulus, shaft.material.poissons_ratio
         bending = modulus * math.pi * shaft.diameter**4 / 64.0
@@ -72,7 +72,7 @@ def _section(shaft: Shaft, low: float, high: float, bending: float, shear: float
 
 
 @dataclass(frozen=True)
-class _ShaftCompliance:
+class ShaftCompliance:
     """The compliance term of both shafts; None is a rigid one.
 
     Notes
@@ -83,8 +83,8 @@ class _ShaftCompliance:
     r_b sin beta_b of its axial part. Torsion is no part of it: transmission error is that of the seats.
     """
 
-    pinion: _SeatCompliance | None
-    wheel: _SeatCompliance | None
+    pinion: SeatCompliance | None
+    wheel: SeatCompliance | None
 
     def __call__(
         self, pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
@@ -140,9 +140,9 @@ class ShaftDeflection(Effect):
         return replace(scene, pair=replace(scene.pair, shafts=(None, None)))
 
 
-def _term(scene: ContactScene) -> _ShaftCompliance:
-    seats = (None if shaft is None else _SeatCompliance.of_shaft(shaft) for shaft in scene.pair.shafts)
-    return _ShaftCompliance(*seats)
+def _term(scene: ContactScene) -> ShaftCompliance:
+    seats = (None if shaft is None else SeatCompliance.of_shaft(shaft) for shaft in scene.pair.shafts)
+    return ShaftCompliance(*seats)
 
 
 def _skew(scene: ContactScene) -> float:

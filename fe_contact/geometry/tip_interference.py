@@ -39,29 +39,29 @@ def trochoidal_interference(pair: ParallelAxes) -> float:
     return max(_deepest(path, mate, on_fillet=True) for path, mate in _paths(pair))
 
 
-def _pinion_edge_path(pair: ParallelAxes) -> _EdgePath:
+def pinion_edge_path(pair: ParallelAxes) -> _EdgePath:
     """Path of the pinion's tip edge in the ring's tooth space, from where it enters to where it leaves."""
     pinion, ring = pair.pinion, pair.wheel
     polar = _lens(pair.center_distance, pinion.tip_radius, ring.tip_radius)
     x, y = pinion.tip_radius * np.sin(polar), pair.center_distance + pinion.tip_radius * np.cos(polar)
     radius = np.hypot(x, y)
     turn = polar + _tip_involute(pinion) - involute_function(pair.working_pressure_angle)
-    facing = _pitch_point_angle(pair) + turn / pair.speed_ratio - _flank_angle(ring, radius)
+    facing = _pitch_point_angle(pair) + turn / pair.speed_ratio - flank_angle(ring, radius)
     return _EdgePath(radius, radius * (np.arctan2(x, y) - facing))
 
 
-def _ring_edge_path(pair: ParallelAxes) -> _EdgePath:
+def ring_edge_path(pair: ParallelAxes) -> _EdgePath:
     """Path of the ring's tip edge in the pinion's tooth space, from where it enters to where it leaves."""
     pinion, ring, working = pair.pinion, pair.wheel, involute_function(pair.working_pressure_angle)
     polar = _lens(-pair.center_distance, ring.tip_radius, pinion.tip_radius)
     x, y = ring.tip_radius * np.sin(polar), ring.tip_radius * np.cos(polar) - pair.center_distance
     radius = np.hypot(x, y)
     turn = (polar + _tip_involute(ring) - working) * pair.speed_ratio
-    facing = turn + working - pinion.base_thickness_half_angle + _flank_angle(pinion, radius)
+    facing = turn + working - pinion.base_thickness_half_angle + flank_angle(pinion, radius)
     return _EdgePath(radius, radius * (facing - np.arctan2(x, y)))
 
 
-def _flank_angle(gear: Toothing, radius: FloatArray) -> FloatArray:
+def flank_angle(gear: Toothing, radius: FloatArray) -> FloatArray:
     """Angle in rad from the tooth's center line to its right flank at `radius`, on involute and fillet."""
     pressure = np.arccos(np.minimum(1.0, gear.base_radius / radius))
     involute = gear.base_thickness_half_angle - gear.sign * (np.tan(pressure) - pressure)
@@ -93,7 +93,7 @@ def _pitch_point_angle(pair: ParallelAxes) -> float:
 
 
 def _paths(pair: ParallelAxes) -> tuple[tuple[_EdgePath, Toothing], ...]:
-    return (_pinion_edge_path(pair), pair.wheel), (_ring_edge_path(pair), pair.pinion)
+    return (pinion_edge_path(pair), pair.wheel), (ring_edge_path(pair), pair.pinion)
 
 
 def _deepest(path: _EdgePath, mate: Toothing, on_fillet: bool) -> float:

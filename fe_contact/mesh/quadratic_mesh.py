@@ -18,14 +18,14 @@ SIDES = ((0, 1), (1, 2), (2, 0))
 
 
 @dataclass(frozen=True)
-class _Region:
+class Region:
     """Polygon with holes: `loops[0]` is the outer boundary, each loop (n, 2), first point not repeated."""
 
     loops: tuple[FloatArray, ...]
 
 
 @dataclass(frozen=True)
-class _Triangulation:
+class Triangulation:
     """Straight triangles."""
 
     points: FloatArray
@@ -36,13 +36,13 @@ class _Triangulation:
     """Corner indices, counter-clockwise. Shape (m, 3)."""
 
 
-def _triangulate(
-    regions: Sequence[_Region],
+def triangulate(
+    regions: Sequence[Region],
     scale: float,
     growth: float = 0.3,
     seconds: float = 60.0,
     command: Sequence[str] | None = None,
-) -> list[_Triangulation]:
+) -> list[Triangulation]:
     """Fill each region with triangles that keep the edges of its loops undivided.
 
     The size of the triangles grows from that of the boundary edges by `growth` per unit distance. All regions
@@ -58,7 +58,7 @@ def _triangulate(
         raise MeshError("gmsh worker: unusable answer") from error
 
 
-def _received(region: _Region, mesh: dict[str, Any], scale: float) -> _Triangulation:
+def _received(region: Region, mesh: dict[str, Any], scale: float) -> Triangulation:
     """Convert one answer, with the boundary points as they were given and triangles counter-clockwise."""
     points = np.array(mesh["points"], dtype=float).reshape(-1, 2) * scale
     boundary = np.concatenate(region.loops)
@@ -70,7 +70,7 @@ def _received(region: _Region, mesh: dict[str, Any], scale: float) -> _Triangula
     ab, ac = b - a, c - a
     clockwise = ab[:, 0] * ac[:, 1] < ab[:, 1] * ac[:, 0]
     triangles[clockwise] = triangles[clockwise][:, [0, 2, 1]]
-    return _Triangulation(points, triangles)
+    return Triangulation(points, triangles)
 
 
 @dataclass(frozen=True)
@@ -96,20 +96,20 @@ def quadratic_meshes(
 ) -> list[QuadraticMesh]:
     """Fill each part, named for messages, with checked triangles; its first outline is the outer one.
 
-    `scale`, `growth` and `seconds` are those of `_triangulate`, which does all parts in one child process.
+    `scale`, `growth` and `seconds` are those of `triangulate`, which does all parts in one child process.
     Raises `MeshError`: gmsh failed, was killed or ran out of time, or an element misses its quality limit.
     """
-    regions = [_Region(tuple(outline.corners for outline in outlines)) for outlines in parts.values()]
+    regions = [Region(tuple(outline.corners for outline in outlines)) for outlines in parts.values()]
     meshes = []
-    straight = _triangulate(regions, scale, growth, seconds)
+    straight = triangulate(regions, scale, growth, seconds)
     for (part, outlines), triangles in zip(parts.items(), straight, strict=True):
-        mesh = _quadratic_mesh(outlines, triangles)
+        mesh = with_mid_side_nodes(outlines, triangles)
         refuse_poor_elements(part, mesh.points, mesh.triangles, limits)
         meshes.append(mesh)
     return meshes
 
 
-def _quadratic_mesh(outlines: Sequence[Outline], straight: _Triangulation) -> QuadraticMesh:
+def with_mid_side_nodes(outlines: Sequence[Outline], straight: Triangulation) -> QuadraticMesh:
     """Add mid-side nodes to a triangulation of the polygons through the corners of outlines.
 
     Inner sides get their middle, sides on an outline the outline's own mid-side node. Raises `MeshError`: an

@@ -47,10 +47,10 @@ def mesh_quality(points: FloatArray, triangles: IntArray) -> _MeshQuality:
     sides /= np.linalg.norm(sides, axis=2, keepdims=True)
     cosines = -np.sum(sides * np.roll(sides, 1, axis=1), axis=2)
     angle = np.arccos(np.clip(cosines, -1.0, 1.0)).min(axis=1)
-    return _MeshQuality(angle, _least_jacobian(nodes))
+    return _MeshQuality(angle, least_jacobian(nodes))
 
 
-def _least_jacobian(nodes: FloatArray) -> FloatArray:
+def least_jacobian(nodes: FloatArray) -> FloatArray:
     """Return a lower bound of min det J / max det J over each element (m, 6, 2), if above 0.
 
     The determinant is a quadratic polynomial, hence between its least and largest Bernstein coefficients:

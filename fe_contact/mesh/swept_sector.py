@@ -169,13 +169,13 @@ def _layers(face_width: float, recipe: SectorRecipe, web: Web | None, seat: Bore
         if abs(sum(faces)) > ROUNDING * face_width:
             bound = "False for a web or a seat off the middle"
             raise InputError("half_face", True, bound, "Sweep the whole face.")
-        above = _inner_breaks([z for z in faces if z > 0.0], face_width)
+        above = inner_breaks([z for z in faces if z > 0.0], face_width)
         return layers_to_mid_face(face_width, recipe.layers, recipe.layer_growth, above)
-    breaks = _inner_breaks(faces, face_width)
+    breaks = inner_breaks(faces, face_width)
     return layers_across(face_width, recipe.layers, recipe.layer_group, recipe.layer_growth, breaks)
 
 
-def _inner_breaks(positions: Sequence[float], face_width: float) -> tuple[float, ...]:
+def inner_breaks(positions: Sequence[float], face_width: float) -> tuple[float, ...]:
     """Return the different axial positions inside the face, increasing."""
     close, breaks = ROUNDING * face_width, [-0.5 * face_width]
     for z in sorted(positions):

@@ -81,14 +81,14 @@ class DesignLoads:
         return everything, np.flatnonzero(order < self.torque.size)
 
 
-def _misalignment_axis(misalignment: FloatArray, deviation: FloatArray) -> FloatArray:
+def misalignment_axis(misalignment: FloatArray, deviation: FloatArray) -> FloatArray:
     """Return the axis of a table that holds misalignments (L,) with none and with each deviation (S,), m."""
     own = np.concatenate([misalignment, np.add.outer(deviation, misalignment).ravel()])
     rising = np.unique(own)
     return np.asarray(rising[np.append(True, np.diff(rising) > SAME)])
 
 
-def _on_axis(axis: FloatArray, misalignment: FloatArray) -> FloatArray:
+def snapped_to_axis(axis: FloatArray, misalignment: FloatArray) -> FloatArray:
     """Return misalignments, those of the axis (M,) to its last bit, m."""
     nearest = axis[np.abs(axis - misalignment[..., None]).argmin(axis=-1)]
     return np.where(np.abs(nearest - misalignment) <= SAME, nearest, misalignment)
@@ -158,7 +158,7 @@ class DesignSpace:
         scattered = self.scatter.modification
         present = {name: figure(self.pair, name) for name in scattered} | dict(self.varied)
         acting = {name: own + _toward(name) * scattered.get(name, 0.0) for name, own in present.items()}
-        skews = _misalignment_axis(loads.misalignment, self.scatter.nodes().misalignment)
+        skews = misalignment_axis(loads.misalignment, self.scatter.nodes().misalignment)
         axes = TableAxes(np.union1d(loads.torque, further_torques), misalignments=skews)
         options = replace(self.options, positions=None, receipt="full", on_violation="report")
         checked = check_request(modified(self.pair, acting), axes, options, neglect=False)
@@ -360,7 +360,7 @@ def full_table(
 ) -> SteDatabase:
     """Compute the table of a design over torques and the misalignments of all nodes and of none."""
     request = decided.checked.request
-    skews = _misalignment_axis(search.misalignment, search.nodes.misalignment)
+    skews = misalignment_axis(search.misalignment, search.nodes.misalignment)
     full = replace(
         request,
         pair=modified(search.contact.pair, values),
@@ -380,7 +380,7 @@ def ripple_errors(table: SteDatabase, fine: Evaluator) -> FloatArray:
     def error(load: float, skew: float) -> float:
         return table.peak_to_peak(force=load, misalignment=skew).error
 
-    rows = _on_axis(table.misalignment, fine.misalignments).tolist()
+    rows = snapped_to_axis(table.misalignment, fine.misalignments).tolist()
     return np.array([[error(*point) for point in zip(fine.load.tolist(), row, strict=True)] for row in rows])
 
 

@@ -67,7 +67,7 @@ class Quantile:
     """
 
 
-def _quantile(sample: FloatArray, fraction: float, confidence: float) -> Quantile:
+def estimated_quantile(sample: FloatArray, fraction: float, confidence: float) -> Quantile:
     """Estimate a quantile of samples (N, L) of lengths with distribution-free bounds."""
     value, low, high = quantile_bounds(sample, fraction, confidence)
     return Quantile(fraction, value, np.maximum(low, 0.0), high)
@@ -292,7 +292,7 @@ def sampled(request: ToleranceRequest, run: Run) -> ToleranceStudy:
         ripple,
         design.evaluation.peak_to_peak[0],
         error,
-        tuple(_quantile(ripple, fraction, sampling.confidence) for fraction in sampling.fractions),
+        tuple(estimated_quantile(ripple, fraction, sampling.confidence) for fraction in sampling.fractions),
         at_once,
         sampling.confidence,
         clock.to_json(),

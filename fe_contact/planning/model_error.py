@@ -3,7 +3,7 @@
 The floor is what full contact has proved of ordinary pairs. To it comes the larger of two that have unlike
 signs. Displacements are small: large ones turn bodies and flanks, in proportion to STE over the module.
 As teeth tilt contacts move, most where a soft gear runs on a stiff one; what is left of it grows with the
-whole (`_flank_tilt`). Of peak-to-peak and harmonics the parts are of what teeth bend, which reliefs hide and
+whole (`flank_tilt`). Of peak-to-peak and harmonics the parts are of what teeth bend, which reliefs hide and
 do not make more exact.
 """
 
@@ -53,7 +53,7 @@ HARMONIC_OVER_PEAK, FLAT_HARMONICS = 0.5, 3
 harmonic k falls with 1/k."""
 
 
-def _flank_tilt(pair: ParallelAxes, force: FloatArray) -> FloatArray:
+def flank_tilt(pair: ParallelAxes, force: FloatArray) -> FloatArray:
     """Return the part of the mean transmission error that the tilt of the flanks takes off; `force` in N.
 
     The approach falls by 3 R tau^2/2 on a pair of teeth, R the relative radius of curvature, and the tilt
@@ -95,7 +95,7 @@ def in_small_displacements(
 
     Parameters are those of `model_errors`.
     """
-    tilted = _flank_tilt(pair, force).reshape(-1, *[1] * (own.ndim - 2))
+    tilted = flank_tilt(pair, force).reshape(-1, *[1] * (own.ndim - 2))
     floor = _by_quantity(floor_of(pair), own).reshape(-1, *[1] * tilted.ndim)
     tilt = np.multiply.outer(_by_quantity(TILT[over_face], own), tilted)
     return np.asarray((floor + tilt) * of_bending(pair, own))

@@ -250,7 +250,7 @@ class MeshChoice:
         return {"level": self.level, "slices": self.slices, "met": self.met, "reason": self.reason}
 
 
-def _mesh_for_tolerance(tolerance: AllowedError, options: Sequence[MeshOption]) -> MeshChoice:
+def mesh_for_tolerance(tolerance: AllowedError, options: Sequence[MeshOption]) -> MeshChoice:
     """Return the option of least effort whose error is expected to be within the tolerance.
 
     Expected errors are parts of the size of each quantity that the tolerance counts by, and without what
@@ -269,7 +269,7 @@ def _mesh_for_tolerance(tolerance: AllowedError, options: Sequence[MeshOption]) 
     return MeshChoice(best, False, f"no mesh is expected within {tolerance.words} ({parts})")
 
 
-def _mesh_for_time(
+def mesh_for_time(
     budget: float, options: Sequence[MeshOption], seconds: Callable[[MeshOption], float]
 ) -> MeshChoice:
     """Return the most exact option that is predicted to fit into `budget` CPU seconds, else the cheapest."""
@@ -354,5 +354,5 @@ def chosen_mesh(
     if options.tolerance is None and options.time_budget is None:
         return MeshChoice(meshes[LEVELS.index("standard")], True, "nothing asked")
     if options.tolerance is not None:
-        return _mesh_for_tolerance(options.tolerance, meshes)
-    return _mesh_for_time(options.time_budget or 0.0, meshes, seconds)
+        return mesh_for_tolerance(options.tolerance, meshes)
+    return mesh_for_time(options.time_budget or 0.0, meshes, seconds)

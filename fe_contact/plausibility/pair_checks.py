@@ -48,7 +48,7 @@ def _line_load(pair: ParallelAxes, normal_force: float) -> float:
     return normal_force * math.cos(pair.base_helix_angle) / (pair.face_width * _sharing_pairs(pair))
 
 
-def _pitch_point_pressure(pair: ParallelAxes, normal_force: float) -> float:
+def pitch_point_pressure(pair: ParallelAxes, normal_force: float) -> float:
     """Return the Hertz pressure with contact at the pitch point, Pa [1]_."""
     curvature = float(pair.relative_curvature(pair.path_of_contact.pitch_point))
     radius = 1.0 / (curvature * math.cos(pair.base_helix_angle))
@@ -56,7 +56,7 @@ def _pitch_point_pressure(pair: ParallelAxes, normal_force: float) -> float:
     return float(peak_pressure(_line_load(pair, normal_force), radius, modulus))
 
 
-def _nominal_deflection(pair: ParallelAxes, normal_force: float) -> float:
+def nominal_deflection(pair: ParallelAxes, normal_force: float) -> float:
     """Return the deflection of the teeth along the line of action, m [3]_."""
     moduli = [gear.material.youngs_modulus for gear in (pair.pinion, pair.wheel)]
     mean = 2.0 * moduli[0] * moduli[1] / sum(moduli)
@@ -221,8 +221,8 @@ def _loads(pair: ParallelAxes, load: FloatArray, loads_as: str) -> Iterator[Find
     force, module = float(load[-1]), pair.pinion.normal_module
     value, unit = (float(pair.torque(force)), "N m") if loads_as == "torques" else (force, "N")
     intensity = float(pair.transverse_force(force)) / (pair.face_width * module)
-    pressure, stress = _pitch_point_pressure(pair, force), max(nominal_root_stresses(pair, force))
-    deflection = _nominal_deflection(pair, force) / module
+    pressure, stress = pitch_point_pressure(pair, force), max(nominal_root_stresses(pair, force))
+    deflection = nominal_deflection(pair, force) / module
     words = f"{intensity / 1e6:.3g} N/mm^2 of load over face width and module"
     lightest, heaviest = CHECKS["light_load"].low or 0.0, CHECKS["line_load"].high or math.inf
     field = f"{loads_as}[{load.size - 1}]"

@@ -57,7 +57,7 @@ class Repair:
     """
 
 
-def _without_failed(table: Table) -> Table:
+def without_failed_rows(table: Table) -> Table:
     """Leave out the fewest rows (of any axis, greedily) so that no failed point remains.
 
     Raises `SolveError`: nothing remains.
@@ -256,7 +256,7 @@ class SteDatabase(SteFields):
         Raises `InputError`: the load or the alignment lies outside what is stored; `SolveError`: any stored
         point failed, unless `allow_failed`.
         """
-        table = _without_failed(self) if allow_failed else self
+        table = without_failed_rows(self) if allow_failed else self
         point = operating_point(table, torque, force, misalignment, center_distance_change)
         return curve(table, table._mesh_force, point, at)
 
@@ -283,7 +283,7 @@ class SteDatabase(SteFields):
 
         Raises as `curve`.
         """
-        table = _without_failed(self) if allow_failed else self
+        table = without_failed_rows(self) if allow_failed else self
         table.require_complete()
         load = point.get("torque"), point.get("force")
         at = operating_point(table, *load, point.get("misalignment"), point.get("center_distance_change"))
@@ -297,7 +297,7 @@ class SteDatabase(SteFields):
         """Return the table of plain arrays for dynamics; raises as `extraction.force_table`."""
         if not allow_failed:
             return self._force_table
-        return _with_axis_derivatives(MeshForce(extraction.force_table(_without_failed(self))))
+        return _with_axis_derivatives(MeshForce(extraction.force_table(without_failed_rows(self))))
 
     def monotone_repaired(self) -> tuple[SteDatabase, Repair]:
         """Return a table whose transmission error increases with load, and the changes."""

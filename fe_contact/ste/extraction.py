@@ -54,7 +54,7 @@ SMOOTHING = 0.01
 
 
 @dataclass(frozen=True)
-class _LoadLevels:
+class LoadLevels:
     """A stack of levels: force (L,) N, deflection m and stiffness N/m (P, M, D, L)."""
 
     force: FloatArray
@@ -72,7 +72,7 @@ def gradual_contact(facts: PairFacts) -> float:
     return min(overlap / _GRADUAL_OVERLAP, 1.0)
 
 
-def _refined(levels: _LoadLevels, pairs: IntArray, gradual: float) -> _LoadLevels:
+def refined_levels(levels: LoadLevels, pairs: IntArray, gradual: float) -> LoadLevels:
     """Insert levels into steps that hold a kink at some position, and into wide steps.
 
     `pairs` (P, M, D, L) counts the pairs in contact; level 0 is lift-off. At positions without a kink, and to
@@ -91,11 +91,11 @@ def _refined(levels: _LoadLevels, pairs: IntArray, gradual: float) -> _LoadLevel
             lag, stiff = _on_branches(levels, pairs, k, force)
             deflection = deflection + sharp * (lag - deflection)
             stiffness = 1.0 / (1.0 / stiffness + sharp * (1.0 / stiff - 1.0 / stiffness))
-        pieces.append(_LoadLevels(force, deflection, stiffness))
+        pieces.append(LoadLevels(force, deflection, stiffness))
     return _load_refinement_merged(pieces)
 
 
-def _inserted_counts(levels: _LoadLevels, kinked: BoolArray) -> dict[int, int]:
+def _inserted_counts(levels: LoadLevels, kinked: BoolArray) -> dict[int, int]:
     """Return how many levels to insert into the steps that get any.
 
     Steps with a kink share what a table bears, and have one at least; wide steps get theirs if all fit.
@@ -111,7 +111,7 @@ def _inserted_counts(levels: _LoadLevels, kinked: BoolArray) -> dict[int, int]:
     return counts | wide if sum(wide.values()) + inserted <= bearable else counts
 
 
-def _smooth(levels: _LoadLevels, k: int, force: FloatArray) -> Pair:
+def _smooth(levels: LoadLevels, k: int, force: FloatArray) -> Pair:
     """Deflection and stiffness at `force` on the smooth curve of step k, monotone.
 
     The curve is a straight line and, for what the deflection has beyond it, a cubic in F^`_POWER`: a linear
@@ -148,7 +148,7 @@ def _straight_compliance(compliance: FloatArray, secant: FloatArray) -> FloatArr
     return np.asarray(np.maximum(part, 0.0))
 
 
-def _on_branches(levels: _LoadLevels, pairs: IntArray, k: int, force: FloatArray) -> Pair:
+def _on_branches(levels: LoadLevels, pairs: IntArray, k: int, force: FloatArray) -> Pair:
     """Deflection and stiffness at `force` on the stiffer of the branches from both ends of step k.
 
     A branch takes its curvature from the next step on its own side, or as much of it as lets it meet the
@@ -179,7 +179,7 @@ def _largest_exponent(wanted: FloatArray, holds: Callable[[FloatArray], BoolArra
 
 
 def _branch(
-    levels: _LoadLevels, k: int, exponent: FloatArray, force: FloatArray
+    levels: LoadLevels, k: int, exponent: FloatArray, force: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     ratio, stiffness = force / levels.force[k], levels.stiffness[..., k, None]
     power = 1.0 - exponent
@@ -187,7 +187,7 @@ def _branch(
     return levels.deflection[..., k, None] + rise, stiffness * ratio**exponent
 
 
-def _exponent(levels: _LoadLevels, pairs: IntArray, k: int) -> FloatArray:
+def _exponent(levels: LoadLevels, pairs: IntArray, k: int) -> FloatArray:
     """Exponent (P, M, D, 1) of stiffness over force in step k; 0 where it is not one branch of a curve."""
     if k == levels.force.size - 1:
         return np.zeros((*levels.deflection.shape[:-1], 1))
@@ -201,12 +201,12 @@ def _exponent(levels: _LoadLevels, pairs: IntArray, k: int) -> FloatArray:
     return np.asarray(np.clip(growth / np.log(force[1] / force[0]), 0.0, _LARGEST_EXPONENT))
 
 
-def _load_refinement_merged(pieces: list[_LoadLevels]) -> _LoadLevels:
+def _load_refinement_merged(pieces: list[LoadLevels]) -> LoadLevels:
     force = np.concatenate([piece.force for piece in pieces])
     order = np.argsort(force)
     deflection = np.concatenate([piece.deflection for piece in pieces], axis=-1)
     stiffness = np.concatenate([piece.stiffness for piece in pieces], axis=-1)
-    return _LoadLevels(force[order], deflection[..., order], stiffness[..., order])
+    return LoadLevels(force[order], deflection[..., order], stiffness[..., order])
 
 
 # Sliding along the path of contact: the position of the load and the sense in which it slides.
@@ -244,15 +244,15 @@ def force_table(database: SteFields) -> ForceTable:
 
     Level 0 is lift-off: the no-load transmission error with zero stiffness. Every stored load is a level,
     with the inverse of the stored tangent compliance as stiffness; between loads where a further pair comes
-    into contact there are more (`_refined`). Normal forces become transverse, F_bt = F_bn cos(beta_b). Raises
-    `SolveError`: any point of the database failed; `DatabaseError`: the transmission error does not increase
-    with load everywhere.
+    into contact there are more (`refined_levels`). Normal forces become transverse, F_bt = F_bn cos(beta_b).
+    Raises `SolveError`: any point of the database failed; `DatabaseError`: the transmission error does not
+    increase with load everywhere.
     """
     database.require_complete()
     _, order = _all_loads(database)
     loaded = _merged(database.pairs_in_contact, database.support_pairs_in_contact, order).astype(np.int64)
     pairs = np.concatenate([np.zeros_like(loaded[..., :1]), loaded], axis=-1)
-    levels = _refined(_stored_levels(database), pairs, gradual_contact(database.facts))
+    levels = refined_levels(_stored_levels(database), pairs, gradual_contact(database.facts))
     axis = Axis(database.position, float(database.period))
     deflection = deflection_grid((axis,), levels.deflection, (ordered_slopes(axis, levels.deflection),))
     unlimited = stiffness_grid((axis,), levels.stiffness, (monotone_slopes(axis, levels.stiffness),))
@@ -291,7 +291,7 @@ def _at_levels(database: SteFields, stored: FloatArray, level: FloatArray) -> Fl
     return np.asarray((1.0 - share) * values[..., above - 1] + share * values[..., above])
 
 
-def _stored_levels(database: SteFields) -> _LoadLevels:
+def _stored_levels(database: SteFields) -> LoadLevels:
     """Lift-off, the stored and the support loads, with stiffness limited at the knots."""
     to_transverse = math.cos(database.facts.base_helix_angle)
     force, order = _all_loads(database)
@@ -301,7 +301,7 @@ def _stored_levels(database: SteFields) -> _LoadLevels:
     _require_increasing(database, force, deflection)
     stiffness = np.concatenate([np.zeros_like(tangent[..., :1]), to_transverse / tangent], axis=-1)
     level = np.concatenate([[0.0], force * to_transverse])
-    return _LoadLevels(level, deflection, np.minimum(stiffness, _knot_limit(deflection, level)))
+    return LoadLevels(level, deflection, np.minimum(stiffness, _knot_limit(deflection, level)))
 
 
 def _all_loads(database: SteFields) -> tuple[FloatArray, IntArray]:

@@ -48,7 +48,7 @@ def run_new(kinds: Mapping[str, bool], wanted: PairWishes, output: Path | None) 
         check_writable(output)
         if output.exists():
             raise BadInput.of("output", str(output), "a new file", "Choose another name, or remove it first.")
-    text = _new_text(named[0] if named else "helical", wanted)
+    text = text_of_kind(named[0] if named else "helical", wanted)
     if output is None:
         sys.stdout.write(text)
         return
@@ -61,7 +61,7 @@ def run_new(kinds: Mapping[str, bool], wanted: PairWishes, output: Path | None) 
     print_written([output])
 
 
-def _new_text(kind: str, wanted: PairWishes) -> str:
+def text_of_kind(kind: str, wanted: PairWishes) -> str:
     """Return the file of a kind; it is read once, so that what is written can be run.
 
     Raises `BadInput`: no such pair exists.

@@ -2,31 +2,29 @@
 
 from __future__ import annotations
 
-import contextlib
-import json
-import os
-import select
-import subprocess
-import sys
 import threading
 import time
 import uuid
 from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import structlog
 
-from host import child_environment, kill_group
+from host.children.child import Child
+from host.children.frames import Frame
+from host.children.launcher import start_child
 from lineofaction.gearbox.problems import LiveUnavailable, ServiceError, Superseded, Unexpected
 from service.folders import own_folder, remove_left
-from service.live.order import AnswerHead, propagated
+from service.live.answer import propagated
+from service.live.child import Share
 from service.live.question_pool import QuestionPool
 from service.live.turns import Limits, Question
 from service.settings import LEAST_MEMORY_MB, Settings
 from service.worker.usage import machine_memory_mb
 
-_PIECE = 1 << 16
+_LAUNCH = partial(start_child, "service.live.child")
 _LOOK_S = 0.1
 """Time between two looks whether somebody still waits."""
 
@@ -56,109 +54,62 @@ class _WorkerGone(Exception):
 
 
 class _LiveProcess:
-    """One child process that answers one order after the other, leader of a session of its own."""
+    """One child process that answers one order after the other."""
 
     def __init__(self, log: Path, memory_limit_mb: int, home: Path) -> None:
-        self._rest, self._orders = b"", 0
+        self._orders, self.has_answered = 0, False
         self._folder = ExitStack()
         drafts = self._folder.enter_context(own_folder(home))
-        self.has_answered = False
-        self._channel, theirs = os.pipe()
         try:
             with log.open("ab") as stream:
-                self._process = subprocess.Popen(
-                    [sys.executable, "-m", "service.live.child", str(theirs), str(memory_limit_mb)],
-                    stdin=subprocess.PIPE,
-                    stdout=stream,
-                    stderr=stream,
-                    pass_fds=(theirs,),
-                    start_new_session=True,
-                    env=child_environment(TMPDIR=str(drafts)),
-                )
+                self._child = Child(_LAUNCH, stream.fileno(), Path.cwd())
         except OSError:
-            os.close(self._channel)
             self._folder.close()
             raise
-        finally:
-            os.close(theirs)
+        self._child.send(Share(memory_limit_mb, str(drafts)).frame())  # one that has died shows when asked
 
     @property
     def pid(self) -> int:
-        return self._process.pid
+        return self._child.pid
 
     @property
     def alive(self) -> bool:
-        return self._process.poll() is None
+        return not self._child.has_exited()
 
-    def ask(self, question: Question, times: AnswerTimes) -> tuple[str, bytes]:
-        """Return kind and bytes of the answer.
+    def ask(self, question: Question, times: AnswerTimes) -> Frame:
+        """Return the answer; stop the work on it where the question becomes obsolete.
 
         Raises `_WorkerGone`: the process ended or took too long; it is of no more use.
         """
         self._orders += 1
-        self._write(question.order.line())
-        self._await_line(question, times)
-        line, _, self._rest = self._rest.partition(b"\n")
-        head = AnswerHead.from_line(line)
-        pieces, missing = [self._rest], head.length - len(self._rest)
-        end = time.monotonic() + times.longest_s
-        while missing > 0:
-            pieces.append(self._piece(max(end - time.monotonic(), 0.0)))
-            if not pieces[-1]:
-                raise _WorkerGone(late=True)
-            missing -= len(pieces[-1])
-        body, self._rest = b"".join(pieces), b""
-        self.has_answered = True
-        return head.kind, body
-
-    def _await_line(self, question: Question, times: AnswerTimes) -> None:
-        """Wait for the head of the answer; stop the work on it where the question becomes obsolete."""
+        self._send(question.order.frame())
         begin = time.monotonic()
         end, stopped = begin + times.longest_s, False
-        while b"\n" not in self._rest:
+        while True:
             instant = time.monotonic()
             if instant >= end:
                 raise _WorkerGone(late=True)
             if question.obsolete and not stopped and instant >= begin + times.obsolete_s:
-                self._write(json.dumps({"stop": self._orders}).encode() + b"\n")
+                self._send(Frame.of_json("stop", self._orders))
                 end, stopped = min(end, instant + times.to_stop_s), True
-            self._rest += self._piece(min(end - instant, _LOOK_S))
+            for answer in self._child.receive(min(end - instant, _LOOK_S)):
+                self.has_answered = True
+                return answer
+            if self._child.closed:
+                raise _WorkerGone
 
-    def _write(self, line: bytes) -> None:
-        assert self._process.stdin is not None
-        try:
-            self._process.stdin.write(line)
-            self._process.stdin.flush()
-        except BrokenPipeError:
-            raise _WorkerGone from None
-
-    def _piece(self, within_s: float) -> bytes:
-        """Return the next bytes, none if none came in time; raises `_WorkerGone` where the process ended."""
-        ready, _, _ = select.select([self._channel], [], [], within_s)
-        if not ready:
-            return b""
-        piece = os.read(self._channel, _PIECE)
-        if not piece:
+    def _send(self, order: Frame) -> None:
+        if not self._child.send(order):
             raise _WorkerGone
-        return piece
 
     def end_group(self) -> None:
         """Kill the process and what it started; whoever asks it is told that it is gone. Any thread may."""
-        if self._process.returncode is None:
-            with contextlib.suppress(ProcessLookupError):
-                kill_group(self.pid)
+        self._child.end_group()
 
     def close(self) -> None:
         """Kill, reap, close the pipes; by the thread that asks. Idempotent."""
-        self.end_group()
-        self._process.wait()
+        self._child.end()
         self._folder.close()
-        if self._process.stdin is not None:
-            with contextlib.suppress(BrokenPipeError):
-                self._process.stdin.close()
-        if self._channel >= 0:
-            os.close(self._channel)
-            self._channel = -1
 
 
 class LiveWorker:
@@ -180,26 +131,26 @@ class LiveWorker:
     def answer(self, question: Question) -> bytes:
         """Return the JSON answer; see `QuestionWorker`."""
         try:
-            kind, body = self._asked(question)
+            answer = self._asked(question)
         except _WorkerGone as gone:
             logger.warning("live worker gone", late=gone.late, entry=question.order.entry)
             self._end_process()
             raise self._cause(gone, question) from None
-        if kind == "problem":
-            raise propagated(body)
-        if kind == "stopped":
+        if answer.kind == "problem":
+            raise propagated(answer)
+        if answer.kind == "stopped":
             raise _superseded()
-        if kind == "memory":
+        if answer.kind == "memory":
             self._end_process()
             may_have = f"it may have {self._memory_limit_mb} MB"
             raise LiveUnavailable(f"The live worker ran out of memory: {may_have}. Submit a job instead.")
-        if kind == "defect":
+        if answer.kind == "defect":
             reference = uuid.uuid4().hex[:12]
             logger.error(
                 "live question failed", entry=question.order.entry, reference=reference, log=str(self._log)
             )
             raise Unexpected(reference)
-        return body
+        return answer.body
 
     def stop(self) -> None:
         """End the process in the middle of an answer; see `QuestionWorker`."""
@@ -227,8 +178,8 @@ class LiveWorker:
             return LiveUnavailable(f"{late}; repeat the request to continue the computation of a compliance.")
         return LiveUnavailable("The live worker ended. Repeat the request.")
 
-    def _asked(self, question: Question) -> tuple[str, bytes]:
-        """Return kind and bytes of the answer; a process that ended after its last one is replaced once."""
+    def _asked(self, question: Question) -> Frame:
+        """Return the answer; a process that ended after its last one is replaced once."""
         process = self._ready()
         try:
             return process.ask(question, self._times)

@@ -17,6 +17,7 @@ from prometheus_client import Counter, Histogram, Metric
 from prometheus_client.registry import Collector
 
 from bounds import engineering
+from host.children.launcher import Launcher
 from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.stages import PacedFraction
 from model_studies.progress import stage_name
@@ -26,11 +27,10 @@ from service.queue.terms import LOWER_COST
 from service.settings import LEAST_MEMORY_MB, Settings
 from service.store.results import ResultStore
 from service.tracing import Fact, begun_span, end_span, trace_facts, traceparent_of
-from service.worker.forks import Forks
 from service.worker.order import Outcome, WorkOrder
 from service.worker.process import Process
 from service.worker.usage import BYTES_PER_MB, Usage, machine_memory_mb, no_space
-from service.worker.worker import Step, Worker
+from service.worker.worker import WORK, Step, Worker
 
 logger = structlog.get_logger(__name__)
 files_read = on_demand("service.worker.preparations:files_read")
@@ -60,7 +60,8 @@ class Children:
     def __init__(self, settings: Settings, modules: Iterable[str]) -> None:
         self.most = settings.workers
         self._memory_mb = max(LEAST_MEMORY_MB, machine_memory_mb() // settings.workers)
-        self._forks = Forks(modules, settings.data_directory / "log" / "warm.log")
+        log = settings.data_directory / "log" / "warm.log"
+        self._launcher = Launcher(WORK, modules, log, logger.warning)
 
     def start(self, _heard: Callable[[], None]) -> None:
         """Do nothing: the first child starts the warm process."""
@@ -68,15 +69,15 @@ class Children:
     def begin(self, order: WorkOrder, _name: str, log: Path) -> Worker:
         """Start a child, or fork one; raises OSError: the system does neither."""
         memory_mb = order.memory_limit_mb or self._memory_mb
-        return Worker(replace(order, memory_limit_mb=memory_mb), log, self._forks.launch)
+        return Worker(replace(order, memory_limit_mb=memory_mb), log, self._launcher.launch)
 
     def hurry(self) -> None:
         """Begin what is being begun at once: it is to stop."""
-        self._forks.hurry()
+        self._launcher.hurry()
 
     def close(self) -> None:
         """End the warm process."""
-        self._forks.close()
+        self._launcher.close()
 
 
 Crew: TypeAlias = Children | Cluster

@@ -1,8 +1,8 @@
 """The reader of foreign bytes: one order in, one answer out, then the end.
 
 Started as ``python -m service.reading.child DESCRIPTOR``, or forked, in a session of its own and in a folder
-that whoever started it removes. The order is on standard input. Before it is read the process gives up all
-other files, the network and what is beyond its limits (`host.confine`). DESCRIPTOR gets, as answers, the
+that whoever started it removes. The order is a frame on standard input. Before it is read the process gives
+up all other files, the network and what is beyond its limits (`host.confine`). DESCRIPTOR gets frames: the
 field of each file before it is read, and then the answer. Standard error is the log.
 """
 
@@ -15,14 +15,17 @@ from pathlib import Path
 from typing import BinaryIO
 
 from host import READING, confine, end_after, lower_priority, prepare_confinement
+from host.children.frames import Frame, read_frame
 from lineofaction.gearbox.problems import TooLarge
-from service.live.child import problem, worked, written_plainly
-from service.live.order import AnswerHead, LiveOrder
+from service.live.answer import answer_of, json_body_or_memory_error, problem
+from service.live.order import LiveOrder
 from service.worker.usage import begin_work
 
 LONGEST_S = 30
 """Time after which it ends, whatever it waits for."""
 MOST_ANSWER_BYTES = 100_000_000
+FIELD = "reading"
+"""Kind of a message whose body is the field of the file that is read next."""
 _NICENESS = 5
 
 
@@ -37,25 +40,25 @@ def work(descriptor: int) -> None:
     lower_priority(_NICENESS)
     confine(Path.cwd(), READING)
     with os.fdopen(descriptor, "wb") as channel:
-        head, body = _answer(channel)
-        channel.write(head.line() + body)
+        _answer(channel).write(channel)
 
 
-def _answer(channel: BinaryIO) -> tuple[AnswerHead, bytes]:
+def _answer(channel: BinaryIO) -> Frame:
     def announce(field: str) -> None:
-        text = field.encode()
-        channel.write(AnswerHead("reading", len(text)).line() + text)
-        channel.flush()  # the file may end this process
+        Frame(FIELD, field.encode()).write(channel)  # now: the file may end this process
 
     try:
-        order = LiveOrder.from_line(sys.stdin.buffer.read())
+        frame = read_frame(sys.stdin.buffer)
+        if frame is None:
+            sys.exit("The service closed the channel before it gave an order.")
+        order = LiveOrder.from_frame(frame)
     except MemoryError:
-        return AnswerHead("memory"), b""
+        return Frame("memory")
     announce("")
-    head, body = worked(order, Path.cwd(), announce, note=_note, write=written_plainly)
-    if len(body) > MOST_ANSWER_BYTES:
+    answer = answer_of(order, Path.cwd(), announce, note=_note, write=json_body_or_memory_error)
+    if len(answer.body) > MOST_ANSWER_BYTES:
         return problem(TooLarge(f"What the files hold has more than {MOST_ANSWER_BYTES} bytes as JSON."))
-    return head, body
+    return answer
 
 
 def _note() -> None:

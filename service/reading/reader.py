@@ -6,26 +6,27 @@ whoever sends files that take all they may holds up nobody else.
 
 from __future__ import annotations
 
-import os
-import select
 import threading
 import time
 import uuid
-from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 
 import structlog
 
-from host import LOOK_S, READING, Ended, ending_signal, excess, kill_group, missing_protections
+from host import LOOK_S, READING, Ended, ending_signal, missing_protections
+from host.children.child import Child
+from host.children.frames import Frame
+from host.children.launcher import ChildProcess, Ends, Launcher
+from host.children.watch import Watch
 from lineofaction.gearbox.problems import BadInput, LiveUnavailable, ServiceError, Unexpected
 from service.folders import own_folder, remove_left
-from service.live.order import AnswerHead, LiveOrder, propagated
+from service.live.answer import propagated
+from service.live.order import LiveOrder
 from service.live.question_pool import QuestionPool
 from service.live.turns import Limits, Question
 from service.reading.child import LONGEST_S
-from service.reading.course import MOST_BYTES, Course, refusal
-from service.worker.forks import ChildProcess, Ends, Forks
+from service.reading.course import MOST_BYTES, Course
+from service.reading.refusal import refusal
 
 WORK = "service.reading.child"
 MODULES = (
@@ -38,19 +39,10 @@ MODULES = (
 _WARM_WITHIN_S = 30.0
 _PATIENCE_S = 2.0
 """The child ends itself first, and so says why."""
-_PIECE = 1 << 16
 
 logger = structlog.get_logger(__name__)
 AT_ONCE = 4
 LIMITS = Limits(held=2, in_all=20)
-
-
-@dataclass(frozen=True)
-class _Pipes:
-    """Our ends of the pipes to a child: the order goes one way, the answer comes the other."""
-
-    orders: int
-    answers: int
 
 
 class _Children:
@@ -61,9 +53,9 @@ class _Children:
 
     def __init__(self, home: Path, logs: Path) -> None:
         self._home, self._log = home, logs / "reading.log"
-        self._forks = Forks(MODULES, logs / "reading_warm.log", WORK)
+        self._launcher = Launcher(WORK, MODULES, logs / "reading_warm.log", logger.warning)
         self._launching = threading.Lock()
-        self._children: set[int] = set()
+        self._children: set[Child] = set()
         self._stopping = False
 
     def read(self, order: LiveOrder) -> bytes:
@@ -73,58 +65,50 @@ class _Children:
         reader may; `LiveUnavailable`: what ended the reader is no file.
         """
         with own_folder(self._home) as folder:
-            child, pipes = self._started(folder)
+            child = self._started(folder)
             try:
-                # a child that died before it has read the order shows by its answer
-                with suppress(BrokenPipeError), os.fdopen(pipes.orders, "wb") as stream:
-                    stream.write(order.line())
-                course = _followed(pipes.answers, child.pid, folder)
+                child.send(order.frame())  # one that died before it has read the order shows by its answer
+                course = _followed(child, folder)
             finally:
-                os.close(pipes.answers)
                 ended = self._end(child)
-        answer = course.answer
-        if answer is None:
+        if course.answer is None:
             raise self._cause(ended, course, order)
-        return self._unpacked(*answer, course, order)
+        return self._unpacked(course.answer, course, order)
 
     def stop(self) -> None:
         """End all children, whose callers are told so."""
         self._stopping = True
-        for pid in tuple(self._children):
-            with suppress(ProcessLookupError):
-                kill_group(pid)
+        for child in tuple(self._children):
+            child.end_group()
 
     def close(self) -> None:
         """End the warm process, once no child is left; later children start another."""
-        self._forks.close()
+        self._launcher.close()
         self._stopping = False
 
-    def _started(self, folder: Path) -> tuple[ChildProcess, _Pipes]:
-        theirs, orders = os.pipe()
-        answers, channel = os.pipe()
+    def _started(self, folder: Path) -> Child:
         self._log.parent.mkdir(parents=True, exist_ok=True)
         try:
             with self._log.open("ab") as log, self._launching:
-                child = self._forks.launch(Ends(theirs, channel, log.fileno(), folder), _WARM_WITHIN_S)
-                self._children.add(child.pid)
+                child = Child(self._launch, log.fileno(), folder)
+                self._children.add(child)
         except OSError:
-            os.close(orders)
-            os.close(answers)
             raise LiveUnavailable("The system starts no reader now. Try again soon.") from None
-        finally:
-            os.close(theirs)
-            os.close(channel)
-        return child, _Pipes(orders, answers)
+        return child
 
-    def _end(self, child: ChildProcess) -> Ended:
+    def _launch(self, ends: Ends) -> ChildProcess:
+        return self._launcher.launch(ends, _WARM_WITHIN_S)
+
+    def _end(self, child: Child) -> Ended:
         """Kill a child and what it started; return how it ended: one that has ended is not killed again."""
-        with suppress(ProcessLookupError):
-            kill_group(child.pid)
-        while not child.has_exited():
-            time.sleep(0.001)
+        child.end_group()
+        while not child.has_exited(_PATIENCE_S):
+            pass
         with self._launching:
-            self._children.discard(child.pid)
-            return child.reap()
+            self._children.discard(child)
+            ended = child.end()
+        assert ended is not None
+        return ended
 
     def _cause(self, ended: Ended, course: Course, order: LiveOrder) -> ServiceError:
         if self._stopping:
@@ -136,44 +120,38 @@ class _Children:
             return LiveUnavailable("The reader of files ended. Repeat the request.")
         return refusal(order.inputs, course.field or "", bound)
 
-    def _unpacked(self, head: AnswerHead, body: bytes, course: Course, order: LiveOrder) -> bytes:
-        if head.kind == "problem":
-            raise propagated(body)
-        if head.kind == "memory":
+    def _unpacked(self, answer: Frame, course: Course, order: LiveOrder) -> bytes:
+        if answer.kind == "problem":
+            raise propagated(answer)
+        if answer.kind == "memory":
             bound = f"read within {READING.memory_mb} MB of memory"
             raise refusal(order.inputs, course.field or "", bound)
-        if head.kind != "answer":
+        if answer.kind != "answer":
             reference = uuid.uuid4().hex[:12]
             logger.error("reading failed", entry=order.entry, reference=reference, log=self._log.name)
             raise Unexpected(reference)
-        return body
+        return answer.body
 
 
-def _followed(descriptor: int, pid: int, folder: Path) -> Course:
+def _followed(child: Child, folder: Path) -> Course:
     """Return what a child sends, until it ends, or takes more time or writes more than it may."""
-    end = time.monotonic() + LONGEST_S + _PATIENCE_S
-    look, pieces, length = time.monotonic() + LOOK_S, [b""], 0
-    while length <= MOST_BYTES:
-        ready, _, _ = select.select([descriptor], [], [], max(look - time.monotonic(), 0.0))
-        if ready:
-            pieces.append(os.read(descriptor, _PIECE))
-            length += len(pieces[-1])
-            if not pieces[-1]:
-                break
-        if time.monotonic() >= look:
+    watch = Watch.begun(LONGEST_S + _PATIENCE_S, folder, READING)
+    course, look, overrun = Course(), time.monotonic() + LOOK_S, ""
+    while not child.closed and not overrun and child.received <= MOST_BYTES:
+        course.take(child.receive(max(look - time.monotonic(), 0.0)))
+        if time.monotonic() >= look and not child.closed:
             look = time.monotonic() + LOOK_S
-            overrun = _overrun(pid, folder, end)
-            if overrun:
-                return Course.of(b"".join(pieces), overrun)
-    return Course.of(b"".join(pieces))
+            overrun = _overrun(child, watch)
+    course.end(partial=child.partial, overrun=overrun)
+    return course
 
 
-def _overrun(pid: int, folder: Path, end: float) -> str:
+def _overrun(child: Child, watch: Watch) -> str:
     """Return what a child should have stayed within, "" if it does."""
-    if time.monotonic() > end:
+    if watch.late:
         return f"read within {LONGEST_S} s"
-    cause = excess(pid, folder, READING)
-    return f"read without {cause}" if cause else ""
+    excess = watch.excess(child.pid)
+    return f"read without {excess}" if excess else ""
 
 
 class Reader:

@@ -1,15 +1,14 @@
 """The worker process: one order in, progress and one outcome out, then the end.
 
 Started as ``python -m service.worker.child DESCRIPTOR``, or forked, in a session of its own. The order is
-the first line of standard input, which then stays open. When it closes, the service is gone: then the whole
-process group (gmsh's process included) is killed. Progress and outcome are lines of JSON on DESCRIPTOR.
-Standard error is the log.
+the first frame on standard input, which then stays open. When it closes, the service is gone: then the whole
+process group (gmsh's process included) is killed. Progress and outcome are frames on DESCRIPTOR, with bodies
+of JSON. Standard error is the log.
 """
 
 from __future__ import annotations
 
 import importlib
-import json
 import logging
 import os
 import shutil
@@ -21,10 +20,11 @@ import traceback
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any, BinaryIO
 
 from fe_contact.cache_reads import COMPLIANCE_READS
 from host import cpu_seconds, kill_own_group, lock, lower_priority, peak_memory
+from host.children.frames import Frame, read_frame
 from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import ServiceError
 from service.worker.order import Product, WorkOrder
@@ -40,8 +40,9 @@ warnings_of_case = on_demand("service.worker.preparations:warnings_of_case")
 def work(descriptor: int) -> None:
     """Run one order; messages go to the descriptor."""
     begin_work()
-    order = WorkOrder.from_line(_first_line())
-    threading.Thread(target=_watch_parent, daemon=True).start()
+    orders = os.fdopen(0, "rb", closefd=False)
+    order = _order(orders)
+    threading.Thread(target=_end_with, args=(orders,), daemon=True).start()
     lock(os.open(order.workspace, os.O_RDONLY), wait=True)  # open, and so locked, until we end
     # temporary files are below the workspace, which the service removes however this process ends
     drafts = order.workspace / "drafts"
@@ -52,13 +53,15 @@ def work(descriptor: int) -> None:
     lower_priority(_NICENESS)
     if order.memory_limit_mb is not None:
         hold_to(order.memory_limit_mb)
-    with os.fdopen(descriptor, "w", buffering=1) as channel:
-        logging.getLogger("service").addHandler(_Telling(channel))
-        _send(channel, {"begun": True})  # from now on its end is that of the work
+    with os.fdopen(descriptor, "wb") as stream:
+        channel = _Channel(stream)
+        logging.getLogger("service").addHandler(_WarningHandler(channel))
+        channel.send("begun", True)  # from now on its end is that of the work
         begun = replace(COMPLIANCE_READS)  # a forked child has those of its parent
         outcome = _outcome(order, _Reporter(channel))
         reads = {"hits": COMPLIANCE_READS.hits - begun.hits, "misses": COMPLIANCE_READS.misses - begun.misses}
-        _send(channel, outcome | {"peak_mb": peak_memory() / BYTES_PER_MB, "compliance_reads": reads})
+        peak_mb = peak_memory() / BYTES_PER_MB
+        channel.send("outcome", outcome | {"peak_mb": peak_mb, "compliance_reads": reads})
 
 
 def _part_from_stored(workspace: Path) -> None:
@@ -72,38 +75,47 @@ def _part_from_stored(workspace: Path) -> None:
             file.unlink()
 
 
-def _first_line() -> bytes:
-    """Read the order."""
-    line = b""
-    while not line.endswith(b"\n"):
-        piece = os.read(0, 65536)
-        if not piece:
-            sys.exit("The service closed the channel before it gave an order.")
-        line += piece
-    return line
+def _order(orders: BinaryIO) -> WorkOrder:
+    """Wait for the order."""
+    frame = read_frame(orders)
+    if frame is None:
+        sys.exit("The service closed the channel before it gave an order.")
+    return WorkOrder.from_line(frame.body)
 
 
-def _watch_parent() -> None:
-    """Kill the process group when the service is gone."""
-    os.read(0, 1)
+def _end_with(orders: BinaryIO) -> None:
+    """Kill the process group when the service is gone, and so no order can come any more."""
+    orders.read(1)
     kill_own_group()
 
 
-class _Telling(logging.Handler):
+class _Channel:
+    """Sends messages to the service, one at a time, whichever threads have them."""
+
+    def __init__(self, stream: BinaryIO) -> None:
+        self._stream, self._sending = stream, threading.Lock()
+
+    def send(self, kind: str, content: Any) -> None:
+        """Send a message as JSON."""
+        with self._sending:
+            Frame.of_json(kind, content).write(self._stream)
+
+
+class _WarningHandler(logging.Handler):
     """Passes warnings on to the log of the service."""
 
-    def __init__(self, channel: TextIO) -> None:
+    def __init__(self, channel: _Channel) -> None:
         super().__init__(logging.WARNING)
         self._channel = channel
 
     def emit(self, record: logging.LogRecord) -> None:
-        _send(self._channel, {"warning": record.getMessage()})
+        self._channel.send("warning", record.getMessage())
 
 
 class _Reporter:
     """Progress of the work, decimated in time; stages' starts and ends always pass."""
 
-    def __init__(self, channel: TextIO) -> None:
+    def __init__(self, channel: _Channel) -> None:
         self._channel, self._stage, self._sent = channel, "", 0.0
 
     def __call__(self, stage: str, fraction: float, whole: float | None = None, /) -> None:
@@ -113,13 +125,8 @@ class _Reporter:
         if stage == self._stage and recent and fraction < 1.0:
             return
         self._stage, self._sent = stage, instant
-        fraction = min(max(float(fraction), 0.0), 1.0)
-        clock = {"at": time.time(), "cpu_s": cpu_seconds()}
-        _send(self._channel, {"stage": stage, "fraction": fraction, "whole": whole, **clock})
-
-
-def _send(channel: TextIO, message: dict[str, Any]) -> None:
-    channel.write(json.dumps(message) + "\n")
+        step = {"stage": stage, "fraction": min(max(float(fraction), 0.0), 1.0), "whole": whole}
+        self._channel.send("step", step | {"at": time.time(), "cpu_s": cpu_seconds()})
 
 
 def _outcome(order: WorkOrder, progress: _Reporter) -> dict[str, Any]:

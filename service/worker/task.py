@@ -15,23 +15,26 @@ from platform import python_version_tuple
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
+import structlog
+
 from fe_contact.cache_reads import CacheReads
+from host.children.launcher import ChildProcess, Ends, Launcher
 from host.directories import data_home
 from host.extras import MODULES
 from service.settings import LEAST_MEMORY_MB
 from service.version import solver_version
-from service.worker.forks import ChildProcess, Ends, Forks
 from service.worker.order import PARTS, Outcome, WorkOrder
 from service.worker.usage import BYTES_PER_MB, Usage, machine_memory_mb
-from service.worker.worker import Step, Worker
+from service.worker.worker import WORK, Step, Worker
 
 if TYPE_CHECKING:
     import distributed
 
+logger = structlog.get_logger(__name__)
 _LOOK_S, _TELL_S = 0.1, 0.5
 """Between two looks whether the job is still wanted; between two reports."""
 _LOG_BYTES = 1_000_000
-_forks: list[Forks] = []
+_launchers: list[Launcher] = []
 _launching = threading.Lock()
 
 
@@ -108,9 +111,10 @@ def _order_here(
 def _launch(module: str, log: Path, ends: Ends) -> ChildProcess:
     """Fork from the warm process of this worker; its threads take turns."""
     with _launching:
-        if not _forks:
-            _forks.append(Forks([module, "service.worker.simulation_work"], log))
-        return _forks[0].launch(ends)
+        if not _launchers:
+            modules = [module, "service.worker.simulation_work"]
+            _launchers.append(Launcher(WORK, modules, log, logger.warning))
+        return _launchers[0].launch(ends)
 
 
 def _followed(child: Worker, order: WorkOrder, worker: distributed.Worker, topic: str) -> bool:

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
-import contextlib
-import json
-import os
 import time
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from fe_contact.cache_reads import CacheReads
-from host import Ended, ending_signal, family_cpu_seconds, kill_group, never_wait_at
-from service.worker.forks import Ends, Launch, start_child
+from host import ending_signal, family_cpu_seconds
+from host.children.child import Child
+from host.children.frames import Frame
+from host.children.launcher import Launch, start_child
 from service.worker.order import Outcome, Product, WorkOrder
 from service.worker.usage import BYTES_PER_MB, Usage
 
+WORK = "service.worker.child"
+"""The module whose `work` a child does."""
+_ANEW = partial(start_child, WORK)
 _LEAVING_S = 2.0
-_OF_LITTLE_MEMORY = ("SIGKILL", "SIGABRT")  # by the system, and by libraries that cannot go on
+_SIGNALS_OF_LITTLE_MEMORY = ("SIGKILL", "SIGABRT")
+"""Sent by the system, and by libraries that cannot go on."""
 
 
 class Step(NamedTuple):
@@ -33,39 +37,29 @@ class Step(NamedTuple):
 
 
 class Worker:
-    """One child process for one order, leader of a session of its own; it has `begun` once it says so."""
+    """One child process for one order; it has `begun` once it says so."""
 
-    def __init__(self, order: WorkOrder, log: Path, launch: Launch = start_child) -> None:
+    def __init__(self, order: WorkOrder, log: Path, launch: Launch = _ANEW) -> None:
         self.started = time.monotonic()
         self.usage: Usage | None = None
         self.compliance_reads = CacheReads()
         self.warnings: list[str] = []
         self.begun = False
         self._outcome: Outcome | None = None
-        self._ended: Ended | None = None
         self._peak_mb: float | None = None
-        self._rest = b""
-        theirs, self._orders = os.pipe()
-        self.channel, answers = os.pipe()
-        never_wait_at(self.channel)
-        try:
-            with log.open("wb") as stream:
-                self._process = launch(Ends(theirs, answers, stream.fileno(), order.workspace))
-        except OSError:
-            os.close(self.channel)
-            os.close(self._orders)
-            raise
-        finally:
-            os.close(theirs)
-            os.close(answers)
-        # a child that died before reading the order shows when its channel ends
-        with contextlib.suppress(BrokenPipeError), os.fdopen(self._orders, "wb", closefd=False) as stream:
-            stream.write(order.line())
+        with log.open("wb") as stream:
+            self._child = Child(launch, stream.fileno(), order.workspace)
+        self._child.send(Frame("order", order.line()))  # one that died before shows when its channel ends
 
     @property
     def pid(self) -> int:
         """Process id, also of its group and session."""
-        return self._process.pid
+        return self._child.pid
+
+    @property
+    def channel(self) -> int:
+        """Descriptor that becomes readable when there is something to hear."""
+        return self._child.channel
 
     @property
     def age(self) -> float:
@@ -83,77 +77,58 @@ class Worker:
 
     def listen(self) -> tuple[list[Step], bool]:
         """Return the progress since the last call, and whether the child closed its channel."""
-        piece = b""
-        ended = False
-        with contextlib.suppress(BlockingIOError):
-            while True:
-                part = os.read(self.channel, 65536)
-                if not part:
-                    ended = True
-                    break
-                piece += part
-        *lines, self._rest = (self._rest + piece).split(b"\n")
-        messages = [json.loads(line) for line in lines]
-        return [step for message in messages if (step := self._taken(message)) is not None], ended
+        steps = []
+        for frame in self._child.receive():
+            if frame.kind == "step":
+                steps.append(Step(**frame.as_json()))
+            else:
+                self._take(frame.kind, frame.as_json())
+        return steps, self._child.closed
 
-    def _taken(self, message: dict[str, Any]) -> Step | None:
-        """Return a message as progress, or keep it as the outcome."""
-        if "stage" in message:
-            return Step(**message)
-        if "begun" in message:
+    def _take(self, kind: str, content: Any) -> None:
+        """Take a message that is no progress."""
+        if kind == "begun":
             self.begun = True
-            return None
-        if "warning" in message:
-            self.warnings.append(message["warning"])
-            return None
-        self._peak_mb = message.get("peak_mb")
-        self.compliance_reads = CacheReads(**message.get("compliance_reads", {}))
-        products = tuple(Product(**p | {"file": Path(p["file"])}) for p in message.get("products", ()))
-        facts = {name: message[name] for name in ("failure", "unexpected") if name in message}
-        self._outcome = Outcome(products=products, faults=tuple(message.get("faults", ())), **facts)
-        return None
+        elif kind == "warning":
+            self.warnings.append(content)
+        elif kind == "outcome":
+            self._peak_mb = content["peak_mb"]
+            self.compliance_reads = CacheReads(**content["compliance_reads"])
+            self._outcome = _outcome(content)
 
     def finish(self) -> Outcome:
         """End the process group, reap the child and return how it ended."""
-        self._has_exited(_LEAVING_S)
+        self._child.has_exited(_LEAVING_S)
         self.kill()
         if self._outcome is not None:
             return self._outcome
-        assert self._ended is not None
-        text = f"The worker ended early with exit code {self._ended.code}."
-        if name := ending_signal(self._ended.code):
-            hint = " (it may have run out of memory)" if name in _OF_LITTLE_MEMORY else ""
-            text = f"The worker was ended by {name}{hint}."
+        assert self._child.ended is not None
+        signal = ending_signal(self._child.ended.code)
+        if self.begun and self._child.killed_from_outside:
+            return Outcome(failure=f"The worker was ended by {signal} from outside the service.", lost=True)
+        text = f"The worker ended early with exit code {self._child.ended.code}."
+        if signal:
+            hint = " (it may have run out of memory)" if signal in _SIGNALS_OF_LITTLE_MEMORY else ""
+            text = f"The worker was ended by {signal}{hint}."
         return Outcome(failure=text, died=self.begun, lost=not self.begun)
-
-    def _has_exited(self, patience_s: float) -> bool:
-        """Whether the child leaves within a moment; unreaped, its id is given to no other group."""
-        deadline = time.monotonic() + patience_s
-        while not self._process.has_exited():
-            if time.monotonic() > deadline:
-                return False
-            time.sleep(0.005)
-        return True
 
     def end_group(self) -> None:
         """Send the group (gmsh's process included) SIGKILL."""
-        if self._ended is None:
-            with contextlib.suppress(ProcessLookupError):
-                kill_group(self.pid)
+        self._child.end_group()
 
     def kill(self, patience_s: float | None = None) -> None:
         """Kill the group, reap the child, close the pipes. Idempotent.
 
-        A killed process needs the processor to die, and at our low priority it waits for that long beside
-        others: one that is not dead after `patience_s` is left to the system, without its `usage`.
+        One that is not dead after `patience_s` is left to the system, without its `usage`.
         """
-        if self._ended is None:
-            self.end_group()
-            if patience_s is None or self._has_exited(patience_s):
-                self._ended = ended = self._process.reap()
-                peak_mb = ended.peak_memory / BYTES_PER_MB if self._peak_mb is None else self._peak_mb
-                self.usage = Usage(self.age, ended.cpu_seconds, peak_mb)
-        for end in (self._orders, self.channel):
-            if end >= 0:
-                os.close(end)
-        self._orders = self.channel = -1
+        ended = self._child.end(patience_s)
+        if ended is not None and self.usage is None:
+            peak_mb = ended.peak_memory / BYTES_PER_MB if self._peak_mb is None else self._peak_mb
+            self.usage = Usage(self.age, ended.cpu_seconds, peak_mb)
+
+
+def _outcome(content: dict[str, Any]) -> Outcome:
+    """Return the outcome that a child reports."""
+    products = tuple(Product(**p | {"file": Path(p["file"])}) for p in content.get("products", ()))
+    end = {name: content[name] for name in ("failure", "unexpected") if name in content}
+    return Outcome(products=products, faults=tuple(content.get("faults", ())), **end)

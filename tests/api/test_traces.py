@@ -31,7 +31,7 @@ from lineofaction.client import LineOfActionClient
 from service.app import create_app
 from service.queue.attempt import WorkerFigures
 from service.settings import Settings
-from service.tracing import _provider, begun_span, current_traceparent, flush_spans
+from service.tracing import begun_span, current_traceparent, flush_spans, span_provider
 
 
 @dataclass(frozen=True)
@@ -114,10 +114,10 @@ def receiver(monkeypatch: pytest.MonkeyPatch) -> Iterator[TraceReceiver]:
     with trace_receiver() as found:
         monkeypatch.setenv("OTEL_EXPORTER_OTLP_ENDPOINT", found.address)
         monkeypatch.setenv("OTEL_BSP_SCHEDULE_DELAY", "100")
-        _provider.cache_clear()
+        span_provider.cache_clear()
         yield found
         flush_spans()
-        _provider.cache_clear()
+        span_provider.cache_clear()
 
 
 @pytest.fixture
@@ -250,10 +250,10 @@ def test_nothing_of_opentelemetry_is_loaded_by_the_client_and_its_sdk_by_nobody_
 def test_without_the_extra_the_log_says_what_to_install(log: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("OTEL_EXPORTER_OTLP_ENDPOINT", "http://127.0.0.1:9")
     monkeypatch.setitem(sys.modules, "opentelemetry.sdk.trace", None)
-    _provider.cache_clear()
+    span_provider.cache_clear()
     flush_spans()
     assert current_traceparent("sent") == "sent"
-    _provider.cache_clear()
+    span_provider.cache_clear()
     (line,) = lines(log, "no traces")
     assert "lineofaction[telemetry]" in str(line["reason"])
 
@@ -261,9 +261,9 @@ def test_without_the_extra_the_log_says_what_to_install(log: Path, monkeypatch: 
 def test_an_exporter_that_is_left_to_others_is_named(log: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("OTEL_TRACES_EXPORTER", "zipkin")
     monkeypatch.setenv("OTEL_EXPORTER_OTLP_ENDPOINT", "http://127.0.0.1:9")
-    _provider.cache_clear()
+    span_provider.cache_clear()
     assert not begun_span("queue", "", 0.0).is_recording()
-    _provider.cache_clear()
+    span_provider.cache_clear()
     (line,) = lines(log, "no traces")
     assert "OTEL_TRACES_EXPORTER=zipkin" in str(line["reason"])
 

@@ -12,7 +12,7 @@ from dynamics.meshes.grid_lookup import find_cell, grid_force
 from dynamics.meshes.grid_tables import GridTables
 from dynamics.meshes.mesh_table import MeshTable, check_table
 from dynamics.meshes.packed_tables import pack_tables
-from dynamics.meshes.spatial_flank import _grid_energy
+from dynamics.meshes.spatial_flank import grid_energy
 from dynamics.meshes.table_lookup import table_deflection, table_force
 from fe_contact.ste import MeshForce, Metadata, PairFacts, SteDatabase
 from fe_contact.ste.force_table import ForceTable
@@ -76,7 +76,7 @@ def look_up(grid, position, deflection, m, a, found):
     for q in range(position.size):
         cell = find_cell(grid, 0, position[q], m[q], a[q])
         force = grid_force(grid, 0, cell, deflection[q], 0)
-        energy = _grid_energy(grid, 0, cell, deflection[q])
+        energy = grid_energy(grid, 0, cell, deflection[q])
         found[q, 0], found[q, 1], found[q, 2] = force.value, force.d, force.x
         found[q, 3], found[q, 4] = force.m, force.a
         found[q, 5], found[q, 6], found[q, 7], found[q, 8] = energy.value, energy.x, energy.m, energy.a

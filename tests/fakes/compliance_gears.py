@@ -10,7 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from fe_contact.compliance import FlankCompliance3D
-from fe_contact.compliance.condensed_gear import _probe_loads
+from fe_contact.compliance.condensed_gear import probe_loads
 from fe_contact.compliance.sector_stiffness import sector_stiffness
 from fe_contact.geometry import Gear, GearBlank, Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe, quad_sector, swept_sector
@@ -50,7 +50,7 @@ def relative(found: np.ndarray, expected: np.ndarray) -> float:
 
 def moved(compliance: FlankCompliance3D, tooth: int = 0) -> float:
     """Return the mean displacement (m/N) of a flank under an even pressure of unit force on tooth 0."""
-    loads = _probe_loads(compliance.s, compliance.z, compliance.index, compliance.s_form)[:, 0]
+    loads = probe_loads(compliance.s, compliance.z, compliance.index, compliance.s_form)[:, 0]
     return float(loads @ compliance.block(tooth, 0) @ loads / loads.sum() ** 2)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_contact.full_contact.condensation.placed_mesh import PlacedBody, _Strip
+from fe_contact.full_contact.condensation.placed_mesh import PlacedBody, Strip
 from fe_contact.types import FloatArray, IntArray
 
 WIDTH, DEPTH = 3e-3, 2e-3
@@ -35,4 +35,4 @@ def block(number: int) -> PlacedBody:
     face = np.flatnonzero(points[:, 0] == 0.0)
     back = np.flatnonzero(points[:, 0] == (-DEPTH, DEPTH)[number])
     along = face[np.argsort(points[face, 1])][:: (1, -1)[number]]  # counter-clockwise about the body
-    return PlacedBody(points, triangles, back, np.zeros(2), {0: _Strip(along, np.abs(points[along, 1]))})
+    return PlacedBody(points, triangles, back, np.zeros(2), {0: Strip(along, np.abs(points[along, 1]))})

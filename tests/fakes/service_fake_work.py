@@ -74,7 +74,7 @@ def _write_slowly(file: Path, content: bytes, progress: Progress) -> None:
 
 
 def _misbehave(order: WorkOrder, mode: str) -> None:
-    if mode == "hang":
+    if mode == "hang" or (mode == "hang_thrice" and _starts(order) <= 3):
         grandchild = subprocess.Popen(["sleep", "600"])
         (order.data_directory / f"grandchild_{order.key[:8]}").write_text(str(grandchild.pid))
         time.sleep(600)
@@ -110,4 +110,8 @@ def _raise(mode: str) -> None:
 
 
 def _first_time(order: WorkOrder) -> bool:
-    return len((order.data_directory / f"started_{order.key[:8]}").read_text().splitlines()) == 1
+    return _starts(order) == 1
+
+
+def _starts(order: WorkOrder) -> int:
+    return len((order.data_directory / f"started_{order.key[:8]}").read_text().splitlines())

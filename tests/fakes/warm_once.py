@@ -2,7 +2,8 @@
 
 A service starts its first workers anew and a warm process beside the second; each imports and compiles all
 that solves, which is most of what a small job costs. Bodies are condensed once in workers too. What a service
-does by itself is in tests/unit/service/worker/test_forks.py and where services have processes of their own.
+does by itself is in tests/unit/service/worker/test_warm_process.py and where services have processes of their
+own.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from condensed_once import FOLDER
 from running_service import until
 from service_surroundings import FAKES
 
-from service.worker.forks import ChildProcess, Ends, Forks, _Server
+from host.children.launcher import ChildProcess, Ends, Launcher, WarmProcess
 
 _ANALYSIS = "service.worker.simulation_work"
 
@@ -27,18 +28,20 @@ class _WarmProcesses:
 
     def __init__(self, log: Path) -> None:
         self._log = log
-        self._found: dict[tuple[str, ...], _Server] = {}
+        self._found: dict[tuple[str, ...], WarmProcess] = {}
         self._starts = threading.Lock()
 
-    def launch(self, forks: Forks, ends: Ends) -> ChildProcess:
-        """Fork a child in place of `Forks.launch`."""
-        key = (forks._work, *forks._modules)
+    def launch(self, launcher: Launcher, ends: Ends) -> ChildProcess:
+        """Fork a child in place of `Launcher.launch`."""
+        key = (launcher._work, *launcher._modules)
         with self._starts:
             server = self._found.get(key)
             if server is None or not server.usable:
                 log = self._log / f"warm{len(self._found)}.log"
-                first = ["condensed_once"] if _ANALYSIS in forks._modules else []
-                server = self._found[key] = _Server(forks._work, [*first, *forks._modules], log)
+                first = ["condensed_once"] if _ANALYSIS in launcher._modules else []
+                server = self._found[key] = WarmProcess(
+                    launcher._work, [*first, *launcher._modules], log, launcher._warn
+                )
         until(lambda: server.ready)
         return server.fork(ends)
 
@@ -56,11 +59,11 @@ def warm_processes(tmp_path_factory: pytest.TempPathFactory) -> Iterator[_WarmPr
 
 @pytest.fixture(scope="module", autouse=True)
 def warm_once(warm_processes: _WarmProcesses, condensed_bodies: Path) -> Iterator[None]:
-    def launch(forks: Forks, ends: Ends, _warm_within: float = 0.0) -> ChildProcess:
-        return warm_processes.launch(forks, ends)
+    def launch(launcher: Launcher, ends: Ends, _warm_within: float = 0.0) -> ChildProcess:
+        return warm_processes.launch(launcher, ends)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Forks, "launch", launch)
+        patch.setattr(Launcher, "launch", launch)
         patch.setenv("PYTHONPATH", os.pathsep.join([FAKES, os.environ.get("PYTHONPATH", "")]))
         patch.setenv(FOLDER, str(condensed_bodies))
         yield

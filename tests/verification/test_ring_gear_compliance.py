@@ -10,7 +10,7 @@ import pytest
 import scipy.sparse as sp
 
 from fe_contact.compliance import PlaneHypothesis, flank_compliance, flank_compliance_3d
-from fe_contact.compliance.condensed_gear import _pressure_forces
+from fe_contact.compliance.condensed_gear import pressure_forces
 from fe_contact.compliance.condensed_sector import freedoms
 from fe_contact.compliance.factorization import factorise
 from fe_contact.compliance.flank_compliance_2d import uniform_pressure
@@ -88,7 +88,7 @@ def test_plane_strain_in_three_dimensions_is_the_transverse_section(record_figur
     recipe = replace(SectorRecipe.fine(RING), layers=1, merge_rows=(), layer_growth=1.0)
     found = flank_compliance_3d(RING, recipe, reach=2, support=PlaneStrain())
     on = (found.s[:-2:2] >= found.s_form)[None].astype(float)
-    load = _pressure_forces(found.s, found.z, found.index, on)
+    load = pressure_forces(found.s, found.z, found.index, on)
     load /= load.sum()
     solid = RING.face_width * np.array([load @ found.block(m, 0) @ load for m in range(3)])
     plane = by_distance(RING, MeshRecipe.standard(RING))[2:]

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fe_contact.compliance import flank_compliance
-from fe_contact.contact.candidates import _corner_softness
+from fe_contact.contact.candidates import corner_softness
 from fe_contact.contact.patch import load_vector
 from fe_contact.geometry import Gear, RingGear
 from fe_contact.mesh import MeshRecipe
@@ -37,6 +37,6 @@ def test_the_corner_at_a_tip_is_a_wedge(name: str, record_figure: Any) -> None:
         load[:first], load[last:] = 0.0, 0.0
         own.append(load @ flank.block(0, 0) @ load / half_plane)
     near, far = -np.diff(own) / math.log(2.0)
-    found, expected = 2.0 * near - far, _corner_softness(gear)
+    found, expected = 2.0 * near - far, corner_softness(gear)
     record_figure(f"tip corner over a half plane, {name}", found, f"{expected:.4f}", "", "wedge, closed form")
     assert found == pytest.approx(expected, rel=0.02, abs=0.0)

@@ -237,12 +237,12 @@ class CompilerError(DynamicsError):
     """The C compiler refused the FMU's sources; its message is the text."""
 
 
-def _binary_folder() -> tuple[str, str] | None:
+def binary_folder() -> tuple[str, str] | None:
     """Return folder in ``binaries/`` and ending of this machine's binary; None where FMI 2.0 has none."""
     return _FOLDERS.get((platform.system(), platform.machine()))
 
 
-def _find_compiler() -> list[str]:
+def find_compiler() -> list[str]:
     """Return the command of the C compiler: ``CC`` from the environment, or the first of cc, gcc, clang.
 
     Raises `InputError`: there is none.
@@ -261,7 +261,7 @@ def _find_compiler() -> list[str]:
 def _compile_library(folder: Path, sources: Sequence[str], library: str) -> None:
     """Compile `sources` in `folder` into the shared library of that name there."""
     strip = [] if platform.system() == "Darwin" else ["-s"]
-    command = [*_find_compiler(), *FLAGS, *strip, "-o", library, *sources, "-lm"]
+    command = [*find_compiler(), *FLAGS, *strip, "-o", library, *sources, "-lm"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=_SECONDS, check=False)
     if done.returncode != 0:
         raise CompilerError(f"{shlex.join(command)} failed:\n{done.stderr.strip()}")
@@ -366,8 +366,8 @@ def export_fmu(
     if not _IDENTIFIER.fullmatch(name):
         raise InputError("name", name, "a C identifier: letters, digits and underscores")
     if binary:  # refused before the work is done
-        _find_compiler()
-        if _binary_folder() is None:
+        find_compiler()
+        if binary_folder() is None:
             advice = "FMI 2.0 names no folder for its binaries."
             raise InputError("binary", True, "False on this machine", advice)
     content = _content(element, name)
@@ -405,7 +405,7 @@ def _content(element: MeshElement, name: str) -> dict[str, bytes]:
 
 def _binary(content: Mapping[str, bytes], name: str) -> dict[str, bytes]:
     """Compile the sources in a folder of their own."""
-    target = _binary_folder()
+    target = binary_folder()
     if target is None:
         return {}
     platform, ending = target

@@ -101,7 +101,7 @@ def _measured(
     plan: Plan,
     some: IntArray,
 ) -> tuple[PositionNodes, FloatArray]:
-    """Solve the middles of intervals at some loads, in all base pitches; see `_measured_nodes`."""
+    """Solve the middles of intervals at some loads, in all base pitches; see `measured_nodes`."""
     assessed, pitches = points.assessed_indices, np.arange(points.period)
     value = np.concatenate([solutions[k].deflection[:, some] for k in assessed], axis=1)
 
@@ -111,10 +111,10 @@ def _measured(
         )
         return np.concatenate([curve[..., 0] for curve in curves], axis=1)
 
-    return _measured_nodes(position, value, solve, points.period, plan.nodes)
+    return measured_nodes(position, value, solve, points.period, plan.nodes)
 
 
-def _measured_nodes(
+def measured_nodes(
     position: FloatArray,
     value: FloatArray,
     solve: Callable[[FloatArray], FloatArray],

@@ -42,7 +42,7 @@ def root_meshes(made: PlaneDiscretization | FaceDiscretization) -> _PlaneRootMes
     """Choose the meshes of the root stress for a contact discretized as `made`."""
     if isinstance(made, PlaneDiscretization):
         return _PlaneRootMeshes(made.hypothesis, made.recipes, made.coarse_recipes)
-    first, second = (_finer_root(recipe) for recipe in made.recipes)
+    first, second = (finer_root(recipe) for recipe in made.recipes)
     coarse = tuple(
         replace(recipe, layers=coarser.layers)
         for recipe, coarser in zip(made.recipes, made.coarse_recipes, strict=True)
@@ -50,7 +50,7 @@ def root_meshes(made: PlaneDiscretization | FaceDiscretization) -> _PlaneRootMes
     return FaceRootMeshes((first, second), (coarse[0], coarse[1]))
 
 
-def _finer_root(recipe: SectorRecipe) -> SectorRecipe:
+def finer_root(recipe: SectorRecipe) -> SectorRecipe:
     """Return the recipe with a root fine enough for its stress; the flank stays as it is."""
     return replace(
         recipe,

@@ -125,8 +125,8 @@ def root_stress(
 def _histories(solved: SolvedOperatingPoint, cache: Path | None) -> list[RootStressHistory]:
     """Return the histories of both gears, with the error that rougher discretizations show."""
     units = unit_stresses(solved.contact, False, cache)
-    fine = _pair_histories(solved, units)
-    rough = _pair_histories(solved, unit_stresses(solved.contact, True, cache))
+    fine = pair_histories(solved, units)
+    rough = pair_histories(solved, unit_stresses(solved.contact, True, cache))
     remaining = root_meshes(solved.contact.plan.discretization).remaining
     changes = [remaining * _peak_changes(fine, rough), *_load_changes(solved, fine, units, cache)]
     errors = LOAD_SHARING + np.linalg.norm(changes, axis=0)
@@ -142,7 +142,7 @@ def _load_changes(
     for half in halves(fine[0].position):
         yield _peak_changes(fine, (fine[0].at(half), fine[1].at(half)))
     for both in rougher_solutions(solved, cache):
-        finer, rougher = (_pair_histories(each, units) for each in both)
+        finer, rougher = (pair_histories(each, units) for each in both)
         yield _peak_changes(finer, rougher)
 
 
@@ -174,7 +174,7 @@ def unit_stresses(contact: PairContact, coarse: bool, cache: Path | None) -> Uni
     return first, second
 
 
-def _pair_histories(
+def pair_histories(
     solved: SolvedOperatingPoint, units: UnitStresses
 ) -> tuple[RootStressHistory, RootStressHistory]:
     """Return the stress of both gears under the solved contact; `units` may be of any mesh."""

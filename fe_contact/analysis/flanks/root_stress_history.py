@@ -122,7 +122,7 @@ class RootStressHistory:
             values = -self.principal(root)
         else:
             values = np.where(self.near_load, -np.inf, self.principal(root))
-        return _crest_values(self.flank_coordinate, np.moveaxis(values, 2, -1))
+        return crest_values(self.flank_coordinate, np.moveaxis(values, 2, -1))
 
     def passage(self) -> RootPassage:
         """Return what one tooth meets, all its pairs' positions in a row.
@@ -144,7 +144,7 @@ class RootStressHistory:
         return RootPassage(position[order], extremes[0], extremes[1], fixed[0], fixed[1])
 
 
-def _crest_values(s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+def crest_values(s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the largest value (...) along the last axis and its place, by a parabola through its neighbors.
 
     `s` (p >= 3,) increases; in `values` (..., p) minus infinity does not count, and beside it there is no

@@ -75,11 +75,11 @@ class SpringContact(PairContact):
         if pitch is not None or seen.tooth_gaps:
             first = np.zeros_like(position, int)
             problem = in_pitches(self.pair, problem, seen, first if pitch is None else pitch)
-        stiffness = _slice_stiffness(self.pair, problem.candidates, self.law)
+        stiffness = slice_stiffness(self.pair, problem.candidates, self.law)
         return problem, _solve_springs(problem.candidates, stiffness, load)
 
 
-def _slice_stiffness(pair: ParallelAxes, candidates: Candidates, law: SliceLaw) -> FloatArray:
+def slice_stiffness(pair: ParallelAxes, candidates: Candidates, law: SliceLaw) -> FloatArray:
     """Return the normal force per normal approach (P, n) of each slice, N/m.
 
     c b_slice relates forces and approaches in the transverse plane; both are 1/cos(beta_b) and cos(beta_b)

@@ -106,7 +106,7 @@ def decide(
     options = checked.request.options
     if options.tolerance is not None and options.time_budget is not None:
         return _within_time(checked, cache, keep_model=keep_model, tried=tried)
-    models = [checked] if keep_model else _alternatives(checked)
+    models = [checked] if keep_model else alternative_requests(checked)
     curves = expected_curves(checked) if _wishes(checked) or checked.model.across_face else None
     chosen = _best(_meshes(models, curves, cache))
     if tried and options.tolerance is not None and (first := _trial(models, chosen[1], curves)):
@@ -188,7 +188,7 @@ def _wishes(checked: Checked) -> bool:
     return options.tolerance is not None or options.time_budget is not None
 
 
-def _alternatives(checked: Checked) -> list[Checked]:
+def alternative_requests(checked: Checked) -> list[Checked]:
     """Return the request with every model that may stand in for its own; itself where it is bound."""
     request = checked.request
     face, width = request.model_effects

@@ -136,7 +136,7 @@ def frontier(
     solves = outcomes[-1].result.status.size
     known = known_full_contact(checked.request.pair)
     study = Frontier(
-        results, left_out, knee_above(results), _chosen_fidelity(checked), solves, known_full_contact=known
+        results, left_out, knee_above(results), chosen_fidelity(checked), solves, known_full_contact=known
     )
     tables = {outcome.fidelity.name: outcome.result for outcome in outcomes}
     return study if full_contact is None else _beside(study, checked, full_contact, tables, progress)
@@ -187,7 +187,7 @@ def _beside(
     return replace(study, left_out=study.left_out | {NAME: reason})
 
 
-def _chosen_fidelity(checked: Checked) -> str | None:
+def chosen_fidelity(checked: Checked) -> str | None:
     """Return the name of the fidelity that a request's own model and mesh are; None if none is.
 
     Plane strain has one fidelity, whose error is the model's: it stands for all its meshes.

@@ -148,7 +148,7 @@ class MeasuredFullContact:
         }
 
 
-def _over_face(checked: Checked) -> bool:
+def needs_the_face(checked: Checked) -> bool:
     """Say whether a request needs the face: it is in three dimensions, or gears or flanks are inclined."""
     request = checked.request
     gears = (request.pair.pinion, request.pair.wheel)
@@ -159,7 +159,7 @@ def _over_face(checked: Checked) -> bool:
 def full_contact_refusal(checked: Checked) -> str | None:
     """Say why the full contact cannot be run on a request; None if it can."""
     request = checked.request
-    if (reason := (refusal_over_face if _over_face(checked) else refusal)(request.pair)) is not None:
+    if (reason := (refusal_over_face if needs_the_face(checked) else refusal)(request.pair)) is not None:
         return reason
     if request.center_distance_change.size > 1 or request.center_distance_change[0] != 0.0:
         return "changes of the center distance: it runs at the nominal one"
@@ -185,7 +185,7 @@ def measure_full_contact(
     request, fractions = checked.request, [count / positions for count in range(positions)]
     torques = [float(torque) for torque in request.torque]
     misalignments = tuple(float(misalignment) for misalignment in request.misalignment)
-    inclined = _over_face(checked)
+    inclined = needs_the_face(checked)
     predicted = position_seconds(checked)
     stage = f"full contact ({positions} x {predicted:.0f} CPU s)"
 
@@ -207,7 +207,7 @@ def measure_full_contact(
 def position_seconds(checked: Checked) -> float:
     """Return the predicted CPU seconds of full contact at one position, under all loads and misalignments."""
     solves = checked.request.torque.size * checked.request.misalignment.size
-    if _over_face(checked):
+    if needs_the_face(checked):
         return FACE_SECONDS + FACE_LOAD_SECONDS * solves
     return POSITION_SECONDS + LOAD_SECONDS * solves
 

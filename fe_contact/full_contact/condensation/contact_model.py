@@ -68,7 +68,7 @@ def dissected(graph: sp.csr_array, nodes: IntArray) -> IntArray:
     return np.asarray(nodes[np.asarray(order, dtype=np.int64)])
 
 
-def _plane_strain_stiffness(points: FloatArray, triangles: IntArray, material: Material) -> sp.csc_array:
+def plane_strain_stiffness(points: FloatArray, triangles: IntArray, material: Material) -> sp.csc_array:
     """Assemble the stiffness of linear elasticity, symmetric (2 n, 2 n), N/m per m.
 
     Triangles (m, 6) have corners counter-clockwise, then the middles of sides 0-1, 1-2, 2-0. Freedom 2 i
@@ -112,7 +112,7 @@ def _element_stiffness(nodes: FloatArray, elasticity: FloatArray) -> FloatArray:
 
 
 @dataclass(frozen=True)
-class _CondensedBody:
+class CondensedBody:
     """One gear seen from the nodes of its strips, per unit face width."""
 
     body: PlacedBody
@@ -138,9 +138,9 @@ class _CondensedBody:
         return self.body.points[self.nodes]
 
 
-def _condensed_body(body: PlacedBody, material: Material) -> _CondensedBody:
+def condensed_body(body: PlacedBody, material: Material) -> CondensedBody:
     """Assemble, factorise, condense; raises `SolveError`: the stiffness is singular."""
-    matrix = _plane_strain_stiffness(body.points, body.triangles, material)
+    matrix = plane_strain_stiffness(body.points, body.triangles, material)
     nodes = np.unique(np.concatenate([strip.nodes for strip in body.strips.values()]))
     columns = {ahead: np.searchsorted(nodes, strip.nodes) for ahead, strip in body.strips.items()}
     inner = np.setdiff1d(np.arange(len(body.points)), np.concatenate([nodes, body.held]))
@@ -159,7 +159,7 @@ def _condensed_body(body: PlacedBody, material: Material) -> _CondensedBody:
 
     schur = _trailing_product(factor, 2 * len(nodes))
     compliance = cho_solve(cho_factor(schur), np.eye(len(schur)))
-    return _CondensedBody(body, nodes, columns, 0.5 * (compliance + compliance.T), matrix, solve)
+    return CondensedBody(body, nodes, columns, 0.5 * (compliance + compliance.T), matrix, solve)
 
 
 def freedoms(nodes: IntArray) -> IntArray:
@@ -182,7 +182,7 @@ def _trailing_product(factor: SuperLU, count: int) -> FloatArray:
 # Laws that a solution must keep, checked on the displacements of all nodes: reactions and energy.
 
 
-Bodies = tuple[_CondensedBody, _CondensedBody]
+Bodies = tuple[CondensedBody, CondensedBody]
 
 
 def _of_body(bodies: Bodies, number: int, solutions: Sequence[Solution]) -> tuple[FloatArray, FloatArray]:
@@ -199,7 +199,7 @@ def _of_body(bodies: Bodies, number: int, solutions: Sequence[Solution]) -> tupl
     return moments, np.sum(moved * forces, axis=0)
 
 
-def _moment(body: _CondensedBody, forces: FloatArray) -> float:
+def _moment(body: CondensedBody, forces: FloatArray) -> float:
     """Return the moment of forces (2 k,) on the strips' nodes about the gear's center, counter-clockwise."""
     arms = body.points - body.body.center
     return float(arms[:, 0] @ forces[1::2] - arms[:, 1] @ forces[0::2])
@@ -214,7 +214,7 @@ class _PairGeometry:
 
     pair: ParallelAxes
     sites: tuple[ContactSite, ...]
-    bodies: tuple[_CondensedBody, _CondensedBody]
+    bodies: tuple[CondensedBody, CondensedBody]
 
     @property
     def undeformed(self) -> Configuration:
@@ -368,7 +368,7 @@ class PlaneStrain:
     ) -> tuple[tuple[ContactGeometry, ...], int]:
         """Condense both gears in the plane."""
         materials = (pair.pinion.material, pair.wheel.material)
-        first, second = (_condensed_body(m, material) for m, material in zip(meshes, materials, strict=True))
+        first, second = (condensed_body(m, material) for m, material in zip(meshes, materials, strict=True))
         unknowns = 2 * sum(len(mesh.points) for mesh in meshes)
         return (_PairGeometry(pair, sites, (first, second)),), unknowns
 

@@ -195,7 +195,7 @@ def _held_circle(gear: Toothing, resolution: Resolution) -> Outline:
 
 
 @dataclass(frozen=True)
-class _Strip:
+class Strip:
     """Nodes along the part of a flank that may touch."""
 
     nodes: IntArray
@@ -217,7 +217,7 @@ class PlacedBody:
     """Nodes of the bore, or of the outside of a ring gear's rim. Shape (b,)."""
     center: FloatArray
     """m. Shape (2,)."""
-    strips: Mapping[int, _Strip]
+    strips: Mapping[int, Strip]
     """By pair index."""
 
 
@@ -276,7 +276,7 @@ def _strip(
     tooth: int,
     site: ContactSite,
     number: int,
-) -> _Strip:
+) -> Strip:
     """Return the elements of a flank that a strip reaches into."""
     along = mesh.boundary[:: gear.sign][0]
     nodes, s = along[boundary.toothed.positions(f"flank {tooth}")], boundary.s[tooth]
@@ -285,11 +285,11 @@ def _strip(
     first = max(int(np.searchsorted(corners, ends.low, side="right")) - 1, 0)
     last = min(int(np.searchsorted(corners, ends.high, side="left")), len(corners) - 1)
     part = slice(2 * first, 2 * last + 1)
-    return _Strip(nodes[part], s[part])
+    return Strip(nodes[part], s[part])
 
 
 def _placed(
-    pair: ParallelAxes, number: int, mesh: QuadraticMesh, strips: Mapping[int, _Strip], position: float
+    pair: ParallelAxes, number: int, mesh: QuadraticMesh, strips: Mapping[int, Strip], position: float
 ) -> PlacedBody:
     """Mirror a ring gear, turn, move: its flank's outward normal lies on the line of action."""
     gear = (pair.pinion, pair.wheel)[number]

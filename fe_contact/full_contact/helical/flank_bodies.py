@@ -22,7 +22,7 @@ from fe_contact.full_contact.helical.twisted_stiffness import (
     section_stiffness,
     twisted_stiffness,
 )
-from fe_contact.full_contact.over_face.extruded_body import _ColumnMatrix, _schur_complement
+from fe_contact.full_contact.over_face.extruded_body import ColumnMatrix, schur_complement
 from fe_contact.full_contact.over_face.extruded_stiffness import Layers
 from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.material import Material
@@ -210,8 +210,8 @@ def face_body(meshed: MeshedSection, layers: Layers, material: Material, spread:
     free = free[np.argsort(rank[stiffness.node[free]], kind="stable")]
     starts = np.searchsorted(rank[stiffness.node[free]], np.arange(len(order) + 1))
     lower = sp.csc_array(sp.tril(stiffness.matrix[free][:, free]))
-    complement = _schur_complement(
-        _ColumnMatrix(lower, starts, sp.csr_array(graph[order][:, order])), len(nodes)
+    complement = schur_complement(
+        ColumnMatrix(lower, starts, sp.csr_array(graph[order][:, order])), len(nodes)
     )
     kept = free[starts[len(inner)] :]
     loads, first = _normal_loads(

@@ -45,7 +45,7 @@ class _Front:
 
 
 @dataclass(frozen=True)
-class _ColumnMatrix:
+class ColumnMatrix:
     """Symmetric matrix of columns of unknowns on n nodes, in the order of elimination."""
 
     lower: sp.csc_array
@@ -60,7 +60,7 @@ class _ColumnMatrix:
         return np.concatenate([np.arange(self.starts[n], self.starts[n + 1]) for n in nodes.tolist()])
 
 
-def _schur_complement(matrix: _ColumnMatrix, kept: int) -> FloatArray:
+def schur_complement(matrix: ColumnMatrix, kept: int) -> FloatArray:
     """Eliminate all nodes but the last `kept`; raises `SolveError`: the matrix is not positive definite."""
     left: dict[int, list[tuple[IntArray, FloatArray]]] = defaultdict(list)
     row = np.zeros(matrix.starts[-1], dtype=np.int64)
@@ -81,7 +81,7 @@ def _schur_complement(matrix: _ColumnMatrix, kept: int) -> FloatArray:
 
 
 def _assembled(
-    matrix: _ColumnMatrix, front: _Front, children: list[tuple[IntArray, FloatArray]], row: IntArray
+    matrix: ColumnMatrix, front: _Front, children: list[tuple[IntArray, FloatArray]], row: IntArray
 ) -> tuple[FloatArray, IntArray, int]:
     """Return the lower triangle of a front, its unknowns, and how many of them are eliminated."""
     own = matrix.unknowns(front.nodes)
@@ -214,8 +214,8 @@ def _half(
     own = sp.hstack([graph[order][:, order], beside.T])
     circle = sp.hstack([beside, sp.csr_array(np.ones((1, 1)))])
     joined = sp.csr_array(sp.vstack([own, circle], format="csr"))
-    matrix = _ColumnMatrix(lower, np.append(starts, starts[-1] + 1), joined)
-    complement = _schur_complement(matrix, len(nodes) + 1)
+    matrix = ColumnMatrix(lower, np.append(starts, starts[-1] + 1), joined)
+    complement = schur_complement(matrix, len(nodes) + 1)
     kept = free[starts[len(inner)] :]
     in_plane = stiffness.component[kept] != Z
     inverse = cho_solve(cho_factor(complement[:-1, :-1]), np.eye(len(kept)))

@@ -50,7 +50,7 @@ USUAL = Resolution(per_half_width=2.5, layers=7)
 
 
 @dataclass(frozen=True)
-class _FaceGap:
+class FaceGap:
     """Weak gap of one pair; h = i j hats, i along the profile times j = 2 p - 1 over the face."""
 
     gap: FloatArray
@@ -65,7 +65,7 @@ class _FaceGap:
     """
 
 
-def _face_gap(section: Section, layers: Layers) -> _FaceGap:
+def face_gap(section: Section, layers: Layers) -> FaceGap:
     """Integrate the sections over the face, three in each layer of either half."""
     z, weights = layers.quadrature
     hats, functions = layers.hats(z), layers.functions(z)
@@ -85,7 +85,7 @@ def _face_gap(section: Section, layers: Layers) -> _FaceGap:
         forces.append([_over_functions(own, products, functions.shape[1]) for own in (first, second)])
     gap, weight, closing = (scalars[0] + scalars[1]).reshape(3, -1)
     on_first, on_second = (np.stack(pair) for pair in zip(*forces, strict=True))
-    return _FaceGap(gap, weight, closing, (on_first, on_second))
+    return FaceGap(gap, weight, closing, (on_first, on_second))
 
 
 def _over_functions(sections: FloatArray, products: FloatArray, functions: int) -> FloatArray:
@@ -123,7 +123,7 @@ class _FaceGeometry:
         sections = _Sections(self, at)
         layers = self.bodies[0].layers
         gaps = [
-            _face_gap(lambda z, site=site: sections.gap(site, z), layers)  # type: ignore[misc]
+            face_gap(lambda z, site=site: sections.gap(site, z), layers)  # type: ignore[misc]
             for site in self.sites
         ]
         return self._gathered(gaps, at)
@@ -151,7 +151,7 @@ class _FaceGeometry:
         ahead = np.array([site.ahead for site in self.sites])[contact.site]
         return line_loads(ahead, face[contact.line % len(face)], pressure * contact.system.weight)
 
-    def _gathered(self, gaps: Sequence[_FaceGap], at: Configuration) -> LinearizedContact:
+    def _gathered(self, gaps: Sequence[FaceGap], at: Configuration) -> LinearizedContact:
         """Join the pairs, without hats that hardly face their mate."""
         full = [self._full_weights(site) for site in self.sites]
         kept = np.concatenate(
@@ -185,7 +185,7 @@ class _FaceGeometry:
         )
         return LinearizedContact(system, forces, moved, site, line[kept], ends[kept])
 
-    def _forces(self, gaps: Sequence[_FaceGap], number: int) -> FloatArray:
+    def _forces(self, gaps: Sequence[FaceGap], number: int) -> FloatArray:
         """Return the forces (2 2 k f, h) of all pairs on one gear."""
         body = self.bodies[number]
         blocks = []

@@ -150,7 +150,9 @@ def _passage_json(flanks: LoadDistribution, apart: FloatArray) -> Json:
 
     def laid(values: FloatArray) -> FloatArray:
         table = values[first].reshape(place.size, -1)[order]
-        return _between(face, flanks.face_position, _between(rows, place[order], table).T).T
+        return interpolated_columns(
+            face, flanks.face_position, interpolated_columns(rows, place[order], table).T
+        ).T
 
     return {
         "first_place": low / _STEPS,
@@ -161,7 +163,7 @@ def _passage_json(flanks: LoadDistribution, apart: FloatArray) -> Json:
     }
 
 
-def _between(x: FloatArray, knots: FloatArray, values: FloatArray) -> FloatArray:
+def interpolated_columns(x: FloatArray, knots: FloatArray, values: FloatArray) -> FloatArray:
     """Return what `numpy.interp` does of every column of `values`, (knots, ...), at once: (x, ...)."""
     if knots.size == 1:
         return np.repeat(values, x.size, axis=0)

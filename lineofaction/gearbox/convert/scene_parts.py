@@ -77,7 +77,7 @@ def _bushing(table: BushingInput) -> Bushing:
     return Bushing(**in_si(Bushing, table), preload=preload)
 
 
-def _rolling_bearing_of(table: RollingBearingInput) -> RollingBearing:
+def rolling_bearing_of(table: RollingBearingInput) -> RollingBearing:
     """Return a rolling bearing, its row as written or by its catalog line."""
     row = part_of(BallBearing, table.ball, "ball") or part_of(RollerBearing, table.roller, "roller")
     if row is None:
@@ -261,7 +261,7 @@ _ALONE: Mapping[str, Callable[[Any], Any]] = {
     "couplings": _plain(Coupling),
     "speed_torques": _speed_torque,
     "free_rotations": _plain(FreeRotation),
-    "rolling_bearings": _rolling_bearing_of,
+    "rolling_bearings": rolling_bearing_of,
     "loads": _load_torque,
     "forces": _force,
     "unbalances": _plain(Unbalance),

@@ -28,10 +28,10 @@ def unit_of_rexs(inputs: Json, _folder: Path, _announce: Callable[[str], None]) 
         data = base64.b64decode(inputs["rexs_base64"], validate=True)
     except (binascii.Error, ValueError):
         raise BadInput.of("rexs_base64", inputs["rexs_base64"][:20], "base64 of the file's bytes") from None
-    return _unit_json(OpenedUnit.of(parsed(data), [Assumption.of(text) for text in inputs.get("assume", ())]))
+    return unit_json(OpenedUnit.of(parsed(data), [Assumption.of(text) for text in inputs.get("assume", ())]))
 
 
-def _unit_json(unit: OpenedUnit) -> Json:
+def unit_json(unit: OpenedUnit) -> Json:
     """Return an opened unit as JSON."""
     cases = [
         {"name": c.name, "stage": c.stage, "equal": list(c.equal), "case": case_json(c.case)}

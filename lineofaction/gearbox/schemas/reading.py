@@ -97,7 +97,7 @@ def located(file: InputFile) -> Iterator[None]:
         raise BadInput(_placed(fault, file) for fault in error.faults) from None
 
 
-def _line_of(text: str, field: str) -> int | None:
+def line_of_field(text: str, field: str) -> int | None:
     """Return the line, from 1, at which a field of a TOML text or else the table around it begins.
 
     None if neither is there. Values of several lines count as one, inline tables too.
@@ -116,7 +116,7 @@ def _placed(fault: Fault, file: InputFile) -> Fault:
     if fault.place or file.path.suffix == ".json" or any(o.path.startswith(own) for o in file.overrides):
         return fault
     try:
-        line = _line_of(file.path.read_text(encoding="utf-8"), fault.field)
+        line = line_of_field(file.path.read_text(encoding="utf-8"), fault.field)
     except (OSError, UnicodeDecodeError):
         return fault
     return fault if line is None else replace(fault, place=f"{file.path}:{line}")

@@ -76,7 +76,7 @@ class _Side(Heard):
     blocks: Waterfall
 
 
-def _compare_runs(runs: dict[str, RunResult], view: RunView, measured: MeasuredOrders | None) -> Page:
+def compare_runs(runs: dict[str, RunResult], view: RunView, measured: MeasuredOrders | None) -> Page:
     """Put the comparison of two runs by their names together, or of one with what was measured."""
     sides = tuple(_side(heard) for heard in heard_runs(runs, view))
     signal = sides[0].signal
@@ -183,7 +183,8 @@ def _spectra(sides: tuple[_Side, ...], measured: MeasuredOrders | None) -> Figur
 # Measured transmission errors and order spectra, read from universal files.
 
 
-def _read_universal(path: Path, teeth: int, unit: str) -> MeasuredCurve | MeasuredOrders:
+def read_universal(path: Path, teeth: int, unit: str) -> MeasuredCurve | MeasuredOrders:
+    """Return the measured curve or orders of a universal file (UFF)."""
     return _of_universal(read_recording(path, "measured"), teeth, unit)
 
 
@@ -321,7 +322,7 @@ def _page(
     measured = _measured(files, teeth, shown_signal(first, view).quantity.unit) if files else None
     if measured is not None and not isinstance(measured, MeasuredOrders):
         raise BadInput.of("measured", "a curve over position", "an order spectrum beside a run")
-    return _compare_runs(runs, view, measured)
+    return compare_runs(runs, view, measured)
 
 
 def _measured(files: Sequence[Path], teeth: int, unit: str) -> MeasuredCurve | MeasuredOrders | None:
@@ -330,7 +331,7 @@ def _measured(files: Sequence[Path], teeth: int, unit: str) -> MeasuredCurve | M
         return None
     if files[0].suffix.lower() == ".csv":
         return read_measured(files[0], teeth)
-    return _read_universal(files[0], teeth, unit)
+    return read_universal(files[0], teeth, unit)
 
 
 def named_files(files: Sequence[Path]) -> list[tuple[str, Path]]:

@@ -283,9 +283,9 @@ def _row(row: Sequence[str], marks: Sequence[str], joined: bool) -> str:
 def numeric_columns(table: Table) -> list[bool]:
     """Return of each column whether it holds numbers alone, which stand to the right."""
     columns = list(zip(*table.rows, strict=True)) or [("text",)] * len(table.head)
-    return [all(map(_is_number, column)) for column in columns]
+    return [all(map(is_number, column)) for column in columns]
 
 
-def _is_number(text: str) -> bool:
+def is_number(text: str) -> bool:
     """Whether a cell holds a number, alone or with unit or error; empty cells count for either."""
     return re.fullmatch(r"|-|(< )?[-+]?[\d.]+(e[-+]?\d+)?( (N m|µm|%|± .*))?", text) is not None

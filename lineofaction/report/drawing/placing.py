@@ -111,14 +111,14 @@ def line_labels(panel: Panel, row: float) -> list[_LineLabel]:
     ends = np.array([_shown(line.y, panel.y)[-1] for line in lines])
     heights = row * np.array([line.label.count("\n") + 1.3 for line in lines])
     at = np.clip(panel.y.fraction(ends, vertical_limits(panel)), 0.0, 1.0) if lines else ends
-    middles = _spread(at, heights)
+    middles = spread_apart(at, heights)
     return [
         _LineLabel(line.label, line.color, float(end), float(middle))
         for line, end, middle in zip(lines, at, middles, strict=True)
     ]
 
 
-def _spread(wanted: FloatArray, heights: FloatArray) -> FloatArray:
+def spread_apart(wanted: FloatArray, heights: FloatArray) -> FloatArray:
     """Return the middles of texts (n,) of given heights that lie apart and nearest to where they are wanted.
 
     The sum of squared shifts is least among all in this order (pool adjacent violators); then the stack is

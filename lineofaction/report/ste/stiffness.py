@@ -60,7 +60,7 @@ _LEAST = 0.0005
 
 def mesh_stiffness(database: SteDatabase) -> Figure:
     """Draw the transverse mesh force over STE and face width, one line per load."""
-    position, values = _secant_stiffness(database)
+    position, values = secant_stiffness_curves(database)
     iso = iso_mesh_stiffness(database)
     lines = load_lines(database, position, values * _N_PER_MM_UM)
     top = 1.08 * max(*(float(np.nanmax(line.y)) for line in lines), (iso or 0.0) * _N_PER_MM_UM)
@@ -76,7 +76,7 @@ def mesh_stiffness(database: SteDatabase) -> Figure:
     )
 
 
-def _secant_stiffness(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
+def secant_stiffness_curves(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
     """Return the positions shown (n,) and F_bt / (STE b) there, (n, F), in N/m per m of face width."""
     position, values = ste_shown(database)
     facts = database.facts
@@ -138,7 +138,7 @@ def _shown_of_all(database: SteDatabase) -> str:
     return f" Shown are the first {shown} of {period} base pitches." if shown < period else ""
 
 
-def _pair_shares(database: SteDatabase, load: int) -> tuple[FloatArray, dict[int, FloatArray]]:
+def pair_shares(database: SteDatabase, load: int) -> tuple[FloatArray, dict[int, FloatArray]]:
     """Follow each pair over the pitches shown.
 
     The database counts pairs anew at every whole pitch: its pair j is the pair j + 1 seen one pitch earlier.
@@ -160,7 +160,7 @@ def _pair_shares(database: SteDatabase, load: int) -> tuple[FloatArray, dict[int
 
 def _sharing_panel(database: SteDatabase, load: int) -> Panel:
     """One load's forces, each pair named at the middle of its way."""
-    position, followed = _pair_shares(database, load)
+    position, followed = pair_shares(database, load)
     names = {pair: _name(pair, short=len(followed) > _MOST_NAMES) for pair in followed}
     force = float(database.force[load])
     lines = tuple(

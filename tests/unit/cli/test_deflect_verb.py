@@ -25,7 +25,7 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.deflect import Inputs
 from lineofaction.gearbox.studies.deflect.cases import load_cases
-from lineofaction.gearbox.studies.deflect.figures import _optimization_inputs, write_spectrum
+from lineofaction.gearbox.studies.deflect.figures import optimization_inputs, write_spectrum
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks, Outline
 from lineofaction.gearbox.studies.deflect.run import RUN
 from lineofaction.gearbox.studies.optimize import Inputs as OptimizeInputs
@@ -236,7 +236,7 @@ def test_a_mesh_that_nothing_loads_has_no_figures_of_its_flanks(result: GearboxD
 
 
 def test_the_spectrum_of_the_driving_side_is_what_is_optimized(result: GearboxDeflection) -> None:
-    inputs = _optimization_inputs(result, "first")
+    inputs = optimization_inputs(result, "first")
     study = OptimizeInputs.model_validate_json(json.dumps(inputs))
     first = [case.meshes[0] for case in result.deflection.cases]
     assert study.torque_n_m == pytest.approx((0.02 * first[1].force, 0.02 * first[0].force), rel=1e-6)
@@ -257,20 +257,20 @@ def tilted(result: GearboxDeflection, case: int, further_um: float) -> GearboxDe
 
 
 def test_equal_torques_at_different_misalignments_stay_two_loads(result: GearboxDeflection) -> None:
-    before, after = (_optimization_inputs(each, "first") for each in (result, tilted(result, 2, -2.0)))
+    before, after = (optimization_inputs(each, "first") for each in (result, tilted(result, 2, -2.0)))
     (torque, other), (skew, larger) = before["torque_n_m"], before["misalignment_um"]
     assert after["torque_n_m"] == [torque, torque, other]
     assert after["misalignment_um"] == pytest.approx([skew - 2.0, skew, larger], abs=1e-9)
     assert after["objective"]["weights"] == [2.0, 3.0, 1.0]
     OptimizeInputs.model_validate_json(json.dumps(after))
-    assert _optimization_inputs(tilted(result, 2, 1e-5), "first") == before  # less than a file shows
+    assert optimization_inputs(tilted(result, 2, 1e-5), "first") == before  # less than a file shows
 
 
 def test_a_plane_model_gets_no_misalignment_to_optimize_for(result: GearboxDeflection) -> None:
     plane = replace(result, flanks=tuple(replace(f, face_load_factor=np.nan) for f in result.flanks))
-    inputs, across_face = _optimization_inputs(plane, "first"), _optimization_inputs(result, "first")
+    inputs, across_face = optimization_inputs(plane, "first"), optimization_inputs(result, "first")
     assert across_face.keys() - inputs.keys() == {"misalignment_um"}
-    assert _optimization_inputs(tilted(plane, 2, 2.0), "first") == inputs
+    assert optimization_inputs(tilted(plane, 2, 2.0), "first") == inputs
 
 
 def test_files_of_an_optimization_stand_beside_the_list_of_calls(
@@ -279,7 +279,7 @@ def test_files_of_an_optimization_stand_beside_the_list_of_calls(
     write_spectrum(result, None, tmp_path / "gearbox.toml")
     (entry,) = tomllib.loads((tmp_path / "gearbox.toml").read_text("utf-8"))["meshes"]
     study = tomllib.loads((tmp_path / entry["study_file"]).read_text("utf-8"))
-    assert study == _optimization_inputs(result, "first")
+    assert study == optimization_inputs(result, "first")
     assert "pair" in tomllib.loads((tmp_path / entry["case_file"]).read_text("utf-8"))
 
 

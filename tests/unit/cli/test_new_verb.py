@@ -12,7 +12,7 @@ from command_line import loa
 
 from fe_contact.geometry import specific_sliding
 from fe_contact.ste import SteDatabase
-from lineofaction.cli.new import KINDS, _new_text
+from lineofaction.cli.new import KINDS, text_of_kind
 from lineofaction.cli.options import PairWishes
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.problems import BadInput
@@ -32,7 +32,7 @@ def written(kind: str, folder: Path, *options: object) -> Path:
 
 
 def case(kind: str, **wanted: float) -> Case:
-    return validated(Case, tomllib.loads(_new_text(kind, PairWishes(**wanted))))  # type: ignore[arg-type]
+    return validated(Case, tomllib.loads(text_of_kind(kind, PairWishes(**wanted))))  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("kind", CASES)
@@ -79,7 +79,7 @@ def test_helical_figures_follow_the_rules() -> None:
 def test_pairs_exist_over_the_usual_sizes(kind: str, module: float, teeth: int) -> None:
     for ratio in (4.2, 5.2):
         for helix in (None, 15.0):
-            text = _new_text(kind, PairWishes(module=module, teeth=teeth, ratio=ratio, helix=helix))
+            text = text_of_kind(kind, PairWishes(module=module, teeth=teeth, ratio=ratio, helix=helix))
             assert text.startswith("# ")
 
 
@@ -94,7 +94,7 @@ def test_every_figure_that_was_given_is_in_the_file() -> None:
 
 def test_planets_fit_and_the_ratio_is_near() -> None:
     for ratio in (4.0, 5.0, 8.0):
-        scene = validated(SceneInput, tomllib.loads(_new_text("planetary", PairWishes(ratio=ratio))))
+        scene = validated(SceneInput, tomllib.loads(text_of_kind("planetary", PairWishes(ratio=ratio))))
         sun, ring = (mesh.case.pair for mesh in scene.meshes if mesh.case is not None)
         assert (sun.pinion.teeth + ring.wheel.teeth) % 3 == 0
         assert ring.wheel.teeth == sun.pinion.teeth + 2 * sun.wheel.teeth
@@ -112,7 +112,7 @@ def test_what_cannot_be_is_refused(tmp_path: Path) -> None:
         assert done.exit_code == 2, arguments
         assert words in done.stderr
     with pytest.raises(BadInput):
-        _new_text("internal", PairWishes(teeth=36, ratio=1.02))
+        text_of_kind("internal", PairWishes(teeth=36, ratio=1.02))
 
 
 def test_a_file_is_never_written_over(tmp_path: Path) -> None:
@@ -126,5 +126,5 @@ def test_a_file_is_never_written_over(tmp_path: Path) -> None:
 
 def test_without_a_file_the_text_is_printed() -> None:
     done = loa("new")
-    assert done.stdout == _new_text("helical", PairWishes())
+    assert done.stdout == text_of_kind("helical", PairWishes())
     assert set(KINDS) == {"spur", "helical", "internal", "planetary", "scene"}

@@ -22,8 +22,8 @@ from lineofaction.gearbox.studies.sensitivity import Inputs
 from lineofaction.gearbox.studies.sensitivity.run import (
     RUN,
     PairStudy,
-    _read_studies,
-    _write_studies,
+    read_studies,
+    write_studies,
 )
 from lineofaction.report.design.sensitivity import PAGE
 from lineofaction.report.document import write_report
@@ -174,7 +174,7 @@ def test_several_cases_are_one_study_under_the_names_of_their_files(
     other.write_text(SMALL)
     result = loa("sensitivity", small, other, "-o", tmp_path / "x.nc", "--csv", *WIDER)
     assert result.exit_code == 0
-    assert [pair.name for pair in _read_studies(tmp_path / "x.nc")] == ["small", "wide face"]
+    assert [pair.name for pair in read_studies(tmp_path / "x.nc")] == ["small", "wide face"]
     assert {row[0] for row in csv.reader(result.stdout.splitlines()[1:])} == {"small", "wide face"}
 
 
@@ -240,8 +240,8 @@ def test_studies_come_back_from_their_file(tmp_path: Path) -> None:
         for change in [one.center_distance_change]
     )
     written = (study(), replace(wide, curves=curves, center_distance=0.15))
-    _write_studies(written, tmp_path / "s.nc")
-    back = _read_studies(tmp_path / "s.nc")
+    write_studies(written, tmp_path / "s.nc")
+    back = read_studies(tmp_path / "s.nc")
     assert PAGE.series(back) == PAGE.series(written)
     for one, other in zip(written, back, strict=True):
         assert (one.name, one.normal_force, one.center_distance) == (
@@ -258,19 +258,19 @@ def test_studies_come_back_from_their_file(tmp_path: Path) -> None:
 
 
 def test_a_damaged_or_foreign_study_is_refused(tmp_path: Path) -> None:
-    _write_studies((study(),), tmp_path / "s.nc")
+    write_studies((study(),), tmp_path / "s.nc")
     with h5netcdf.File(tmp_path / "s.nc", "a") as file:
         file.variables["pairs.normal_force"][0] = 7.0
     with pytest.raises(UnreadableFile, match="checksum"):
-        _read_studies(tmp_path / "s.nc")
+        read_studies(tmp_path / "s.nc")
     with h5netcdf.File(tmp_path / "s.nc", "a") as file:
         file.attrs["schema"] = "else"
     with pytest.raises(UnreadableFile, match="expected lineofaction sensitivity study"):
-        _read_studies(tmp_path / "s.nc")
+        read_studies(tmp_path / "s.nc")
 
 
 def test_a_study_is_on_the_report_page(tmp_path: Path) -> None:
-    _write_studies((study(),), tmp_path / "s.nc")
+    write_studies((study(),), tmp_path / "s.nc")
     page = write_report(tmp_path / "s.nc", tmp_path / "s.html")[0].read_text(encoding="utf-8")
     assert '<figure id="sensitivity">' in page
     assert "<h1>Sensitivity of gear pairs</h1>" in page

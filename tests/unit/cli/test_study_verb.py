@@ -35,7 +35,7 @@ from lineofaction.gearbox.schemas import read_model
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.study import Inputs, QuantityName
 from lineofaction.gearbox.studies.study.design import design_of
-from lineofaction.gearbox.studies.study.request import _meshes_and_bearings, factor_places
+from lineofaction.gearbox.studies.study.request import factor_places, names_with_planets
 from lineofaction.gearbox.studies.study.run import RUN
 from lineofaction.gearbox.studies.study.scenes import VariedScene, _part_name, places_of, with_value
 from lineofaction.gearbox.subjects import scene_of, with_own_cases
@@ -332,5 +332,5 @@ def test_responses_may_name_what_a_scene_has_with_all_its_planets() -> None:
     whole = check_scene(inputs, facts)
     parts = (*whole.ground_bearings, *whole.planet_bearings)
     named = [mesh.name for mesh in whole.meshes], [part.name for part in parts]
-    assert _meshes_and_bearings(inputs) == named
+    assert names_with_planets(inputs) == named
     assert any(name.endswith(" 2") for name in named[0]) and any(name.endswith(" 2") for name in named[1])

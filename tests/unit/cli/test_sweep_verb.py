@@ -14,7 +14,7 @@ from lineofaction.gearbox.convert.case import CheckedCase
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model
-from lineofaction.gearbox.studies.sweep.run import SWEEPABLE, _axis_of
+from lineofaction.gearbox.studies.sweep.run import SWEEPABLE, axis_of_text
 
 CASE = spur_case(
     "tip_relief_um = 15.0\ntip_relief_length_mm = 1.5", torques=[100.0, 200.0], model="plane_strain"
@@ -43,22 +43,24 @@ def output(*arguments: object) -> str:
 @pytest.mark.parametrize("name", SWEEPABLE)
 def test_every_spelling_means_one_thing(name: str, case: CheckedCase) -> None:
     for spelling in SWEEPABLE[name].spellings:
-        assert _axis_of(case, f"{spelling}=1:3:1").name == name
+        assert axis_of_text(case, f"{spelling}=1:3:1").name == name
 
 
 def test_a_name_without_a_gear_means_both_and_its_unit_may_be_left_out(case: CheckedCase) -> None:
-    axis = _axis_of(case, "tip_relief_um=0:40:20")
+    axis = axis_of_text(case, "tip_relief_um=0:40:20")
     assert axis.values == pytest.approx((0.0, 20e-6, 40e-6))
     assert axis.variables == ("pinion.tip_relief", "wheel.tip_relief")
-    assert _axis_of(case, "pair.pinion.tip_relief_um=0:40:20").variables == ("pinion.tip_relief",)
+    assert axis_of_text(case, "pair.pinion.tip_relief_um=0:40:20").variables == ("pinion.tip_relief",)
 
 
 def test_ranges_that_are_not_given_are_about_the_case(case: CheckedCase) -> None:
-    usual = {name: _axis_of(case, name).values for name in ("torque", "pinion.tip_relief", "misalignment")}
+    usual = {
+        name: axis_of_text(case, name).values for name in ("torque", "pinion.tip_relief", "misalignment")
+    }
     assert usual["torque"][0] == pytest.approx(40.0) and usual["torque"][-1] == 200.0
     assert (usual["pinion.tip_relief"][0], usual["pinion.tip_relief"][-1]) == pytest.approx((0.0, 30e-6))
     np.testing.assert_allclose(usual["misalignment"], -np.array(usual["misalignment"])[::-1])
-    length = _axis_of(case, "pinion.tip_relief_length").values
+    length = axis_of_text(case, "pinion.tip_relief_length").values
     assert 0.0 < length[0] < 1.5e-3 < length[-1]
 
 
@@ -73,7 +75,7 @@ def test_ranges_that_are_not_given_are_about_the_case(case: CheckedCase) -> None
 )
 def test_what_is_no_axis_is_refused(case: CheckedCase, text: str, said: str) -> None:
     with pytest.raises(BadInput, match=said):
-        _axis_of(case, text)
+        axis_of_text(case, text)
 
 
 def test_files_and_terminal_say_the_same(file: Path, tmp_path: Path) -> None:

@@ -12,9 +12,9 @@ from bounds import PlausibilityWarning
 from fe_contact import Gear, GearPair, SteDatabase, analyze
 from fe_contact.plausibility import flank_findings, pair_findings, root_findings, table_findings
 from fe_contact.plausibility.pair_checks import (
-    _nominal_deflection,
-    _pitch_point_pressure,
+    nominal_deflection,
     nominal_root_stresses,
+    pitch_point_pressure,
 )
 
 
@@ -77,9 +77,9 @@ def test_estimates_are_near_what_is_solved() -> None:
     database, _ = said_by(pair, 400.0)
     force = float(database.force[0])
     at_pitch_point = float(database.curve(force=force, at=np.array([0.0])).ste[0])
-    assert _nominal_deflection(pair, force) == pytest.approx(at_pitch_point, rel=0.4)
+    assert nominal_deflection(pair, force) == pytest.approx(at_pitch_point, rel=0.4)
     assert database.position[0] == 0.0
-    assert _pitch_point_pressure(pair, force) == pytest.approx(
+    assert pitch_point_pressure(pair, force) == pytest.approx(
         float(database.max_pressure[0, 0, 0, 0]), rel=0.1
     )
 

@@ -32,7 +32,7 @@ from rexs_unit import (
 
 from bounds.types import FloatArray
 from dynamics.bearings.loaded_bearing import LoadedBearing
-from lineofaction.gearbox.convert.scene_parts import _rolling_bearing_of
+from lineofaction.gearbox.convert.scene_parts import rolling_bearing_of
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.rexs.model import Document
@@ -55,7 +55,7 @@ def why(unit: OpenedUnit, number: int) -> str:
 
 def thrusts(bearing: RollingBearingInput) -> tuple[float, float]:
     """Return the axial force of a bearing on a shaft that is pushed by 100 um along z, and against it."""
-    made = _rolling_bearing_of(bearing)
+    made = rolling_bearing_of(bearing)
     loaded = LoadedBearing(made.row, locating=made.locating)
     moved = ((2e-5, 0.0, z, 0.0, 0.0) for z in (1e-4, -1e-4))
     force = [float(loaded.evaluate(d).force[2]) for d in moved]

@@ -32,7 +32,7 @@ from rexs_unit import (
 )
 
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
-from lineofaction.gearbox.from_rexs.unit_answer import _unit_json
+from lineofaction.gearbox.from_rexs.unit_answer import unit_json
 from lineofaction.gearbox.from_rexs.unit_files import LOAD_CASES_FILE
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import serialized
@@ -171,7 +171,7 @@ def test_a_load_case_sets_what_it_states_and_keeps_the_rest() -> None:
 def test_the_answer_and_the_verb_show_the_forces_that_differ(tmp_path: Path) -> None:
     cases = [{"force_v_direction": 200.0}, {}]
     document = two_stages(**pulled(u_coordinate_on_shaft=END, force_w_direction=5.0, cases=cases))
-    answer = UnitBody.model_validate(_unit_json(OpenedUnit.of(document)))
+    answer = UnitBody.model_validate(unit_json(OpenedUnit.of(document)))
     assert [[force.force_n for force in case.forces] for case in answer.load_cases] == [[], [[0.0, 5.0, 0.0]]]
     (tmp_path / "unit.rexs").write_bytes(serialized(document, "unit.rexs"))
     shown = loa("open", tmp_path / "unit.rexs", "-o", tmp_path / "unit")

@@ -12,7 +12,7 @@ import pytest
 
 from fe_contact import analyze
 from lineofaction.gearbox.convert.case import case_json, gear_pair
-from lineofaction.gearbox.convert.live import _between, condensed_of, live_curves
+from lineofaction.gearbox.convert.live import condensed_of, interpolated_columns, live_curves
 from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.live import LiveCurve, LiveInput
 
@@ -41,7 +41,7 @@ def test_columns_of_a_passage_are_interpolated_as_each_by_itself(count: int) -> 
     values = random.normal(size=(count, 7))
     x = np.concatenate([random.uniform(-0.2, 1.2, 200), knots])
     single = np.column_stack([np.interp(x, knots, column) for column in values.T])
-    np.testing.assert_array_max_ulp(_between(x, knots, values), single, 0)
+    np.testing.assert_array_max_ulp(interpolated_columns(x, knots, values), single, 0)
 
 
 @pytest.mark.usefixtures("coarse_sectors")

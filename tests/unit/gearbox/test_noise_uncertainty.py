@@ -18,6 +18,7 @@ from dynamics.noise import (
     SoundModel,
     forced_power,
     housing_radiation,
+    sound_band,
     sound_sensitivities,
 )
 from dynamics.noise.sound_band import largest_level
@@ -34,10 +35,10 @@ from lineofaction.gearbox.studies.noise.uncertainty import (
     GUESSED,
     MEASURED,
     STATED,
-    _band_of,
     _flank_scenes,
     _sensitivities_of,
     damping_of,
+    spans_of,
 )
 from lineofaction.gearbox.subjects import scene_of
 
@@ -138,8 +139,8 @@ def test_sensitivities_to_flanks_are_those_of_whole_responses(
     assert (row.change, row.change_of_two) == pytest.approx((once - own, twice - own), abs=1e-6)
 
 
-def test_bands_go_to_json(subject: TabledScene, model: SoundModel, tmp_path: Path) -> None:
-    band = _band_of(model, SPEED, 2, NoiseRanges(housing_damping=(0.4, 2.0)), Means(tmp_path, quiet))
+def test_bands_go_to_json(subject: TabledScene, model: SoundModel) -> None:
+    band = sound_band(model, SPEED, 2, spans_of(NoiseRanges(housing_damping=(0.4, 2.0))))
     known = {"damping_source": GUESSED.source, "damping_range": GUESSED.factors}
     told = json.loads(json.dumps(figures_of(SoundBandFigures, band, **known), allow_nan=False))
     assert len(told["total_low_db_a"]) == SPEED.size

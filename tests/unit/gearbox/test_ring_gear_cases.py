@@ -12,7 +12,7 @@ import pytest
 
 from bounds import Kind, PlausibilityWarning
 from fe_contact.analysis.analyze import analyze
-from fe_contact.compliance.flank import LARGEST_ROUNDING, _disc_rounding
+from fe_contact.compliance.flank import LARGEST_ROUNDING, disc_rounding
 from fe_contact.flank.modification import FlankModification
 from fe_contact.geometry import InternalGearPair, RingGear
 from fe_contact.material import Material
@@ -200,7 +200,7 @@ def test_a_disc_that_is_not_looked_at_is_far_from_the_limit(helix: float) -> Non
     """For every material up to a Poisson's ratio of 0.49."""
     soft = Material(210e9, 0.49)
     left = [
-        _disc_rounding(THICK * share, math.radians(helix), MOST_LAYERS, soft) for share in (0.01, 0.1, 1.0)
+        disc_rounding(THICK * share, math.radians(helix), MOST_LAYERS, soft) for share in (0.01, 0.1, 1.0)
     ]
     assert max(left) < 0.1 * LARGEST_ROUNDING
 

@@ -19,7 +19,7 @@ from dynamics.simulation import simulate
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.report.comparison.compare import _compare_runs, _read_universal, compare
+from lineofaction.report.comparison.compare import compare, compare_runs, read_universal
 from lineofaction.report.comparison.measured import (
     PER_PITCH,
     Difference,
@@ -141,7 +141,7 @@ def test_what_is_no_measurement_is_refused(text: str, tmp_path: Path) -> None:
 
 def test_a_run_of_twice_the_force_is_6_db_louder(run: RunResult) -> None:
     twice = replace(run, bearing_force=2.0 * run.bearing_force)
-    page = _compare_runs({"a": run, "b": twice}, RunView(), None)
+    page = compare_runs({"a": run, "b": twice}, RunView(), None)
     assert "changes by +6.0 dB" in page.sections[0].figures[0].alternative
     found = {row[0]: row for row in rows(page, "Differences with their errors")}
     assert found["mesh order 2"][-1] == "no error stated"  # the receipt of this run has none of orders
@@ -151,7 +151,7 @@ def test_stated_errors_of_orders_decide(run: RunResult) -> None:
     receipt = {**run.receipt, "error": {"time_step": {"bearing_force_orders": [0.1, 30.0]}}}
     stated = replace(run, receipt=receipt)
     louder = replace(stated, bearing_force=1.5 * run.bearing_force)
-    page = _compare_runs({"a": stated, "b": louder}, RunView(scale="peak"), None)
+    page = compare_runs({"a": stated, "b": louder}, RunView(scale="peak"), None)
     found = {row[0]: row for row in rows(page, "Differences with their errors")}
     assert found["mesh order 1"][-1] == "the second is larger"  # 5 N, 0.14 N
     assert found["mesh order 2"][-1] == "not shown to differ"  # 10 N, 42 N
@@ -252,7 +252,7 @@ def test_a_transmission_error_is_what_csv_would_say(
     file = universal(
         tmp_path / "m.uff", function(label, PITCHES * scale, 1e-6 * length * MEASURED), length=length
     )
-    found, known = _read_universal(file, TEETH, "µm"), averaged(file, PITCHES, MEASURED)
+    found, known = read_universal(file, TEETH, "µm"), averaged(file, PITCHES, MEASURED)
     assert isinstance(found, MeasuredCurve)
     assert found.pitches == known.pitches
     np.testing.assert_allclose(found.ripple, known.ripple, atol=2e-4)
@@ -262,7 +262,7 @@ def test_orders_of_the_shaft_become_mesh_orders(tmp_path: Path) -> None:
     x = np.arange(0.0, 50.0)
     own: dict[str, Any] = {"abscissa_spec_data_type": 20, "ordinate_spec_data_type": 12}
     file = universal(tmp_path / "o.unv", function("Order", x, 1e3 * x, **own), length=1e3)
-    found = _read_universal(file, TEETH, "m/s²")
+    found = read_universal(file, TEETH, "m/s²")
     assert isinstance(found, MeasuredOrders) and found.unit == "m/s²"
     np.testing.assert_allclose(found.order * TEETH, x, atol=1e-6)
     np.testing.assert_allclose(found.amplitude, x, rtol=1e-6)
@@ -272,7 +272,7 @@ def test_what_this_program_writes_is_read_back(tmp_path: Path) -> None:
     run = simulate(gear_pair_scene(speed=TimeLaw.ramp(0.0, 955.0 * RPM, 0.2), duration=0.2))
     file = tmp_path / "run.unv"
     write_universal_file(run, file, "orders")
-    found = _read_universal(file, TEETH, "µm")
+    found = read_universal(file, TEETH, "µm")
     assert isinstance(found, MeasuredOrders)
     assert found.near(1.0) > 0.0
     (kept,) = (each for each in pyuff.UFF(str(file)).read_sets() if each.get("ordinate_spec_data_type") == 8)
@@ -286,12 +286,12 @@ def test_one_of_several_is_not_guessed(tmp_path: Path) -> None:
         function("Position", PITCHES, MEASURED, id1="second"),
     )
     with pytest.raises(BadInput, match=r"2 in m\.uff: Position, second"):
-        _read_universal(universal(tmp_path / "m.uff", one, other), TEETH, "µm")
+        read_universal(universal(tmp_path / "m.uff", one, other), TEETH, "µm")
     with pytest.raises(BadInput, match="0 in time"):
-        _read_universal(universal(tmp_path / "time.uff", function("Time", PITCHES, MEASURED)), TEETH, "µm")
+        read_universal(universal(tmp_path / "time.uff", function("Time", PITCHES, MEASURED)), TEETH, "µm")
     (tmp_path / "bad.uff").write_text("no universal file")
     with pytest.raises(BadInput, match="measured"):
-        _read_universal(tmp_path / "bad.uff", TEETH, "µm")
+        read_universal(tmp_path / "bad.uff", TEETH, "µm")
 
 
 def test_a_table_is_compared_with_one(database: SteDatabase, tmp_path: Path) -> None:

@@ -26,7 +26,7 @@ from dynamics.types import FloatArray
 from lineofaction.gearbox import workbench
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.studies.housings import other_housings
-from lineofaction.gearbox.studies.listen.run import HeardRun, _sound_figures
+from lineofaction.gearbox.studies.listen.run import HeardRun, sound_figures
 
 
 @pytest.fixture
@@ -320,7 +320,7 @@ def steady(run: RunResult) -> RunResult:
 
 def test_a_steady_tone_of_60_db_has_4_sone_and_is_prominent(steady: RunResult) -> None:
     pytest.importorskip("mosqito", reason="loudness needs the extra psychoacoustics")
-    figures = _sound_figures(recording(), steady)
+    figures = sound_figures(recording(), steady)
     assert figures.steady
     assert figures.weighted_level == pytest.approx(60.0, abs=0.01)
     assert figures.loudness == pytest.approx(4.02, rel=0.05)
@@ -332,7 +332,7 @@ def test_a_steady_tone_of_60_db_has_4_sone_and_is_prominent(steady: RunResult) -
 def test_the_loudness_of_a_run_up_is_exceeded_for_a_twentieth_of_its_time(run: RunResult) -> None:
     pytest.importorskip("mosqito", reason="loudness needs the extra psychoacoustics")
     swelling = recording(TONE * np.linspace(0.0, 1.0, TONE.size) ** 2)
-    figures = _sound_figures(swelling, run)
+    figures = sound_figures(swelling, run)
     loudness = loudness_over_time(swelling)[1]
     assert not figures.steady and figures.tones == ()
     assert np.mean(loudness > figures.loudness) == pytest.approx(0.05, abs=0.01)
@@ -340,6 +340,6 @@ def test_the_loudness_of_a_run_up_is_exceeded_for_a_twentieth_of_its_time(run: R
 
 def test_without_the_extra_the_levels_are_left(steady: RunResult, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mosqito", None)
-    figures = _sound_figures(recording(), steady)
+    figures = sound_figures(recording(), steady)
     assert figures.level == pytest.approx(60.0, abs=0.01)
     assert figures.loudness is None and figures.sharpness is None

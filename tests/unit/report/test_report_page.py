@@ -20,7 +20,7 @@ from lineofaction.gearbox.units import boundary_ledger
 from lineofaction.report.document import Inputs, page_of, read_inputs
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table
-from lineofaction.report.drawing.page import Headline, Page, Part, Section, _is_number, html
+from lineofaction.report.drawing.page import Headline, Page, Part, Section, html, is_number
 from lineofaction.report.drawing.tables import facts, records, side_by_side
 from lineofaction.report.pair import data_sheet_section, pair_of, pair_remarks
 from lineofaction.report.ste.page import (
@@ -213,12 +213,12 @@ def test_the_receipt_is_in_the_page(database: SteDatabase) -> None:
 
 @pytest.mark.parametrize("text", ["12", "-0.5", "1.0e-12", "6.2 ± 0.1", "10 N m", ""])
 def test_numbers_are_known(text: str) -> None:
-    assert _is_number(text)
+    assert is_number(text)
 
 
 @pytest.mark.parametrize("text", ["none", "832, 0 failed", "10, 20", "corner_contact", "2 % of the mean"])
 def test_words_are_no_numbers(text: str) -> None:
-    assert not _is_number(text)
+    assert not is_number(text)
 
 
 def test_results_stand_before_effects_accuracy_input_and_receipts(

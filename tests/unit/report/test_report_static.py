@@ -33,7 +33,12 @@ from lineofaction.report.ste.over_torque import (
     ripple_over_torque,
 )
 from lineofaction.report.ste.page import static_results
-from lineofaction.report.ste.stiffness import _pair_shares, _secant_stiffness, load_sharing, mesh_stiffness
+from lineofaction.report.ste.stiffness import (
+    load_sharing,
+    mesh_stiffness,
+    pair_shares,
+    secant_stiffness_curves,
+)
 
 
 def test_two_pitches_repeat_the_period(database: SteDatabase) -> None:
@@ -96,14 +101,14 @@ def test_the_load_that_serves_lift_off_is_not_drawn(database: SteDatabase) -> No
 
 
 def test_shares_sum_to_one_wherever_a_pair_is(database: SteDatabase) -> None:
-    position, followed = _pair_shares(database, 2)
+    position, followed = pair_shares(database, 2)
     total = np.sum(list(followed.values()), axis=0)
     assert position[-1] == 2.0
     np.testing.assert_allclose(total, 1.0, atol=1e-12)
 
 
 def test_each_pair_passes_as_the_one_before_did_a_pitch_earlier(database: SteDatabase) -> None:
-    position, followed = _pair_shares(database, 2)
+    position, followed = pair_shares(database, 2)
     pitch = len(database.position)
     np.testing.assert_array_equal(followed[-1][pitch:], followed[0][: pitch + 1])
     carried = position[followed[-1] > 0]
@@ -118,7 +123,7 @@ def test_load_sharing_shows_three_loads(database: SteDatabase) -> None:
 
 
 def test_secant_stiffness_is_force_over_ste_and_width(database: SteDatabase) -> None:
-    _, values = _secant_stiffness(database)
+    _, values = secant_stiffness_curves(database)
     ste = database.static_transmission_error[0, 2, 0, 0]
     assert values[0, 2] == pytest.approx(100.0 / 0.0375877 / ste / 0.025)
 
@@ -314,7 +319,7 @@ def test_every_pair_is_followed_and_the_shares_sum_to_one(
     with_pitch_errors: Tables, database: SteDatabase, period: int
 ) -> None:
     table = database if period == 1 else with_pitch_errors(period)
-    position, followed = _pair_shares(table, 2)
+    position, followed = pair_shares(table, 2)
     assert np.sum(list(followed.values()), axis=0) == pytest.approx(np.ones(position.size))
     assert len(followed) == pitches_shown(table) + 1
     for share in followed.values():  # one stretch of mesh each

@@ -34,7 +34,7 @@ from lineofaction.gearbox.input_file import InputFile, Override
 from lineofaction.gearbox.problems import BadInput, Fault, JobFailed
 from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.gearbox.schemas.model import BoundaryModel
-from lineofaction.gearbox.schemas.reading import _line_of, validated
+from lineofaction.gearbox.schemas.reading import line_of_field, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from service.schemas.examples import CASE, SCENE
 
@@ -165,7 +165,7 @@ def test_every_field_of_an_example_is_found_in_a_line_that_names_it(file: Path) 
     lines = text.splitlines()
     seen: dict[str, int] = {}
     for path, name in fields(tomllib.loads(text)):
-        number = _line_of(text, path)
+        number = line_of_field(text, path)
         assert number is not None, path
         if name in lines[number - 1]:
             own = lines[number - 1].split("=")[0].strip() == name
@@ -183,7 +183,7 @@ def test_texts_and_lists_of_several_lines_hide_what_looks_like_a_field() -> None
         "[c]\nb = 4\n[[g.h]]\nx = 1\n[[g.h]]\nx = 2\n"
     )
     expected = {"a": 1, "d": 5, "c.b": 11, "g.h[0].x": 13, "g.h[1].x": 15, "c.missing": 10, "b": None}
-    assert {path: _line_of(text, path) for path in expected} == expected
+    assert {path: line_of_field(text, path) for path in expected} == expected
 
 
 def changed(tmp_path: Path, old: str, new: str) -> Path:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import errno
+import itertools
 import os
+import signal
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,14 +16,15 @@ from running_service import Bench, bench, lives, until
 from service_fake_work import SECRET
 from service_fakes import REGISTRY
 
+from host.children.launcher import ChildProcess, Ends, Launcher, start_child
 from host.directories import cache_home, data_home
 from service.queue import claims
 from service.queue.claims import MOST_LOST_RUNS, Claim
 from service.queue.scheduler import Scheduler
 from service.settings import LEAST_MEMORY_MB, Settings
 from service.store.results import ResultStore, StoredResult
-from service.worker.forks import ChildProcess, Ends, Forks, start_child
 from service.worker.usage import machine_memory_mb
+from service.worker.worker import WORK
 
 
 @pytest.fixture(params=["started anew", "forked"])
@@ -30,7 +33,7 @@ def machine(
 ) -> Iterator[Bench]:
     """A started scheduler with two workers, started anew or forked from a warm process."""
     if request.param == "started anew":
-        monkeypatch.setattr(Forks, "launch", lambda _, ends: start_child(ends))
+        monkeypatch.setattr(Launcher, "launch", lambda _, ends: start_child(WORK, ends))
     made = bench(tmp_path, REGISTRY, workers=2)
     made.scheduler.start()
     yield made
@@ -114,6 +117,36 @@ def test_attempts_are_limited_and_the_reason_is_stated(machine: Bench) -> None:
     job = machine.ended(machine.submit(mode="die"))
     assert (job.status, job.attempts, len(machine.starts(job))) == ("failed", 2, 2)
     assert job.message == "The worker ended early with exit code 7. That was attempt 2 of 2."
+
+
+def test_a_worker_that_is_killed_from_outside_costs_no_attempt(
+    machine: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is killed as often as there are attempts, and once more."""
+    monkeypatch.setattr(claims, "wait_s", lambda _lost_runs: 0.0)
+    job = machine.submit(mode="hang_thrice", text="late")
+    for run in range(3):
+        until(lambda: len(machine.starts(job)) == run + 1)  # noqa: B023 (within this run)
+        until(lambda: machine.submissions.find(job.id).stage == "first")
+        os.kill(worker(machine, job.key), signal.SIGKILL)
+    ended = machine.ended(job)
+    assert (ended.status, ended.attempts) == ("successful", 1)
+
+
+def test_a_worker_that_the_system_kills_for_memory_costs_an_attempt(
+    machine: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Here as its count of such kills says."""
+    counts = itertools.count()
+    monkeypatch.setattr("host.children.child.memory_kills", lambda: next(counts))
+    job = machine.submit(mode="hang")
+    for run in range(2):
+        until(lambda: len(machine.starts(job)) == run + 1)  # noqa: B023 (within this run)
+        until(lambda: machine.submissions.find(job.id).stage == "first")
+        os.kill(worker(machine, job.key), signal.SIGKILL)
+    ended = machine.ended(job)
+    text = "The worker was ended by SIGKILL (it may have run out of memory). That was attempt 2 of 2."
+    assert (ended.status, ended.message) == ("failed", text)
 
 
 def test_failures_raised_on_purpose_are_told_and_not_retried(machine: Bench) -> None:
@@ -370,11 +403,11 @@ def test_a_child_that_ends_before_it_begins_costs_no_attempt(
     """Here the first one finds no program."""
     launched: list[int] = []
 
-    def launch(_forks: Forks, ends: Ends) -> ChildProcess:
+    def launch(_launcher: Launcher, ends: Ends) -> ChildProcess:
         launched.append(1)
-        return start_child(ends, "no.such.module" if len(launched) == 1 else "service.worker.child")
+        return start_child("no.such.module" if len(launched) == 1 else WORK, ends)
 
-    monkeypatch.setattr(Forks, "launch", launch)
+    monkeypatch.setattr(Launcher, "launch", launch)
     machine = bench(tmp_path, REGISTRY, attempts=1)
     machine.scheduler.start()
     job = machine.ended(machine.submit(text="late"))

@@ -17,8 +17,9 @@ from own_process import children, command, python
 from running_service import PATIENCE_S, lives, until
 from structlog.testing import capture_logs
 
+from host.children.frames import Frame
 from lineofaction.gearbox.problems import LiveUnavailable, ServiceError, Superseded, Unexpected
-from service.live.child import worked
+from service.live.answer import answer_of
 from service.live.kept_answers import KeptAnswers
 from service.live.live_worker import AnswerTimes, LiveWorker
 from service.live.order import LiveOrder
@@ -229,15 +230,15 @@ def test_a_refusal_passes_as_it_was_told_and_a_defect_by_number(pool: LivePool, 
 
 @pytest.mark.parametrize("number", ["nan", "inf", "-inf"])
 def test_a_number_that_json_has_not_is_a_defect(number: str) -> None:
-    head, body = worked(LiveOrder("live_fake_work:speak", {"number": number}), note=lambda: None)
-    assert (head.kind, body) == ("defect", b"")
+    found = answer_of(LiveOrder("live_fake_work:speak", {"number": number}), note=lambda: None)
+    assert found == Frame("defect")
 
 
 def test_words_and_numbers_come_as_they_are() -> None:
-    head, body = worked(LiveOrder("live_fake_work:speak", {"number": "0.3"}))
+    found = answer_of(LiveOrder("live_fake_work:speak", {"number": "0.3"}))
     expected = {"number": 0.3, "word": "NaN and Infinity", "list": [0.1, 1e-7, True, None, "µ"]}
-    assert (head.kind, head.length) == ("answer", len(body))
-    assert json.loads(body) == expected
+    assert found.kind == "answer"
+    assert found.as_json() == expected
 
 
 SERVICE = """

@@ -18,6 +18,7 @@ from service_fakes import REGISTRY
 from structlog.testing import capture_logs
 
 from host import Ended
+from host.children.frames import Frame, FrameBuffer
 from lineofaction.cli.serve import run_serve
 from lineofaction.gearbox.problems import (
     BadInput,
@@ -29,14 +30,14 @@ from lineofaction.gearbox.problems import (
 )
 from service.app import create_app
 from service.folders import own_folder, remove_left
-from service.live.order import AnswerHead, LiveOrder
+from service.live.order import LiveOrder
 from service.live.question_pool import QuestionPool
 from service.live.turns import Asker
 from service.reading.course import Course
 from service.reading.reader import AT_ONCE, LIMITS, reading_pool
 from service.settings import Settings, load_settings
 
-READING_BEGUN = AnswerHead("reading").line()
+READING_BEGUN = Frame("reading").head
 
 
 def order(name: str, **inputs: Any) -> LiveOrder:
@@ -132,7 +133,10 @@ def test_ends_that_are_not_the_files_fault_may_be_repeated(
     sent: bytes, code: int, cpu_seconds: float, bound: str
 ) -> None:
     """A kill from outside, and an end before the order was read."""
-    found = Course.of(sent).bound_of_end(Ended(code, cpu_seconds, 0))
+    course, frames = Course(), FrameBuffer()
+    course.take(frames.take(sent))
+    course.end(partial=frames.partial)
+    found = course.bound_of_end(Ended(code, cpu_seconds, 0))
     assert bound in found and bool(bound) == bool(found)
 
 
@@ -180,7 +184,8 @@ def test_a_killed_reader_leaves_nothing(pool: QuestionPool) -> None:
     future = pool.ask(order("loop"))
     readers = pool._workers[0]._children
     until(lambda: bool(readers._children) and bool(left(pool)) and any(left(pool)[0].iterdir()))
-    (pid,) = readers._children
+    (child,) = readers._children
+    pid = child.pid
     os.kill(pid, signal.SIGKILL)
     with pytest.raises(LiveUnavailable, match="ended"):
         future.result(timeout=PATIENCE_S)

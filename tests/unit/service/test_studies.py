@@ -16,7 +16,7 @@ from lineofaction.gearbox.convert.answers import metadata_json, summary_json
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.live import outline_json
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
-from lineofaction.gearbox.from_rexs.unit_answer import _unit_json
+from lineofaction.gearbox.from_rexs.unit_answer import unit_json
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import STUDIES, study_of
 from lineofaction.gearbox.rexs.files import read_rexs
@@ -88,7 +88,7 @@ ROTOR = UNIT.with_name("jeffcott_scene.toml")
 
 def test_load_cases_of_an_opened_unit_are_those_of_their_file(tmp_path: Path) -> None:
     unit = OpenedUnit.of(read_rexs(UNIT))
-    body = UnitBody.model_validate(_unit_json(unit))
+    body = UnitBody.model_validate(unit_json(unit))
     file = tmp_path / "load_cases.toml"
     file.write_text(unit.files()["load_cases.toml"], encoding="utf-8")
     deflect = offers()["deflect"]

@@ -14,7 +14,7 @@ import pytest
 from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear, SteDatabase, analyze
 from fe_contact.full_contact import solve_full_contact
 from fe_contact.material import Material
-from fe_contact.planning.model_error import FLOOR, _flank_tilt
+from fe_contact.planning.model_error import FLOOR, flank_tilt
 from fe_contact.ste.curve import AT_NODES, METHOD, all_sources
 
 SOURCE = "CalculiX 2.20, 1.5 elements per Hertz half-width, plane strain, uncertainty 0.2 %"
@@ -268,4 +268,4 @@ def test_what_unlike_gears_leave_out_grows_with_the_load_and_with_the_unlikeness
     loads = analyze(pair(9e9), torques=[5.0, RATED], model="plane_strain", level="draft")
     assert (stated(loads, RATED) > 1.5 * stated(loads, 5.0)).all()
     force = loads.force[-1:]
-    assert _flank_tilt(pair(9e9), force) > 1.5 * _flank_tilt(both, force)
+    assert flank_tilt(pair(9e9), force) > 1.5 * flank_tilt(both, force)

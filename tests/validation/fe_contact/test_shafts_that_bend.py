@@ -9,7 +9,7 @@ import pytest
 from spur_gears import GEAR
 
 from fe_contact import GearPair, Shaft, SteDatabase, analyze
-from fe_contact.effects.shaft_deflection import _SeatCompliance
+from fe_contact.effects.shaft_deflection import SeatCompliance
 
 pytestmark = pytest.mark.usefixtures("coarse_sectors")
 
@@ -32,7 +32,7 @@ def test_a_shaft_under_the_middle_shifts_the_whole_curve_by_its_deflection():
     choice = {"effects": {"corner_contact": "off"}}
     rigid = table(None, None, **choice).static_transmission_error
     bent = table(SHAFT, None, **choice).static_transmission_error
-    shift = _SeatCompliance.of_shaft(SHAFT).translation * FORCES
+    shift = SeatCompliance.of_shaft(SHAFT).translation * FORCES
     assert (bent - rigid)[:, :, 0, 0] == pytest.approx(np.tile(shift, (12, 1)), rel=1e-6, abs=0.0)
 
 

@@ -14,7 +14,7 @@ from dynamics.integrators.method_choice import choose_method
 from dynamics.results import RunResult
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import interrupted_run, simulate, simulate_to_file
-from dynamics.simulation.whole_run_error import RunPair, _level_error, blind_windows, finer_run
+from dynamics.simulation.whole_run_error import RunPair, blind_windows, finer_run, level_error
 from dynamics.types import RunStatus
 from lineofaction.hardcases.dynamics.bouncing_mass import bounce, cycle
 from lineofaction.hardcases.dynamics.oscillators import BASE_RADIUS, NATURAL, coast, torsional
@@ -117,7 +117,7 @@ def test_chaos_is_named_and_has_errors_of_levels():
 def test_levels_of_two_drawings_are_as_far_apart_as_stated():
     """Noise in place of chaos: what is stated covers 19 of 20 drawings of the true level."""
     power = np.random.default_rng(7).chisquare(40, size=(400, 3, 6)) / 40.0
-    stated = np.array([_level_error(np.moveaxis(pair[:2], 0, 1))[0] for pair in power])
+    stated = np.array([level_error(np.moveaxis(pair[:2], 0, 1))[0] for pair in power])
     true = np.abs(np.sqrt(power[:, 0].mean(axis=1)) - np.sqrt(power[:, 2].mean(axis=1)))
     assert 0.9 < np.mean(true <= stated) < 0.99
 

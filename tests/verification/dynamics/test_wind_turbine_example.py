@@ -19,7 +19,7 @@ from small_table import small_table
 
 from dynamics.assembly.assemble import assemble
 from dynamics.integrators import static_equilibrium
-from dynamics.mechanism.phases import _frame_turns
+from dynamics.mechanism.phases import frame_turns
 from dynamics.motion.observation import local_state
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
@@ -93,7 +93,7 @@ def test_ratios_and_phases_are_exact():
     names = [mesh.name for mesh in system.scene.meshes]
     assert rates[names.index("sun mesh")][0] == rates[names.index("ring mesh 2")][0] == RING
     assert rates[names.index("high-speed mesh")][0] == LARGE * set_ratio
-    (turn,) = _frame_turns(system.scene, system.kinematics)
+    (turn,) = frame_turns(system.scene, system.kinematics)
     assert turn[0] == 1  # the carrier's frame against the fixed one, per turn of the rotor
     reference = system.arrays.reference
     location = len(names)

@@ -23,7 +23,7 @@ from fe_contact.contact import (
 )
 from fe_contact.effects.flank_modification import ModificationGap
 from fe_contact.effects.misalignment import MisalignmentGap
-from fe_contact.effects.shaft_deflection import _SeatCompliance, _ShaftCompliance
+from fe_contact.effects.shaft_deflection import SeatCompliance, ShaftCompliance
 from fe_contact.geometry import Shaft
 from fe_contact.material import Material
 
@@ -199,15 +199,15 @@ PAIR = GearPair(GEAR, GEAR, 80e-3)
 
 
 def loaded(
-    seats: tuple[_SeatCompliance | None, _SeatCompliance | None], force: np.ndarray, rigid: float = RIGID
+    seats: tuple[SeatCompliance | None, SeatCompliance | None], force: np.ndarray, rigid: float = RIGID
 ):
     """Deflection and line load of one pair at the pitch point, at each normal force."""
-    model = ContactModel(compliances=(_ShaftCompliance(*seats),))
+    model = ContactModel(compliances=(ShaftCompliance(*seats),))
     _, solution, only = solved_slices(PAIR, model, force, 1.0 / (math.pi * rigid), rigid)
     return solution.deflection[0], solution.force[0][:, only] / (WIDTH / COUNT)
 
 
-def closed_form(seats: tuple[_SeatCompliance, ...]) -> tuple[float, float]:
+def closed_form(seats: tuple[SeatCompliance, ...]) -> tuple[float, float]:
     """Deflection per force and K_Hbeta where the whole face carries.
 
     With the line load q = c (d - u - v z), force c b (d - u), moment -c v b^3/12, and u, v from the seats.
@@ -226,8 +226,8 @@ def test_tilting_shafts_load_one_end_in_proportion_to_the_load(position, record_
     """K_Hbeta above 1, the same at every load: misalignment grows with it."""
     shaft = Shaft(length=0.2, diameter=0.045, position=position, bearing_stiffness=5e8)
     seats = (
-        _SeatCompliance.of_shaft(shaft),
-        _SeatCompliance.of_shaft(dataclasses.replace(shaft, diameter=0.06)),
+        SeatCompliance.of_shaft(shaft),
+        SeatCompliance.of_shaft(dataclasses.replace(shaft, diameter=0.06)),
     )
     force = np.array([300.0, 3000.0, 30000.0])
     deflection, load = loaded(seats, force)
@@ -247,7 +247,7 @@ def test_tilting_shafts_load_one_end_in_proportion_to_the_load(position, record_
 def test_load_grows_uneven_the_further_the_gear_stands_from_the_middle():
     uneven = []
     for position in (0.1, 0.08, 0.06, 0.05):
-        seat = _SeatCompliance.of_shaft(Shaft(length=0.2, diameter=0.04, position=position))
+        seat = SeatCompliance.of_shaft(Shaft(length=0.2, diameter=0.04, position=position))
         _, load = loaded((seat, None), np.array([3000.0]))
         uneven.append(load.max() / load.mean())
     assert uneven[0] == pytest.approx(1.0, abs=1e-9)
@@ -256,7 +256,7 @@ def test_load_grows_uneven_the_further_the_gear_stands_from_the_middle():
 
 def test_partial_contact_satisfies_its_own_tilt():
     """Where the tilt lifts part of the face off, the load that is left bends the shaft to that tilt."""
-    seat = _SeatCompliance(translation=1e-8, coupling=1e-6, tilt=1e-5)
+    seat = SeatCompliance(translation=1e-8, coupling=1e-6, tilt=1e-5)
     deflection, load = loaded((seat, None), np.array([2000.0]), rigid=0.05 * RIGID)
     z = Slices.of_pair(PAIR, COUNT).center
     slice_force = load[0] * WIDTH / COUNT

@@ -12,8 +12,8 @@ from analysis_requests import point_request
 from spur_gears import GEAR
 
 from fe_contact import GearPair, root_stress
-from fe_contact.analysis.flanks.root_meshes import _finer_root
-from fe_contact.analysis.flanks.root_stress_history import _crest_values
+from fe_contact.analysis.flanks.root_meshes import finer_root
+from fe_contact.analysis.flanks.root_stress_history import crest_values
 from fe_contact.compliance import UnitRootStress, unit_root_stress, unit_root_stress_3d
 from fe_contact.contact.face_patch import FaceGrid, face_loads
 from fe_contact.contact.patch import load_vector
@@ -34,7 +34,7 @@ def peaks(found: UnitRootStress, width: float = 1.0) -> np.ndarray:
         load_vector(found.s, center[0, 0], half[0, 0], 0.0, forces)
     own = found.stress[len(found.distance) // 2, :, 0] @ forces * np.array([1.0, -1.0])[:, None, None]
     middle = np.argmin(np.abs(found.station_z))
-    return _crest_values(found.station_s, own[..., middle])[0]
+    return crest_values(found.station_s, own[..., middle])[0]
 
 
 @functools.cache
@@ -60,7 +60,7 @@ def test_sectors_converge_to_the_plane(
     level: str, limits: tuple[float, float], record_figure: Callable[..., None]
 ) -> None:
     """One layer, no axial displacement: the section alone, finer at the root than the contact's."""
-    recipe = _finer_root(getattr(SectorRecipe, level)(GEAR))
+    recipe = finer_root(getattr(SectorRecipe, level)(GEAR))
     one = replace(recipe, layers=1, merge_rows=(), layer_growth=1.0)
     found = peaks(unit_root_stress_3d(GEAR, one, reach=0, support=PlaneStrain()), GEAR.face_width)
     errors = found / refined(2.0) - 1.0
@@ -81,7 +81,7 @@ def test_a_finer_root_is_worth_it() -> None:
             / refined(2.0)
             - 1.0
         )
-        for r in (recipe, _finer_root(recipe))
+        for r in (recipe, finer_root(recipe))
     )
     assert np.all(finer < 0.5 * plain)
 

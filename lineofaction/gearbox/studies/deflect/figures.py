@@ -150,7 +150,7 @@ def _mesh_over_cases(result: GearboxDeflection, name: str) -> Json:
     }
 
 
-def _optimization_inputs(result: GearboxDeflection, mesh: str) -> Json:
+def optimization_inputs(result: GearboxDeflection, mesh: str) -> Json:
     """Return the loads of a mesh over the spectrum: torques, their misalignments, their shares as weights.
 
     Load cases of equal torque and misalignment, to the digits of the file, are one load; those of equal
@@ -191,7 +191,7 @@ def write_spectrum(result: GearboxDeflection, _scene: Any, target: Path) -> None
         stem = "".join(letter if letter.isalnum() else "_" for letter in name)
         case, study = (target.with_name(f"{target.stem}_{stem}{end}.toml") for end in ("", "_optimize"))
         case.write_text(toml_text(result.cases[name]), encoding="utf-8")
-        study.write_text(toml_text(_optimization_inputs(result, name)), encoding="utf-8")
+        study.write_text(toml_text(optimization_inputs(result, name)), encoding="utf-8")
         lines.append(f"# loa optimize {case.name} {study.name} -o {target.stem}_{stem}_best")
         lines += [
             f'[[meshes]]\nname = "{name}"',

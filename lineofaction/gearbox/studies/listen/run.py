@@ -62,7 +62,7 @@ class SoundFigures:
     """Hz and tone-to-noise ratio in dB of the prominent tones of a steady sound."""
 
 
-def _sound_figures(recording: Recording, run: RunResult) -> SoundFigures:
+def sound_figures(recording: Recording, run: RunResult) -> SoundFigures:
     """Return the figures of a sound pressure; of a very short one, or without MoSQITo, its levels alone."""
     level, weighted = (sound_pressure_level(recording, weighted=by_ear) for by_ear in (False, True))
     speed = np.abs(run.speed[run.shaft.index(driving_shaft(run, 0))])
@@ -218,7 +218,7 @@ def heard_run(name: str, run: RunResult, housings: SceneHousings, receiver: Rece
         recording, figures = housings.velocity(run, receiver.point, receiver.direction), None
     else:
         recording = housings.pressure(run, receiver.microphone_mm)
-        figures = _sound_figures(recording, run)
+        figures = sound_figures(recording, run)
     own = [scene_housing(body, part) for part, body in housings.housings.items()]
     return HeardRun(name, recording, figures, other_housings(own, run), time - time[0], speed)
 

@@ -73,14 +73,14 @@ class HousingSound(Part):
     resolved_hz: Annotated[float, Source("resolved_frequency")]
     valid_hz: Annotated[float, Source("valid_frequency")]
     interpolation_error_db: float
-    models_db: dict[str, float]
-    model_error_db: dict[str, float]
-    models_left_out: dict[str, str]
-    models_cpu_seconds: dict[str, float]
-    models_error_band_db: dict[str, tuple[float, float]]
-    models_predicted: dict[str, PredictedCost]
-    exact_lines: list[ExactLineFigures]
-    radiation_cost: HousingCost | None
+    models_db: Annotated[dict[str, float], Source("level", missing={})]
+    model_error_db: Annotated[dict[str, float], Source("error", missing={})]
+    models_left_out: Annotated[dict[str, str], Source("left_out", missing={})]
+    models_cpu_seconds: Annotated[dict[str, float], Source("seconds", missing={})]
+    models_error_band_db: Annotated[dict[str, tuple[float, float]], Source("error_band", missing={})]
+    models_predicted: Annotated[dict[str, PredictedCost], Source("predicted", missing={})]
+    exact_lines: Annotated[list[ExactLineFigures], Source("lines", missing=[])]
+    radiation_cost: Annotated[HousingCost | None, Source("cost", missing=None)]
 
 
 class RegionSound(Part):
@@ -172,9 +172,9 @@ class PressureFigures(Part):
 
         order: float
         speed_rpm: float
-        level_db_a: Annotated[float, Source("level_db_a")]
-        low_db_a: Annotated[float | None, Source("low_db_a")]
-        high_db_a: Annotated[float | None, Source("high_db_a")]
+        level_db_a: float
+        low_db_a: float | None
+        high_db_a: float | None
 
     microphone_mm: list[float]
     level_db_a: list[list[float]]
@@ -192,8 +192,8 @@ class NoiseFigures(Figures):
     class BearingSound(Part):
         """Levels by order, then by speed: by the force of a bearing alone, and of what is left without it."""
 
-        alone_db_a: list[list[float]]
-        without_db_a: list[list[float]]
+        alone_db_a: Annotated[list[list[float]], Source("bearing_alone_level")]
+        without_db_a: Annotated[list[list[float]], Source("level_without_bearing")]
 
     class LoudPoint(Part):
         """An order at a speed at which it is louder than at the speeds beside it."""

@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
-
-from bounds.types import Json
 from dynamics.acoustics import Range
 from dynamics.mechanism.kinematics import at_steady_speeds
 from dynamics.noise import (
     DesignFigure,
-    HousingRadiation,
-    RadiatedSound,
+    SceneSound,
     Sensitivity,
     SoundBand,
     SoundModel,
-    sound_band,
+    band_about,
     sound_sensitivities,
 )
 from dynamics.scene import Scene
@@ -31,8 +28,7 @@ from lineofaction.gearbox.schemas.housings import HousingInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.studied import RANGES, NoiseRanges
 from lineofaction.gearbox.studies.computation import Means
-from lineofaction.gearbox.studies.figures import figures_of
-from lineofaction.gearbox.studies.noise import Inputs, SensitivityFigures, SoundBandFigures
+from lineofaction.gearbox.studies.noise import Inputs
 from lineofaction.gearbox.studies.study.scenes import VariedScene, places_of
 
 GEARS = ("pinion", "wheel")
@@ -71,49 +67,48 @@ def _known_damping(housing: HousingInput) -> KnownDamping:
     return GUESSED
 
 
-def uncertainty(
-    subject: TabledScene,
-    sound: RadiatedSound,
-    radiation: Mapping[str, HousingRadiation],
-    off: FloatArray,
-    inputs: Inputs,
-    means: Means,
-) -> Json:
-    """Return the facts `band`, `sensitivities`, `sensitivities_left_out` and the CPU time, as requested.
+@dataclass(frozen=True)
+class SoundUncertainty:
+    """How far levels may be off by what is guessed, and what a step of each figure changes."""
 
-    `off` (2, S, H): from and to where the radiation model is off, dB, below 0: too quiet.
-    """
-    damping = damping_of(subject.inputs, radiation)
+    damping: KnownDamping
+    """Of the housings."""
+    band: SoundBand | None
+    """None: not requested."""
+    sensitivities: tuple[Sensitivity, ...]
+    """Of the largest level; none where they are not requested."""
+    left_out: Mapping[str, str]
+    """Why figures have no sensitivity, by name."""
+    seconds: float | None
+    """CPU time; None: nothing was requested."""
+
+
+def uncertainty(subject: TabledScene, sound: SceneSound, inputs: Inputs, means: Means) -> SoundUncertainty:
+    """Return bands and sensitivities of the sound of a scene, as the inputs request them."""
+    radiation, speed = sound.radiation, sound.power.speed
+    damping, band = damping_of(subject.inputs, radiation), None
+    if inputs.housing_damping is not None:
+        low, high = inputs.housing_damping
+        damping = KnownDamping("range stated", (low, high))
     housings = {name: subject.housings[name] for name in radiation}
     model = SoundModel(subject.scene, housings, radiation)
-    facts: Json = {"band": None, "sensitivities": [], "sensitivities_left_out": {}}
+    sensitivities, left_out = tuple[Sensitivity, ...](), dict[str, str]()
     began = cpu_seconds()
     with boundary_errors():
         if inputs.band:
-            own = inputs.model_copy(update={"housing_damping": inputs.housing_damping or damping.factors})
-            band = _band_of(model, sound.speed, inputs.orders, own, means).about(sound.orders)
-            below, above = np.maximum(off[1].T, 0.0), np.maximum(-off[0].T, 0.0)
-            band = band.with_power_error("radiation_model", sound.orders, below, above)
-            source = damping.source if inputs.housing_damping is None else "range stated"
-            facts["band"] = figures_of(
-                SoundBandFigures, band, damping_source=source, damping_range=own.housing_damping
-            )
+            spans = spans_of(inputs.model_copy(update={"housing_damping": damping.factors}))
+            power, error = sound.power.orders, sound.error
+            band = band_about(model, speed, inputs.orders, spans, power, error, means.report)
         if inputs.sensitivities:
-            rows, left_out = _sensitivities_of(subject, model, sound.speed, inputs.orders, means)
-            facts["sensitivities"] = [figures_of(SensitivityFigures, row) for row in rows]
-            facts["sensitivities_left_out"] = left_out
-    if inputs.band or inputs.sensitivities:
-        facts["seconds"] = {**sound.facts["seconds"], "uncertainty": cpu_seconds() - began}
-    return facts
+            sensitivities, left_out = _sensitivities_of(subject, model, speed, inputs.orders, means)
+    seconds = cpu_seconds() - began if inputs.band or inputs.sensitivities else None
+    return SoundUncertainty(damping, band, sensitivities, left_out, seconds)
 
 
-def _band_of(
-    model: SoundModel, speed: FloatArray, orders: int, ranges: NoiseRanges, means: Means
-) -> SoundBand:
-    """Return the bands over the ranges."""
+def spans_of(ranges: NoiseRanges) -> dict[str, Range]:
+    """Return the ranges of factors, each about 1, by the name of what is guessed."""
     factors = {name: span for name in RANGES if (span := getattr(ranges, name)) is not None}
-    spans = {name: Range(low, 1.0, high) for name, (low, high) in factors.items()}
-    return sound_band(model, speed, orders, spans, progress=means.report)
+    return {name: Range(low, 1.0, high) for name, (low, high) in factors.items()}
 
 
 def _sensitivities_of(

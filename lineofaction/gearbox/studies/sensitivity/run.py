@@ -64,18 +64,20 @@ class _Stored:
     pairs: Studies
 
 
-def _write_studies(studies: Studies, path: Path) -> None:
+def write_studies(studies: Studies, path: Path) -> None:
+    """Write the sensitivities of a scene to a file."""
     write_record(_Stored(tuple(studies)), path, SCHEMA)
 
 
-def _read_studies(path: Path) -> Studies:
+def read_studies(path: Path) -> Studies:
+    """Return the sensitivities that a file holds."""
     stored: _Stored = read_record(path, {SCHEMA: _Stored})
     return stored.pairs
 
 
 class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
     inputs, answer = Inputs, SensitivityFigures
-    file = ResultFile("schema", (SCHEMA,), _write_studies, _read_studies, Studies)
+    file = ResultFile("schema", (SCHEMA,), write_studies, read_studies, Studies)
     resumed = True
 
     def narrowed(self, checked: CheckedCase, _inputs: Inputs) -> CheckedCase:

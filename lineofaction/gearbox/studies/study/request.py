@@ -38,7 +38,7 @@ def responses_of(inputs: Inputs) -> tuple[Response, ...]:
 
 def check_parts(scene: SceneInput, responses: tuple[Response, ...]) -> None:
     """Every response names a mesh or a bearing of the scene, or of one of its planets."""
-    meshes, bearings = _meshes_and_bearings(scene)
+    meshes, bearings = names_with_planets(scene)
     for index, response in enumerate(responses):
         for field, name, known in (
             ("part", response.part, bearings if response.kind.of == "bearing" else meshes),
@@ -48,7 +48,7 @@ def check_parts(scene: SceneInput, responses: tuple[Response, ...]) -> None:
                 raise BadInput.of(f"responses[{index}].{field}", name, f"one of {', '.join(known)}")
 
 
-def _meshes_and_bearings(scene: SceneInput) -> tuple[list[str], list[str]]:
+def names_with_planets(scene: SceneInput) -> tuple[list[str], list[str]]:
     """Return the names that the meshes and the bearings of a scene have with all its planets."""
     meshes = [mesh.name for mesh in scene.meshes]
     kinds: tuple[Sequence[Any], ...] = scene.bushings, scene.rolling_bearings, scene.planet_bearings

@@ -105,7 +105,7 @@ SWEEPABLE = {
 """By the name of their `SweepAxis`."""
 
 
-def _axis_of(case: CheckedCase, text: str) -> SweepAxis:
+def axis_of_text(case: CheckedCase, text: str) -> SweepAxis:
     """Return the axis that ``NAME`` or ``NAME=FIRST:LAST:STEP`` says.
 
     Raises `BadInput`: there is no such name, or no such values.
@@ -283,7 +283,7 @@ class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
 
 
 def _request(case: CheckedCase, inputs: Inputs) -> SweepRequest:
-    axes = tuple(_axis_of(case, text) for text in inputs.over)
+    axes = tuple(axis_of_text(case, text) for text in inputs.over)
     point = operating_point(case_at(case.case, FlankPoint()))
     return SweepRequest(case.pair, axes, point, case.options)
 

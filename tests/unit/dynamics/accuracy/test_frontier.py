@@ -11,10 +11,10 @@ from dynamics.ablation import ablate
 from dynamics.accuracy import (
     FIDELITIES,
     FIGURES,
-    _Blocks,
-    _knee_of_results,
-    _TimeIntegration,
+    BlockGrid,
+    TimeIntegration,
     frontier,
+    knee_of_results,
     runs_of_frontier,
 )
 from dynamics.assembly.assemble import assemble
@@ -94,7 +94,7 @@ def test_the_knee_does_not_go_below_the_error_of_the_table(found):
     ]
     assert finer
     doubling = [replace(result, cpu_seconds=2.0**k) for k, result in enumerate(found.results)]
-    knee = _knee_of_results(doubling)
+    knee = knee_of_results(doubling)
     assert knee is not None
     assert knee not in finer
 
@@ -121,12 +121,12 @@ def test_runs_too_short_to_compare_and_unknown_fidelities_are_refused():
 
 def test_a_fixed_step_knows_no_tolerance():
     fixed = replace(RUN_UP, integration=Integration(fixed_step=1e-5))
-    assert _TimeIntegration("x", "x", "steps", tolerance=1e-9).refusal(fixed) is not None
+    assert TimeIntegration("x", "x", "steps", tolerance=1e-9).refusal(fixed) is not None
 
 
 def test_blocks_hold_whole_parts_of_the_run():
     system = assemble(gear_pair_scene(square_wave_table(), duration=0.4))
-    blocks = _Blocks.of(system)
+    blocks = BlockGrid.of(system)
     assert blocks.orders == 5
     assert blocks.bounds[0, 0] == 0
     assert blocks.bounds[-1, 1] == round(0.4 * system.sampling.rate) + 1

@@ -20,7 +20,7 @@ from dynamics.bearings import Bushing
 from dynamics.integrators import static_equilibrium
 from dynamics.joints import Coupling, FreeRotation
 from dynamics.linearize import linearize, natural_modes, whirl_modes
-from dynamics.linearize.campbell import _speed_terms
+from dynamics.linearize.campbell import speed_terms
 from dynamics.loads import TimeLaw
 from dynamics.motion.force_balance import force_balance
 from dynamics.scene import Outputs
@@ -234,7 +234,7 @@ def test_time_integration_has_the_gyroscopic_terms_of_the_whirl_modes(torn):
     full, bare = (
         force_balance(system.arrays, 0.0, q, 0.0 * q, 0.0 * q, gyroscopic=on) for on in (True, False)
     )
-    gyroscopic, _ = _speed_terms(system, 0.0)
+    gyroscopic, _ = speed_terms(system, 0.0)
     unit = np.sqrt(np.diag(system.arrays.mass))
     missed, whole = ((full.damping - bare.damping - t) / np.outer(unit, unit) for t in (gyroscopic, 0.0))
     lowest = np.min(of_the_beam(system, natural_modes(system)))

@@ -14,7 +14,7 @@ from dynamics.forces.laws import Law
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.joints import Coupling, FreeRotation
 from dynamics.linearize import whirl_modes
-from dynamics.linearize.campbell import _speed_terms
+from dynamics.linearize.campbell import speed_terms
 from dynamics.loads import TimeLaw
 from dynamics.motion.force_balance import force_balance
 from dynamics.motion.observation import local_state
@@ -103,7 +103,7 @@ def test_derivatives_are_those_of_the_forces_and_no_energy_is_gained(frame, torn
 
 @pytest.mark.parametrize("seats", [False, True])
 def test_time_integration_has_the_terms_of_the_whirl_modes(seats):
-    """At the equilibrium, in a planetary set and on a disc, with all dampers: G and S of `_speed_terms`."""
+    """At the equilibrium, in a planetary set and on a disc, with all dampers: G and S of `speed_terms`."""
     matrix = np.diag([2e6, 2e6, 1e6, 2e4, 2e4])
     matrix[0, 4] = matrix[4, 0] = 5e4
     matrix[1, 3] = matrix[3, 1] = -5e4
@@ -116,7 +116,7 @@ def test_time_integration_has_the_terms_of_the_whirl_modes(seats):
         full, bare = (
             force_balance(system.arrays, 0.0, q, 0.0 * q, 0.0 * q, gyroscopic=on) for on in (True, False)
         )
-        gyroscopic, stiffening = _speed_terms(system, 0.0)
+        gyroscopic, stiffening = speed_terms(system, 0.0)
         largest = np.max(np.abs(gyroscopic))
         assert largest > 0.0
         np.testing.assert_allclose(full.damping - bare.damping, gyroscopic, rtol=1e-9, atol=1e-9 * largest)

@@ -11,7 +11,7 @@ from dynamics.bearings import BallBearing, Bushing, RollerBearing, RollingBearin
 from dynamics.bearings.loaded_bearing import LoadedBearing
 from dynamics.bearings.rating_life import rating_life
 from dynamics.deflection import LoadCase, deflect, life_duration
-from dynamics.deflection.deflect import _life_of
+from dynamics.deflection.deflect import bearing_life
 from dynamics.errors import InputError
 
 CAPACITY = 23400.0
@@ -58,8 +58,8 @@ def test_the_preload_of_a_row_counts():
     loaded = LoadedBearing(alone.row, copies=8)
     at = loaded.evaluate(loaded.displacement((0.0, 0.0, 500.0, 0.0, 0.0)))
     expected = rating_life(alone.row, at.load, CAPACITY).revolutions
-    assert _life_of(alone, np.zeros(5)) == pytest.approx(expected, rel=1e-9)
-    assert _life_of(replace(alone, axial_preload=0.0), np.zeros(5)) == math.inf
+    assert bearing_life(alone, np.zeros(5)) == pytest.approx(expected, rel=1e-9)
+    assert bearing_life(replace(alone, axial_preload=0.0), np.zeros(5)) == math.inf
 
 
 @pytest.mark.parametrize(
@@ -72,7 +72,7 @@ def test_the_life_falls_with_the_power_of_the_element_load(row, exponent):
     loaded, lives, elements = LoadedBearing(row, copies=8), [], []
     for thrust in (500.0, 1000.0):
         d = loaded.displacement((0.0, 0.0, thrust, 0.0, 0.0))
-        lives.append(_life_of(replace(ROW, row=row), d))
+        lives.append(bearing_life(replace(ROW, row=row), d))
         elements.append(float(loaded.evaluate(d).load[0].sum()))
     assert lives[0] / lives[1] == pytest.approx((elements[1] / elements[0]) ** exponent, rel=1e-9)
     angle = [math.asin(thrust / (row.count * q)) for thrust, q in zip((500.0, 1000.0), elements, strict=True)]

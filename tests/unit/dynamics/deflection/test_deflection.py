@@ -13,7 +13,7 @@ from two_stage_scenes import mirrored_across, mirrored_along, two_stages
 from dynamics.assembly.assemble import assemble
 from dynamics.bearings import Bushing
 from dynamics.deflection import CAUSES, LoadCase, deflect, equivalent_load, loaded_scene
-from dynamics.deflection.deflect import _cycle_times
+from dynamics.deflection.deflect import cycle_times
 from dynamics.deflection.loaded_scene import with_loads
 from dynamics.deflection.mesh_alignment import rest_over
 from dynamics.errors import InputError
@@ -215,7 +215,7 @@ def test_a_mesh_without_load_has_no_arm(sliced):
 def test_mesh_load_and_shaft_deflection_agree(sliced):
     """The reactions put the load where the table has its arm at the misalignment of the shafts."""
     system = assemble(loaded_scene(rigid_pair(table=sliced), LoadCase("load")))
-    rest = rest_over(system, _cycle_times(system, 7))
+    rest = rest_over(system, cycle_times(system, 7))
     line, sense = system.lines[0], system.kinematics.mesh_sense[0]
     row = misalignment_gradient(system.scene, system.rotors, 0, line, sense)
     at = int(system.driving_rows[0]) + 1
@@ -231,7 +231,7 @@ def test_mesh_load_and_shaft_deflection_agree(sliced):
 
 def test_every_mesh_takes_every_position_once():
     system = assemble(loaded_scene(two_stages(), LoadCase("load")))
-    times = _cycle_times(system, 16)
+    times = cycle_times(system, 16)
     n = system.freedoms.column.size
     seen = np.array([local_state(system.arrays, t, np.zeros(n), np.zeros(n)).position[:2] for t in times])
     steps = np.arange(times.size) / times.size

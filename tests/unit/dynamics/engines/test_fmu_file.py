@@ -15,7 +15,7 @@ from geared_scenes import BASE_RADIUS, gear_pair_scene, spring_table
 
 from dynamics.engines import MeshElement, mesh_element
 from dynamics.engines.fmu import export_fmu
-from dynamics.engines.fmu.export import CompilerError, _binary_folder, _find_compiler
+from dynamics.engines.fmu.export import CompilerError, binary_folder, find_compiler
 from dynamics.errors import InputError
 
 fmpy = fmu_instance.fmpy
@@ -56,10 +56,10 @@ def test_it_can_be_rebuilt_from_its_own_sources(element, tmp_path):
     sources = tmp_path / "unpacked" / "sources"
     description = ElementTree.fromstring((tmp_path / "unpacked" / "modelDescription.xml").read_bytes())
     listed = [entry.attrib["name"] for entry in description.iter("File")]
-    folder, ending = _binary_folder()
+    folder, ending = binary_folder()
     strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion", "-Wno-sign-conversion"]
     flags = ["-O2", "-fPIC", "-shared", "-ffp-contract=off", "-s", "-I."]
-    command = [*_find_compiler(), *strict, *flags, "-o", f"m{ending}", *listed, "-lm"]
+    command = [*find_compiler(), *strict, *flags, "-o", f"m{ending}", *listed, "-lm"]
     subprocess.run(command, cwd=sources, check=True)
     shipped = tmp_path / "unpacked" / "binaries" / folder / f"gear_mesh{ending}"
     assert (sources / f"m{ending}").read_bytes() == shipped.read_bytes()
@@ -95,7 +95,7 @@ def test_its_interface_is_that_of_the_standards_header(element, tmp_path):
         ["-DFMI2_H", f"-I{standard}", "-include", "fmi2Functions.h"],
         [f"-I{sources}", "-include", "fmi2.h"],
     ):
-        strict = [*_find_compiler(), "-std=c99", "-Wall", "-Werror", *headers]
+        strict = [*find_compiler(), "-std=c99", "-Wall", "-Werror", *headers]
         subprocess.run([*strict, "-fsyntax-only", "fmi2_slave.c"], cwd=sources, check=True)
         subprocess.run([*strict, "-o", "layout", "layout.c"], cwd=tmp_path, check=True)
         found.append(subprocess.run([tmp_path / "layout"], capture_output=True, check=True).stdout)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from geared_scenes import BASE_RADIUS
 
-from dynamics.engines.exudyn_scene import PlanarMesh, _user_functions
+from dynamics.engines.exudyn_scene import PlanarMesh, user_functions
 from dynamics.meshes.flank_force import FlankLaws, flank_force
 from dynamics.meshes.packed_tables import pack_tables
 
@@ -29,7 +29,7 @@ def states(mesh, rng):
 @pytest.mark.law
 def test_forces_balance_about_every_point(mesh, rng):
     """Action and reaction on one line through the pitch point: no net force, no net moment."""
-    force, _ = _user_functions(mesh)
+    force, _ = user_functions(mesh)
     distance, loaded = 2.5 * BASE_RADIUS / np.cos(ANGLE), 0
     for q, v in states(mesh, rng):
         x1, y1, t1, x2, y2, t2 = force(None, 0.0, 0, q, v)
@@ -41,7 +41,7 @@ def test_forces_balance_about_every_point(mesh, rng):
 
 
 def test_the_jacobian_is_that_of_the_force(mesh, rng):
-    force, jacobian = _user_functions(mesh)
+    force, jacobian = user_functions(mesh)
     slope_of_position = 0.0
     for q, v in states(mesh, rng):
         for h, stiff, viscous in ((1e-12, 1.0, 0.0), (1e-7, 0.0, 1.0)):
@@ -60,9 +60,9 @@ def test_the_jacobian_is_that_of_the_force(mesh, rng):
 
 def test_a_drive_replaces_the_coordinate(mesh, rng):
     """The same angle and speed as a function of time."""
-    free, _ = _user_functions(mesh)
+    free, _ = user_functions(mesh)
     for q, v in states(mesh, rng):
-        driven, jacobian = _user_functions(mesh, lambda t, a=q[2], w=v[2]: (a + 0.0 * t, w))
+        driven, jacobian = user_functions(mesh, lambda t, a=q[2], w=v[2]: (a + 0.0 * t, w))
         keep = [0, 1, 3, 4, 5]
         expected = free(None, 0.0, 0, q, v)[keep]
         np.testing.assert_allclose(driven(None, 0.0, 0, q[keep], v[keep]), expected, rtol=1e-9, atol=1e-9)
@@ -77,5 +77,5 @@ def test_the_position_counts_in_the_drivers_own_sense(mesh, element):
         q[2] = mesh.sense * angle
         q[5] = (6e-6 - mesh.gradient[2] * q[2]) / mesh.gradient[5]
         expected = flank_force(law, 0, 0.3 + 20 * angle / (2.0 * np.pi), 6e-6, 0.0, 0)[0]
-        found = _user_functions(mesh)[0](None, 0.0, 0, q, np.zeros(6))
+        found = user_functions(mesh)[0](None, 0.0, 0, q, np.zeros(6))
         assert found[2] == pytest.approx(-mesh.sense * expected * BASE_RADIUS, rel=1e-9)

@@ -33,9 +33,9 @@ from dynamics.housings import (
     read_mesh,
     write_surface,
 )
-from dynamics.housings.assembled_housing import _mass_and_stiffness
+from dynamics.housings.assembled_housing import mass_and_stiffness
 from dynamics.housings.drawn_surface import DrawnSurface, drawn_mesh
-from dynamics.housings.mesh_files import _element_shape
+from dynamics.housings.mesh_files import element_shape
 from dynamics.housings.reduction import reduce_housing
 from dynamics.solid_housing import check_mesh_content
 from host import missing_protections
@@ -73,7 +73,7 @@ def written(path: Path) -> Path:
 def test_a_mesh_has_the_same_matrices_by_every_format(tmp_path: Path, suffix: str) -> None:
     back = read_mesh(written(tmp_path / f"tube{suffix}"), "mm")
     assert back.points == pytest.approx(MESH.points, abs=1e-11)
-    for found, expected in zip(*(_mass_and_stiffness(m, GRAY_CAST_IRON) for m in (back, MESH)), strict=True):
+    for found, expected in zip(*(mass_and_stiffness(m, GRAY_CAST_IRON) for m in (back, MESH)), strict=True):
         assert abs(found - expected).max() < 1e-8 * abs(expected).max()
 
 
@@ -109,13 +109,13 @@ def test_linear_tetrahedra_of_either_hand_get_nodes_in_the_middle_of_their_edges
     meshlane.Mesh(straight.points[used], [("tetra", corners.reshape(-1, 4))]).write(tmp_path / "box.vtu")
     back = read_mesh(tmp_path / "box.vtu", "m")
     assert len(back.points) == len(straight.points)
-    mass, _ = _mass_and_stiffness(back, GRAY_CAST_IRON)
+    mass, _ = mass_and_stiffness(back, GRAY_CAST_IRON)
     assert mass.sum() == pytest.approx(GRAY_CAST_IRON.density * 1e-3, rel=1e-12)
 
 
 def test_a_regular_tetrahedron_is_the_best_shape() -> None:
     points = np.array([[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]])
-    assert _element_shape(type(MESH)(points, np.array([[0, 2, 1, 3, *6 * [0]]]))) == pytest.approx([1.0])
+    assert element_shape(type(MESH)(points, np.array([[0, 2, 1, 3, *6 * [0]]]))) == pytest.approx([1.0])
 
 
 @pytest.mark.parametrize("placed", [False, True])

@@ -36,9 +36,9 @@ from dynamics.housings.assembled_housing import (
     AssembledHousing,
     ModeStatus,
     _independent_freedoms,
-    _mass_and_stiffness,
     assemble,
     free_modes,
+    mass_and_stiffness,
 )
 from dynamics.housings.reduced_housing import rigid_body
 from dynamics.housings.reduction import reduce_housing
@@ -66,7 +66,7 @@ def reduced(**changes) -> ReducedHousing:
 def loose_frequencies(mesh, material, modes) -> np.ndarray:
     """Elastic frequencies of a free body without bores."""
     freedoms = _independent_freedoms(mesh.points, ())
-    nodal, stiffness = _mass_and_stiffness(mesh, material)
+    nodal, stiffness = mass_and_stiffness(mesh, material)
     mass = sp.csr_array(sp.kron(nodal, sp.eye_array(3)))
     none, force = sp.csr_array(mass.shape), sp.csr_array(sp.eye_array(mass.shape[0], format="csr")[:1])
     rigid = freedoms.rigid(mesh.points, mesh.points.mean(axis=0))
@@ -91,7 +91,7 @@ def test_mass_and_stiffness_equal_the_vector_element_of_scikit_fem() -> None:
     basis = Basis(MeshTet2(mesh.points.T, mesh.tetrahedra.T), ElementVector(ElementTetP2()), intorder=4)
     number = np.empty(mesh.freedoms, dtype=int)
     number[(3 * mesh.tetrahedra[:, :, None] + np.arange(3)).reshape(-1, 30).T] = basis.element_dofs
-    nodal, stiffness = _mass_and_stiffness(mesh, STEEL)
+    nodal, stiffness = mass_and_stiffness(mesh, STEEL)
     mass = STEEL.density * BilinearForm(lambda u, v, _: dot(u, v)).assemble(basis)[number][:, number]
     assert abs(sp.kron(nodal, sp.eye_array(3)) - mass).max() < 1e-12 * abs(mass).max()
     expected = linear_elasticity(*STEEL.lame).assemble(basis)[number][:, number]

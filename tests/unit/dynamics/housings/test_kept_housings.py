@@ -34,7 +34,7 @@ from dynamics.housings import (
     reduction_cost,
 )
 from dynamics.housings import reduction as kept_module
-from dynamics.housings.reduction import _content_key, reduce_housing
+from dynamics.housings.reduction import content_key, reduce_housing
 
 WITHIN = 1.3
 """Factor within which a cost is predicted."""
@@ -83,7 +83,7 @@ def test_everything_that_decides_the_result_is_in_the_key() -> None:
         {"modes": 7},
         {"damping": MaterialDamping(0.02)},
     ]
-    keys = {_content_key(HOUSING), *(_content_key(replace(HOUSING, **change)) for change in changes)}
+    keys = {content_key(HOUSING), *(content_key(replace(HOUSING, **change)) for change in changes)}
     assert len(keys) == len(changes) + 1
 
 

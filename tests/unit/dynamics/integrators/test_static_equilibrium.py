@@ -12,7 +12,7 @@ from planetary_scenes import planetary_scene, published_set
 from scipy.linalg import expm
 from scipy.sparse.csgraph import connected_components
 
-from dynamics.arrays.sparse_rows import LEAST, TOGETHER, _chained, _modal_freedoms, sparse_matrices
+from dynamics.arrays.sparse_rows import LEAST, TOGETHER, joined_by_chains, modal_freedoms_of, sparse_matrices
 from dynamics.assembly import bearing_rest
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import SolveError
@@ -207,12 +207,12 @@ def test_a_freedom_that_more_than_elements_bind_is_not_modal(bound):
     n = 2 * LEAST
     mass, damping, stiffness, direction = np.eye(n), np.zeros((n, n)), np.eye(n), np.ones((3, n))
     others = np.zeros((2, n))
-    assert _modal_freedoms(mass, damping, stiffness, direction, others).first == 0
+    assert modal_freedoms_of(mass, damping, stiffness, direction, others).first == 0
     if bound == "coupled":
         damping[3, 7] = damping[7, 3] = 1.0
     else:
         others[0 if bound == "loaded" else 1, 7] = 1.0
-    modal = _modal_freedoms(mass, damping, stiffness, direction, others)
+    modal = modal_freedoms_of(mass, damping, stiffness, direction, others)
     assert modal.first == 8
     assert modal.row.size % TOGETHER == 0
     assert sparse_matrices(mass, damping, stiffness, direction, others).bodies.column.max() == 7
@@ -296,5 +296,5 @@ def test_freedoms_that_a_chain_joins_are_those_of_a_graph() -> None:
         joined = np.zeros((size, size), dtype=bool)
         joined[random.integers(0, size, entries), random.integers(0, size, entries)] = True
         part = connected_components(joined)[1]
-        np.testing.assert_array_equal(_chained(joined), part[:, None] == part)
-    assert _chained(np.eye(100, k=1, dtype=bool)).all()  # one chain through all
+        np.testing.assert_array_equal(joined_by_chains(joined), part[:, None] == part)
+    assert joined_by_chains(np.eye(100, k=1, dtype=bool)).all()  # one chain through all

@@ -12,7 +12,7 @@ from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table
 from dynamics.assembly.assemble import assemble
 from dynamics.integrators import integrate, march, static_equilibrium
 from dynamics.integrators import tableaus as t
-from dynamics.integrators.advance import Control, _next_level
+from dynamics.integrators.advance import Control, next_level
 from dynamics.integrators.integrate import Trajectory
 from dynamics.integrators.method_choice import EVALUATIONS, LIMIT, choose_method
 from dynamics.integrators.start_value import Trail
@@ -99,7 +99,7 @@ def after(level: int, error: float, accepted: bool, last: float = 1e-4) -> int:
     counts = np.zeros(len(Count), dtype=np.int64)
     counts[Count.LEVEL] = level
     work = SimpleNamespace(step_sizes=STEP_SIZES, counts=counts, error=np.array([last]))
-    return _next_level.py_func(work, CONTROL, error, accepted)
+    return next_level.py_func(work, CONTROL, error, accepted)
 
 
 @pytest.mark.parametrize("error", [0.0, 1e-6, 0.5, 1.0])

@@ -26,13 +26,13 @@ from dynamics.linearize import (
 from dynamics.linearize.campbell import (
     FINEST,
     INTERVALS,
-    _continued,
-    _whirl,
-    _WhirlModes,
+    WhirlModes,
     branches_up_to,
+    continued_branches,
     likeness,
     modes_at,
     whirl_branches,
+    whirl_sense,
 )
 from dynamics.linearize.flank_cycles import averaged, flank_cycles, resting
 from dynamics.linearize.linear_system import LinearSystem
@@ -162,7 +162,7 @@ def test_the_whirl_of_repeated_modes_does_not_depend_on_their_combination():
     circles[pair] = 0.0
     circles[np.ix_(pair, columns)] = [[1.0, -1.0j], [1.0, -0.5j]]
     np.testing.assert_allclose(
-        _whirl(system, linear, 100.0, replace(modes, shape=circles))[pair], 0.0, atol=1e-9
+        whirl_sense(system, linear, 100.0, replace(modes, shape=circles))[pair], 0.0, atol=1e-9
     )
 
 
@@ -228,7 +228,7 @@ def test_critical_speeds_follow_eigenvectors_and_agree_with_the_dense_solve(monk
     solved: list[float] = []
     dense = campbell.modes_at
 
-    def counted(of: System, linear: LinearSystem, speed: float) -> _WhirlModes:
+    def counted(of: System, linear: LinearSystem, speed: float) -> WhirlModes:
         solved.append(speed)
         return dense(of, linear, speed)
 
@@ -278,10 +278,12 @@ def test_of_shapes_that_are_equally_alike_the_nearest_frequency_goes_on(frequenc
     linear = replace(linearize(assemble(disc_scene())), mass=np.eye(2))
     along, round_about = np.eye(2) + 0j, np.array([[1.0, 1.0j], [1.0, -1.0j]])
     before, after = (
-        _WhirlModes(np.array(each), np.zeros(2), shape, ("disc.x", "disc.y"), np.ones(2))
+        WhirlModes(np.array(each), np.zeros(2), shape, ("disc.x", "disc.y"), np.ones(2))
         for each, shape in (((100.0, 200.0), along), (frequency, round_about))
     )
-    assert _continued(linear, before, [4, 7], after) == [4 if each < 150.0 else 7 for each in frequency]
+    assert continued_branches(linear, before, [4, 7], after) == [
+        4 if each < 150.0 else 7 for each in frequency
+    ]
 
 
 def unlike_shafts():

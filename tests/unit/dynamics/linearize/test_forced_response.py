@@ -19,7 +19,7 @@ from geared_scenes import (
 from sliced_face import sliced_database
 
 from dynamics.assembly.assemble import assemble
-from dynamics.assembly.varied import _operating_points_at, with_static_reference
+from dynamics.assembly.varied import operating_points_at, with_static_reference
 from dynamics.errors import InputError, SolveError
 from dynamics.influence import estimate_influences
 from dynamics.integrators import static_equilibrium
@@ -204,7 +204,7 @@ def test_the_static_reference_is_the_table_where_the_bodies_rest(table):
     scene = tilted(table, EFFECTS)
     run = simulate(replace(scene, outputs=Outputs(20e3, anti_alias=False)))
     system = assemble(scene)
-    (location,) = _operating_points_at(system, static_equilibrium(system).displacement)
+    (location,) = operating_points_at(system, static_equilibrium(system).displacement)
     assert abs(location[0]) > 5e-7 and abs(location[1]) > 1e-6
     expected = database.ste(run.position[0, :50], float(run.nominal_force[0]), *location)
     np.testing.assert_allclose(run.static_transmission_error[0, :50], expected, rtol=1e-9)

@@ -13,7 +13,7 @@ from dynamics.integrators import static_equilibrium
 from dynamics.joints import Coupling, Housing, read_housing
 from dynamics.linearize import natural_modes, whirl_modes
 from dynamics.loads import TimeLaw
-from dynamics.mechanism.connections import _condense_housing
+from dynamics.mechanism.connections import condense_housing
 from dynamics.results import RunResult
 from dynamics.scene import Integration
 from dynamics.shafts import Inertia, Shaft
@@ -156,7 +156,7 @@ def test_housings_condense_as_if_their_freedoms_were_there():
     to_shaft = np.zeros((12, 10))
     to_shaft[location] = bearing
     expected = bearing - to_shaft.T @ np.linalg.solve(whole, to_shaft)
-    found, _, preload = _condense_housing(
+    found, _, preload = condense_housing(
         Housing("case", ("a", "b"), rows(ground)), bearing, 0.0 * bearing, np.arange(10.0)
     )
     np.testing.assert_allclose(found, expected, rtol=1e-7, atol=1.0)
@@ -175,7 +175,7 @@ def test_condensed_damping_is_the_first_order_of_the_dynamic_stiffness():
     factor, lossy = rng.normal(size=(2, 10, 10))
     ground, loss = 1e8 * factor @ factor.T / 10.0, 1e3 * lossy @ lossy.T / 10.0
     bearing, damping = np.kron(np.eye(2), GENERAL), 1e-5 * np.kron(np.eye(2), GENERAL)
-    k, c, _ = _condense_housing(
+    k, c, _ = condense_housing(
         Housing("case", ("a", "b"), rows(ground), rows(loss)), bearing, damping, np.zeros(10)
     )
 

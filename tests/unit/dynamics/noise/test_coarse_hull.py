@@ -12,7 +12,7 @@ from sounding_housings import smooth_motion, with_surface
 
 from dynamics.acoustics import Air, ElementalRadiators, Hull, OuterHull, outer_hull, resistance
 from dynamics.noise import radiating_hull
-from dynamics.noise.coarse_hull import _settled, _split_cells, _surface_cells
+from dynamics.noise.coarse_hull import settled_cells, split_cells, surface_cells
 
 AIR, HERTZ = Air(), 3000.0
 BODIES = {
@@ -58,10 +58,10 @@ def test_it_radiates_as_the_fine_hull_does(name: str) -> None:
 
 def test_chosen_cells_alone_are_split() -> None:
     hull = body("block").hull
-    cell = _surface_cells(hull, 200)
+    cell = surface_cells(hull, 200)
     chosen = np.isin(np.arange(cell.max() + 1), [3, 50])
-    assert _split_cells(hull, cell, chosen).max() == cell.max() + 2
-    assert _split_cells(hull, cell, np.zeros_like(chosen)).max() == cell.max()
+    assert split_cells(hull, cell, chosen).max() == cell.max() + 2
+    assert split_cells(hull, cell, np.zeros_like(chosen)).max() == cell.max()
 
 
 @pytest.mark.parametrize("divisions", [(12, 8, 6), (60, 60, 60)])
@@ -72,6 +72,6 @@ def test_a_part_of_the_surface_without_a_seed_is_one_cell(divisions: tuple[int, 
     nodes = np.concatenate([first.nodes, second.nodes + np.array([1.0, 0.0, 0.0])])
     hull = Hull(nodes, np.concatenate([first.triangles, second.triangles + count]))
     seeds = np.arange(count)  # whatever node an index takes, it has a cell of the first part
-    cell = _settled(hull, seeds, 1)
+    cell = settled_cells(hull, seeds, 1)
     assert len(np.unique(cell[count:])) == 1
     assert len(np.unique(cell)) == count + 1

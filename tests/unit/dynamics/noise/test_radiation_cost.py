@@ -15,7 +15,7 @@ from dynamics.acoustics import Air, ElementalRadiators, outer_hull
 from dynamics.housings import ReducedHousing
 from dynamics.noise import HousingRadiation, housing_radiation
 from dynamics.noise.coarse_hull import radiating_hull
-from dynamics.noise.housing_radiation import USUAL, _expected_knots, _Octave, _octaves, _radiation_cost
+from dynamics.noise.housing_radiation import USUAL, Octave, expected_knots, octave_ranges, radiation_cost
 from dynamics.work_cost import Cost
 
 AIR, MODEL = Air(), ElementalRadiators()
@@ -36,8 +36,10 @@ def radiation() -> HousingRadiation:
 
 def predicted(low: float, high: float, divisions: int = 6) -> Cost:
     outer = outer_hull(body(divisions))
-    parted = [_Octave(*ends, radiating_hull(outer, ends[1], AIR.sound_speed)) for ends in _octaves(low, high)]
-    return _radiation_cost(parted, MODEL, AIR)
+    parted = [
+        Octave(*ends, radiating_hull(outer, ends[1], AIR.sound_speed)) for ends in octave_ranges(low, high)
+    ]
+    return radiation_cost(parted, MODEL, AIR)
 
 
 def test_it_grows_with_the_range_and_with_panels() -> None:
@@ -53,7 +55,7 @@ def test_an_octave_costs_that_of_its_frequencies_and_octaves_add_up() -> None:
     top = 2.0 * math.pi * 800.0 / AIR.sound_speed * hull.hull.outer_radius
     each = MODEL.cost(len(hull.shapes), USUAL * top, hull.shapes.shape[1])
     upper = predicted(400.0, 800.0)
-    assert upper.seconds == pytest.approx(each.seconds * _expected_knots(top))
+    assert upper.seconds == pytest.approx(each.seconds * expected_knots(top))
     assert predicted(200.0, 800.0).seconds == pytest.approx(predicted(200.0, 400.0).seconds + upper.seconds)
 
 
@@ -66,8 +68,8 @@ def test_it_is_told_before_and_kept_with_the_result() -> None:
 def test_frequencies_are_about_as_many_as_expected() -> None:
     """Between half as many, of simple modes as these, and a quarter more."""
     frequency, outer = radiation().frequency, outer_hull(body())
-    ends = _octaves(float(frequency[0]), float(frequency[-1]))
+    ends = octave_ranges(float(frequency[0]), float(frequency[-1]))
     per_hertz = 2.0 * math.pi / AIR.sound_speed * outer.hull.outer_radius
-    expected = sum(_expected_knots(per_hertz * last) for _, last in ends)
+    expected = sum(expected_knots(per_hertz * last) for _, last in ends)
     assert 0.5 < frequency.size / expected < 1.25
     assert np.all(np.diff(frequency) > 0.0)

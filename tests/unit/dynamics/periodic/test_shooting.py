@@ -23,7 +23,7 @@ from dynamics.periodic import (
     periodic_problem,
     spectrum,
 )
-from dynamics.periodic.period_map import _PeriodGrid
+from dynamics.periodic.period_map import PeriodGrid
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
 
@@ -98,7 +98,7 @@ def test_steps_end_on_knots_and_halve():
     table = square_wave_table(8)
     table = replace(table, position=table.position + 0.03 * np.sin(np.arange(8)) ** 2)
     system = assemble(gear_pair_scene(repeated(table, 2)))
-    grid = _PeriodGrid.of(system, common_period(system), 1.0 / 40.0)
+    grid = PeriodGrid.of(system, common_period(system), 1.0 / 40.0)
     knots = np.concatenate([table.position, table.position + 1.0]) / 2.0
     np.testing.assert_allclose(np.min(np.abs(grid.phase[:, None] - knots), axis=0), 0.0, atol=1e-12)
     np.testing.assert_allclose(np.diff(grid.phase), grid.size[grid.level], atol=1e-11)
@@ -113,7 +113,7 @@ def test_steps_end_on_no_knots_but_those_of_each_flanks_own_table():
     uneven = sun.position + 0.03 * np.sin(np.arange(8)) ** 2
     tables = {"sun_table": replace(sun, position=uneven), "ring_table": ring}
     system = assemble(driven_scene(published_set(3, teeth=(28, 35, 98), ring_phase=0.013, **tables)))
-    grid = _PeriodGrid.of(system, common_period(system), 1.0)
+    grid = PeriodGrid.of(system, common_period(system), 1.0)
     offset, knots = system.arrays.reference.offset, (uneven, ring.position)
     phases = np.concatenate([[0.0], *((knots[k % 2] - offset[k]) % 1.0 for k in range(6))])
     expected = np.unique(np.round(phases % 1.0, 11) % 1.0)

@@ -21,7 +21,7 @@ from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError, ResultError, SolveError
 from dynamics.integrators import static_equilibrium
 from dynamics.integrators.march import start_march
-from dynamics.integrators.state_sink import BLOCK, _leaves, _read_checkpoint, _write_checkpoint, restore
+from dynamics.integrators.state_sink import BLOCK, leaves_of, read_checkpoint, restore, write_checkpoint
 from dynamics.loads import TimeLaw
 from dynamics.meshes import CoastFlank
 from dynamics.results import RunResult
@@ -151,7 +151,7 @@ def test_a_killed_run_resumes_to_the_same_file(tmp_path):
     child.send_signal(signal.SIGKILL)
     child.wait()
     assert not path.exists()
-    _, facts = _read_checkpoint(checkpoint)
+    _, facts = read_checkpoint(checkpoint)
     assert 0 < facts["samples"] < 4001
     with states.open("ab") as file:
         file.write(b"half a record")
@@ -180,14 +180,14 @@ def test_a_checkpoint_holds_every_array_of_the_workspace(tmp_path):
     start = static_equilibrium(system)
     work, other = (start_march(system, start, system.scene.integration).work for _ in range(2))
     random = np.random.default_rng(1)
-    for _, array in _leaves(work):
+    for _, array in leaves_of(work):
         array[...] = random.integers(0, 2 if array.dtype == bool else 100, array.shape)
-    _write_checkpoint(tmp_path / "c", work, samples=3)
-    arrays, facts = _read_checkpoint(tmp_path / "c")
+    write_checkpoint(tmp_path / "c", work, samples=3)
+    arrays, facts = read_checkpoint(tmp_path / "c")
     restore(other, arrays, tmp_path / "c")
-    for (name, one), (_, two) in zip(_leaves(work), _leaves(other), strict=True):
+    for (name, one), (_, two) in zip(leaves_of(work), leaves_of(other), strict=True):
         np.testing.assert_array_equal(one, two, name)
-    assert "local.hint" in dict(_leaves(work))
+    assert "local.hint" in dict(leaves_of(work))
     assert int(facts["samples"]) == 3
 
 

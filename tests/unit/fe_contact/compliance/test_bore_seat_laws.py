@@ -17,10 +17,10 @@ from fe_contact.compliance import FlankCompliance3D, flank_compliance_3d
 from fe_contact.compliance.deformation_3d import deformed_solids
 from fe_contact.compliance.factorization import factorise
 from fe_contact.compliance.keyed_bore import _key_points
-from fe_contact.compliance.seat_stiffness import _face_mass
+from fe_contact.compliance.seat_stiffness import face_mass
 from fe_contact.compliance.sector_stiffness import twist
 from fe_contact.compliance.unit_root_stress import unit_root_stress_3d
-from fe_contact.contact.face_assembly import _KeyedFlanks
+from fe_contact.contact.face_assembly import KeyedFlanks
 from fe_contact.contact.face_patch import FaceGrid, add_compliance, face_loads
 from fe_contact.errors import InfeasibleGeometry, InputError
 from fe_contact.geometry import BoreSeat, Gear, Key, seat_compliance
@@ -128,7 +128,7 @@ def test_a_seat_holds_the_planes_between_its_ends() -> None:
 
 
 def test_face_functions_share_the_area_and_keep_its_moments() -> None:
-    mass = _face_mass()
+    mass = face_mass()
     assert mass.sum() == pytest.approx(4.0, rel=1e-14)
     x = np.array([-1.0, 1.0, -1.0, 1.0, 0.0, 0.0, -1.0, 1.0])
     assert x @ mass @ x == pytest.approx(4.0 / 3.0, rel=1e-14)
@@ -246,10 +246,10 @@ def test_contact_sees_the_key_as_the_blocks_do() -> None:
     wide = np.concatenate([found.blocks, np.zeros((1, *found.blocks[0].shape))])
     at = np.array([[0, 0, 0, 0], [0, 1, 2, 3]])
     add_compliance(wide, order, tooth, loads, at, np.ones((1, 4)), out)
-    out = out[0] + _KeyedFlanks(found.key_rows, found.key_core, True).compliance(tooth, loads)
+    out = out[0] + KeyedFlanks(found.key_rows, found.key_core, True).compliance(tooth, loads)
     for i, j in ((0, 0), (1, 2), (0, 1), (3, 1)):
         assert out[i, j] == pytest.approx(forces[i] @ found.block(tooth[i], tooth[j]) @ forces[j], rel=1e-10)
-    alone = _KeyedFlanks(found.key_rows, found.key_core, False).compliance(tooth, loads)
+    alone = KeyedFlanks(found.key_rows, found.key_core, False).compliance(tooth, loads)
     assert np.array_equal(alone != 0.0, tooth[:, None] == tooth)
 
 

@@ -13,7 +13,7 @@ from spur_gears import gear as make_gear
 from fe_contact.compliance import PlaneHypothesis, flank_compliance, flank_compliance_3d
 from fe_contact.compliance.deformation_3d import deformed_solids
 from fe_contact.compliance.deformed_gear import DeformedGear, stress_of
-from fe_contact.compliance.deformed_section import _element_stress, deformed_sections
+from fe_contact.compliance.deformed_section import deformed_sections, element_stress
 from fe_contact.compliance.hexahedron_stiffness import REFERENCE, determinants, hexahedra
 from fe_contact.compliance.sector_elements import SectorElements, sector_elements
 from fe_contact.errors import InputError
@@ -114,7 +114,7 @@ def test_linear_displacement_gives_its_constant_plane_stress(hypothesis: PlaneHy
     mesh = mesh_gear(gear, coarse_plane(gear))
     lame = hypothesis.lame_parameters(gear.material)
     strain = hypothesis is PlaneHypothesis.PLANE_STRAIN
-    found = _element_stress(mesh, mesh.points @ GRADIENT[:2, :2].T, lame, lame[0] if strain else 0.0)
+    found = element_stress(mesh, mesh.points @ GRADIENT[:2, :2].T, lame, lame[0] if strain else 0.0)
     E, nu = gear.material.youngs_modulus, gear.material.poissons_ratio
     x, y, xy = GRADIENT[0, 0], GRADIENT[1, 1], GRADIENT[0, 1] + GRADIENT[1, 0]
     if strain:

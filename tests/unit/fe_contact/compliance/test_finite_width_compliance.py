@@ -15,7 +15,7 @@ from fe_contact.compliance import (
     flank_compliance,
     flank_compliance_3d,
 )
-from fe_contact.compliance.finite_width import _even_load, _shape_functions, _under_even_load
+from fe_contact.compliance.finite_width import even_load, shape_functions, under_even_load
 from fe_contact.contact.face_patch import FaceGrid, face_loads
 from fe_contact.contact.patch import load_vector
 from fe_contact.errors import InputError
@@ -59,7 +59,7 @@ def test_half_a_face_stands_for_the_whole(gear: Gear) -> None:
     """Under even loads mid-face is a plane of symmetry."""
     half = replace(SectorRecipe.even_load(gear), layers=2, layer_growth=1.0)
     whole = replace(half, layers=4, half_face=False)
-    first, second = (_under_even_load(flank_compliance_3d(gear, recipe)) for recipe in (half, whole))
+    first, second = (under_even_load(flank_compliance_3d(gear, recipe)) for recipe in (half, whole))
     assert np.abs(first - second).max() <= 1e-11 * np.abs(second).max()
 
 
@@ -77,7 +77,7 @@ def test_an_even_load_is_the_box_over_the_whole_face(gear: Gear) -> None:
     )
     box = np.zeros(len(solid.blocks[0]))
     box[loads.nodes[0, : loads.used[0]]] = loads.forces[0, : loads.used[0]]
-    assert _even_load(solid.z, solid.index) @ profile == pytest.approx(box, abs=1e-12)
+    assert even_load(solid.z, solid.index) @ profile == pytest.approx(box, abs=1e-12)
 
 
 def test_it_vanishes_with_poissons_ratio_and_scales(gear: Gear, usual: FiniteWidthCompliance) -> None:
@@ -112,7 +112,7 @@ def test_a_thin_gear_is_in_plane_stress(gear: Gear) -> None:
     recipe = MeshRecipe.standard(gear).refined(0.25)
     strain, stress = (flank_compliance(gear, recipe, h) for h in PlaneHypothesis)
     forces = uniform(strain.s)
-    coarse = _shape_functions(thin.s, strain.s).T @ forces
+    coarse = shape_functions(thin.s, strain.s).T @ forces
     for tooth in (0, 1):
         difference = stress.block(tooth, 0) - strain.block(tooth, 0)
         expected = float(forces @ difference @ forces)
@@ -130,7 +130,7 @@ def test_of_a_wide_gear_only_the_ends_count(gear: Gear) -> None:
 def test_it_is_added_tooth_by_tooth(gear: Gear, usual: FiniteWidthCompliance) -> None:
     flat = flank_compliance(gear, MeshRecipe.standard(gear).refined(0.25), teeth=5)
     corrected = usual.added_to(flat)
-    shape = _shape_functions(usual.s, flat.s)
+    shape = shape_functions(usual.s, flat.s)
     for tooth, other in ((0, 0), (1, -1), (-1, 1)):
         added = corrected.block(tooth, other) - flat.block(tooth, other)
         assert added == pytest.approx(shape @ usual.block(tooth - other) @ shape.T, rel=1e-6, abs=1e-19)
@@ -141,6 +141,6 @@ def test_shape_functions_reproduce_parabolas_and_a_helical_gear_is_refused(gear:
     nodes = np.array([0.0, 0.5, 1.0, 2.0, 3.0])
     at = np.array([-1.0, 0.0, 0.3, 1.7, 3.0])
     inside = np.maximum(at, 0.0)
-    assert _shape_functions(nodes, at) @ (nodes**2 - nodes) == pytest.approx(inside**2 - inside)
+    assert shape_functions(nodes, at) @ (nodes**2 - nodes) == pytest.approx(inside**2 - inside)
     with pytest.raises(InputError, match="helix_angle"):
         beyond(replace(gear, helix_angle=0.2))

@@ -17,10 +17,10 @@ from fe_contact.compliance import (
     flank_compliance_3d,
     flank_compliances_3d,
 )
-from fe_contact.compliance.condensed_gear import _pressure_forces
+from fe_contact.compliance.condensed_gear import pressure_forces
 from fe_contact.compliance.factorization import factorise
 from fe_contact.compliance.flank import ComplianceChecks, refuse_broken_laws
-from fe_contact.compliance.gear_checks import _least_eigenvalue
+from fe_contact.compliance.gear_checks import least_eigenvalue
 from fe_contact.compliance.sector_stiffness import twist
 from fe_contact.errors import InputError, SolveError
 from fe_contact.geometry import Gear, RingGear, Toothing
@@ -135,7 +135,7 @@ def test_a_right_hand_tooth_leans_counter_clockwise() -> None:
     for layer in (0, -1):
         loaded = np.zeros(elements)
         loaded[layer] = 1.0
-        ends.append(_pressure_forces(found.s, found.z, found.index, loaded))
+        ends.append(pressure_forces(found.s, found.z, found.index, loaded))
     low, high = ends
     assert low @ found.block(1, 0) @ high > 1.05 * (high @ found.block(1, 0) @ low) > 0.0
 
@@ -204,9 +204,9 @@ def test_checks_see_a_wrong_ring(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_least_eigenvalue_and_pressure_are_those_of_closed_forms() -> None:
     basis, _ = np.linalg.qr(np.random.default_rng(3).normal(size=(30, 30)))
     values = np.linspace(0.5, 4.0, 30)
-    assert _least_eigenvalue(basis * values @ basis.T) == pytest.approx(0.5, rel=0.02)
+    assert least_eigenvalue(basis * values @ basis.T) == pytest.approx(0.5, rel=0.02)
     values[3] = -1e-3
-    assert _least_eigenvalue(basis * values @ basis.T) < 0.0
+    assert least_eigenvalue(basis * values @ basis.T) < 0.0
     # Nodal forces of a pressure do its work on every quadratic field of s and z.
     s, z = np.array([0.0, 0.5, 1.0, 2.0, 3.0]), np.array([-1.0, 0.0, 2.0])
     planes = np.array([-1.0, -0.5, 0.0, 1.0, 2.0])
@@ -214,7 +214,7 @@ def test_least_eigenvalue_and_pressure_are_those_of_closed_forms() -> None:
     exists = (np.arange(5)[:, None] % 2 == 0) | (np.arange(5) % 2 == 0)
     index[exists] = np.arange(exists.sum())
     loaded = np.array([[1.0, 0.0], [0.0, 2.0]])
-    forces = _pressure_forces(s, z, index, loaded)
+    forces = pressure_forces(s, z, index, loaded)
     grid_s, grid_z = np.broadcast_arrays(s, planes[:, None])
     for p, q in ((0, 0), (1, 0), (0, 1), (1, 1), (2, 0), (0, 2)):
 

@@ -21,7 +21,7 @@ from fe_contact.compliance import (
     flank_compliances,
     ring_2d,
 )
-from fe_contact.compliance.condensed_sector import _inward_loads, freedoms
+from fe_contact.compliance.condensed_sector import freedoms, inward_loads
 from fe_contact.compliance.flank import refuse_broken_laws
 from fe_contact.compliance.flank_compliance_2d import uniform_pressure
 from fe_contact.compliance.plane_elasticity import stiffness_matrix
@@ -67,7 +67,7 @@ def test_equals_the_solution_of_the_whole_uncondensed_mesh(gear: Toothing, real:
     matrix = stiffness_matrix(mesh.points, mesh.triangles, STRAIN.lame_parameters(gear.material))
     free = np.setdiff1d(np.arange(2 * len(mesh.points)), freedoms(mesh.bore_nodes))
     flanks = [flank for flank in mesh.flanks if flank.tooth in found.teeth]
-    loads = sp.hstack([_inward_loads(len(mesh.points), f.nodes, f.normals) for f in flanks], format="csc")[
+    loads = sp.hstack([inward_loads(len(mesh.points), f.nodes, f.normals) for f in flanks], format="csc")[
         free
     ]
     moved = splu(sp.csc_array(matrix[free][:, free])).solve(loads.toarray())
@@ -75,7 +75,7 @@ def test_equals_the_solution_of_the_whole_uncondensed_mesh(gear: Toothing, real:
     assert relative(found.matrix, direct) < 1e-10
     middle = len(flanks) // 2
     own = slice(middle * len(found.s), (middle + 1) * len(found.s))
-    towards_tip = _inward_loads(len(mesh.points), flanks[middle].nodes, -along_flank(mesh, middle, found))
+    towards_tip = inward_loads(len(mesh.points), flanks[middle].nodes, -along_flank(mesh, middle, found))
     assert relative(found.along, towards_tip[free].T @ moved[:, own]) < 1e-10
     assert found.unknowns == len(free)
 

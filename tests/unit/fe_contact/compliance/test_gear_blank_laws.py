@@ -18,7 +18,7 @@ from fe_contact.compliance import (
     flank_compliance,
     flank_compliance_3d,
 )
-from fe_contact.compliance.condensed_gear import _probe_loads, condensed_gear
+from fe_contact.compliance.condensed_gear import condensed_gear, probe_loads
 from fe_contact.compliance.condensed_sector import freedoms
 from fe_contact.compliance.flank_compliance_2d import compliance_key, condensed_ring, uniform_pressure
 from fe_contact.compliance.unit_root_stress import unit_root_stress_3d
@@ -137,9 +137,9 @@ def test_a_web_off_the_middle_tilts_the_rim_and_its_mirror_image_the_other_way()
     assert image.z == pytest.approx(left.z, abs=1e-15)
     scale = np.abs(left.blocks).max()
     assert np.abs(image.blocks - left.blocks).max() < 1e-10 * scale
-    loads = _probe_loads(right.s, right.z, right.index, right.s_form)
+    loads = probe_loads(right.s, right.z, right.index, right.s_form)
     near = loads[:, 1] @ right.blocks[0] @ loads[:, 1]  # the end of the face beside the web
-    loads = _probe_loads(left.s, left.z, left.index, left.s_form)
+    loads = probe_loads(left.s, left.z, left.index, left.s_form)
     far = loads[:, 1] @ left.blocks[0] @ loads[:, 1]
     assert far > 1.1 * near
     assert moved(right) > 1.05 * moved(solid_3d(with_blank()))

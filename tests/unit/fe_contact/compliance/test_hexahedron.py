@@ -15,7 +15,7 @@ from fe_contact.compliance.hexahedron_stiffness import (
     layer_nodes,
     stiffness_of,
 )
-from fe_contact.compliance.sector_stiffness import _flank_frames, placed_layer, sector_stiffness, twist
+from fe_contact.compliance.sector_stiffness import flank_frames, placed_layer, sector_stiffness, twist
 from fe_contact.errors import MeshError
 from fe_contact.geometry import BoreSeat, Gear
 from fe_contact.mesh import QuadSector, SectorRecipe, SweptSector, quad_sector, swept_sector
@@ -126,7 +126,7 @@ class FreeBore:
 def test_constant_strain_is_exact_in_a_merged_helical_sector(section: QuadSector) -> None:
     """Patch test: inner nodes, hanging ones included, balance under a linear field; the energy is exact."""
     sector = swept_sector(section.grid, GEAR.face_width, RECIPE, FreeBore())
-    frames = _flank_frames(section, twist(GEAR))
+    frames = flank_frames(section, twist(GEAR))
     stiffness = sector_stiffness(GEAR, section, sector)
     places = node_positions(section, sector)
     axes = cylindrical_frames(places[None])[0]
@@ -165,7 +165,7 @@ def test_constant_strain_is_exact_in_a_merged_helical_sector(section: QuadSector
 
 
 def test_the_flank_frame_is_the_helicoid(section: QuadSector) -> None:
-    frames = _flank_frames(section, twist(GEAR))
+    frames = flank_frames(section, twist(GEAR))
     assert np.einsum("kab,kac->kbc", frames, frames) == pytest.approx(
         np.tile(np.eye(3), (len(frames), 1, 1)), abs=1e-14
     )

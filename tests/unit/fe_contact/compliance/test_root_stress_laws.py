@@ -16,16 +16,16 @@ from scipy.sparse.linalg import splu
 import fe_contact.compliance.root_stress_3d as face_module
 import fe_contact.compliance.sector_stiffness as stiffness_module
 from fe_contact.compliance import PlaneHypothesis
-from fe_contact.compliance.condensed_gear import _pressure_forces
-from fe_contact.compliance.condensed_sector import _inward_loads, freedoms
+from fe_contact.compliance.condensed_gear import pressure_forces
+from fe_contact.compliance.condensed_sector import freedoms, inward_loads
 from fe_contact.compliance.factorization import factorise
 from fe_contact.compliance.plane_elasticity import stiffness_matrix
 from fe_contact.compliance.root_stress import UnitRootStress, refuse_broken_stress
-from fe_contact.compliance.root_stress_3d import _root_functionals, compute_root_stress_3d
+from fe_contact.compliance.root_stress_3d import compute_root_stress_3d, root_functionals
 from fe_contact.compliance.root_surface_3d import quad_root
 from fe_contact.compliance.unit_root_stress import (
-    _edge_stress,
-    _triangle_root,
+    edge_stress,
+    triangle_root,
     unit_root_stress,
     unit_root_stress_3d,
     unit_root_stresses,
@@ -65,7 +65,7 @@ def on_flank(found: UnitRootStress) -> np.ndarray:
     """Forces of a pressure on the upper part of the flank, all of the face."""
     upper = found.s[:-2:2] > 0.4 * found.s[0] + 0.6 * found.s[-1]
     if found.across_face:
-        return _pressure_forces(
+        return pressure_forces(
             found.s, found.z, found.index, np.tile(upper, (len(found.z) - 1, 1)).astype(float)
         )
     forces, lengths = np.zeros(len(found.s)), np.where(upper, np.diff(found.s[::2]), 0.0)
@@ -97,15 +97,15 @@ def agrees_with_the_whole_mesh(gear: Toothing, recipe: MeshRecipe) -> None:
     free = np.setdiff1d(np.arange(2 * len(mesh.points)), freedoms(mesh.bore_nodes))
     solve = splu(sp.csc_array(matrix[free][:, free])).solve
     own = int(np.flatnonzero(mesh.teeth == 0)[0])
-    chains = mesh.sector_nodes[own, _triangle_root(mesh.sector, tooth_profile(gear)).nodes]
+    chains = mesh.sector_nodes[own, triangle_root(mesh.sector, tooth_profile(gear)).nodes]
     forces = some_forces(len(found.s))
     for n, ahead in enumerate(found.distance):
         flank = mesh.flanks[own - ahead]
         moved = np.zeros((2 * len(mesh.points), 3))
-        loads = _inward_loads(len(mesh.points), flank.nodes, flank.normals) @ forces
+        loads = inward_loads(len(mesh.points), flank.nodes, flank.normals) @ forces
         moved[free] = solve(loads[free])
         for side, chain in enumerate(chains):
-            expected = _edge_stress(mesh.points, chain, gear.material, STRAIN) @ moved
+            expected = edge_stress(mesh.points, chain, gear.material, STRAIN) @ moved
             stress = (found.stress[n, side, :, :, 0] @ forces).reshape(-1, 3)
             assert relative(stress, expected) < 1e-9
 
@@ -116,7 +116,7 @@ def whole_gear_stress(gear: Gear, recipe: SectorRecipe) -> np.ndarray:
     loads = np.zeros((matrix.shape[0], 3))
     loads[number[0, sector.flank]] = -some_forces(len(sector.flank))  # inwards
     moved = factorise(matrix, block=1)(loads)
-    rows = _root_functionals(gear, section, sector, quad_root(section, tooth_profile(gear)))
+    rows = root_functionals(gear, section, sector, quad_root(section, tooth_profile(gear)))
     return np.stack([rows @ moved[each[:-1]] for each in number])
 
 
@@ -252,7 +252,7 @@ def test_nodes_of_the_root_have_their_flank_coordinates(gear: Toothing) -> None:
     sector = mesh_gear(gear, MeshRecipe.standard(gear)).sector
     for points, root in (
         (section.points, quad_root(section, profile)),
-        (sector.points, _triangle_root(sector, profile)),
+        (sector.points, triangle_root(sector, profile)),
     ):
         right, left = points[root.nodes[0]], points[root.nodes[1]]
         assert left == pytest.approx(right * [-1.0, 1.0], abs=1e-15)

@@ -16,12 +16,12 @@ from fe_contact import Gear, GearPair
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.compliance import flank_compliance_3d
 from fe_contact.compliance.cyclic_ring import close_ring, hold_sector
-from fe_contact.compliance.elimination_tree import EliminationTree, _elimination_tree
-from fe_contact.compliance.factorization import _nested_dissection, factorise
+from fe_contact.compliance.elimination_tree import EliminationTree, bisected_tree
+from fe_contact.compliance.factorization import factorise, nested_dissection
 from fe_contact.compliance.flank import (
     EPSILON,
     LARGEST_ROUNDING,
-    _disc_rounding,
+    disc_rounding,
     least_face_width,
     left_by_rounding,
 )
@@ -57,7 +57,7 @@ def dense(freedoms: np.ndarray, stiffness: ElementStiffness) -> np.ndarray:
 @pytest.mark.parametrize("leaf", [1, 3, 100])
 def test_condensation_is_the_schur_complement(leaf: int) -> None:
     nodes, freedoms, place, stiffness = sheet()
-    tree = _elimination_tree(nodes, freedoms, place, KEPT, leaf)
+    tree = bisected_tree(nodes, freedoms, place, KEPT, leaf)
     condensed, found = condense(tree, freedoms, stiffness)
     matrix = dense(freedoms, stiffness)
     others = np.setdiff1d(np.arange(len(matrix)), KEPT)
@@ -76,7 +76,7 @@ def test_condensation_is_the_schur_complement(leaf: int) -> None:
 def test_factors_go_with_their_condensation() -> None:
     """They are the largest part of a gear's memory: waiting for the collector doubles its peak."""
     nodes, freedoms, place, stiffness = sheet()
-    _, condensation = condense(_elimination_tree(nodes, freedoms, place, KEPT, 3), freedoms, stiffness)
+    _, condensation = condense(bisected_tree(nodes, freedoms, place, KEPT, 3), freedoms, stiffness)
     factor = weakref.ref(condensation.factors[0].factor)
     collecting = gc.isenabled()
     gc.disable()
@@ -90,12 +90,12 @@ def test_factors_go_with_their_condensation() -> None:
 
 def test_every_freedom_is_eliminated_once_and_counted() -> None:
     nodes, freedoms, place, _ = sheet()
-    tree: EliminationTree = _elimination_tree(nodes, freedoms, place, KEPT, 3)
+    tree: EliminationTree = bisected_tree(nodes, freedoms, place, KEPT, 3)
     inner = np.concatenate([front.inner for front in tree.root.fronts()])
     assert sorted(np.concatenate([inner, KEPT])) == list(range(len(tree.order)))
     assert np.array_equal(np.argsort(tree.order)[: len(inner)], inner)
     assert sorted(np.concatenate([f.elements for f in tree.root.fronts()])) == list(range(COLUMNS * ROWS))
-    alone = _elimination_tree(nodes, freedoms, place, KEPT, 100)
+    alone = bisected_tree(nodes, freedoms, place, KEPT, 100)
     n, k = len(inner), len(KEPT)
     assert alone.operations == pytest.approx(n**3 / 6 + n * n * k / 2 + n * k * k / 2)
     assert (alone.factor_entries, alone.front_entries) == (n * (n + k), (n + k) ** 2)
@@ -107,7 +107,7 @@ def test_every_freedom_is_eliminated_once_and_counted() -> None:
 def test_an_indefinite_structure_is_a_solve_error() -> None:
     nodes, freedoms, place, stiffness = sheet(floor=-50.0)
     with pytest.raises(SolveError, match="not positive definite"):
-        condense(_elimination_tree(nodes, freedoms, place, KEPT, 3), freedoms, stiffness)
+        condense(bisected_tree(nodes, freedoms, place, KEPT, 3), freedoms, stiffness)
 
 
 FLANK, CUT = 9, 4
@@ -172,7 +172,7 @@ def fill(matrix: sp.csc_array, order: np.ndarray) -> int:
 
 def test_nested_dissection_orders_whole_nodes_saves_fill_and_solves() -> None:
     matrix = grid(60)
-    order = _nested_dissection(matrix, 2)
+    order = nested_dissection(matrix, 2)
     assert np.array_equal(np.sort(order), np.arange(matrix.shape[0]))
     assert np.array_equal(order[1::2], order[::2] + 1)
     assert np.all(order[::2] % 2 == 0)
@@ -219,7 +219,7 @@ def test_rounding_grows_as_a_helical_disc_bends_as_a_plate(
     quotient = found[1].energy_rounding / found[0].energy_rounding
     assert math.log2(quotient) == pytest.approx(power, abs=0.3)
     layers = SectorRecipe.draft(thin).layers
-    predicted = _disc_rounding(slenderness(thin), helix, layers, STEEL)
+    predicted = disc_rounding(slenderness(thin), helix, layers, STEEL)
     assert 1.0 / 3.0 < predicted / found[1].energy_rounding < 3.0
 
 
@@ -227,7 +227,7 @@ def test_rounding_grows_as_a_helical_disc_bends_as_a_plate(
 def test_a_disc_as_thin_as_allowed_is_computed_and_a_thinner_one_refused() -> None:
     layers = SectorRecipe.draft(disc(1.0)).layers
     least = least_face_width(disc(1.0), layers) / 4e-3
-    assert _disc_rounding(slenderness(disc(least)), 0.3, layers, STEEL) == pytest.approx(LARGEST_ROUNDING)
+    assert disc_rounding(slenderness(disc(least)), 0.3, layers, STEEL) == pytest.approx(LARGEST_ROUNDING)
     allowed, thinner = disc(1.001 * least), disc(0.999 * least)
     check_request(
         GearPair(allowed, mate_of(allowed)), *table_request(torques=[1.0], model="3d", level="draft")

@@ -12,8 +12,8 @@ from scipy.sparse.linalg import splu
 from fe_contact.compliance import PlaneHypothesis
 from fe_contact.compliance.plane_elasticity import stiffness_matrix
 from fe_contact.compliance.root_surface import STATIONS, between_nodes
-from fe_contact.compliance.root_surface_3d import ACROSS, ALONG, _SurfaceElements, face_stress
-from fe_contact.compliance.unit_root_stress import _edge_stress
+from fe_contact.compliance.root_surface_3d import ACROSS, ALONG, SurfaceElements, face_stress
+from fe_contact.compliance.unit_root_stress import edge_stress
 from fe_contact.material import Material
 
 STEEL = Material()
@@ -48,7 +48,7 @@ def test_stress_round_a_hole_converges_with_the_cube(hypothesis: PlaneHypothesis
         c, s = np.cos(angle), np.sin(angle)
         moved = np.stack([c * radial - s * around, s * radial + c * around], axis=1)
         moved /= hypothesis.contact_modulus(STEEL)
-        found = (_edge_stress(points, chain, STEEL, hypothesis) @ moved.ravel()).reshape(3, -1)
+        found = (edge_stress(points, chain, STEEL, hypothesis) @ moved.ravel()).reshape(3, -1)
         exact = 1.0 - 2.0 * np.cos(2.0 * at)
         errors.append(np.abs(found[0] - exact).max())
         held = STEEL.poissons_ratio if hypothesis is STRAIN else 0.0
@@ -115,7 +115,7 @@ def inner_stress_error(refinement: int) -> float:
     moved = np.zeros(2 * len(points))
     moved[free] = splu(sp.csc_array(matrix[free][:, free])).solve(load.ravel()[free])
     chain = np.flatnonzero(np.isclose(polar[:, 0], 1.0))
-    found = (_edge_stress(points, chain, STEEL, STRESS) @ moved)[: len(chain) - 1]
+    found = (edge_stress(points, chain, STEEL, STRESS) @ moved)[: len(chain) - 1]
     at = between_nodes(polar[chain, 1])
     exact = beam_stress(np.ones_like(at), at)[1]
     middle = (at > np.pi / 8.0) & (at < 3.0 * np.pi / 8.0)
@@ -137,7 +137,7 @@ def test_stress_of_a_curved_bar_converges_with_the_square(
     record_figure(name, rate, "2 within 0.2", "1", "derivative of quadratics")
 
 
-def shaft(layers: int, radius: float, skew: float) -> _SurfaceElements:
+def shaft(layers: int, radius: float, skew: float) -> SurfaceElements:
     """Surface of a round shaft in elements whose uprights lean by `skew` rad per length."""
     places = []
     for layer in range(layers):
@@ -147,10 +147,10 @@ def shaft(layers: int, radius: float, skew: float) -> _SurfaceElements:
             places.append(np.stack([radius * np.cos(t), radius * np.sin(t), z], axis=1))
     nodes = np.array(places)
     axes = np.tile(np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0], (len(nodes), 8, 1, 1))
-    return _SurfaceElements(nodes, axes, np.arange(nodes.size).reshape(nodes.shape))
+    return SurfaceElements(nodes, axes, np.arange(nodes.size).reshape(nodes.shape))
 
 
-def stress_of(elements: _SurfaceElements, field: Displacement) -> np.ndarray:
+def stress_of(elements: SurfaceElements, field: Displacement) -> np.ndarray:
     """Stresses (3, stations) where the nodes move by `field`, given and taken in Cartesian components."""
     moved = np.einsum("miab,mia->mib", elements.frames, field(elements.nodes))
     rows = face_stress(elements, STEEL, elements.freedoms.size)

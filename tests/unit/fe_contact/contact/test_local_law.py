@@ -9,18 +9,18 @@ import pytest
 from hertz_laws import edge_contact_length, edge_half_width, line_load_at_half_width, local_approach
 
 from fe_contact.contact.local_law import (
-    _HALF,
-    _MIDDLE,
-    _MODULUS,
+    HALF_STRIP,
     LARGEST_STRIP,
+    MIDDLE,
+    MODULUS,
     SMALLEST_STRIP,
     LocalLaw,
-    _plain_load,
-    _plain_strip,
-    _strip_at,
     approach,
     force_at,
+    half_strip_at,
     local_law,
+    plain_load,
+    plain_strip,
 )
 from fe_contact.contact.strip import Gap, free_strip, gap_table, strip_at, strip_load
 from fe_contact.hertz import contact_modulus, half_width
@@ -40,12 +40,12 @@ def law_of(slope: float, first: Material = STEEL, second: Material = STEEL, scal
 
 def low(law: LocalLaw) -> float:
     """Line load up to which the law is its secant."""
-    return strip_load(law.gap, 0, SMALLEST_STRIP * law.length, law.strip[0, _MODULUS])[0]
+    return strip_load(law.gap, 0, SMALLEST_STRIP * law.length, law.strip[0, MODULUS])[0]
 
 
 def high(law: LocalLaw) -> float:
     """Line load above which the law goes on straight."""
-    return strip_load(law.gap, 0, LARGEST_STRIP * law.length, law.strip[0, _MODULUS])[0]
+    return strip_load(law.gap, 0, LARGEST_STRIP * law.length, law.strip[0, MODULUS])[0]
 
 
 def gap_of(slope: float, radius: float) -> Gap:
@@ -148,8 +148,8 @@ def test_a_parabola_needs_no_search():
     curvature, gap = 1.0 / RADIUS, gap_of(math.nan, RADIUS)
     for p in np.geomspace(1e-3 * low(law), 1e2 * high(law), 200):
         value = approach(law, 0, p * WIDTH)[0]
-        half = _plain_strip(curvature, LENGTH, value, 0.0)
-        load, stiffness = _plain_load(curvature, LENGTH, law.strip[0, _MODULUS], half, value)
+        half = plain_strip(curvature, LENGTH, value, 0.0)
+        load, stiffness = plain_load(curvature, LENGTH, law.strip[0, MODULUS], half, value)
         found, from_the_last = force_at(law_of(math.nan), 0, value), force_at(law, 0, value)
         assert (WIDTH * load, WIDTH * stiffness) == pytest.approx(found, rel=1e-12)
         assert from_the_last == pytest.approx(found, rel=1e-11)
@@ -203,8 +203,8 @@ def test_newtons_strip_is_the_one_that_is_held_between_bounds(jump):
         one, away = np.array([1.0 / RADIUS]), np.array([1e-2])
         gap = gap_table(Gap(np.zeros(1), one, -away, away, place, np.full((1, 2), jump), bends))
         law = local_law(gap, np.array([WIDTH]), np.array([modulus]), LENGTH)
-        guess = _plain_strip(one[0], LENGTH, value, 0.0)
-        held = _strip_at(law, 0, value, guess)
+        guess = plain_strip(one[0], LENGTH, value, 0.0)
+        held = half_strip_at(law, 0, value, guess)
         center, half, first, mean = strip_at(gap, 0, value, LENGTH, 0.0, guess)
         if SMALLEST_STRIP * LENGTH < half < LARGEST_STRIP * LENGTH:
             found += 1
@@ -226,14 +226,14 @@ def test_a_strip_that_an_edge_holds_follows_from_any_other(slope):
     law, held = law_of(slope), 0
     for p in LINE_LOADS:
         expected, stiffness, _ = approach(law_of(slope), 0, p * WIDTH)
-        bounded = _strip_at(law_of(slope), 0, expected, 1e-2 * LENGTH)
+        bounded = half_strip_at(law_of(slope), 0, expected, 1e-2 * LENGTH)
         for share in (0.1, 0.7, 1.0, 1.4, 10.0):
             before = approach(law_of(slope), 0, share * p * WIDTH)[0]
             other = law_of(slope)
             force_at(other, 0, before)
             found = force_at(other, 0, expected)
             assert found == pytest.approx((p * WIDTH, 1.0 / stiffness), rel=1e-7, abs=0.0)
-            middle, half, *_ = strip_at(law.gap, 0, expected, LENGTH, *other.strip[0, [_MIDDLE, _HALF]])
+            middle, half, *_ = strip_at(law.gap, 0, expected, LENGTH, *other.strip[0, [MIDDLE, HALF_STRIP]])
             if half > SMALLEST_STRIP * LENGTH and middle <= law.gap[0, 2] + 1.001 * half:
                 held += 1
                 assert half == pytest.approx(bounded, rel=1e-6, abs=0.0)

@@ -13,7 +13,7 @@ from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact import ContactProblem, PatchRule, Slices, contact_candidates, in_pitches
 from fe_contact.contact.model import ContactModel, MeetingTeeth
 from fe_contact.effects import EFFECTS, ContactScene, compose
-from fe_contact.effects.pitch_error import PitchError, _PitchGap
+from fe_contact.effects.pitch_error import PitchError, PitchGap
 from fe_contact.geometry import Gear, GearPair, InternalGearPair, PitchDeviation, RingGear
 from fe_contact.planning.plan import make_plan
 
@@ -239,7 +239,7 @@ def test_the_verdict_gives_the_figures_of_the_standard_and_periods_multiply():
     assert verdict.reason.endswith("over 20 base pitches")
     plain = GearPair(gear(Z1), gear(Z2))
     assert not PitchError().called_for(ContactScene(plain, np.array([100.0]), EFFECTS)).on
-    terms = (_PitchGap(0, (1e-6, 0.0), 2), _PitchGap(1, (2e-6, 0.0, 0.0), 3))
+    terms = (PitchGap(0, (1e-6, 0.0), 2), PitchGap(1, (2e-6, 0.0, 0.0), 3))
     model = ContactModel(tooth_gaps=terms)
     assert model.period == 6
     pair = GearPair(gear(Z1, np.arange(Z1) * 1e-6), gear(Z2, np.arange(Z2) * 1e-5))

@@ -13,18 +13,18 @@ from fe_contact.contact import ContactModel, ContactProblem, PatchRule, Slices, 
 from fe_contact.contact import with_compliances as with_added
 from fe_contact.contact.flank_slope import rolls_at
 from fe_contact.effects import EFFECTS, ContactScene, compose
-from fe_contact.effects.shaft_deflection import ShaftDeflection, _SeatCompliance, _ShaftCompliance
+from fe_contact.effects.shaft_deflection import SeatCompliance, ShaftCompliance, ShaftDeflection
 from fe_contact.geometry import Gear, GearPair, InternalGearPair, ParallelAxes, RingGear, Shaft
 
 SHAFT = Shaft(length=0.2, diameter=0.04, position=0.06, bearing_stiffness=4e8)
 E, NU = SHAFT.material.youngs_modulus, SHAFT.material.poissons_ratio
 
 
-def seat(**changes: Any) -> _SeatCompliance:
-    return _SeatCompliance.of_shaft(replace(SHAFT, **changes))
+def seat(**changes: Any) -> SeatCompliance:
+    return SeatCompliance.of_shaft(replace(SHAFT, **changes))
 
 
-def figures(found: _SeatCompliance) -> tuple[float, float, float]:
+def figures(found: SeatCompliance) -> tuple[float, float, float]:
     return found.translation, found.coupling, found.tilt
 
 
@@ -133,7 +133,7 @@ def test_the_term_is_the_work_of_wrenches_on_the_seats(make, helix):
     pair = make(helix, offset=3e-3)
     seats = seat(), seat(length=0.15, position=0.1, diameter=0.05)
     roll_1, roll_2, face = places(pair)
-    found = _ShaftCompliance(*seats)(pair, roll_1, roll_2, face)
+    found = ShaftCompliance(*seats)(pair, roll_1, roll_2, face)
     for p in range(3):
         expected = moved_by_wrenches(pair, seats, roll_1[p], roll_2[p], face)
         assert found[p] == pytest.approx(expected, rel=1e-10, abs=0.0)
@@ -142,7 +142,7 @@ def test_the_term_is_the_work_of_wrenches_on_the_seats(make, helix):
 @pytest.mark.parametrize("helix", [0.0, 0.35])
 def test_the_term_is_symmetric_and_never_gives_work_away(helix):
     pair = make_pair(helix)
-    found = _ShaftCompliance(seat(), seat(position=0.15))(pair, *places(pair))
+    found = ShaftCompliance(seat(), seat(position=0.15))(pair, *places(pair))
     assert np.array_equal(found, found.transpose(0, 2, 1))
     values = np.linalg.eigvalsh(found)
     assert values.min() > -1e-13 * values.max()
@@ -153,8 +153,8 @@ def test_the_term_is_symmetric_and_never_gives_work_away(helix):
 def test_opposite_hand_or_side_is_the_mirror_image():
     right, left = make_pair(0.35), make_pair(-0.35)
     roll_1, roll_2, face = places(right)
-    first = _ShaftCompliance(seat(), seat(position=0.15))(right, roll_1, roll_2, face)
-    second = _ShaftCompliance(seat(position=0.14), seat(position=0.05))(left, roll_1, roll_2, -face)
+    first = ShaftCompliance(seat(), seat(position=0.15))(right, roll_1, roll_2, face)
+    second = ShaftCompliance(seat(position=0.14), seat(position=0.05))(left, roll_1, roll_2, -face)
     assert second == pytest.approx(first, rel=1e-12, abs=0.0)
     first, second = seat(position=0.05), seat(position=0.15)
     assert second.translation == pytest.approx(first.translation, rel=1e-12, abs=0.0)

@@ -10,9 +10,9 @@ import pytest
 from contact_blocks import DEPTH, WIDTH, block
 
 from fe_contact.full_contact.condensation.contact_model import (
-    _condensed_body,
-    _CondensedBody,
-    _plane_strain_stiffness,
+    CondensedBody,
+    condensed_body,
+    plane_strain_stiffness,
 )
 from fe_contact.full_contact.condensation.linearized_contact import ContactSystem, solve_active_set
 from fe_contact.full_contact.condensation.weak_gap import FlankCurve, WeakGap, weak_gap
@@ -25,9 +25,9 @@ SOFT, STIFF = Material(70e9, 0.0), Material(210e9, 0.0)
 
 
 @cache
-def blocks() -> tuple[_CondensedBody, _CondensedBody]:
+def blocks() -> tuple[CondensedBody, CondensedBody]:
     """Left of x = 0 and right of it."""
-    return _condensed_body(block(0), SOFT), _condensed_body(block(1), STIFF)
+    return condensed_body(block(0), SOFT), condensed_body(block(1), STIFF)
 
 
 def pressed(slave: int) -> tuple[WeakGap, ContactSystem]:
@@ -114,7 +114,7 @@ def area() -> float:
 
 
 def test_rigid_motion_takes_no_force() -> None:
-    matrix = _plane_strain_stiffness(POINTS, TRIANGLES, STEEL).toarray()
+    matrix = plane_strain_stiffness(POINTS, TRIANGLES, STEEL).toarray()
     np.testing.assert_allclose(matrix, matrix.T, rtol=0.0, atol=1e-15 * matrix.max())
     turned = np.stack([-POINTS[:, 1], POINTS[:, 0]], axis=-1) / 1e-3
     for motion in (np.tile([1.0, 0.0], 9), np.tile([0.0, 1.0], 9), turned.ravel()):
@@ -123,7 +123,7 @@ def test_rigid_motion_takes_no_force() -> None:
 
 
 def test_even_strain_stores_the_energy_of_plane_strain() -> None:
-    matrix = _plane_strain_stiffness(POINTS, TRIANGLES, STEEL)
+    matrix = plane_strain_stiffness(POINTS, TRIANGLES, STEEL)
     e, nu = STEEL.youngs_modulus, STEEL.poissons_ratio
     lam, mu = e * nu / ((1 + nu) * (1 - 2 * nu)), e / (2 * (1 + nu))
     for strain in ([[1.0, 0.0], [0.0, 0.0]], [[0.3, 0.4], [0.4, -0.2]]):

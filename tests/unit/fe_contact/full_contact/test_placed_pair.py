@@ -13,7 +13,7 @@ from fe_contact.full_contact.condensation.contact_model import freedoms
 from fe_contact.full_contact.condensation.placed_mesh import PlacedBody, placed_bodies
 from fe_contact.full_contact.condensation.sites import Range, Resolution, contact_sites, least_gap_left_out
 from fe_contact.geometry import ParallelAxes
-from fe_contact.mesh.quality import _least_jacobian
+from fe_contact.mesh.quality import least_jacobian
 from fe_contact.types import FloatArray
 
 PINION = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
@@ -87,7 +87,7 @@ def test_modified_flanks_are_apart_by_what_was_removed_and_turn_no_element_over(
     assert no_load_gap(PAIR, 0.3) == 0.0
     relieved = replace(PINION, modification=FlankModification(tip_relief=60e-6, tip_relief_length=1.7e-3))
     for body in bodies_at(GearPair(relieved, PINION, center_distance=80e-3), 0.2):
-        assert _least_jacobian(body.points[body.triangles]).min() > 0.1
+        assert least_jacobian(body.points[body.triangles]).min() > 0.1
 
 
 def test_teeth_off_the_path_are_held_where_the_lag_brings_them_to_touch() -> None:

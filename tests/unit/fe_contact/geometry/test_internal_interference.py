@@ -16,9 +16,9 @@ from fe_contact.geometry.flank_profile import ToothProfile, tooth_profile
 from fe_contact.geometry.gear_pair import InternalGearPair
 from fe_contact.geometry.ring_gear import RingGear
 from fe_contact.geometry.tip_interference import (
-    _flank_angle,
-    _pinion_edge_path,
-    _ring_edge_path,
+    flank_angle,
+    pinion_edge_path,
+    ring_edge_path,
     tip_interference,
     trochoidal_interference,
 )
@@ -205,10 +205,10 @@ def test_ends_of_the_edges_paths_are_the_handbooks_angle_criterion(teeth: tuple[
     theta_1 = math.acos((r_2**2 - r_1**2 - a**2) / (2.0 * a * r_1)) + inv_1 - working
     theta_2 = math.acos((a**2 + r_2**2 - r_1**2) / (2.0 * a * r_2))
     left_over = theta_1 * teeth[0] / teeth[1] + working - inv_2 - theta_2  # SDP/SI D785, eq. 5-6: >= 0
-    path = _pinion_edge_path(pair)
+    path = pinion_edge_path(pair)
     assert path.radius[-1] == pytest.approx(r_2, rel=1e-12)
     assert path.depth[-1] == pytest.approx(-r_2 * left_over, rel=1e-9, abs=0.0)
-    mate = _ring_edge_path(pair)
+    mate = ring_edge_path(pair)
     assert mate.radius[-1] == pytest.approx(r_1, rel=1e-12)
     # the same meeting of the two edges, seen from the pinion
     assert mate.depth[-1] == pytest.approx(-r_1 * left_over * teeth[1] / teeth[0], rel=1e-6, abs=0.0)
@@ -217,8 +217,8 @@ def test_ends_of_the_edges_paths_are_the_handbooks_angle_criterion(teeth: tuple[
 def test_edges_touch_the_mating_flank_at_the_ends_of_the_path_of_contact() -> None:
     pair = make_pair((40, 80), {}, {})
     for path, mate, roll in (
-        (_pinion_edge_path(pair), pair.wheel, pair.common_tangent + pair.path_of_contact.end),
-        (_ring_edge_path(pair), pair.pinion, pair.path_of_contact.start),
+        (pinion_edge_path(pair), pair.wheel, pair.common_tangent + pair.path_of_contact.end),
+        (ring_edge_path(pair), pair.pinion, pair.path_of_contact.start),
     ):
         on_involute = mate.sign * (path.radius - mate.form_radius) > 0.0
         at_contact = np.argmax(np.where(on_involute, path.depth, -np.inf))
@@ -227,7 +227,7 @@ def test_edges_touch_the_mating_flank_at_the_ends_of_the_path_of_contact() -> No
     for profile in (tooth_profile(pair.pinion), tooth_profile(pair.wheel)):
         s = np.linspace(profile.s_root, profile.s_tip, 97)[3:]
         x, y = profile.flank(s).T
-        assert _flank_angle(profile.gear, np.hypot(x, y)) == pytest.approx(np.arctan2(x, y), abs=1e-6)
+        assert flank_angle(profile.gear, np.hypot(x, y)) == pytest.approx(np.arctan2(x, y), abs=1e-6)
 
 
 def radially_blocked(pair: InternalGearPair) -> bool:

@@ -19,7 +19,7 @@ from fe_contact.mesh import GearMesh, MeshRecipe, QualityLimits, mesh_gear, mesh
 from fe_contact.mesh.curve_division import divide, middles, spread
 from fe_contact.mesh.export import HUB, cell_teeth, write_cells
 from fe_contact.mesh.outline import Outline, Piece
-from fe_contact.mesh.quadratic_mesh import _quadratic_mesh, _Triangulation
+from fe_contact.mesh.quadratic_mesh import Triangulation, with_mid_side_nodes
 
 STRAIGHT = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
 ELEMENT = np.arange(6)[None, :]
@@ -82,10 +82,10 @@ def test_what_cannot_be_meshed_well_is_refused_by_element_and_limit() -> None:
     with pytest.raises(MeshError):
         mesh_gear(gear, recipe, limits=QualityLimits(angle=np.radians(30.0), scaled_jacobian=0.6))
     points = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0]])
-    straight = _Triangulation(points, np.array([[0, 3, 2], [3, 1, 2]]))
+    straight = Triangulation(points, np.array([[0, 3, 2], [3, 1, 2]]))
     nodes = np.array([[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [0.5, 0.5], [0.0, 1.0], [0.0, 0.5], [0.0, 0.0]])
     with pytest.raises(MeshError, match="divided"):
-        _quadratic_mesh([Outline((Piece("all", nodes),))], straight)
+        with_mid_side_nodes([Outline((Piece("all", nodes),))], straight)
 
 
 ROOT = Path(__file__).parents[4]

@@ -22,7 +22,7 @@ from fe_contact.mesh import (
 )
 from fe_contact.mesh.face_layers import layers_across, layers_to_mid_face
 from fe_contact.mesh.sector_grid import SectorGrid
-from fe_contact.mesh.swept_sector import SweptSector, _inner_breaks
+from fe_contact.mesh.swept_sector import SweptSector, inner_breaks
 
 SPUR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 GRID = SectorGrid(body_rows=4, tooth_rows=3, land=1, across=2)
@@ -217,8 +217,8 @@ def test_rows_of_elements_end_at_rim_and_hub_of_a_web_of_any_width() -> None:
     assert webbed.size == solid.size
     assert len(webbed.elements) == len(solid.elements)
     assert np.array_equal(webbed.layers.ends, solid.layers.ends)
-    assert _inner_breaks((-20e-3, 5e-3, 5e-3 + 1e-6, 20e-3 - 1e-6), 40e-3) == (5e-3,)
-    assert _inner_breaks((-20e-3, 20e-3), 40e-3) == ()
+    assert inner_breaks((-20e-3, 5e-3, 5e-3 + 1e-6, 20e-3 - 1e-6), 40e-3) == (5e-3,)
+    assert inner_breaks((-20e-3, 20e-3), 40e-3) == ()
 
 
 @pytest.mark.parametrize("hub", [None, 50e-3])

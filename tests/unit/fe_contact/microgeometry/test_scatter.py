@@ -16,9 +16,9 @@ from fe_contact.geometry.flank_tolerances import helix_slope_tolerance, profile_
 from fe_contact.microgeometry.confirmation import (
     DesignLoads,
     DesignSpace,
-    _misalignment_axis,
-    _on_axis,
     design_study,
+    misalignment_axis,
+    snapped_to_axis,
 )
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter, SobolSample
@@ -206,7 +206,7 @@ def test_a_table_has_every_misalignment_once() -> None:
     """A sum and the number it should be differ in the last bit: an axis through both would have no slope."""
     skews, away = np.array([4.1e-6, 12.3e-6]), np.array([8.2e-6, -8.2e-6])
     assert skews[0] + away[0] != skews[1]
-    axis = _misalignment_axis(skews, away)
+    axis = misalignment_axis(skews, away)
     np.testing.assert_allclose(axis, [-4.1e-6, 4.1e-6, 12.3e-6, 20.5e-6], rtol=1e-12)
-    assert set(_on_axis(axis, skews + away[:, None]).ravel()) <= set(axis)
-    assert _on_axis(axis, np.array([[5e-6]])) == 5e-6  # between two of them
+    assert set(snapped_to_axis(axis, skews + away[:, None]).ravel()) <= set(axis)
+    assert snapped_to_axis(axis, np.array([[5e-6]])) == 5e-6  # between two of them

@@ -20,7 +20,7 @@ from fe_contact.microgeometry.tolerance_study import (
     Sampling,
     ToleranceRequest,
     ToleranceStudy,
-    _quantile,
+    estimated_quantile,
     scatter,
 )
 from fe_contact.microgeometry.tolerances import Tolerances
@@ -189,7 +189,7 @@ def test_the_first_order_answer_is_off_by_the_square_of_the_tolerances(found: To
 def test_bounds_cover_the_true_quantile_as_often_as_they_say() -> None:
     samples = np.random.default_rng(5).exponential(size=(80, 4000))
     true = -np.log(1.0 - 0.9)
-    bounds = _quantile(samples, 0.9, 0.95)
+    bounds = estimated_quantile(samples, 0.9, 0.95)
     covered = np.mean((bounds.low <= true) & (true <= bounds.high))
     assert 0.94 < covered < 0.99  # order statistics are discrete: at least the asked confidence
 
@@ -208,7 +208,7 @@ def test_bounds_of_a_median_are_those_of_the_sign_test(
 
 
 def test_influence_sees_both_signs_and_small_samples_have_no_bound() -> None:
-    small = _quantile(np.arange(1.0, 6.0)[:, None], 0.95, 0.95)
+    small = estimated_quantile(np.arange(1.0, 6.0)[:, None], 0.95, 0.95)
     assert np.isinf(small.high).all() and figures_of(ScatterFigures.QuantileFigures, small)["high_um"] is None
     deviation = np.random.default_rng(1).normal(size=(400, 3))
     ripple = np.stack([deviation[:, 0] ** 2, -deviation[:, 1]], axis=1)

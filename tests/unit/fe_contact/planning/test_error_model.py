@@ -10,7 +10,7 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, Material, SteDatabase, analyze
-from fe_contact.analysis.position_nodes import _adaptive_nodes
+from fe_contact.analysis.position_nodes import adaptive_nodes
 from fe_contact.analysis.request.model_choice import TRIED_WORK, Decided, decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.run_plan import plan_run, predicted_designs
@@ -231,8 +231,8 @@ def test_positions_are_placed_by_the_floor_of_the_tolerance():
         return lambda x: (height * np.abs((x[:, None] + 0.3) % 1.0 - 0.5))[None]
 
     rule = NodeRule(32, 0.002, 768, least_ripple=1e-6)
-    large, small = (_adaptive_nodes(rule, kinked(height)).position.size for height in (1e-4, 1e-8))
-    assert _adaptive_nodes(NodeRule(32, 0.002, 768), kinked(1e-8)).position.size == large
+    large, small = (adaptive_nodes(rule, kinked(height)).position.size for height in (1e-4, 1e-8))
+    assert adaptive_nodes(NodeRule(32, 0.002, 768), kinked(1e-8)).position.size == large
     assert large > small == 32
     asked = check_request(quiet_pair(), *table_request(torques=[20.0], tolerance=AllowedError(0.01, 30 * NM)))
     assert decide(asked).plan.nodes.least_ripple == pytest.approx(FLOOR_SHARE * 3e-6)

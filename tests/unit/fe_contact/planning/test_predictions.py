@@ -32,7 +32,7 @@ from fe_contact.planning.cost_model import (
     predict_run,
 )
 from fe_contact.planning.cost_of_derivatives import solved_pitches
-from fe_contact.planning.planned import ExpectedError, MeshOption, _mesh_for_time, _mesh_for_tolerance
+from fe_contact.planning.planned import ExpectedError, MeshOption, mesh_for_time, mesh_for_tolerance
 from model_studies.run_log import FILE as LOG
 
 LEVELS = ("draft", "standard", "fine")
@@ -60,33 +60,33 @@ def options(plane: float = 0.0, lasting: float = 0.0, **meshes: float) -> list[M
 def test_a_tolerance_takes_the_cheapest_mesh_or_slices_that_meet_it():
     known = options(draft=0.02, standard=0.005, fine=0.001)
     for turned in (known, known[::-1]):
-        chosen = [_mesh_for_tolerance(AllowedError(t), turned) for t in (0.1, 0.01, 0.002)]
+        chosen = [mesh_for_tolerance(AllowedError(t), turned) for t in (0.1, 0.01, 0.002)]
         assert [choice.level for choice in chosen] == list(LEVELS)
         assert all(choice.met for choice in chosen)
     few = MeshOption("draft", 15, ExpectedError(2e-3, 0.05, 0.0, 0.0, 0.5), 1.0)
     many = MeshOption("draft", 61, ExpectedError(2e-3, 0.005, 0.0, 0.0, 0.5), 2.0)
     fine = MeshOption("fine", 31, ExpectedError(1e-3, 0.007, 0.0, 0.0, 0.5), 20.0)
-    assert _mesh_for_tolerance(AllowedError(0.01), [few, many, fine]).option is many
-    assert _mesh_for_tolerance(AllowedError(0.1), [few, many, fine]).option is few
-    beyond = _mesh_for_tolerance(AllowedError(1e-4), options(draft=3e-3, standard=2e-3, fine=1e-3))
+    assert mesh_for_tolerance(AllowedError(0.01), [few, many, fine]).option is many
+    assert mesh_for_tolerance(AllowedError(0.1), [few, many, fine]).option is few
+    beyond = mesh_for_tolerance(AllowedError(1e-4), options(draft=3e-3, standard=2e-3, fine=1e-3))
     assert (beyond.level, beyond.met) == ("fine", False)
-    flat = _mesh_for_tolerance(AllowedError(1e-2), options(3e-2, draft=2e-2, standard=5e-3, fine=1e-3))
+    flat = mesh_for_tolerance(AllowedError(1e-2), options(3e-2, draft=2e-2, standard=5e-3, fine=1e-3))
     assert (flat.level, flat.met) == ("standard", False)
     lasts = options(lasting=3e-2, draft=2e-2, standard=5e-3, fine=1e-3)
-    kept = _mesh_for_tolerance(AllowedError(1e-2), lasts)
+    kept = mesh_for_tolerance(AllowedError(1e-2), lasts)
     assert (kept.level, kept.met, kept.reason) == ("standard", True, "expected error 0.5 %")
     assert "plane 3 %" in flat.reason
     seconds = {"draft": 1.0, "standard": 3.0, "fine": 10.0}
-    found = [_mesh_for_time(t, known, lambda o: seconds[o.level]).level for t in (1.5, 5.0, 50.0)]
+    found = [mesh_for_time(t, known, lambda o: seconds[o.level]).level for t in (1.5, 5.0, 50.0)]
     assert found == list(LEVELS)
-    late = _mesh_for_time(0.1, known, lambda o: seconds[o.level])
+    late = mesh_for_time(0.1, known, lambda o: seconds[o.level])
     assert (late.level, late.met) == ("draft", False)
 
 
 def test_a_plan_computes_nothing(monkeypatch):
     """Neither a mesh nor a compliance nor a contact is requested."""
     for place in (
-        "host.json_child.subprocess.run",
+        "host.children.json_child.subprocess.Popen",
         "fe_contact.analysis.pairs.pair_contact.solve_contact",
         "fe_contact.compliance.flank_compliance_2d.compute_flank_compliance",
         "fe_contact.compliance.cyclic_compliance.compute_flank_compliance_3d",

@@ -10,7 +10,7 @@ from held_out import held_out_error
 
 from fe_contact.errors import DatabaseError, InputError, SolveError
 from fe_contact.ste import Metadata, PairFacts
-from fe_contact.ste.database import _without_failed
+from fe_contact.ste.database import without_failed_rows
 from fe_contact.ste.facts import content_hash
 from fe_contact.ste.fields import DIMENSIONS
 from fe_contact.types import Status
@@ -132,19 +132,19 @@ def test_content_is_copied_and_plain_json():
 
 
 def test_failed_points_go_as_whole_rows(spur, four_axes):
-    assert _without_failed(spur) is spur
-    rest = _without_failed(failed_at(spur, np.s_[:, 4]))
+    assert without_failed_rows(spur) is spur
+    rest = without_failed_rows(failed_at(spur, np.s_[:, 4]))
     assert rest.force.tolist() == spur.force[:4].tolist()
     assert rest.position.size == 64
-    rest = _without_failed(failed_at(spur, (3, 0), (17, 4)))
+    rest = without_failed_rows(failed_at(spur, (3, 0), (17, 4)))
     assert rest.position.tolist() == np.delete(spur.position, [3, 17]).tolist()
     assert rest.force.size == 5
-    rest = _without_failed(failed_at(four_axes, np.s_[:, :, 3]))
+    rest = without_failed_rows(failed_at(four_axes, np.s_[:, :, 3]))
     assert rest.misalignment.tolist() == four_axes.misalignment[:3].tolist()
     assert np.array_equal(rest.load_share, four_axes.load_share[:, :, :3])
     assert np.array_equal(rest.no_load_transmission_error, four_axes.no_load_transmission_error[:, :3])
     with pytest.raises(SolveError, match="No complete row remains"):
-        _without_failed(failed_at(spur, np.s_[:]))
+        without_failed_rows(failed_at(spur, np.s_[:]))
 
 
 def noisy(make, size, seed=2):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from held_out import held_out_error
 
-from fe_contact.ste.extraction import _LoadLevels, _refined, gradual_contact
+from fe_contact.ste.extraction import LoadLevels, gradual_contact, refined_levels
 
 COARSE = (266.0, 1330.0, 2660.0, 5320.0, 10640.0)
 BETWEEN = (900.0, 2000.0, 4000.0, 8000.0)
@@ -61,8 +61,8 @@ def smooth_law(exponent: float):
     force = np.array([0.0, 100.0, 500.0, 2500.0])
     one = np.ones((6, 1, 1, 1))
     compliance = exponent * 1e-8 * np.maximum(force, 1.0) ** (exponent - 1.0)
-    levels = _LoadLevels(force, 1e-8 * force**exponent * one, (force > 0.0) / compliance * one)
-    smooth = _refined(levels, np.array([0, 1, 1, 2]) * np.ones((6, 1, 1, 1), dtype=int), 1.0)
+    levels = LoadLevels(force, 1e-8 * force**exponent * one, (force > 0.0) / compliance * one)
+    smooth = refined_levels(levels, np.array([0, 1, 1, 2]) * np.ones((6, 1, 1, 1), dtype=int), 1.0)
     return smooth.force, smooth.deflection[0, 0, 0], smooth.stiffness[0, 0, 0]
 
 
@@ -88,7 +88,7 @@ def test_the_smooth_curve_rises_whatever_the_stiffness_at_its_ends(stiff):
     force = np.array([0.0, 100.0, 500.0, 2500.0])
     lag = 1e-8 * force * np.ones((6, 1, 1, 1))
     ends = 1e8 * np.array([1.0, 1.0, *stiff]) * np.ones((6, 1, 1, 1))
-    smooth = _refined(_LoadLevels(force, lag, ends), np.ones((6, 1, 1, 4), dtype=int), 1.0)
+    smooth = refined_levels(LoadLevels(force, lag, ends), np.ones((6, 1, 1, 4), dtype=int), 1.0)
     assert np.all(np.diff(smooth.deflection, axis=-1) > 0.0)
     assert np.all(smooth.stiffness[..., 1:] > 0.0)
 
@@ -182,10 +182,10 @@ def test_a_long_period_has_as_many_levels_as_can_be_held():
     two = deflection > gap[:, None]
     pairs = (np.where(two, 2, 1) * (force > 0.0))[:, None, None]
     stiffness = np.where(two, k + k2, k) * (force > 0.0)
-    levels = _LoadLevels(force, deflection[:, None, None], stiffness[:, None, None])
+    levels = LoadLevels(force, deflection[:, None, None], stiffness[:, None, None])
     long, short = (
-        _refined(levels, pairs, 0.0),
-        _refined(_LoadLevels(force, levels.deflection[::64], levels.stiffness[::64]), pairs[::64], 0.0),
+        refined_levels(levels, pairs, 0.0),
+        refined_levels(LoadLevels(force, levels.deflection[::64], levels.stiffness[::64]), pairs[::64], 0.0),
     )
     assert long.deflection.size <= 2_000_000 + gap.size
     assert short.force.size == 4 + 64 + 5  # those of the kink, and of the wide step below it

@@ -8,9 +8,9 @@ from analysis_requests import point_request, table_request
 
 from fe_contact import Gear, GearPair, PitchDeviation, analyze, flank_results
 from fe_contact.analysis import position_nodes
-from fe_contact.analysis.estimates.position_errors import _measured_nodes
+from fe_contact.analysis.estimates.position_errors import measured_nodes
 from fe_contact.analysis.pairs import kept_contact
-from fe_contact.analysis.position_nodes import _adaptive_nodes, _assessed_pitches
+from fe_contact.analysis.position_nodes import adaptive_nodes, assessed_pitches
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.tables import solve_table
 from fe_contact.contact.sweep import solve_sets
@@ -156,12 +156,12 @@ def test_a_misalignment_axis_shortens_the_longest_period():
 def test_the_assessed_pitches_span_the_differences_between_neighbors():
     error = np.where(np.arange(20) == 7, 9e-6, 0.0) + np.where(np.arange(20) > 12, 1e-6, 0.0)
     scene = ContactScene(GearPair(gear(20, error), gear(23)), np.array([100.0]), EFFECTS)
-    smooth, _, rough = _assessed_pitches(scene.pair, compose(scene, {})[0], 3)
+    smooth, _, rough = assessed_pitches(scene.pair, compose(scene, {})[0], 3)
     assert smooth not in (0, 6, 7, 8, 12, 13, 19)
     assert rough in (6, 7, 8)
-    assert len(_assessed_pitches(scene.pair, compose(scene, {})[0], 100)) == 20
+    assert len(assessed_pitches(scene.pair, compose(scene, {})[0], 100)) == 20
     plain = replace(scene, pair=GearPair(gear(20), gear(23)))
-    assert _assessed_pitches(plain.pair, compose(plain, {})[0], 3).tolist() == [0]
+    assert assessed_pitches(plain.pair, compose(plain, {})[0], 3).tolist() == [0]
 
 
 def steps(position):
@@ -186,7 +186,7 @@ def test_pitches_beside_count_where_interpolants_reach(kinks):
         return values
 
     rule = NodeRule(16, 0.002, 768)
-    own, nodes = (_adaptive_nodes(rule, solve) for solve in (near, whole))
+    own, nodes = (adaptive_nodes(rule, solve) for solve in (near, whole))
     assert np.array_equal(own.position, nodes.position)
     assert np.array_equal(own.interval_error, nodes.interval_error)
     assert np.array_equal(own.middle, nodes.middle)
@@ -195,7 +195,7 @@ def test_pitches_beside_count_where_interpolants_reach(kinks):
 def test_the_prediction_counts_the_pitches_that_the_search_solves(pair, monkeypatch):
     """The assessed ones at all positions that are tried, those beside at the ends."""
     tried, solved = [], []
-    place, curves = position_nodes._adaptive_nodes, position_nodes._curves
+    place, curves = position_nodes.adaptive_nodes, position_nodes._curves
 
     def placed(rule, solve):
         return place(rule, lambda position: tried.append(position.size) or solve(position))
@@ -204,7 +204,7 @@ def test_the_prediction_counts_the_pitches_that_the_search_solves(pair, monkeypa
         solved.append(position.size * pitches.size)
         return curves(points, load, position, pitches)
 
-    monkeypatch.setattr(position_nodes, "_adaptive_nodes", placed)
+    monkeypatch.setattr(position_nodes, "adaptive_nodes", placed)
     monkeypatch.setattr(position_nodes, "_curves", solved_curves)
     checked = check_request(pair, *table_request(torques=[100.0], level="draft", model="plane_strain"))
     solve_table(checked, StageClock(), Run())
@@ -215,14 +215,14 @@ def test_the_prediction_counts_the_pitches_that_the_search_solves(pair, monkeypa
 
 def test_nodes_of_one_pitch_among_others_join_its_neighbors():
     """A pitch that ends higher than it starts is no jump, for the next one goes on from there."""
-    nodes = _adaptive_nodes(NodeRule(16, 0.002, 768), steps)
+    nodes = adaptive_nodes(NodeRule(16, 0.002, 768), steps)
     assert nodes.position.size < 200
     assert nodes.error.max() <= 0.002
     spacing = np.diff(nodes.position, append=1.0)
     kinks = np.abs(nodes.position[:, None] - [0.213, 0.741]).min(axis=1)
     assert spacing[kinks < 0.05].min() < 0.15 * spacing[kinks > 0.15].min()
     even = np.arange(64) / 64
-    fixed, _ = _measured_nodes(
+    fixed, _ = measured_nodes(
         even, steps(even).reshape(192, 1), lambda x: steps(x).reshape(-1, 1), 3, NodeRule(16, 0.002, 768)
     )
     assert fixed.error[[64, 127]].max() < 1e-12

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from fe_contact.analysis.estimates.half_position_errors import errors_by_halves
-from fe_contact.analysis.estimates.position_errors import _measured_nodes, predicted_failure
-from fe_contact.analysis.position_nodes import _adaptive_nodes
+from fe_contact.analysis.estimates.position_errors import measured_nodes, predicted_failure
+from fe_contact.analysis.position_nodes import adaptive_nodes
 from fe_contact.planning.plan import NodeRule
 from fe_contact.ste.curve_quantities import FIRST_HARMONIC, MEAN, PEAK_TO_PEAK, quantity_changes
 from fe_contact.ste.interpolation import Axis, interpolate
@@ -38,7 +38,7 @@ def assessed(curves, count):
         return curves(position)
 
     nodes = np.arange(count) / count
-    found, left = _measured_nodes(nodes, curves(nodes), solve, 1, NodeRule(count, TOLERANCE, 768))
+    found, left = measured_nodes(nodes, curves(nodes), solve, 1, NodeRule(count, TOLERANCE, 768))
     return found, left, sum(position.size for position in asked)
 
 
@@ -84,7 +84,7 @@ def test_the_prediction_fails_with_the_square_of_the_spacing_or_faster():
 
 
 def test_fixed_positions_state_a_larger_error_than_placed_ones():
-    placed = _adaptive_nodes(NodeRule(32, TOLERANCE, 768), lambda position: trapezoids(position)[None])
+    placed = adaptive_nodes(NodeRule(32, TOLERANCE, 768), lambda position: trapezoids(position)[None])
     assert np.all(assessed(trapezoids, 32)[0].error.max(axis=0) > placed.error.max(axis=0))
 
 
@@ -180,15 +180,15 @@ def held_out(nodes: np.ndarray) -> np.ndarray:
 
 
 def test_adaptive_nodes_gather_at_the_kinks_and_meet_their_tolerance():
-    nodes = _adaptive_nodes(NodeRule(32, 0.002, 768), repeating(trapezoid_wave))
+    nodes = adaptive_nodes(NodeRule(32, 0.002, 768), repeating(trapezoid_wave))
     assert np.all(nodes.error <= 0.002 * np.array([1e-6, 3e-6]))
     # the middles of the intervals are not the worst places, so some slack over the stated error
     assert np.all(held_out(nodes.position) <= 2.0 * 0.002 * np.array([1e-6, 3e-6]))
-    nodes = _adaptive_nodes(NodeRule(32, 0.002, 768), repeating(trapezoid_wave)).position
+    nodes = adaptive_nodes(NodeRule(32, 0.002, 768), repeating(trapezoid_wave)).position
     spacing = np.diff(nodes, append=nodes[0] + 1.0)
     near = np.abs((nodes + 0.5) % 1.0 - 0.5)
     assert spacing[(near > 0.2) & (near < 0.25)].min() < spacing[near < 0.15].min() / 8.0
-    nodes = _adaptive_nodes(NodeRule(16, 0.002, 768), lambda x: np.ones((1, x.size, 1)))
+    nodes = adaptive_nodes(NodeRule(16, 0.002, 768), lambda x: np.ones((1, x.size, 1)))
     assert nodes.position.size == 16
     assert nodes.error == pytest.approx(0.0, abs=1e-12)
 
@@ -197,7 +197,7 @@ def test_a_jump_ends_at_the_node_limit_with_a_finite_error():
     def jump(position):
         return np.where(position < 0.3, 0.0, 1.0)[:, None] + 0.01 * np.sin(2 * np.pi * position)[:, None]
 
-    nodes = _adaptive_nodes(NodeRule(16, 1e-9, 768), repeating(jump))
+    nodes = adaptive_nodes(NodeRule(16, 1e-9, 768), repeating(jump))
     assert nodes.position.size <= 768
     assert np.all(np.isfinite(nodes.error))
     assert nodes.error.max() > 0.1

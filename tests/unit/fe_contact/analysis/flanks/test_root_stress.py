@@ -14,9 +14,9 @@ from spur_gears import GEAR
 
 from fe_contact import Gear, GearPair, RootStress, root_stress
 from fe_contact.analysis.flanks import root_stress as root_module
-from fe_contact.analysis.flanks.root_meshes import _finer_root
-from fe_contact.analysis.flanks.root_stress import _pair_histories, stress_seconds, unit_stresses
-from fe_contact.analysis.flanks.root_stress_history import _crest_values
+from fe_contact.analysis.flanks.root_meshes import finer_root
+from fe_contact.analysis.flanks.root_stress import pair_histories, stress_seconds, unit_stresses
+from fe_contact.analysis.flanks.root_stress_history import crest_values
 from fe_contact.analysis.flanks.solved_operating_point import solve_operating_point
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
@@ -75,16 +75,16 @@ def with_forces(found: SolvedOperatingPoint, keep: np.ndarray, factor: float = 1
 def test_stress_is_linear_in_the_forces(cache: Path, model: str) -> None:
     found = place(SPUR, cache, model)
     if model == "3d":
-        unit = unit_root_stress_3d(GEAR, _finer_root(SectorRecipe.draft(GEAR)), cache=cache)
+        unit = unit_root_stress_3d(GEAR, finer_root(SectorRecipe.draft(GEAR)), cache=cache)
     else:
         unit = unit_root_stress(GEAR, MeshRecipe.standard(GEAR).refined(0.6), cache=cache)
-    whole = _pair_histories(found, (unit, unit))[0].stress
+    whole = pair_histories(found, (unit, unit))[0].stress
     first = found.problem.candidates.pair < 0
-    parts = [_pair_histories(with_forces(found, keep), (unit, unit))[0].stress for keep in (first, ~first)]
+    parts = [pair_histories(with_forces(found, keep), (unit, unit))[0].stress for keep in (first, ~first)]
     scale = np.abs(whole).max()
     assert min(np.abs(part).max() for part in parts) > 0.1 * scale
     assert np.abs(sum(parts) - whole).max() < 1e-12 * scale
-    double = _pair_histories(with_forces(found, np.ones_like(first), 2.0), (unit, unit))[0].stress
+    double = pair_histories(with_forces(found, np.ones_like(first), 2.0), (unit, unit))[0].stress
     assert np.array_equal(double, 2.0 * whole)
 
 
@@ -164,14 +164,14 @@ def test_peak_and_passage_say_the_same(cache: Path) -> None:
 def test_crests_of_parabolas_and_slopes_lean_on_what_counts() -> None:
     s = np.array([0.0, 1.0, 1.5, 3.0, 3.5])
     values = np.stack([5.0 - 2.0 * (s - at) ** 2 for at in (1.2, 2.1, 3.2)])
-    value, at = _crest_values(s, values)
+    value, at = crest_values(s, values)
     assert value == pytest.approx([5.0, 5.0, 5.0], rel=1e-12)
     assert at == pytest.approx([1.2, 2.1, 3.2], rel=1e-12)
-    value, at = _crest_values(s, np.stack([s, -s, np.full(5, 2.0)]))
+    value, at = crest_values(s, np.stack([s, -s, np.full(5, 2.0)]))
     assert value == pytest.approx([3.5, 0.0, 2.0])
     assert at[:2] == pytest.approx([3.5, 0.0])
     s = np.arange(5.0)
-    value, at = _crest_values(
+    value, at = crest_values(
         s, np.array([[1.0, 4.0, 5.0, -np.inf, -np.inf], [-np.inf, 3.0, 4.0, 3.0, -np.inf]])
     )
     assert value == pytest.approx([5.0, 4.0])
@@ -203,7 +203,7 @@ def test_unit_loads_on_slices_give_the_peaks_of_the_whole_history(cache: Path, m
     roots = RootInfluence.of(found.contact, cache)
     units = unit_stresses(found.contact, False, cache)
     stress = roots.stress(found.problem, found.solution.force)[:, :, 0]
-    for gear, history in enumerate(_pair_histories(found, units)):
+    for gear, history in enumerate(pair_histories(found, units)):
         peaks = np.where(history.near_load, -np.inf, history.principal("tension")).max(axis=(1, 2, 3))
         assert stress[gear] == pytest.approx(peaks, rel=1e-3 if model == "plane_strain" else 0.015)
 

@@ -13,7 +13,7 @@ from analysis_requests import table_request
 from fe_contact import FlankModification, Gear, GearPair, Material, analyze
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.request.expected_curves import expected_curves
-from fe_contact.analysis.request.model_choice import _alternatives, decide
+from fe_contact.analysis.request.model_choice import alternative_requests, decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.geometry.finite_width import finite_width_excess
 from fe_contact.options import AnalysisOptions, TableAxes
@@ -93,9 +93,9 @@ def test_an_explicit_model_or_effect_is_obeyed(explicit):
 
 def test_a_level_or_nothing_asked_keeps_the_model_of_the_scene():
     for asked in ({"level": "draft"}, {}):
-        (only,) = _alternatives(check_request(pair(), *table_request(normal_forces=LOADS, **asked)))
+        (only,) = alternative_requests(check_request(pair(), *table_request(normal_forces=LOADS, **asked)))
         assert only.model.finite_width
-    (only,) = _alternatives(
+    (only,) = alternative_requests(
         check_request(pair(0.3), TableAxes(normal_forces=LOADS), AnalysisOptions(tolerance=AllowedError(0.1)))
     )
     assert only.model.across_face

@@ -13,7 +13,7 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear
-from fe_contact.analysis.pairs.slice_springs import SpringContact, _slice_stiffness
+from fe_contact.analysis.pairs.slice_springs import SpringContact, slice_stiffness
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.studies import measured_full_contact as measuring
@@ -21,15 +21,15 @@ from fe_contact.analysis.studies.closed_form_fidelity import ISO6336, THIN_SLICE
 from fe_contact.analysis.studies.frontier import (
     FIDELITIES,
     Frontier,
-    _chosen_fidelity,
+    chosen_fidelity,
     frontier,
     predicted_frontier,
 )
 from fe_contact.analysis.studies.measured_full_contact import (
     NAME,
-    _over_face,
     full_contact_refusal,
     measure_full_contact,
+    needs_the_face,
 )
 from fe_contact.contact import solve_contact
 from fe_contact.contact.problem import ContactProblem
@@ -102,7 +102,7 @@ def test_thin_slices_are_the_contact_solver_with_uncoupled_slices(helix, misalig
     plan = make_plan(pair, checked.request.load, checked.request.options, checked.model)
     springs = SpringContact(pair, plan, law=THIN_SLICES.law)
     problem, found = springs.solve(checked.model, np.linspace(0.0, 0.9, 7), plan.load)
-    stiffness = _slice_stiffness(pair, problem.candidates, THIN_SLICES.law)
+    stiffness = slice_stiffness(pair, problem.candidates, THIN_SLICES.law)
     diagonal = np.eye(stiffness.shape[1]) / stiffness[:, None, :]
     # bodies a million times stiffer than steel: no local approach; each slice has its own point
     own = np.eye(len(problem.candidates.curves))
@@ -186,7 +186,7 @@ def test_a_fidelity_that_is_not_valid_says_why():
 @pytest.mark.parametrize("model", ["auto", "plane_strain", "3d"])
 def test_the_chosen_fidelity_is_the_model_and_the_mesh_asked_for(model, level):
     checked = check_request(pair_of(), *table_request(normal_forces=[500.0], model=model, level=level))
-    fidelity = next(fidelity for fidelity in FIDELITIES if fidelity.name == _chosen_fidelity(checked))
+    fidelity = next(fidelity for fidelity in FIDELITIES if fidelity.name == chosen_fidelity(checked))
     made = fidelity.as_computed(checked)
     assert made.model == checked.model
     assert made.request.options.level == (level if model != "plane_strain" else "standard")
@@ -298,9 +298,9 @@ def test_what_needs_the_face_is_solved_over_it(table: SteDatabase, monkeypatch: 
         check_request(PAIR, *table_request(misalignments=[0.0, 1e-5], **aligned)),
         check_request(dataclasses.replace(PAIR, wheel=crowned), *table_request(**aligned)),
     ]
-    assert not _over_face(check_request(PAIR, *table_request(**aligned)))
+    assert not needs_the_face(check_request(PAIR, *table_request(**aligned)))
     for checked in needing:
-        assert _over_face(checked)
+        assert needs_the_face(checked)
         assert full_contact_refusal(checked) is None
     asked = fake_over_face(table, monkeypatch)
     found = measure_full_contact(needing[1], 2, lambda *_: None)

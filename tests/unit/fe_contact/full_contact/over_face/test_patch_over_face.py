@@ -11,14 +11,14 @@ from contact_blocks import DEPTH, WIDTH, block
 from scipy.sparse.linalg import spsolve
 
 from fe_contact.errors import SolveError
-from fe_contact.full_contact.condensation.contact_model import _condensed_body, dissected, freedoms
+from fe_contact.full_contact.condensation.contact_model import condensed_body, dissected, freedoms
 from fe_contact.full_contact.condensation.linearized_contact import ContactSystem, solve_active_set
 from fe_contact.full_contact.condensation.weak_gap import FlankCurve, WeakGap, weak_gap
 from fe_contact.full_contact.over_face.extruded_body import (
+    ColumnMatrix,
     ExtrudedBody,
-    _ColumnMatrix,
-    _schur_complement,
     extruded_body,
+    schur_complement,
 )
 from fe_contact.full_contact.over_face.extruded_stiffness import (
     Layers,
@@ -27,7 +27,7 @@ from fe_contact.full_contact.over_face.extruded_stiffness import (
     extruded_stiffness,
     graded_layers,
 )
-from fe_contact.full_contact.over_face.solve import _face_gap, _FaceGap
+from fe_contact.full_contact.over_face.solve import FaceGap, face_gap
 from fe_contact.material import Material
 from fe_contact.types import FloatArray
 
@@ -54,7 +54,7 @@ def towards(points: FloatArray) -> FloatArray:
     return np.tile([-1.0, 0.0], (len(points), 1))
 
 
-def pressed(slave: int, layers: int = 3, skew: float = 0.0) -> tuple[_FaceGap, ContactSystem]:
+def pressed(slave: int, layers: int = 3, skew: float = 0.0) -> tuple[FaceGap, ContactSystem]:
     """The right block moves towards the left one, which is hollow by `skew` at one end of the face."""
     bodies = blocks(layers)
     curves = [FlankCurve(body.points[body.columns[0]]) for body in bodies]
@@ -64,7 +64,7 @@ def pressed(slave: int, layers: int = 3, skew: float = 0.0) -> tuple[_FaceGap, C
         away = FlankCurve(curves[1].nodes + np.array([skew * (z / FACE + 0.5) ** 2, 0.0]))
         return weak_gap((curves[0], away), (curves[0], away)[slave], slave, towards), 0.0
 
-    gap = _face_gap(section, bodies[0].layers)
+    gap = face_gap(section, bodies[0].layers)
     compliance = np.zeros((len(gap.gap),) * 2)
     for body, forces in zip(bodies, gap.forces, strict=True):
         count, functions = len(body.nodes), 2 * body.layers.count + 1
@@ -163,7 +163,7 @@ def test_more_layers_converge() -> None:
 
 def test_a_wide_block_is_in_plane_strain_in_its_middle() -> None:
     wide = Layers(np.array([0.0, 4.0, 8.0, 10.0, 11.0, 11.5, 12.0]) * DEPTH)
-    body, plane = extruded_body(block(0), wide, STEEL), _condensed_body(block(0), STEEL)
+    body, plane = extruded_body(block(0), wide, STEEL), condensed_body(block(0), STEEL)
     line = np.zeros(2 * len(plane.nodes))
     line[freedoms(plane.columns[0])[::2]] = -1.0
     mass, _, _ = wide.integrals()
@@ -177,7 +177,7 @@ def test_a_wide_block_is_in_plane_strain_in_its_middle() -> None:
 GRID_SIDE, KEPT = 9, 7
 
 
-def columns(shift: float = 0.0) -> tuple[_ColumnMatrix, FloatArray]:
+def columns(shift: float = 0.0) -> tuple[ColumnMatrix, FloatArray]:
     """A grid of nodes with 1 to 4 unknowns each, its last nodes kept; the matrix dense too."""
     rng = np.random.default_rng(2)
     nodes = np.arange(GRID_SIDE * GRID_SIDE).reshape(GRID_SIDE, GRID_SIDE)
@@ -193,7 +193,7 @@ def columns(shift: float = 0.0) -> tuple[_ColumnMatrix, FloatArray]:
     dense = rng.normal(size=(starts[-1], starts[-1])) * (graph.toarray()[np.ix_(owner, owner)] > 0.0)
     dense = dense + dense.T
     dense += (np.abs(dense).sum(axis=1).max() - shift) * np.eye(len(dense))
-    return _ColumnMatrix(sp.csc_array(np.tril(dense)), starts, graph), dense
+    return ColumnMatrix(sp.csc_array(np.tril(dense)), starts, graph), dense
 
 
 def test_it_is_that_of_dense_algebra() -> None:
@@ -201,9 +201,9 @@ def test_it_is_that_of_dense_algebra() -> None:
     first = matrix.starts[-1 - KEPT]
     inner, across, outer = dense[:first, :first], dense[:first, first:], dense[first:, first:]
     expected = outer - across.T @ np.linalg.solve(inner, across)
-    found = _schur_complement(matrix, KEPT)
+    found = schur_complement(matrix, KEPT)
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-12 * np.abs(expected).max())
     assert np.array_equal(found, found.T)
     matrix, _ = columns(shift=100.0)
     with pytest.raises(SolveError, match="over the face"):
-        _schur_complement(matrix, KEPT)
+        schur_complement(matrix, KEPT)

@@ -12,7 +12,8 @@ import pytest
 from running_service import Bench, bench, lives, until
 from service_fakes import REGISTRY
 
-from service.worker.forks import Forks
+from host.children.launcher import Launcher
+from service.worker.worker import WORK
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -30,10 +31,10 @@ def machine(tmp_path: Path) -> Iterator[Bench]:
 
 def warm_process(machine: Bench) -> int:
     """Return the process id of the warm process, once it is warm."""
-    forks = machine.scheduler._crew._forks
-    until(lambda: forks.warm)
-    assert forks._server is not None
-    return forks._server._process.pid
+    launcher = machine.scheduler._crew._launcher
+    until(lambda: launcher.warm)
+    assert launcher._server is not None
+    return launcher._server._process.pid
 
 
 def parent_of_last(machine: Bench, key: str) -> int:
@@ -46,7 +47,7 @@ def parent_of_last(machine: Bench, key: str) -> int:
 
 def test_the_first_child_is_forked(machine: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
     """It waits for what it would have to load itself."""
-    monkeypatch.setattr(Forks.launch, "__defaults__", (600.0,))
+    monkeypatch.setattr(Launcher.launch, "__defaults__", (600.0,))
     job = machine.submit(mode="hang")
     parent = parent_of_last(machine, job.key)
     assert parent == warm_process(machine)
@@ -58,7 +59,7 @@ def test_the_first_child_is_forked(machine: Bench, monkeypatch: pytest.MonkeyPat
 
 
 def test_a_child_outlives_the_warm_process_and_others_follow(machine: Bench) -> None:
-    machine.scheduler._crew._forks.warm_up()
+    machine.scheduler._crew._launcher.warm_up()
     warm = warm_process(machine)
     slow = machine.submit(mode="slow", text="slow")
     assert parent_of_last(machine, slow.key) == warm
@@ -72,25 +73,28 @@ def test_a_child_outlives_the_warm_process_and_others_follow(machine: Bench) -> 
 
 
 def test_a_stop_does_not_wait_for_a_warm_process(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Forks.launch, "__defaults__", (600.0,))
+    monkeypatch.setattr(Launcher.launch, "__defaults__", (600.0,))
     (tmp_path / "long_to_load.py").write_text("import time\ntime.sleep(600)\n")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
     machine = bench(tmp_path / "data", REGISTRY)
-    machine.scheduler._crew._forks._modules.append("long_to_load")
+    machine.scheduler._crew._launcher._modules.append("long_to_load")
     machine.scheduler.start()
-    forks, jobs = machine.scheduler._crew._forks, [machine.submit(mode=mode) for mode in ("hang", "die")]
-    until(lambda: forks._server is not None)
+    launcher, jobs = (
+        machine.scheduler._crew._launcher,
+        [machine.submit(mode=mode) for mode in ("hang", "die")],
+    )
+    until(lambda: launcher._server is not None)
     time.sleep(1.0)
-    forks.hurry()
+    launcher.hurry()
     until(lambda: machine.starts(jobs[0]) != [])
     machine.submissions.dismiss(jobs[0].id)
     assert machine.ended(jobs[1]).status == "failed"  # nor does what begins after it
-    assert not forks.warm
+    assert not launcher.warm
     machine.close()
 
 
 def test_a_stop_ends_the_warm_process(machine: Bench) -> None:
-    machine.scheduler._crew._forks.warm_up()
+    machine.scheduler._crew._launcher.warm_up()
     warm = warm_process(machine)
     machine.scheduler.stop()
     assert not lives(warm)
@@ -99,8 +103,8 @@ def test_a_stop_ends_the_warm_process(machine: Bench) -> None:
 def test_after_so_many_children_another_takes_its_place(
     machine: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.worker.forks.MOST_FORKS", 2)
-    machine.scheduler._crew._forks.warm_up()
+    monkeypatch.setattr("host.children.launcher.MOST_FORKS", 2)
+    machine.scheduler._crew._launcher.warm_up()
     warm = warm_process(machine)
     for text in ("a", "b", "c"):
         assert machine.ended(machine.submit(text=text)).status == "successful"
@@ -112,8 +116,8 @@ def test_nobody_waits_for_a_warm_process_that_forks_no_more(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As long as one of its children lives it has no successor."""
-    monkeypatch.setattr("service.worker.forks.MOST_FORKS", 1)
-    monkeypatch.setattr(Forks.launch, "__defaults__", (600.0,))
+    monkeypatch.setattr("host.children.launcher.MOST_FORKS", 1)
+    monkeypatch.setattr(Launcher.launch, "__defaults__", (600.0,))
     machine = bench(tmp_path, REGISTRY, workers=2)
     machine.scheduler.start()
     try:
@@ -125,10 +129,10 @@ def test_nobody_waits_for_a_warm_process_that_forks_no_more(
 
 
 def test_modules_that_cannot_be_imported_leave_a_warm_process(tmp_path: Path) -> None:
-    forks = Forks(["no_such_module", "service_fake_work"], tmp_path / "log")
-    forks.warm_up()
+    launcher = Launcher(WORK, ["no_such_module", "service_fake_work"], tmp_path / "log", print)
+    launcher.warm_up()
     try:
-        until(lambda: forks.warm)
+        until(lambda: launcher.warm)
         assert "no_such_module" in (tmp_path / "log").read_text()
     finally:
-        forks.close()
+        launcher.close()

@@ -19,25 +19,85 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
-import structlog
+from host.children.environment import child_environment
+from host.children.fork_server import MESSAGE_BYTES, READY
+from host.sessions import Ended, ending_signal, has_exited, reap
 
-from host import Ended, child_environment, ending_signal, has_exited, reap
-from service.worker.fork_server import MESSAGE_BYTES, READY
-
-WORK = "service.worker.child"
-"""The module that works on orders."""
-
-logger = structlog.get_logger(__name__)
-_FORK_SERVER = (sys.executable, "-P", "-m", "service.worker.fork_server")
-"""Without the folder in which the service was started: its modules may be another program's."""
+_FORK_SERVER = (sys.executable, "-P", "-m", "host.children.fork_server")
+"""Without the folder in which its starter was started: its modules may be another program's."""
 MOST_FORKS = 500
 """Children of one warm process; then a new one takes its place."""
 WARM_WITHIN_S = 10.0
 """How long a child waits for a warm process, which takes two on an idle machine."""
 _PATIENCE_S = 10.0
 """For an answer, which takes a hundredth of a second."""
-_LOST = Ended(-9, 0.0, 0)
+UNSEEN = Ended(-9, 0.0, 0)
 """A child whose end nobody saw, because the warm process had ended before it."""
+Warn: TypeAlias = Callable[..., object]
+"""Called as ``warn(event, **facts)``."""
+
+
+class Launcher:
+    """Launches children that do ``work(descriptor)`` of a module, forked from a warm process where it can.
+
+    It is for one thread, but for `hurry` and `close`.
+
+    Parameters
+    ----------
+    work : str
+        The module.
+    modules : iterable of str
+        What the warm process has imported.
+    log : Path
+        File that gets the standard output and error of the warm process.
+    warn : callable
+        Called when there is no warm process.
+    """
+
+    def __init__(self, work: str, modules: Iterable[str], log: Path, warn: Warn) -> None:
+        self._modules, self._log, self._work, self._warn = sorted(set(modules)), log, work, warn
+        self._server: WarmProcess | None = None
+        self._waits = True
+
+    def warm_up(self) -> None:
+        """Start the warm process, if the system forks and there is none; return at once."""
+        server = self._server
+        if sys.platform != "linux" or (server is not None and (server.usable or server.living)):
+            return
+        if server is not None:
+            server.close()
+        self._server = None
+        try:
+            self._server = WarmProcess(self._work, self._modules, self._log, self._warn)
+        except OSError as error:
+            self._warn("no warm process", reason=str(error))
+
+    @property
+    def warm(self) -> bool:
+        """Whether the next child is forked."""
+        return self._server is not None and self._server.ready
+
+    def launch(self, ends: Ends, warm_within: float = WARM_WITHIN_S) -> ChildProcess:
+        """Fork a child, or start one; OSError: the system does neither."""
+        self.warm_up()
+        if self._server is not None and self._server.usable and not self._server.ready:
+            self._server.await_word(warm_within if self._waits else 0.0)
+        if self._server is not None and self.warm:
+            with contextlib.suppress(ConnectionError):
+                return self._server.fork(ends)
+        return start_child(self._work, ends)
+
+    def hurry(self) -> None:
+        """Let no child wait for a warm process until all is closed; for any thread."""
+        self._waits = False
+        if (server := self._server) is not None:
+            server.end_unless_ready()
+
+    def close(self) -> None:
+        """End the warm process; its children live on."""
+        if self._server is not None:
+            self._server.close()
+        self._server, self._waits = None, True
 
 
 @dataclass(frozen=True)
@@ -64,7 +124,7 @@ class _StartedChild:
         return reap(self.pid)
 
 
-def start_child(ends: Ends, work: str = WORK) -> _StartedChild:
+def start_child(work: str, ends: Ends) -> _StartedChild:
     """Start a child that runs a module; OSError: the system does not."""
     process = subprocess.Popen(
         [sys.executable, "-P", "-m", work, str(ends.channel)],
@@ -80,65 +140,11 @@ def start_child(ends: Ends, work: str = WORK) -> _StartedChild:
     return _StartedChild(process.pid)
 
 
-# The warm process seen from the service.
+class WarmProcess:
+    """The process that others are forked from, and the socket to it."""
 
-
-class Forks:
-    """Launches children that do ``work(descriptor)`` of a module; warm ones have imported `modules`.
-
-    For one thread, but for `hurry` and `close`.
-    """
-
-    def __init__(self, modules: Iterable[str], log: Path, work: str = WORK) -> None:
-        self._modules, self._log, self._work = sorted(set(modules)), log, work
-        self._server: _Server | None = None
-        self._waits = True
-
-    def warm_up(self) -> None:
-        """Start the warm process, if the system forks and there is none; return at once."""
-        server = self._server
-        if sys.platform != "linux" or (server is not None and (server.usable or server.living)):
-            return
-        if server is not None:
-            server.close()
-        self._server = None
-        try:
-            self._server = _Server(self._work, self._modules, self._log)
-        except OSError as error:
-            logger.warning("no warm process", reason=str(error))
-
-    @property
-    def warm(self) -> bool:
-        """Whether the next child is forked."""
-        return self._server is not None and self._server.ready
-
-    def launch(self, ends: Ends, warm_within: float = WARM_WITHIN_S) -> ChildProcess:
-        """Fork a child, or start one; OSError: the system does neither."""
-        self.warm_up()
-        if self._server is not None and self._server.usable and not self._server.ready:
-            self._server.await_word(warm_within if self._waits else 0.0)
-        if self._server is not None and self.warm:
-            with contextlib.suppress(ConnectionError):
-                return self._server.fork(ends)
-        return start_child(ends, self._work)
-
-    def hurry(self) -> None:
-        """Let no child wait for a warm process until all is closed; for any thread."""
-        self._waits = False
-        if (server := self._server) is not None:
-            server.end_unless_ready()
-
-    def close(self) -> None:
-        """End the warm process; its children live on."""
-        if self._server is not None:
-            self._server.close()
-        self._server, self._waits = None, True
-
-
-class _Server:
-    """The process, and the socket to it."""
-
-    def __init__(self, work: str, modules: list[str], log: Path) -> None:
+    def __init__(self, work: str, modules: list[str], log: Path, warn: Warn) -> None:
+        self.warn = warn
         self._channel, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._channel.settimeout(_PATIENCE_S)
         self._ready, self._forks, self.living, self._gone = False, 0, 0, False
@@ -165,6 +171,7 @@ class _Server:
 
     @property
     def ready(self) -> bool:
+        """Whether it has said that it is warm, and may fork once more."""
         if not self._ready and self.usable:
             heard, _, _ = select.select([self._channel], [], [], 0.0)
             self._ready = bool(heard) and self._channel.recv(MESSAGE_BYTES) == READY
@@ -175,6 +182,7 @@ class _Server:
         select.select([self._channel], [], [], seconds)
 
     def fork(self, ends: Ends) -> _ForkedChild:
+        """Fork a child; ConnectionError: the process is gone; OSError: the system forks no more."""
         descriptors = [ends.orders, ends.channel, ends.log]
         pid = self.ask({"workspace": str(ends.workspace)}, descriptors)
         if isinstance(pid, dict):
@@ -197,10 +205,12 @@ class _Server:
         return json.loads(answer)
 
     def end_unless_ready(self) -> None:
+        """Kill it while it warms up; for any thread."""
         if not self._ready:
             self._process.kill()
 
     def close(self) -> None:
+        """End it; its children live on."""
         self._channel.close()
         self._process.kill()
         self._process.wait()
@@ -212,7 +222,7 @@ class _ForkedChild:
 
     pid: int
     handle: int
-    parent: _Server
+    parent: WarmProcess
 
     def has_exited(self) -> bool:
         return bool(select.select([self.handle], [], [], 0.0)[0])
@@ -225,8 +235,8 @@ class _ForkedChild:
         try:
             return Ended(*self.parent.ask({"reap": self.pid}))
         except ConnectionError:
-            logger.warning("warm process gone", pid=self.pid, signal=ending_signal(_LOST.code))
-            return _LOST
+            self.parent.warn("warm process gone", pid=self.pid, signal=ending_signal(UNSEEN.code))
+            return UNSEEN
 
 
 ChildProcess: TypeAlias = _StartedChild | _ForkedChild

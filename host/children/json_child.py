@@ -6,65 +6,17 @@ import json
 import os
 import subprocess
 import sys
-import time
 from collections.abc import Sequence
-from dataclasses import dataclass
-from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
-from host.confinement import LOOK_S, Limits, excess
-from host.directories import ENVIRONMENT
+from host.children.environment import child_environment
+from host.children.watch import Watch
+from host.confinement import Limits
 from host.sessions import ending_signal
 
-# The threads that libraries of linear algebra start in a process.
-
-ONE_THREAD = dict.fromkeys(
-    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
-)
-"""Environment of a process that computes in one thread.
-
-Matrices of a few hundred rows gain nothing by more: threads that wait for each other keep processors busy.
-"""
-
-_ROOT = str(Path(__file__).resolve().parents[1])
-INHERITED = (
-    *("PATH", "HOME", "USER", "LOGNAME", "LANG", "LANGUAGE", "LC_*", "TZ", "TMPDIR", "TEMP", "TMP"),
-    *("LD_LIBRARY_PATH", "DYLD_*", "PYTHON*", "VIRTUAL_ENV", "COVERAGE_*", "MPL*", "XDG_CACHE_HOME"),
-    *("OMP_*", "OPENBLAS_*", "MKL_*", "VECLIB_*", "BLIS_*", "NUMBA_*", "DASK_*", "SSL_CERT_*"),
-    *("AWS_ENDPOINT*", "AWS_REGION", "AWS_DEFAULT_REGION", "AWS_ROLE_*", "AWS_WEB_IDENTITY_TOKEN_FILE"),
-    *("SYSTEMROOT", "SYSTEMDRIVE", "WINDIR", "COMSPEC", "PATHEXT", "USERPROFILE", "APPDATA", "LOCALAPPDATA"),
-    f"{ENVIRONMENT}*",
-)
-"""Variables that children inherit, with ``*`` for any ending: none of them holds a secret."""
 _NO_MEMORY = ("MemoryError", "bad_alloc")
 """How Python and C++ say that an allocation failed."""
-
-
-def keep_to_one_thread() -> None:
-    """Let libraries that are not loaded yet start no threads, where the environment does not say how many."""
-    if not any(name in os.environ for name in ONE_THREAD):
-        os.environ.update(ONE_THREAD)
-
-
-# What a child process gets of this one's environment: what it needs to compute, and no secrets.
-
-
-def child_environment(**further: str) -> dict[str, str]:
-    """Return the environment of a child: one thread, modules found where we find them, installed or not.
-
-    Parameters
-    ----------
-    **further : str
-        Variables beside those inherited.
-    """
-    inherited = {
-        name: value
-        for name, value in os.environ.items()
-        if any(fnmatchcase(name.upper(), pattern) for pattern in INHERITED)
-    }
-    modules = os.pathsep.join(filter(None, (os.environ.get("PYTHONPATH"), _ROOT)))
-    return inherited | ONE_THREAD | {"PYTHONPATH": modules} | further
 
 
 class ChildFailed(Exception):
@@ -111,40 +63,15 @@ def ask_child(
     limits : Limits, optional
         Those of a child that confines itself and writes into `folder` alone: it is ended beyond them.
     """
-    end = time.monotonic() + seconds
-    answer = _ask(json.dumps(request | {"seconds": seconds}), _Watch(seconds, end, folder, limits), command)
+    watch = Watch.begun(seconds, folder, limits)
+    answer = _ask(json.dumps(request | {"seconds": seconds}), watch, command)
     if "error" in answer:
         _refuse_no_memory(answer["error"])
         raise ChildFailed(answer["error"])
     return answer
 
 
-@dataclass(frozen=True)
-class _Watch:
-    """How long a child may take, until which instant, where it works and what it may write there."""
-
-    seconds: float
-    end: float
-    folder: Path | None
-    limits: Limits | None
-
-    def check(self, child: int) -> None:
-        """Raise `ChildFailed` if a child takes more."""
-        if time.monotonic() >= self.end:
-            raise ChildFailed(f"no answer within {self.seconds:g} s")
-        if self.folder is not None and self.limits is not None:
-            cause = excess(child, self.folder, self.limits)
-            if cause:
-                raise ChildFailed(cause)
-
-    @property
-    def pause(self) -> float:
-        """Time until the next look, s."""
-        left = max(self.end - time.monotonic(), 0.0)
-        return left if self.limits is None else min(left, LOOK_S)
-
-
-def _ask(request: str, watch: _Watch, command: Sequence[str]) -> dict[str, Any]:
+def _ask(request: str, watch: Watch, command: Sequence[str]) -> dict[str, Any]:
     # The child may find a module only where this process does, e.g. in a path added at run time.
     environment = child_environment(PYTHONPATH=os.pathsep.join(filter(None, sys.path)))
     pipes: Any = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE) | {"text": True}
@@ -170,7 +97,7 @@ def _ask(request: str, watch: _Watch, command: Sequence[str]) -> dict[str, Any]:
     return answer if isinstance(answer, dict) else {}
 
 
-def _communicated(child: subprocess.Popen[str], request: str, watch: _Watch) -> tuple[str, str]:
+def _communicated(child: subprocess.Popen[str], request: str, watch: Watch) -> tuple[str, str]:
     """Return what a child prints on both its outputs, once it has ended."""
     unsent: str | None = request
     while True:
@@ -178,7 +105,10 @@ def _communicated(child: subprocess.Popen[str], request: str, watch: _Watch) -> 
             return child.communicate(unsent, timeout=watch.pause)
         except subprocess.TimeoutExpired:
             unsent = None  # the rest of it is sent by the next call
-            watch.check(child.pid)
+            if watch.late:
+                raise ChildFailed(f"no answer within {watch.seconds:g} s") from None
+            if excess := watch.excess(child.pid):
+                raise ChildFailed(excess) from None
 
 
 def _refuse_no_memory(complaint: str) -> None:

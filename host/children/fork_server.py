@@ -1,9 +1,9 @@
 """The warm process: it has imported and compiled what workers need, and forks one when told.
 
-Started as ``python -m service.worker.fork_server DESCRIPTOR WORK MODULE ...`` in a session of its own. It
+Started as ``python -m host.children.fork_server DESCRIPTOR WORK MODULE ...`` in a session of its own. It
 imports the modules and does what their `warm_up` does, if they have one; then it says so, and obeys one
 request after the other: fork a child that does the `work` of the module WORK on given descriptors, reap one.
-It has no threads, reads no order and no caller's data. It ends when the service closes its socket or is gone.
+It has no threads, reads no order and no caller's data. It ends when its starter closes the socket or is gone.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import traceback
 from collections.abc import Callable
 from typing import Any, NoReturn, TypeAlias
 
-from host import lead_session, reap
+from host.sessions import lead_session, reap
 
 Work: TypeAlias = Callable[[int], None]
 """What a child does: it answers on a descriptor."""

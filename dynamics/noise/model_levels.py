@@ -1,0 +1,147 @@
+"""Radiation models side by side where a housing is loudest: levels, stated errors, cost."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from dynamics.acoustics import Air, BoundaryElements, ModelComparison, outer_hull, sound_power_level
+from dynamics.acoustics.model_comparison import WORK
+from dynamics.noise.estimated_radiation import NAME as ESTIMATE
+from dynamics.noise.estimated_radiation import EstimatedRadiation
+from dynamics.noise.exact_lines import EXACT, FLAT, ExactLine, line_cost
+from dynamics.noise.housing_radiation import resolved_frequency
+from dynamics.noise.panel_sound import models_at
+from dynamics.noise.radiated_sound import LoudPoint, RadiatedSound, loudest, radiated_sound
+from dynamics.noise.sounding_housing import MONOPOLES, PLANE, Radiation, SoundingHousing
+from dynamics.types import FloatArray
+from dynamics.vibration import BearingHarmonics
+from dynamics.work_cost import Cost, on_this_host
+
+
+@dataclass(frozen=True)
+class ModelLevels:
+    """What the radiation models say of a housing where it is loudest; mappings are by name of the model."""
+
+    order: float
+    speed: float
+    """rad/s."""
+    level: Mapping[str, float]
+    """Sound power level of the models that are computed, from coarse to fine, dB."""
+    efficiency: Mapping[str, float]
+    """Radiation efficiency by the panel models."""
+    seconds: Mapping[str, float]
+    """CPU time of the models that are computed."""
+    left_out: Mapping[str, str]
+    """Why others are not."""
+    error_band: Mapping[str, tuple[float, float]]
+    """From and to where the level of each model may be off, computed or not, dB; below 0: too quiet."""
+    predicted: Mapping[str, Cost]
+    """Cost of each model on this host, computed or not."""
+    replaced: FloatArray | None = None
+    """Natural frequencies at which monopoles say nothing of the mode, Hz; None: there is no estimate."""
+    lines: tuple[ExactLine, ...] | None = None
+    """Lines that boundary elements correct; None: they do not correct this housing."""
+
+    @property
+    def error(self) -> dict[str, float]:
+        """Return the levels less that of the finest model, dB."""
+        finest = list(self.level.values())[-1]
+        return {name: level - finest for name, level in self.level.items()}
+
+
+def model_levels(
+    response: BearingHarmonics, housing: SoundingHousing, sound: RadiatedSound, radiation: Radiation
+) -> ModelLevels | None:
+    """Return the models at the loudest point of a housing; None of a silent one.
+
+    Points that the mesh resolves come first: the others are beyond all models but one. Raises `InputError` as
+    `models_at`.
+    """
+    resolved = resolved_frequency(outer_hull(housing.body), Air())
+    points = [point for point in loudest(sound) if point.frequency <= resolved] or loudest(sound, 1)
+    if not points:
+        return None
+    point, name = points[0], BoundaryElements().model_name
+    at = point.speed_index, point.order_index
+    panels = models_at(
+        response,
+        housing.body,
+        housing.bearings,
+        at,
+        (PLANE, MONOPOLES),
+        radiation.progress,
+        cache=radiation.cache,
+    )
+    results = panels.results.items()
+    estimate = _estimate(response, housing, panels, at)
+    exact = _exact_lines(housing, sound, point, radiation.cache)
+    corrected = housing.corrected
+    return ModelLevels(
+        order=point.order,
+        speed=point.speed,
+        level={
+            **{model: result.level for model, result in results},
+            **estimate.level,
+            **exact.level,
+        },
+        efficiency={model: result.efficiency for model, result in results},
+        seconds={**{model: result.cost.seconds for model, result in results}, **exact.seconds},
+        left_out={**panels.left_out, **exact.left_out},
+        error_band={**panels.error_band, **estimate.error_band, name: (-EXACT, EXACT)},
+        predicted={**panels.predicted, **estimate.predicted, **exact.predicted},
+        replaced=estimate.replaced,
+        lines=None if corrected is None else corrected.lines,
+    )
+
+
+@dataclass(frozen=True)
+class _Estimate:
+    """What the estimate without boundary elements adds to the models; nothing where there is none."""
+
+    level: Mapping[str, float]
+    error_band: Mapping[str, tuple[float, float]]
+    predicted: Mapping[str, Cost]
+    replaced: FloatArray | None
+
+
+def _estimate(
+    response: BearingHarmonics, housing: SoundingHousing, panels: ModelComparison, at: tuple[int, int]
+) -> _Estimate:
+    plain = housing.plain
+    if not isinstance(plain, EstimatedRadiation):
+        return _Estimate({}, {}, {}, None)
+    sound = radiated_sound(response, housing.body, housing.bearings, plain, housing.name)
+    band = plain.error_band(float(sound.frequency[at]), sound.mode_alone[:, at[0], at[1]])
+    return _Estimate(
+        {ESTIMATE: float(sound_power_level(sound.power[at]))},
+        {ESTIMATE: band},
+        {ESTIMATE: panels.predicted[MONOPOLES.model_name]},  # which it is made of
+        plain.replaced(sound.natural_frequency),
+    )
+
+
+@dataclass(frozen=True)
+class _ExactLines:
+    """What boundary elements add to the models: at the point nothing but their cost where no line is near."""
+
+    predicted: Mapping[str, Cost]
+    left_out: Mapping[str, str]
+    level: Mapping[str, float]
+    seconds: Mapping[str, float]
+
+
+def _exact_lines(
+    housing: SoundingHousing, sound: RadiatedSound, point: LoudPoint, cache: Path | None
+) -> _ExactLines:
+    hertz, name, corrected = point.frequency, BoundaryElements().model_name, housing.corrected
+    predicted = {name: on_this_host(WORK.format(name), line_cost(housing.body, hertz), cache)}
+    if corrected is None:
+        return _ExactLines(predicted, {}, {}, {})
+    left_out = {name: "; ".join(corrected.left_out)} if corrected.left_out else {}
+    near = [line for line in corrected.lines if max(line.frequency / hertz, hertz / line.frequency) <= FLAT]
+    if not near:
+        return _ExactLines(predicted, left_out, {}, {})
+    level = float(sound_power_level(sound.power[point.speed_index, point.order_index]))
+    return _ExactLines(predicted, left_out, {name: level}, {name: near[0].seconds})

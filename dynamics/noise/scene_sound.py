@@ -1,0 +1,152 @@
+"""Sound power of all housings of a scene under one set of bearing forces, and how far it may be off."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dynamics.noise.estimated_radiation import LEAST, EstimatedRadiation
+from dynamics.noise.housing_radiation import HousingRadiation
+from dynamics.noise.model_levels import ModelLevels, model_levels
+from dynamics.noise.panel_sound import PanelSound, Region, panel_sound, regions
+from dynamics.noise.radiated_sound import LoudPoint, RadiatedSound, loudest
+from dynamics.noise.sound_over_time import BLOCK, SoundOverTime, sound_over_time
+from dynamics.noise.sounding_housing import Radiation, SoundingHousing, SurfaceHousing, sounding_housings
+from dynamics.results import RunResult
+from dynamics.types import FloatArray
+from dynamics.vibration import BearingHarmonics
+
+
+@dataclass(frozen=True)
+class HousingRegion:
+    """A region of a housing at a loud point, and its share of the power of all housings there."""
+
+    housing: str
+    region: Region
+    share: float
+
+
+@dataclass(frozen=True)
+class SceneSound:
+    """Sound power of all housings of a scene."""
+
+    power: RadiatedSound
+    """Of all housings together, with the panels of the loudest point."""
+    housings: tuple[SoundingHousing, ...]
+    models: Mapping[str, ModelLevels | None]
+    """Radiation models by housing; None of a silent one."""
+    regions: tuple[tuple[HousingRegion, ...], ...]
+    """Of each of the `loudest` points, those that radiate most first."""
+    error: FloatArray
+    """From and to where the levels may be off by the radiation models, dB; below 0: too quiet. Shape (2, S,
+    H).
+    """
+    over_time: SoundOverTime | None
+    """Over the run that the forces are of; None: without a run, or of one that is shorter than a block."""
+
+    @property
+    def radiation(self) -> dict[str, HousingRadiation]:
+        """Return the most exact radiation by housing."""
+        return {housing.name: housing.radiation for housing in self.housings}
+
+
+def scene_sound(
+    response: BearingHarmonics,
+    surfaces: Sequence[SurfaceHousing],
+    radiation: Radiation,
+    run: RunResult | None = None,
+) -> SceneSound:
+    """Return the sound of the housings of a scene under bearing forces.
+
+    Raises `InputError` as `radiated_sound`.
+
+    Parameters
+    ----------
+    response : BearingHarmonics
+        Linear, or the orders of the run; in the frame of the meshes of the housings.
+    surfaces : sequence of SurfaceHousing
+        At least one.
+    run : RunResult, optional
+        Whose sound over time is found too.
+    """
+    housings = sounding_housings(response, surfaces, radiation, run)
+    sounds = [housing.sound(response) for housing in housings]
+    models = {
+        housing.name: model_levels(response, housing, sound, radiation)
+        for housing, sound in zip(housings, sounds, strict=True)
+    }
+    power = RadiatedSound.of_all(sounds)
+    points = loudest(power)
+    panels = [_panels(response, housings, point, radiation) for point in points]
+    return SceneSound(
+        power=_with_panels(power, panels[0]) if panels else power,
+        housings=housings,
+        models=models,
+        regions=tuple(
+            _regions(housings, own, power, point) for own, point in zip(panels, points, strict=True)
+        ),
+        error=joined_error(housings, sounds, models),
+        over_time=None if run is None else _over_time(run, housings),
+    )
+
+
+def _panels(
+    response: BearingHarmonics, housings: Sequence[SoundingHousing], point: LoudPoint, radiation: Radiation
+) -> list[PanelSound]:
+    at = point.speed_index, point.order_index
+    return [
+        panel_sound(response, housing.body, housing.bearings, housing.radiation, at, radiation.model)
+        for housing in housings
+    ]
+
+
+def _with_panels(power: RadiatedSound, panels: Sequence[PanelSound]) -> RadiatedSound:
+    joined = PanelSound.of_all(panels)
+    nodes, corners = joined.hull.nodes, joined.hull.triangles
+    return replace(power, panel_node=nodes, panel_corner=corners, panel_power=joined.power)
+
+
+def _regions(
+    housings: Sequence[SoundingHousing],
+    panels: Sequence[PanelSound],
+    power: RadiatedSound,
+    point: LoudPoint,
+) -> tuple[HousingRegion, ...]:
+    total = float(power.power[point.speed_index, point.order_index])
+    rows = [
+        HousingRegion(housing.name, region, region.power / total)
+        for housing, sound in zip(housings, panels, strict=True)
+        for region in regions(sound, housing.body.points)
+    ]
+    return tuple(sorted(rows, key=lambda row: -row.region.power))
+
+
+def joined_error(
+    housings: Sequence[SoundingHousing],
+    sounds: Sequence[RadiatedSound],
+    models: Mapping[str, ModelLevels | None],
+) -> FloatArray:
+    """Return from and to where the levels of housings together may be off, (2, S, H), dB; < 0: too quiet.
+
+    All housings are off to the same side at once, each by the error of its own radiation model.
+    """
+    power, true = np.zeros(sounds[0].power.shape), np.zeros((2, *sounds[0].power.shape))
+    for housing, sound in zip(housings, sounds, strict=True):
+        radiation, compared = housing.radiation, models[housing.name]
+        if isinstance(radiation, EstimatedRadiation):
+            error = radiation.off(sound.frequency, sound.mode_alone)
+        else:
+            bands = {} if compared is None else compared.error_band
+            band = bands.get(radiation.model_name, (0.0, 0.0))
+            error = np.broadcast_to(np.reshape(band, (2, 1, 1)), true.shape)
+        power, true = power + sound.power, true + sound.power * 10.0 ** (-error / 10.0)
+    return np.asarray(-10.0 * np.log10(np.maximum(true, LEAST) / np.maximum(power, LEAST)))
+
+
+def _over_time(run: RunResult, housings: Sequence[SoundingHousing]) -> SoundOverTime | None:
+    if run.time.size < BLOCK * run.sample_rate:
+        return None
+    sounds = [sound_over_time(run, housing.body, housing.bearings, housing.radiation) for housing in housings]
+    return SoundOverTime.of_all(sounds)

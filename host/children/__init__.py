@@ -1,0 +1,7 @@
+"""Child processes: where they come from, what they exchange with their starter, how they end.
+
+`launcher` starts leaders of sessions, anew or forked from a warm process (`fork_server`); `child` sends them
+orders and receives their answers, as `frames`. `json_child` runs a program on one request, on every system,
+as a member of its starter's group. `environment` is what all of them inherit, `watch` what ends one that
+takes too much.
+"""

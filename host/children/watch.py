@@ -1,0 +1,44 @@
+"""Limits that a system does not keep by itself: whoever started a child looks whether it is within them."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from host.confinement import LOOK_S, Limits, excess
+
+
+@dataclass(frozen=True)
+class Watch:
+    """How long a child may take, and what it may write into its folder."""
+
+    seconds: float
+    """Time limit, s, from the start of the watch."""
+    end: float
+    """Instant of `time.monotonic` at which it is over."""
+    folder: Path | None = None
+    """Where the child writes, if it confines itself to that."""
+    limits: Limits | None = None
+
+    @classmethod
+    def begun(cls, seconds: float, folder: Path | None = None, limits: Limits | None = None) -> Watch:
+        """Return a watch that begins now."""
+        return cls(seconds, time.monotonic() + seconds, folder, limits)
+
+    @property
+    def late(self) -> bool:
+        """Whether the time is over."""
+        return time.monotonic() >= self.end
+
+    def excess(self, child: int) -> str:
+        """Return what a child writes beyond its limits, "" if nothing."""
+        if self.folder is None or self.limits is None:
+            return ""
+        return excess(child, self.folder, self.limits)
+
+    @property
+    def pause(self) -> float:
+        """Time until the next look, s."""
+        left = max(self.end - time.monotonic(), 0.0)
+        return left if self.limits is None else min(left, LOOK_S)

@@ -1,0 +1,103 @@
+"""The facts that the file of a sound has beside its arrays, as plain JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from bounds.types import Json
+from dynamics.acoustics import sound_power_level
+from dynamics.noise import HousingRegion, MicrophonePressure, ModelLevels, SceneSound, SoundOverTime
+from lineofaction.gearbox.studies.figures import figures_of
+from lineofaction.gearbox.studies.noise import (
+    PressureFigures,
+    SensitivityFigures,
+    SoundBandFigures,
+    SoundOverTimeFigures,
+)
+from lineofaction.gearbox.studies.noise.uncertainty import SoundUncertainty
+
+RESPONSE = ("leading_shaft", "equilibrium", "effect_ledger", "forces", "lines_left_out")
+"""What a sound takes over from its response or run."""
+
+
+def sound_facts(sound: SceneSound, response: Json, scene: Json) -> Json:
+    """Return the facts of a sound: what it takes over from its response and its scene, regions, models."""
+    return {
+        **sound.power.facts,
+        "regions": [[_region(region) for region in regions] for regions in sound.regions],
+        **{name: response.get(name) for name in RESPONSE},
+        "excitations": response.get("excitations", []),
+        "over_time": _over_time(sound.over_time),
+        **scene,
+        "models": {name: _models(levels) for name, levels in sound.models.items()},
+    }
+
+
+def uncertainty_facts(known: SoundUncertainty) -> Json:
+    """Return the bands and the sensitivities of a sound; None and nothing where they were not requested."""
+    band = known.band and figures_of(
+        SoundBandFigures,
+        known.band,
+        damping_source=known.damping.source,
+        damping_range=known.damping.factors,
+    )
+    return {
+        "band": band,
+        "sensitivities": [figures_of(SensitivityFigures, row) for row in known.sensitivities],
+        "sensitivities_left_out": dict(known.left_out),
+    }
+
+
+def pressure_facts(pressure: MicrophonePressure) -> Json:
+    """Return the sound pressure at a microphone."""
+    return figures_of(PressureFigures, pressure)
+
+
+def _region(region: HousingRegion) -> Json:
+    panels = region.region
+    return {
+        "housing": region.housing,
+        "facing": panels.facing,
+        "points": list(panels.points),
+        "area": panels.area,
+        "power": panels.power,
+        "normal": panels.normal.tolist(),
+        "center": panels.center.tolist(),
+        "share": region.share,
+    }
+
+
+def _over_time(sound: SoundOverTime | None) -> Json | None:
+    if sound is None:
+        return None
+    levels = sound_power_level(sound.power.T)
+    return figures_of(SoundOverTimeFigures, sound, third_octave_db=levels)
+
+
+def _models(levels: ModelLevels | None) -> Json:
+    """Return the models of a housing; nothing of a silent one."""
+    if levels is None:
+        return {}
+    facts: Json = {
+        "order": levels.order,
+        "speed": levels.speed,
+        "level": dict(levels.level),
+        "efficiency": dict(levels.efficiency),
+        "seconds": dict(levels.seconds),
+        "left_out": dict(levels.left_out),
+        "error_band": _lists(levels.error_band),
+        "predicted": {name: cost._asdict() for name, cost in levels.predicted.items()},
+    }
+    if levels.replaced is not None:
+        facts["replaced"] = np.asarray(levels.replaced).tolist()
+    if levels.lines is not None:
+        facts["lines"] = [asdict(line) for line in levels.lines]
+    return facts | {"error": levels.error}
+
+
+def _lists(bands: Mapping[str, tuple[float, float]]) -> dict[str, Any]:
+    return {name: list(band) for name, band in bands.items()}
