@@ -25,8 +25,13 @@ DOCS = "docs"
 PAGE = "service/page/static"
 """Folder of the page's scripts."""
 REGISTRY = "lineofaction.gearbox.registry"
-REGISTRIES = (REGISTRY, "lineofaction.cli.commands", "service.routes.offers")
-"""Modules of rows: the studies, the families of verbs, the routes that answer before anything is computed."""
+REGISTRIES = (
+    REGISTRY,
+    "lineofaction.gearbox.computations",
+    "lineofaction.cli.commands",
+    "service.routes.offers",
+)
+"""Modules of rows: studies, their computations, families of verbs, routes that answer before a computation."""
 ROWS = "Studies"
 """Class of the registry whose attributes are the rows."""
 
