@@ -31,7 +31,7 @@ REGISTRIES = (
     "lineofaction.cli.commands",
     "service.routes.offers",
 )
-"""Modules of rows: studies, their computations, families of verbs, routes that answer before a computation."""
+"""Modules of rows: studies, their computations, families of verbs, routes that compute nothing."""
 ROWS = "Studies"
 """Class of the registry whose attributes are the rows."""
 

@@ -1,4 +1,4 @@
-"""Routes that answer before anything is computed, a row each: all are offered, some for drafts too."""
+"""Routes that compute nothing, a row each: all are offered, some for drafts too."""
 
 from __future__ import annotations
 
