@@ -138,8 +138,8 @@ def _home(whole: str, files: Mapping[str, Path], offers: Mapping[str, Mapping[st
 
 
 def is_product(module: str) -> bool:
-    """Whether a module is part of a house, and not of tests or benchmarks."""
-    return module.partition(".")[0] in {house.partition(".")[0] for house in structure.HOUSES}
+    """Whether a module is part of the product, and not of references, tests or benchmarks."""
+    return module.partition(".")[0] in {house.partition(".")[0] for house in structure.PRODUCT}
 
 
 def is_row(module: str) -> bool:

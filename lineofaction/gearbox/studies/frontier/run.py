@@ -57,7 +57,7 @@ class _FrontierStudy(
         if isinstance(subject, SceneInput):
             return runs_cost(subject, lambda scene: runs_of_frontier(scene, names), "minimal")
         with boundary_errors():
-            seconds = predicted_frontier(subject.request(_table, inputs), names, inputs.full_contact, cache)
+            seconds = predicted_frontier(subject.request(_table, inputs), names, cache)
         return StudyCost(tuple(Work(name, own) for name, own in seconds.items()))
 
     def compute(
