@@ -6,7 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from lineofaction.gearbox.convert.effects import scene_effects, trifles_title
+from lineofaction.gearbox.convert.effects import trifles_title
+from lineofaction.gearbox.convert.scene_effects import scene_effects
 from lineofaction.report.drawing.figure import Table, number
 from lineofaction.report.drawing.page import Part, Section
 
