@@ -71,8 +71,8 @@ def suffix_of(declaration: Declared) -> str:
 
 def unit_of(name: str) -> Unit | None:
     """Return the unit of the boundary field `name`, or of an entry of it; None where it is SI's."""
-    own = name.rpartition(".")[2].partition("[")[0]
-    return next((unit for suffix, unit in BY_SUFFIX.items() if own.endswith(suffix)), None)
+    leaf = name.rpartition(".")[2].partition("[")[0]
+    return next((unit for suffix, unit in BY_SUFFIX.items() if leaf.endswith(suffix)), None)
 
 
 def unit_name(name: str) -> str | None:

@@ -138,8 +138,8 @@ def analysis_options(case: Case) -> AnalysisOptions:
     with boundary_errors():
         relative, floor = accuracy.tolerance, accuracy.tolerance_floor_nm * NM
         allowed = None if relative is None else AllowedError(relative, floor)
-        own = {"tolerance": allowed, "effects": dict(case.effects)}
-        return AnalysisOptions(**in_si(AnalysisOptions, accuracy) | own)
+        converted = {"tolerance": allowed, "effects": dict(case.effects)}
+        return AnalysisOptions(**in_si(AnalysisOptions, accuracy) | converted)
 
 
 def study_options(options: AnalysisOptions) -> AnalysisOptions:
@@ -290,12 +290,12 @@ class CheckedCases:
 
     def _of(self, inputs: Json, case: Callable[[], Case]) -> CheckedCase:
         name = json.dumps(inputs, sort_keys=True)
-        kept = self._kept.get(name)
-        if kept is None:
-            kept = self._kept[name] = CheckedCase(case())
+        checked = self._kept.get(name)
+        if checked is None:
+            checked = self._kept[name] = CheckedCase(case())
             while len(self._kept) > self._most:
                 self._kept.popitem(last=False)
-        return kept
+        return checked
 
 
 def check_case(case: Case) -> ParallelAxes:

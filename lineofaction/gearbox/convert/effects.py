@@ -90,8 +90,9 @@ def run_lines(attributes: Mapping[str, Any]) -> Iterator[str]:
             yield f"repeated with {name}: {reason} (first run {cost}{since})"
     corrected = {**attributes, **attributes.get("receipt", {})}.get("base_radius_corrected", {})
     for gear, radius in corrected.items():
-        stated, used = (1e3 * radius[name] for name in ("given", "used"))
-        yield f"base radius of {gear} corrected from {stated:.6g} to {used:.6g} mm: one base pitch per train"
+        from_teeth, used = (1e3 * radius[name] for name in ("given", "used"))
+        change = f"from {from_teeth:.6g} to {used:.6g} mm"
+        yield f"base radius of {gear} corrected {change}: one base pitch per train"
     for check in attributes.get("effect_ledger", {}).get("checks", ()):
         if check["holds"] is False:
             part = check["part"] or check["effect"]
@@ -147,14 +148,14 @@ def scene_table(ledger: Json) -> tuple[list[str], list[list[str]], str]:
 
     Where a level is estimated, it alone is the size. Parts of one reason have a line of the row.
     """
-    shown, trifles = scene_effects(ledger)
+    effects, trifles = scene_effects(ledger)
     columns = ["effect", "on", "without it", "freedoms", "where and why"]
     rows = dict[tuple[str, bool], list[str]]()
-    for one in shown:
-        cells = [one.name, "yes" if one.on else "no", one.size, one.freedoms, ""]
-        row = rows.setdefault((one.name, one.on), cells)
-        row[-1] = f"{row[-1]}\n{one.parts}: {one.reason}".lstrip()
-    names = dict.fromkeys(one.name for one in trifles if one.possible)
+    for effect in effects:
+        cells = [effect.name, "yes" if effect.on else "no", effect.size, effect.freedoms, ""]
+        row = rows.setdefault((effect.name, effect.on), cells)
+        row[-1] = f"{row[-1]}\n{effect.parts}: {effect.reason}".lstrip()
+    names = dict.fromkeys(effect.name for effect in trifles if effect.possible)
     return columns, [*rows.values()], f"{trifles_title(names)}: {', '.join(names)}" if names else ""
 
 

@@ -149,8 +149,8 @@ def scene_field(name: str) -> str:
     parts = ["coast_flank" if part == "coast" else part for part in name.split(".")]
     head, index = _split_index(parts[-1])
     table = _OF_TABLE.get(_split_index(parts[0])[0])
-    if len(parts) == 2 and table and head in (own := _fields_of(table)):
-        return f"{parts[0]}.{own[head]}"
+    if len(parts) == 2 and table and head in (units := _fields_of(table)):
+        return f"{parts[0]}.{units[head]}"
     if len(parts) == 1 and head == "duration":
         return "run.duration_s"
     if (
@@ -189,14 +189,14 @@ class _CaseReader(Reader):
 
     def own_unit(self, unit: str) -> Unit:
         """Return the unit of the field by its name, with its symbol if that is to be written."""
-        own = unit_of(self.name) or Unit(unit)
-        return own if unit else Unit("", own.factor)
+        of_name = unit_of(self.name) or Unit(unit)
+        return of_name if unit else Unit("", of_name.factor)
 
     def unit(self, value: float, unit: str) -> Unit:
         """Return the field's unit for what is measured like it; of lengths mm, um for small ones."""
-        own = unit_of(self.name)
-        if own and own.si == unit != "m":
-            return own
+        of_name = unit_of(self.name)
+        if of_name and of_name.si == unit != "m":
+            return of_name
         if unit == "m":
             return BY_SUFFIX["_um" if 0.0 < abs(value) < 0.1 * MM else "_mm"]
         return next(
