@@ -19,7 +19,8 @@ from lineofaction.cli.output import FOUND, Report, check_writable, console, prin
 from lineofaction.cli.run_study import run_study
 from lineofaction.cli.subjects import assessed_case
 from lineofaction.cli.verb_warnings import messages, warn
-from lineofaction.gearbox.convert.case import CheckedCase, case_at
+from lineofaction.gearbox.convert.case import case_at
+from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.number_list import number_list
 from lineofaction.gearbox.problems import BadInput
@@ -27,7 +28,7 @@ from lineofaction.gearbox.project import about, file_of, results_by_part, result
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.result_files import stamped
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
-from lineofaction.gearbox.schemas.gear import FlankPoint
+from lineofaction.gearbox.schemas.flank_point import FlankPoint
 from lineofaction.gearbox.units import UM
 from lineofaction.report.binding import bound
 from lineofaction.report.comparison.compare import compare

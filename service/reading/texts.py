@@ -10,15 +10,9 @@ from lineofaction.gearbox.convert.case import case_as_filed
 from lineofaction.gearbox.inspection.as_made import Inspected, drawn_case, measured_case
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
-from lineofaction.gearbox.schemas.files import (
-    LARGEST,
-    SENT,
-    FileContentInput,
-    Find,
-    own_name,
-    read_text,
-    written_out,
-)
+from lineofaction.gearbox.schemas.file_content import LARGEST, FileContentInput
+from lineofaction.gearbox.schemas.files import SENT, written_out
+from lineofaction.gearbox.schemas.named_files import Find, own_name, read_text
 from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_table

@@ -13,10 +13,12 @@ from starlette.responses import JSONResponse, Response
 from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import LiveUnavailable, QueueFull, TooLarge, TooManyHeld
 from lineofaction.gearbox.schemas import Case
-from lineofaction.gearbox.schemas.files import FileContentInput, side_files
+from lineofaction.gearbox.schemas.file_content import FileContentInput
+from lineofaction.gearbox.schemas.files import side_files
 from lineofaction.gearbox.schemas.housings import HousingInput
-from lineofaction.gearbox.schemas.model import BoundaryModel, Named
-from lineofaction.gearbox.schemas.plan import OutlineBody
+from lineofaction.gearbox.schemas.model import BoundaryModel
+from lineofaction.gearbox.schemas.named_parts import Named
+from lineofaction.gearbox.schemas.outline import OutlineBody
 from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_text
@@ -38,7 +40,7 @@ _MOST_FILES = 16
 router = APIRouter(tags=["cases"], route_class=ScopedRoute)
 case_json = on_demand("lineofaction.gearbox.convert.case:case_json")
 case_as_filed = on_demand("lineofaction.gearbox.convert.case:case_as_filed")
-outline_json = on_demand("lineofaction.gearbox.convert.live:outline_json")
+outline_json = on_demand("lineofaction.gearbox.convert.outline:outline_json")
 scenes_router = APIRouter(tags=["scenes"], route_class=ScopedRoute)
 units_router = APIRouter(tags=["units"], route_class=ScopedRoute)
 ENTRY = "lineofaction.gearbox.from_rexs.unit_answer:unit_of_rexs"
