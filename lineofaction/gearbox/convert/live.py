@@ -6,6 +6,7 @@ import json
 import math
 from collections import OrderedDict
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -25,12 +26,11 @@ from fe_contact.types import FloatArray
 from host import cpu_seconds
 from lineofaction.gearbox.convert.answers import curve_json
 from lineofaction.gearbox.convert.boundary_names import boundary_name
-from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
+from lineofaction.gearbox.convert.case import boundary_errors, gear_pair, with_flanks
 from lineofaction.gearbox.problems import BadInput, Fault, NotAnalyzed, NotFound
 from lineofaction.gearbox.schemas import Case
-from lineofaction.gearbox.schemas.gear import with_figures
 from lineofaction.gearbox.schemas.live import LiveInput
-from lineofaction.gearbox.schemas.reading import validated
+from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.units import MM, MPA, UM, factor, in_um
 
 if TYPE_CHECKING:
@@ -143,8 +143,20 @@ def _short(values: FloatArray) -> Any:
     return (np.rint(values * scale) / scale).tolist()
 
 
-def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> tuple[Case, CondensedPair]:
-    """Return the case of a stored table, and its gears with the compliance that it was computed with.
+@dataclass(frozen=True)
+class CondensedCase:
+    """A case whose gears have their compliance, and what its questions have in common."""
+
+    case: Case
+    pair: ParallelAxes
+    """As the case states it."""
+    bodies: CondensedPair
+    drawn: OrderedDict[str, DrawnRipple] = field(default_factory=OrderedDict)
+    """Pairs solved within tolerances, by question: every answer adds some."""
+
+
+def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> CondensedCase:
+    """Return the case of a stored table, its gears with the compliance that it was computed with.
 
     Raises `NotFound`: the table was removed since it was requested; `NotAnalyzed`: the compliance is not in
     the cache, and is not to be computed.
@@ -154,37 +166,39 @@ def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> tuple[Cas
     database = SteDatabase.from_netcdf(file)
     # strict models take JSON's lists for tuples only from text
     case = Case.model_validate_json(json.dumps(database.metadata.case))
+    pair = gear_pair(case)
     with boundary_errors():
-        bodies = condensed_pair(gear_pair(case), database, dict(case.effects), cache, compute=compute)
+        bodies = condensed_pair(pair, database, dict(case.effects), cache, compute=compute)
     if bodies is None:
         raise NotAnalyzed(
             "The compliance of these gears is not in the cache of this service: they were analyzed "
             "elsewhere, or it was removed. Ask once with condense = true: it is then computed here first, in "
             "seconds in the plane and up to some minutes over the face."
         )
-    return case, bodies
+    return CondensedCase(case, pair, bodies)
 
 
-def live_curves(
-    case: Case, bodies: CondensedPair, change: LiveInput, drawn: OrderedDict[str, DrawnRipple]
-) -> Json:
+def live_curves(condensed: CondensedCase, change: LiveInput) -> Json:
     """Return the curves of the changed flanks; raises `BadInput` by the fields of the question.
 
-    `drawn` keeps the pairs solved within tolerances, by question: every answer adds some.
+    The case was checked when its table was made: only the flanks that change are made anew.
     """
     try:
-        facts = case.model_dump(mode="json")
-        for name in ("pinion", "wheel"):
-            figures = getattr(change, name).model_dump(mode="json", exclude_none=True)
-            facts["pair"][name] = with_figures(facts["pair"][name], figures)
-        pair = gear_pair(validated(Case, facts))
+        changes = {name: _figures_of(getattr(change, name)) for name in ("pinion", "wheel")}
+        pair = with_flanks(condensed.pair, condensed.case, changes)
         with boundary_errors():
-            answer = _answer(bodies, pair, change)
+            answer = _answer(condensed.bodies, pair, change)
             if change.tolerance_class is not None:
-                _add_band(answer, bodies, pair, change, drawn)
+                _add_band(answer, condensed.bodies, pair, change, condensed.drawn)
         return answer
     except BadInput as error:
         raise BadInput(_by_question(fault) for fault in error.faults) from None
+
+
+def _figures_of(flank: BoundaryModel) -> dict[str, object]:
+    """Return the figures that a change of a flank states."""
+    stated = {name: getattr(flank, name) for name in type(flank).model_fields}
+    return {name: value for name, value in stated.items() if value is not None}
 
 
 def _add_band(
