@@ -29,6 +29,7 @@ from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.result_files import stamped
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
 from lineofaction.gearbox.schemas.flank_point import FlankPoint
+from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.units import UM
 from lineofaction.report.binding import bound
 from lineofaction.report.comparison.compare import compare
@@ -183,10 +184,9 @@ def _flanks(read: Inputs, report: Report) -> LoadDistribution:
 
     Raises `BadInput`: there is no database to take the case from, or flank results are there already.
     """
-    from fe_contact.options import Run  # noqa: PLC0415 (start-up time)
-    from lineofaction.gearbox.studies.flank.run import flanks_of  # noqa: PLC0415
-
     database = read.database
+    if "flank" not in STUDIES:
+        raise BadInput.of("--flank", True, "left out", "This installation has no study of flanks.")
     if "flanks" in read.pages:
         raise BadInput.of("--flank", True, "left out with a file of flank results", "Name one or the other.")
     if database is None:
@@ -203,8 +203,10 @@ def _flanks(read: Inputs, report: Report) -> LoadDistribution:
         misalignment_um=1e6 * misalignment,
         center_distance_change_mm=1e3 * change,
     )
-    run = Run(cache=cache_home() / "compliance", progress=report)
-    return flanks_of(CheckedCase(case_at(case, point)), run)
+    found: LoadDistribution = STUDIES["flank"].run.compute(
+        CheckedCase(case_at(case, point)), point, Means(cache_home(), report)
+    )
+    return found
 
 
 # ``loa compare``.
