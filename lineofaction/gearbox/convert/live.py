@@ -21,7 +21,7 @@ from fe_contact.analysis.live.stored_bodies import condensed_pair
 from fe_contact.analysis.request.model_choice import Decided, decide
 from fe_contact.analysis.run_plan import RunPlan, plan_run
 from fe_contact.geometry import ParallelAxes, Toothing, tooth_profile
-from fe_contact.microgeometry.linearized_design import CurveDerivatives, FlankDerivatives, curve_derivatives
+from fe_contact.microgeometry.curve_derivatives import CurveDerivatives, FlankDerivatives, curve_derivatives
 from fe_contact.microgeometry.tolerances import iso1328_tolerances
 from fe_contact.planning.cost_model import Prediction
 from fe_contact.ste import SteDatabase
