@@ -25,8 +25,8 @@ DOCS = "docs"
 PAGE = "service/page/static"
 """Folder of the page's scripts."""
 REGISTRY = "lineofaction.gearbox.registry"
-REGISTRIES = (REGISTRY, "lineofaction.cli.commands")
-"""Modules of rows: the studies, and the families of verbs."""
+REGISTRIES = (REGISTRY, "lineofaction.gearbox.computations", "lineofaction.cli.commands")
+"""Modules of rows: the studies, their computations, and the families of verbs."""
 ROWS = "Studies"
 """Class of the registry whose attributes are the rows."""
 

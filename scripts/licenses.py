@@ -14,8 +14,8 @@ _HEAD = """# Dependencies and their licenses
 
 Every package of `requirements-dev.lock` with the license that its own metadata state, and what asks for it:
 the service itself, an extra, or the tests alone. Written by `scripts/licenses.py`. lineofaction is licensed
-GPL-3.0-or-later, because gmsh is GPL-2.0-or-later. The extra `exudyn` (BSD-3-Clause) is not locked. The image
-also holds packages of its Debian base, under their own licenses.
+GPL-3.0-or-later, because gmsh is GPL-2.0-or-later. The image also holds packages of its Debian base,
+under their own licenses.
 
 | package | version | license | requested by |
 |---|---|---|---|

@@ -8,7 +8,6 @@ import warnings
 from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import replace
-from importlib import import_module
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self, TypeVar
@@ -37,6 +36,7 @@ from lineofaction.client.surface import (
     operation,
 )
 from lineofaction.gearbox import schemas
+from lineofaction.gearbox.loading import load
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import Studies
 from lineofaction.gearbox.study import F, Offered, P
@@ -232,7 +232,7 @@ def _text(answer: dict[str, Any]) -> str:
 
 def _model(name: str) -> Any:
     """Return a model of answers; all are loaded with the first of them."""
-    return getattr(import_module("service.schemas.answers"), name)
+    return load(f"service.schemas.answers:{name}")
 
 
 # The address of a service, and how HTTP libraries are to reach it.

@@ -163,9 +163,9 @@ def predicted_frontier(checked: Checked, fidelities: Sequence[str], cache: Path 
         if not isinstance(fidelity, FiniteElementFidelity) or fidelity.name not in fidelities:
             continue
         if fidelity.refusal(checked) is None:
-            own = fidelity.decided(fidelity.as_computed(checked))
-            request, model = own.checked.request, own.checked.model
-            work = effort(request.pair, own.plan, model, request.alignments)
+            choice = fidelity.decided(fidelity.as_computed(checked))
+            request, model = choice.checked.request, choice.checked.model
+            work = effort(request.pair, choice.plan, model, request.alignments)
             seconds[fidelity.name] = host_slowness(cache) * work
     return seconds
 
@@ -185,8 +185,8 @@ def chosen_fidelity(checked: Checked) -> str | None:
 
     Plane strain has one fidelity, whose error is the model's: it stands for all its meshes.
     """
-    decided = decide(checked)
-    level, model = decided.mesh.level, decided.checked.model
+    choice = decide(checked)
+    level, model = choice.mesh.level, choice.checked.model
     if model.across_face:
         return f"3d_{level}"
     if model.finite_width:

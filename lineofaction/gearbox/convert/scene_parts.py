@@ -15,7 +15,7 @@ from bounds import inside
 from dynamics.bearings import BallBearing, Bushing, CatalogLine, PlanetBearing, RollerBearing, RollingBearing
 from dynamics.bearings.catalog import from_catalog
 from dynamics.forces import SpeedTorque
-from dynamics.forces.laws import STATED
+from dynamics.forces.laws import BEARING_PARTS
 from dynamics.identity_cache import cached_by, identity_cached
 from dynamics.joints import Coupling, FreeRotation, ImposedRotation
 from dynamics.loads import AngleLaw, AppliedForce, BySpeed, LoadTorque, Orders, SpeedCurve, TimeLaw, Unbalance
@@ -89,15 +89,17 @@ def rolling_bearing_of(table: RollingBearingInput) -> RollingBearing:
 
 @cached_by(lambda scene: (scene.bushings, scene.planet_bearings))
 def _laws(scene: SceneInput) -> dict[str, Any]:
-    """Return what all bearings do that is not linear, by the kinds of `StatedLaws`."""
-    return {kind: tuple(_laws_of(kind, scene)) for kind in STATED}
+    """Return what all bearings do that is not linear, by the kinds of `BearingLawParts`."""
+    return {kind: tuple(_laws_of(kind, scene)) for kind in BEARING_PARTS}
 
 
 def _laws_of(kind: str, scene: SceneInput) -> Iterator[Any]:
     for path, bearing in _bearings(scene):
         for name, table in bearing.laws[kind].items():
             with named(f"{path}.{name}"):
-                yield STATED[kind](bushing=bearing.name, **in_si(STATED[kind], table) | table.renamed)
+                yield BEARING_PARTS[kind](
+                    bushing=bearing.name, **in_si(BEARING_PARTS[kind], table) | table.renamed
+                )
 
 
 def _bearings(scene: SceneInput) -> Iterator[tuple[str, BearingInput]]:

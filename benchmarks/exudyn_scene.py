@@ -139,12 +139,10 @@ def user_functions(mesh: PlanarMesh, drive: Drive | None = None) -> tuple[Force,
 def _exudyn() -> Any:
     """Return the package; raises `InputError`: it is not installed."""
     try:
-        import exudyn as package  # noqa: PLC0415 - an extra
+        import exudyn as package  # noqa: PLC0415 - no dependency
         import exudyn.itemInterface  # noqa: PLC0415
     except ImportError:
-        raise InputError(
-            "exudyn", None, "installed", "Install the extra: pip install lineofaction[exudyn]"
-        ) from None
+        raise InputError("exudyn", None, "installed", "Install it: pip install exudyn") from None
     return package
 
 

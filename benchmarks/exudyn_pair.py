@@ -1,8 +1,8 @@
 """The scene of palermo_scene.toml at constant speed, here and in Exudyn, on the same mesh-force table.
 
-    pip install lineofaction[exudyn]
+    pip install exudyn
     loa analyze examples/palermo_spur_20_20.toml -o ste.nc
-    python examples/exudyn_scene.py ste.nc [--rpm 900] [--seconds 0.2] [--solver RK44] [--step 5e-6]
+    python -m benchmarks.exudyn_pair ste.nc [--rpm 900] [--seconds 0.2] [--solver RK44] [--step 5e-6]
 
 Prints the difference of the two transmission errors and the CPU seconds of each.
 """
@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from dynamics.engines.exudyn_scene import run_in_exudyn
+from benchmarks.exudyn_scene import run_in_exudyn
 from dynamics.loads import TimeLaw
 from dynamics.scene import Outputs, Scene
 from dynamics.simulation import simulate
@@ -25,7 +25,7 @@ from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.subjects import scene_of
 
-SCENE = Path(__file__).parent / "palermo_scene.toml"
+SCENE = Path(__file__).parents[1] / "examples" / "palermo_scene.toml"
 
 
 def main() -> None:

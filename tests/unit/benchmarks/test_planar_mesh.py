@@ -3,12 +3,23 @@
 import numpy as np
 import pytest
 from geared_scenes import BASE_RADIUS
+from mesh_elements import helical_element
 
-from dynamics.engines.exudyn_scene import PlanarMesh, user_functions
+from benchmarks.exudyn_scene import PlanarMesh, user_functions
 from dynamics.meshes.flank_force import FlankLaws, flank_force
 from dynamics.meshes.packed_tables import pack_tables
 
 ANGLE = np.radians(20.0)
+
+
+@pytest.fixture
+def element():
+    return helical_element()
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(11)
 
 
 @pytest.fixture(params=[1, -1], ids=["forwards", "backwards"])

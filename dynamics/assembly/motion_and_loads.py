@@ -1,4 +1,8 @@
-"""The kinematic motion, the load torques and the drives' torques laid out for the compiled loops."""
+"""The arrays of the kinematic motion, the load torques and the drives' torques.
+
+Axis letters: k laws of the kinematic motion (drives, then free rotations), l loads, m meshes and f turns of
+frames, cages and loads, n freedoms, N columns for the six freedoms of every rotor.
+"""
 
 from __future__ import annotations
 
@@ -20,19 +24,17 @@ from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
 
-def lay_out_reference(mechanism: Mechanism, freedoms: Freedoms) -> KinematicMotion:
-    """Lay out the kinematic motion.
-
-    Behind the positions of the meshes come the turns of `phases`.
-    """
+def kinematic_motion(mechanism: Mechanism, freedoms: Freedoms) -> KinematicMotion:
+    """Return the kinematic motion. Behind the positions of the meshes come the turns of `phases`."""
     scene, kinematics, vectors = mechanism.scene, mechanism.kinematics, mechanism.vectors
     laws = [part.speed for part in scene.references]
     turned = [revolutions(law) for law in laws]
+    # a drive imposes its rotation: no freedom, -1
     free = [-1] * len(scene.drives) + [
         freedoms.find(shaft, ROTATION) for shaft in kinematics.law_shaft[len(scene.drives) :]
     ]
     turns = phases(mechanism)
-    rates, none = (*kinematics.mesh_rate, *(phase.rate for phase in turns)), len(turns)
+    rates = (*kinematics.mesh_rate, *(phase.rate for phase in turns))
     shape = (len(rates), len(laws))
     return KinematicMotion(
         speed=Cubics.packed([law.polynomials() for law in laws]),
@@ -46,7 +48,7 @@ def lay_out_reference(mechanism: Mechanism, freedoms: Freedoms) -> KinematicMoti
         ),
         per_radian=np.array([[float(rate) for rate in row] for row in rates]).reshape(shape)
         / (2.0 * math.pi),
-        offset=np.concatenate([mechanism.phases.position, np.zeros(none)]),
+        offset=np.concatenate([mechanism.phases.position, np.zeros(len(turns))]),
         period=np.array(
             [*(mesh.table.period for mesh in scene.meshes), *(phase.turns for phase in turns)], dtype=np.int64
         ),
@@ -55,8 +57,8 @@ def lay_out_reference(mechanism: Mechanism, freedoms: Freedoms) -> KinematicMoti
     )
 
 
-def lay_out_loads(mechanism: Mechanism, freedoms: Freedoms) -> Loads:
-    """Lay out the load torques: each against the sense of its shaft, where it acts along that."""
+def load_torques(mechanism: Mechanism, freedoms: Freedoms) -> Loads:
+    """Return the load torques, each against the sense of its shaft, at its position along the shaft."""
     scene, kinematics, rotors = mechanism.scene, mechanism.kinematics, mechanism.rotors
     check_loads(scene, kinematics)
     direction = np.zeros((len(scene.loads), column_count(rotors)))
@@ -64,22 +66,27 @@ def lay_out_loads(mechanism: Mechanism, freedoms: Freedoms) -> Loads:
         shaft = scene.shaft_index(load.shaft)
         direction[row] -= kinematics.sense[shaft] * turn_row(rotors, shaft, load.position)
     rotation = direction[:, 6 * np.arange(len(rotors)) + ROTATION]
-    on_drive = direction @ _own_motions(mechanism).T * np.array(kinematics.rigid)
+    on_drive = direction @ _shaft_motions(mechanism).T * np.array(kinematics.rigid)
     return Loads(
-        Cubics.packed([load.torque.polynomials() for load in scene.loads]),
-        freedoms.keep(direction),
-        np.ascontiguousarray(rotation @ kinematics.float_ratio),
-        np.ascontiguousarray(on_drive),
+        torque=Cubics.packed([load.torque.polynomials() for load in scene.loads]),
+        direction=freedoms.keep(direction),
+        reference=np.ascontiguousarray(rotation @ kinematics.float_ratio),
+        drive=np.ascontiguousarray(on_drive),
     )
 
 
-def lay_out_drives(
+def drive_torques(
     mechanism: Mechanism, freedoms: Freedoms, connections: Connections, gradient: FloatArray
 ) -> Drives:
-    """Lay out what each drive's torque is made of: the balance of its own shaft, or its own spring."""
+    """Return the parts of the drives' torques: the balance of the driven shaft, or the drive's spring.
+
+    A rigid drive's torque is the work of all forces as its shaft alone turns by one radian. `gradient` (R, N)
+    holds the rows of all force elements.
+    """
     scene, kinematics = mechanism.scene, mechanism.kinematics
     supports, seats, couplings = connections.supports, connections.seats, connections.couplings
     turned = _turned_alone(mechanism, freedoms)
+    # b supports, k directions of a support, i columns, a laws
     strained = np.einsum("bki,ai->bka", supports.motion, turned)
     moves = freedoms.keep(supports.motion)
     stiffness = supports.matrix(supports.stiffness, strained, moves)
@@ -91,7 +98,7 @@ def lay_out_drives(
         damping += seated @ seats.damping @ freedoms.keep(seats.motion)
         preloaded = seated @ seats.preload
     if couplings.name:
-        twisted = np.einsum("cki,ai->cka", couplings.motion, turned)
+        twisted = np.einsum("cki,ai->cka", couplings.motion, turned)  # c couplings, k strains
         strains = freedoms.keep(couplings.motion)
         stiffness += couplings.matrix(couplings.stiffness, twisted, strains)
         damping += couplings.matrix(couplings.damping, twisted, strains)
@@ -102,30 +109,33 @@ def lay_out_drives(
         stiffness[law] -= (drive.stiffness or 0.0) * row
         damping[law] -= drive.damping * row
     return Drives(
-        np.ascontiguousarray(turned @ gradient.T),
-        np.ascontiguousarray(stiffness),
-        np.ascontiguousarray(damping),
-        np.ascontiguousarray(times_mass(mechanism.rotors, turned) @ mechanism.vectors.T),
-        np.einsum("bka,bk,bk->a", strained, supports.stiffness, supports.error) + preloaded,
+        direction=np.ascontiguousarray(turned @ gradient.T),
+        stiffness=np.ascontiguousarray(stiffness),
+        damping=np.ascontiguousarray(damping),
+        inertia=np.ascontiguousarray(times_mass(mechanism.rotors, turned) @ mechanism.vectors.T),
+        constant=np.einsum("bka,bk,bk->a", strained, supports.stiffness, supports.error) + preloaded,
     )
 
 
 def _turned_alone(mechanism: Mechanism, freedoms: Freedoms) -> FloatArray:
-    """Motion of all rotors per radian of each rigid drive's shaft alone, (k, N); 0 for other laws."""
+    """Return the motion of all rotors as the shaft of a rigid drive alone turns, per radian, (k, N).
+
+    The rows of other laws are 0.
+    """
     kinematics = mechanism.kinematics
     turned = np.zeros((len(kinematics.law_shaft), column_count(mechanism.rotors)))
     carried = carried_motion(mechanism.rotors, freedoms.column)
-    for law, motion in enumerate(_own_motions(mechanism)):
+    for law, motion in enumerate(_shaft_motions(mechanism)):
         if kinematics.rigid[law]:
             turned[law] = carried @ motion
     return turned
 
 
-def _own_motions(mechanism: Mechanism) -> FloatArray:
-    """Motion of each law's shaft per radian at the position where its rotation is imposed, (k, N).
+def _shaft_motions(mechanism: Mechanism) -> FloatArray:
+    """Return the motion of each law's shaft per radian at the position of the imposed rotation, (k, N).
 
-    Of all motions of a flexible shaft with that rotation the one that shares no kinetic energy with its
-    elastic coordinates: the work on it leaves out their accelerations.
+    A flexible shaft has many motions with this rotation. This one shares no kinetic energy with the elastic
+    coordinates, so that work on it leaves out their accelerations.
     """
     rotors = mechanism.rotors
     motions = np.zeros((len(mechanism.kinematics.law_shaft), column_count(rotors)))
@@ -140,7 +150,10 @@ def _own_motions(mechanism: Mechanism) -> FloatArray:
 def drive_springs(
     scene: Scene, kinematics: Kinematics, rotors: Bodies, freedoms: Freedoms
 ) -> list[tuple[int, ImposedRotation, FloatArray]]:
-    """Return the law of each drive with a spring, the drive, and the rotation it strains per freedom (n,)."""
+    """Return for each drive with a spring its law, the drive, and the rotation of the spring's end (n,).
+
+    The rotation is per unit of each freedom.
+    """
     springs = []
     for law, drive in enumerate(scene.drives):
         if drive.stiffness is not None:
