@@ -16,7 +16,8 @@ from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.studies.frontier import Frontier, frontier
 from fe_contact.analysis.studies.full_contact_record import RECORDS, FullContactRecord
 from lineofaction.cli.output import print_parts
-from lineofaction.gearbox.convert.case import CheckedCase, study_options
+from lineofaction.gearbox.convert.case import study_options
+from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.schemas.case import Case
 from lineofaction.report.effects.frontier import PAGE
 from verification.full_contact_record import full_contact_refusal, record_full_contact

@@ -25,8 +25,13 @@ DOCS = "docs"
 PAGE = "service/page/static"
 """Folder of the page's scripts."""
 REGISTRY = "lineofaction.gearbox.registry"
-REGISTRIES = (REGISTRY, "lineofaction.gearbox.computations", "lineofaction.cli.commands")
-"""Modules of rows: the studies, their computations, and the families of verbs."""
+REGISTRIES = (
+    REGISTRY,
+    "lineofaction.gearbox.computations",
+    "lineofaction.cli.commands",
+    "service.routes.offers",
+)
+"""Modules of rows: studies, their computations, families of verbs, routes that compute nothing."""
 ROWS = "Studies"
 """Class of the registry whose attributes are the rows."""
 
@@ -205,7 +210,7 @@ def _without_rows(file: Path, module: str, inside: Collection[str]) -> None:
             names |= {node.module, node.module.removeprefix(f"{module}.")} if gone else set()
             _without_aliases(lines, node, gone)
     row = tuple(f'"{name}"' for name in names)
-    single = {f"{name}," for name in names}
+    single = {f"{name}{part}," for name in names for part in ("", ".router")}
     rest = (line for line in lines if not (line.strip().startswith(row) or line.strip() in single))
     file.write_text("\n".join(line for line in rest if line != DROPPED), "utf-8")
 

@@ -19,10 +19,11 @@ from service.management.figures import Metrics, process_registry
 from service.queue.scheduler import job_machinery
 from service.queue.watcher import Watcher
 from service.reading.reader import reading_pool, require_confinement
-from service.routes import cases, documents, drafts, events, health, jobs, processes, queries, results
+from service.routes import documents, drafts, events, health, jobs, processes, queries, results
 from service.routes.access import Access, Admission
 from service.routes.context import Context
 from service.routes.middleware import API_PREFIX, Guard, install_error_handlers
+from service.routes.offers import ROUTERS
 from service.routes.openapi import ABOUT, install_description
 from service.routes.scopes import DirectRoutes
 from service.routes.warm_up import warm_up
@@ -84,8 +85,7 @@ def _route(app: FastAPI, offered: Registry) -> None:
     shown = (documents.router, processes.processes_router(offered), jobs.router)
     stored = (jobs.job_results_router(offered), results.router, queries.router)
     grouped = (queries.live_router, drafts.router, processes.router, events.router)
-    converted = (cases.router, cases.scenes_router, cases.units_router, documents.effects_router)
-    for router in (*shown, *stored, *grouped, *converted):
+    for router in (*shown, *stored, *grouped, *ROUTERS):
         app.include_router(router, prefix=API_PREFIX)
     for router in (documents.pages_router, health.router):
         app.include_router(router)

@@ -104,10 +104,10 @@ def section_keys(
 def condensed_teeth(gear: Toothing, recipe: MeshRecipe, teeth: int | None) -> int:
     """Return the number of condensed teeth, checked against the real ones."""
     real = min(gear.teeth, recipe.real_teeth or gear.teeth)
-    most = real - 1 + real % 2
+    limit = real - 1 + real % 2
     if teeth is None:
-        return min(USUAL_TEETH, most)
-    count = integer("teeth", teeth, 1, most, "Condensed teeth must be real ones; see MeshRecipe.real_teeth.")
+        return min(USUAL_TEETH, limit)
+    count = integer("teeth", teeth, 1, limit, "Condensed teeth must be real ones; see MeshRecipe.real_teeth.")
     if count % 2 == 0:
         raise InputError("teeth", teeth, "odd", "The teeth are centered on tooth 0.")
     return count

@@ -82,9 +82,9 @@ def field_under(ring: Ring, tooth_index: int, forces: FloatArray) -> Field:
 def _stiffness_alone(ring: Ring) -> FloatArray:
     """Return the stiffness (N,) in Pa of each node with all others held, along its stiffer axis."""
     mesh = ring.mesh
-    stiffness, own = np.zeros(len(mesh.points)), _larger(ring.sector.matrix)
+    stiffness, sector_entries = np.zeros(len(mesh.points)), _larger(ring.sector.matrix)
     for nodes in mesh.sector_nodes:
-        stiffness[nodes] += own
+        stiffness[nodes] += sector_entries
     if ring.hub_matrix is not None:
         stiffness[mesh.hub_nodes] += _larger(ring.hub_matrix)
     return stiffness

@@ -158,8 +158,8 @@ def face_discretization(pair: ParallelAxes, level: str, slices: int | None = Non
     """Choose the sectors of both gears and, unless they are given, the slices."""
     first, second = (SECTOR_RECIPE[level](gear) for gear in (pair.pinion, pair.wheel))
     coarse = _coarser(first, pair.pinion), _coarser(second, pair.wheel)
-    most = min(_most_slices(pair, *side) for side in ((pair.pinion, first), (pair.wheel, second)))
-    return FaceDiscretization((first, second), coarse, min(slices or SLICES, most), most)
+    largest = min(_most_slices(pair, *side) for side in ((pair.pinion, first), (pair.wheel, second)))
+    return FaceDiscretization((first, second), coarse, min(slices or SLICES, largest), largest)
 
 
 def _most_slices(pair: ParallelAxes, gear: Toothing, recipe: SectorRecipe) -> int:

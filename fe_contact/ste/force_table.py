@@ -44,8 +44,8 @@ class ForceCubic:
         s = 1.0 - t
         width, width_slope = self.width, self.deflection_slopes[:, 1] - self.deflection_slopes[:, 0]
         end_tangents = width_slope[:, None] * self.stiffness_ends + width[:, None] * self.stiffness_slopes
-        moved = -(self.deflection_slopes[:, 0] + t * width_slope) / width
-        return np.asarray(tangent * moved + t * s * (s * end_tangents[:, 0] - t * end_tangents[:, 1]))
+        slope = -(self.deflection_slopes[:, 0] + t * width_slope) / width
+        return np.asarray(tangent * slope + t * s * (s * end_tangents[:, 0] - t * end_tangents[:, 1]))
 
     def sample(
         self, d: FloatArray, lifted: NDArray[np.bool_], above: NDArray[np.bool_]
@@ -142,7 +142,7 @@ class ForceTable:
         at = slice(index, index + 1)
         arms = (None if arm is None else arm[at] for arm in self.arms)
         numbers = self.deflection, self.deflection_slope, self.stiffness, self.stiffness_slope
-        deflection, across, stiffness, along = (each[at] for each in numbers)
+        deflection, across, stiffness, along = (stack[at] for stack in numbers)
         axes = self.position, self.level, misalignment, self.center_distance_change
         return ForceTable(*axes, deflection, across, stiffness, along, self.period, None, None, *arms)
 

@@ -169,7 +169,7 @@ def _knot_minimum(axes: tuple[Axis, ...], per_cell: FloatArray) -> FloatArray:
     """Smallest value among the cells that share a knot."""
     for i, axis in enumerate(axes):
         if len(axis.knots) > 1:
-            moved = np.moveaxis(per_cell, i, 0)
-            before, after = axis.neighbors(moved, np.inf)
+            cells = np.moveaxis(per_cell, i, 0)
+            before, after = axis.neighbors(cells, np.inf)
             per_cell = np.moveaxis(np.minimum(before, after), 0, i)
     return per_cell

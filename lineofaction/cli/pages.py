@@ -19,7 +19,8 @@ from lineofaction.cli.output import FOUND, Report, check_writable, console, prin
 from lineofaction.cli.run_study import run_study
 from lineofaction.cli.subjects import assessed_case
 from lineofaction.cli.verb_warnings import messages, warn
-from lineofaction.gearbox.convert.case import CheckedCase, case_at
+from lineofaction.gearbox.convert.case import case_at
+from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.number_list import number_list
 from lineofaction.gearbox.problems import BadInput
@@ -27,7 +28,8 @@ from lineofaction.gearbox.project import about, file_of, results_by_part, result
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.result_files import stamped
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
-from lineofaction.gearbox.schemas.gear import FlankPoint
+from lineofaction.gearbox.schemas.flank_point import FlankPoint
+from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.units import UM
 from lineofaction.report.binding import bound
 from lineofaction.report.comparison.compare import compare
@@ -182,10 +184,9 @@ def _flanks(read: Inputs, report: Report) -> LoadDistribution:
 
     Raises `BadInput`: there is no database to take the case from, or flank results are there already.
     """
-    from fe_contact.options import Run  # noqa: PLC0415 (start-up time)
-    from lineofaction.gearbox.studies.flank.run import flanks_of  # noqa: PLC0415
-
     database = read.database
+    if "flank" not in STUDIES:
+        raise BadInput.of("--flank", True, "left out", "This installation has no study of flanks.")
     if "flanks" in read.pages:
         raise BadInput.of("--flank", True, "left out with a file of flank results", "Name one or the other.")
     if database is None:
@@ -202,8 +203,10 @@ def _flanks(read: Inputs, report: Report) -> LoadDistribution:
         misalignment_um=1e6 * misalignment,
         center_distance_change_mm=1e3 * change,
     )
-    run = Run(cache=cache_home() / "compliance", progress=report)
-    return flanks_of(CheckedCase(case_at(case, point)), run)
+    found: LoadDistribution = STUDIES["flank"].run.compute(
+        CheckedCase(case_at(case, point)), point, Means(cache_home(), report)
+    )
+    return found
 
 
 # ``loa compare``.

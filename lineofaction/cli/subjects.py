@@ -19,8 +19,9 @@ from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from host.directories import cache_home
 from lineofaction.cli.output import Report
 from lineofaction.cli.verb_warnings import in_lines, warn
-from lineofaction.gearbox.convert.case import CheckedCase, CheckedCases, case_at, case_json
-from lineofaction.gearbox.convert.live import costs_of
+from lineofaction.gearbox.convert.case import case_at, case_json
+from lineofaction.gearbox.convert.checked_case import CheckedCase, CheckedCases
+from lineofaction.gearbox.convert.plan import costs_of
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.input_file import InputFile
@@ -28,11 +29,11 @@ from lineofaction.gearbox.mesh_tables import MeshTables, finished
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import inputs_in, usual_speeds
 from lineofaction.gearbox.schemas import Case, read_model, validated
-from lineofaction.gearbox.schemas.gear import FlankPoint
+from lineofaction.gearbox.schemas.fault_lines import located
+from lineofaction.gearbox.schemas.flank_point import FlankPoint
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.plan import left_out_warnings
-from lineofaction.gearbox.schemas.reading import located
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.studied import OverSpeeds
 from lineofaction.gearbox.studies.cost import StudyCost, Work, panels_work

@@ -10,7 +10,8 @@ from pkgutil import iter_modules
 from typing import Any
 
 from fe_contact.ste import SteDatabase
-from lineofaction.gearbox.convert.effects import assumed_lines, beyond_lines, run_lines, scene_table
+from lineofaction.gearbox.convert.effects import run_lines
+from lineofaction.gearbox.convert.scene_effects import assumed_lines, beyond_lines, scene_table
 from lineofaction.gearbox.loading import LOADING, load
 from lineofaction.gearbox.studies.bodies import UNIT
 from lineofaction.gearbox.study import Study

@@ -10,8 +10,9 @@ from typing import Any
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.microgeometry.drawn_ripple import DrawnRipple
 from host import cpu_seconds
-from lineofaction.gearbox.convert.case import CheckedCase
-from lineofaction.gearbox.convert.live import condensed_of, live_curves, plan_json, plan_of
+from lineofaction.gearbox.convert.checked_case import CheckedCase
+from lineofaction.gearbox.convert.live import condensed_of, live_curves
+from lineofaction.gearbox.convert.plan import plan_json, plan_of
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.live import LiveInput

@@ -13,7 +13,8 @@ from fe_contact.analysis.request.model_choice import decide
 from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.ste import PairFacts, SteDatabase
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
-from lineofaction.gearbox.convert.case import CheckedCases, boundary_errors, case_json
+from lineofaction.gearbox.convert.case import boundary_errors, case_json
+from lineofaction.gearbox.convert.checked_case import CheckedCases
 from lineofaction.gearbox.convert.plausibility import case_warnings, scene_warnings, unique, within
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -32,8 +33,8 @@ WORDS = {"axial", "backlash", "friction", "lateral", "misalignment", "tilt"}
 """Effects whose names are directions or quantities too: refused where an effect is chosen or looked up."""
 REMAINS = {
     ("dynamics/simulation/documents.py", "flexible_shafts"): "heading of the case that a result echoes",
-    ("fe_contact/planning/plan.py", "finite_width"): "key of the hash by which tables are stored",
-    ("fe_contact/ste/curve.py", "finite_width"): "source of an error in stored tables",
+    ("fe_contact/planning/discretization.py", "finite_width"): "key of the hash by which tables are stored",
+    ("fe_contact/ste/curve_errors.py", "finite_width"): "source of an error in stored tables",
     ("lineofaction/gearbox/convert/scene.py", "shaft_deflection"): "the ledger of a stored table",
 }
 CHOSEN_BY = ("choices", "decided", "effect", "effects", "ledger", "neglected", "turned_on")
@@ -78,6 +79,8 @@ def excused(node: ast.AST, above: dict[ast.AST, ast.AST]) -> bool:
 
 
 def named_in(source: str, names: set[str], classes: set[str]) -> Iterator[tuple[int, str]]:
+    if not re.search(rf"""["']({"|".join(names)})["']|\b({"|".join(classes)})\b""", source):
+        return  # parsing takes a hundred times as long
     tree = ast.parse(source)
     above = parents(tree)
     for node in ast.walk(tree):

@@ -25,8 +25,8 @@ def plate_bending(gear: Toothing) -> FloatArray:
     rigidity = material.youngs_modulus * gear.face_width**3 / (12.0 * (1.0 - material.poissons_ratio**2))
     ratio, above = gear.held_radius / radius, abs(gear.reference_radius / radius - 1.0)
     orders = range(BENDING_HARMONICS + 1)
-    each = np.array([_bent(n, ratio, above, material.poissons_ratio) for n in orders])
-    return _around(gear, each * radius**2 / (math.pi * rigidity))
+    amplitudes = np.array([_bent(n, ratio, above, material.poissons_ratio) for n in orders])
+    return _around(gear, amplitudes * radius**2 / (math.pi * rigidity))
 
 
 @lru_cache(maxsize=64)
@@ -39,15 +39,15 @@ def antiplane_shear(gear: Toothing) -> FloatArray:
     ratio = gear.held_radius / gear.root_radius
     inner = min(ratio, 1.0 / ratio) ** (2 * order)
     spread = np.sinc(0.5 * order / gear.teeth) ** 2
-    each = np.concatenate([[abs(math.log(ratio))], (1.0 - inner) / (1.0 + inner) / order * spread])
-    return _around(gear, each / (math.pi * shear_modulus(gear.material)))
+    amplitudes = np.concatenate([[abs(math.log(ratio))], (1.0 - inner) / (1.0 + inner) / order * spread])
+    return _around(gear, amplitudes / (math.pi * shear_modulus(gear.material)))
 
 
-def _around(gear: Toothing, each: FloatArray) -> FloatArray:
+def _around(gear: Toothing, amplitudes: FloatArray) -> FloatArray:
     """Sum the harmonics of a force at tooth 0 at all teeth; the even one counts half."""
-    each = each * np.where(np.arange(each.size) == 0, 0.5, 1.0)
+    amplitudes = amplitudes * np.where(np.arange(amplitudes.size) == 0, 0.5, 1.0)
     angle = 2.0 * math.pi * np.arange(gear.teeth) / gear.teeth
-    return np.asarray(np.cos(angle[:, None] * np.arange(each.size)) @ each)
+    return np.asarray(np.cos(angle[:, None] * np.arange(amplitudes.size)) @ amplitudes)
 
 
 def _bent(n: int, ratio: float, above: float, poisson: float) -> float:
@@ -57,12 +57,14 @@ def _bent(n: int, ratio: float, above: float, poisson: float) -> float:
     outside as a ring gear is. Its shapes are r^n, r^-n, r^(n + 2), r^(2 - n), with ln r where two are one.
     """
     powers = [(n, 0), (-n, 0), (n + 2, 0), (2 - n, int(n == 1))] if n else [(0, 0), (0, 1), (2, 0), (2, 1)]
-    held, edge = (np.array([_derivatives(*power, r) for power in powers]).T for r in (ratio, 1.0))
+    inner_edge, edge = (np.array([_derivatives(*power, r) for power in powers]).T for r in (ratio, 1.0))
     value, slope, second, third = edge
     outwards = math.copysign(1.0, 1.0 - ratio)
     moment = second + poisson * (slope - n**2 * value)
     force = third + second - (1 + n**2) * slope + 2 * n**2 * value - (1.0 - poisson) * n**2 * (slope - value)
-    factors = np.linalg.solve(np.stack([held[0], held[1], moment, -outwards * force]), [0.0, 0.0, above, 1.0])
+    factors = np.linalg.solve(
+        np.stack([inner_edge[0], inner_edge[1], moment, -outwards * force]), [0.0, 0.0, above, 1.0]
+    )
     return float(factors @ (value + outwards * above * slope))
 
 

@@ -103,11 +103,11 @@ def _of_gear(
     bending = tooth_bending(gear)
     blank = blank_factor(gear.with_parts(model.parts))
     root = np.sqrt(bending.at(bending.tooth, s) + bending.at(bending.foundation, s) / blank)
-    apart = np.abs(slices.pair[:, None] - slices.pair)
+    distance = np.abs(slices.pair[:, None] - slices.pair)
     face = slices.face_position
     decay = TOOTH_DECAY * gear.normal_module
-    own = (apart == 0) * _along_face(face, decay, slices.slice_width)
-    tooth = root[:, :, None] * root[:, None, :] * own
+    on_tooth = (distance == 0) * _along_face(face, decay, slices.slice_width)
+    tooth = root[:, :, None] * root[:, None, :] * on_tooth
     depth = 2.0 * bending.at(bending.depth, s) / patch
     ratio = gear.material.poissons_ratio
     local = np.log(depth) - 0.5 * ratio / (1.0 - ratio) - 0.25
@@ -116,43 +116,43 @@ def _of_gear(
     local *= math.cos(gear.helix_angle) * half_plane(gear) / slices.slice_width
     body = _body(gear, slices, model)
     return _GearCompliance(
-        tooth, local[:, :, None] * np.eye(face.size), body if model.couple_teeth else (apart == 0) * body
+        tooth, local[:, :, None] * np.eye(face.size), body if model.couple_teeth else (distance == 0) * body
     )
 
 
 def _body(gear: Toothing, slices: LoadedSlices, model: ContactModel) -> FloatArray:
     """Displacement (n, n) of teeth by what the body under them does."""
-    apart, face = np.abs(slices.pair[:, None] - slices.pair), slices.face_position
+    distance, face = np.abs(slices.pair[:, None] - slices.pair), slices.face_position
     inner, outer = sorted((gear.held_radius, gear.root_radius))
     depth = outer - inner
     pitch = math.pi * gear.transverse_module
     rigid = gear.base_radius**2 * torsion_compliance(inner, outer, gear.material)
     rigid += shift_compliance(inner, outer, gear.material)
-    near = np.maximum(np.log(2.0 * depth / (np.maximum(apart, 1) * pitch)), 0.0)
-    here = max(math.log(depth / (SUNK_DEPTH * gear.normal_module)), 0.0)
-    sunk = half_plane(gear) * np.where(apart == 0, here, near)
+    near = np.maximum(np.log(2.0 * depth / (np.maximum(distance, 1) * pitch)), 0.0)
+    below_tooth = max(math.log(depth / (SUNK_DEPTH * gear.normal_module)), 0.0)
+    sunk = half_plane(gear) * np.where(distance == 0, below_tooth, near)
     body = gear.with_parts(model.parts)
     whole = WEB_EXCESS * web_compliance(body) + _seat(body)
     transverse, axial = math.cos(gear.base_helix_angle) ** 2, math.sin(gear.base_helix_angle) ** 2
-    elastic = transverse * (rigid + sunk) + axial * _axial_shear(gear, apart)
+    elastic = transverse * (rigid + sunk) + axial * _axial_shear(gear, distance)
     elastic = elastic * _along_face(face, BODY_DECAY * depth, slices.slice_width)
-    return np.asarray(elastic + transverse * whole + axial * plate_bending(gear)[apart % gear.teeth])
+    return np.asarray(elastic + transverse * whole + axial * plate_bending(gear)[distance % gear.teeth])
 
 
-def _axial_shear(gear: Toothing, apart: FloatArray) -> FloatArray:
+def _axial_shear(gear: Toothing, distance: FloatArray) -> FloatArray:
     """Axial displacement (n, n) of the body; what is near the tooth is in the half plane it is clamped in."""
     near = math.log(SUNK_DEPTH * gear.normal_module / (0.5 * math.pi * gear.transverse_module))
-    here = antiplane_shear(gear)[apart % gear.teeth] - (apart == 0) * near / (
+    shear = antiplane_shear(gear)[distance % gear.teeth] - (distance == 0) * near / (
         math.pi * shear_modulus(gear.material)
     )
-    return np.asarray(np.maximum(here, 0.0))
+    return np.asarray(np.maximum(shear, 0.0))
 
 
 def _seat(gear: Toothing) -> float:
     """Displacement of the line of action as the rigid gear turns and shifts on an elastic seat, m/N."""
     low, high = gear.seat.ends(gear.face_width)
-    held = sum(k for k in gear.seat.stiffness[:2])
-    shift = 1.0 / (math.pi * gear.held_radius * (high - low) * held) if held > 0.0 else 0.0
+    stiffness = sum(k for k in gear.seat.stiffness[:2])
+    shift = 1.0 / (math.pi * gear.held_radius * (high - low) * stiffness) if stiffness > 0.0 else 0.0
     return seat_compliance(gear) + shift
 
 

@@ -28,11 +28,14 @@ from dynamics.temperatures import Temperatures
 from lineofaction.gearbox.convert.declared import in_si, part_of
 from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.schemas.bearings import BearingInput, BushingInput, RollingBearingInput
-from lineofaction.gearbox.schemas.bodies import DiscInput, GearBodyInput, ShaftInput
-from lineofaction.gearbox.schemas.housings import TemperaturesInput
-from lineofaction.gearbox.schemas.loads import DriveInput, ForceInput, LoadTorqueInput, SpeedTorqueInput
-from lineofaction.gearbox.schemas.meshes import CoastFlankInput, MeshInput
+from lineofaction.gearbox.schemas.bodies import DiscInput, GearBodyInput
+from lineofaction.gearbox.schemas.closed_form_meshes import CoastFlankInput
+from lineofaction.gearbox.schemas.forces import ForceInput
+from lineofaction.gearbox.schemas.housing_solid import TemperaturesInput
+from lineofaction.gearbox.schemas.loads import DriveInput, LoadTorqueInput, SpeedTorqueInput
+from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import IntegrationInput, OutputsInput, SceneInput
+from lineofaction.gearbox.schemas.shafts import ShaftInput
 from lineofaction.gearbox.units import DEGREE, MM, RPM, UM
 
 T = TypeVar("T")

@@ -117,9 +117,6 @@ def _track(heard: Heard, axis: Axis) -> Track:
     return Track(heard.name, time - time[0], along, heard.query, mesh_frequency)
 
 
-# The sound of a stored run or recording as a WAV file; work of the live worker.
-
-
 def stored_sound(inputs: Json) -> Json:
     """Return ``{"wav": base64}`` of the first of ``{"files": [...], "view": {...}}``, on one full scale.
 

@@ -14,7 +14,8 @@ from fe_contact import analyze
 from lineofaction.gearbox.convert.case import case_json, gear_pair
 from lineofaction.gearbox.convert.live import condensed_of, interpolated_columns, live_curves
 from lineofaction.gearbox.schemas.case import Case
-from lineofaction.gearbox.schemas.live import LiveCurve, LiveInput
+from lineofaction.gearbox.schemas.live import LiveInput
+from lineofaction.gearbox.schemas.live_answer import LiveCurve
 
 EARLY = 4
 CASE = {
