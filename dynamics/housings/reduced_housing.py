@@ -9,19 +9,19 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-import scipy.sparse as sp
-from scipy.linalg import block_diag
+from scipy.linalg import block_diag, eigh
 
 from bounds import Quantity, Text
 from dynamics.bearings.matrix import Matrix, matrix_rows
 from dynamics.checks import not_negative
 from dynamics.errors import InputError, ResultError
+from dynamics.housings.rigid_body import RigidBody
 from dynamics.housings.supports import SeatFrame
 from dynamics.joints import Housing
 from dynamics.types import FloatArray, IntArray
 from dynamics.work_cost import WorkCost
-
-# Rigid motions of points, and mass, center of gravity and inertia by them.
+from model_studies.netcdf import UnreadableFile
+from model_studies.record_file import read_record, write_record
 
 SCHEMA = "lineofaction reduced housing"
 SINGULAR = 1e-14
@@ -30,45 +30,6 @@ VALID = 0.7
 """Of the highest frequency kept: to it a reduction follows the whole mesh within 1 %."""
 PARALLEL = 1e-3
 """Sine of the angle to z from which a bore is no seat of a shaft along z."""
-
-
-@dataclass(frozen=True)
-class RigidBody:
-    """A body that does not deform."""
-
-    mass: float
-    """kg."""
-    center: FloatArray
-    """Center of gravity, m. Shape (3,)."""
-    inertia: FloatArray
-    """About the center of gravity along the axes of the mesh, kg m^2; products with a minus sign. Shape (3,
-    3).
-    """
-
-
-def rigid_motions(points: FloatArray, about: FloatArray) -> FloatArray:
-    """Return displacements of points by unit translations and small rotations, (3 n, 6).
-
-    Columns: x, y, z, rotations about x, y, z through `about`: u = t + theta x (p - about).
-    """
-    motions = np.zeros((len(points), 3, 6))
-    motions[:, range(3), range(3)] = 1.0
-    for axis, unit in enumerate(np.eye(3)):
-        motions[:, :, 3 + axis] = np.cross(unit, points - about)
-    return motions.reshape(-1, 6)
-
-
-def rigid_body(points: FloatArray, mass: sp.csr_array) -> RigidBody:
-    """Return mass, center of gravity and inertia by a mass matrix between nodes, (n, n)."""
-    share = np.asarray(mass.sum(axis=0)).ravel()
-    whole = float(share.sum())
-    center = share @ points / whole
-    arm = points - center
-    second = arm.T @ (mass @ arm)
-    return RigidBody(whole, center, np.trace(second) * np.eye(3) - second)
-
-
-# A housing by the motion of its seats and a few modes.
 
 
 @dataclass(frozen=True)
@@ -156,8 +117,6 @@ class ReducedHousing:
         Motions without mass are left out. The first `len(frequency)` are modes of the housing; the rest carry
         what its higher modes give statically.
         """
-        from scipy.linalg import eigh  # noqa: PLC0415 (start-up time)
-
         diagonal = np.diag(self.mass)
         scale = np.where(diagonal > 0.0, 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)), 0.0)
         if np.linalg.eigvalsh(scale[:, None] * self.mass * scale)[0] > SINGULAR:
@@ -169,8 +128,6 @@ class ReducedHousing:
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write the housing; the file appears whole or not at all."""
-        from model_studies.record_file import write_record  # noqa: PLC0415 (start-up time)
-
         write_record(self, Path(path), SCHEMA)
 
     @classmethod
@@ -179,18 +136,12 @@ class ReducedHousing:
 
         Raises `ResultError`: the file is missing, damaged, or no reduced housing.
         """
-        from model_studies.netcdf import UnreadableFile  # noqa: PLC0415 (start-up time)
-        from model_studies.record_file import read_record  # noqa: PLC0415
-
         try:
             housing = read_record(Path(path), {SCHEMA: cls})
         except UnreadableFile as error:
             raise ResultError(str(error)) from error
         assert isinstance(housing, cls)
         return housing
-
-
-# Forced vibration of a reduced housing.
 
 
 def receptance(
@@ -289,3 +240,12 @@ def _turned(matrix: FloatArray, turn: FloatArray) -> Matrix:
     """Return the rows of a matrix over motions along the scene's axes; unchanged where they are the same."""
     own = matrix if np.array_equal(turn, np.eye(len(turn))) else turn.T @ matrix @ turn
     return matrix_rows(own)
+
+
+@dataclass(frozen=True)
+class SurfaceHousing:
+    """A housing with a surface: its name, its reduction, and the bearings in the order of its seats."""
+
+    name: str
+    body: ReducedHousing
+    bearings: tuple[str, ...]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, TypeVar
@@ -31,7 +31,7 @@ from lineofaction.gearbox.convert.errors import translated
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.case import Case, ErrorsInput, LoadInput
 from lineofaction.gearbox.schemas.flank_point import FlankPoint
-from lineofaction.gearbox.schemas.gear import ToothingInput
+from lineofaction.gearbox.schemas.gear import ToothingInput, with_flank
 from lineofaction.gearbox.units import MM, NM, UM
 from model_studies.workers import WorkersLost
 
@@ -59,6 +59,37 @@ def gear_pair(case: Case) -> ParallelAxes:
         if case.pair.wheel.internal:
             return InternalGearPair(pinion, _gear(RingGear, "wheel", case), shafts=shafts, **facts)
         return GearPair(pinion, _gear(Gear, "wheel", case), shafts=shafts, **facts)
+
+
+def with_flanks(pair: ParallelAxes, case: Case, changes: Mapping[str, Mapping[str, object]]) -> ParallelAxes:
+    """Return the pair of a case with other flanks; all else stays as it was checked.
+
+    Raises `BadInput` as `gear_pair`.
+
+    Parameters
+    ----------
+    pair : GearPair or InternalGearPair
+        That of the case.
+    changes : mapping
+        Figures of flanks of "pinion" and "wheel" by their fields, within the bounds of these.
+    """
+    with boundary_errors():
+        gears = {
+            name: _with_flank(name, getattr(pair, name), with_flank(getattr(case.pair, name), figures))
+            for name, figures in changes.items()
+            if figures
+        }
+        return replace(pair, **gears) if gears else pair
+
+
+def _with_flank(name: str, gear: Toothed, stated: ToothingInput) -> Toothed:
+    """Return a gear of the pair with the modification that its table states."""
+
+    def plain() -> Toothed:
+        return replace(gear, modification=FlankModification())
+
+    with inside(name):
+        return replace(gear, modification=_modification(stated, plain))
 
 
 @contextmanager
@@ -133,8 +164,8 @@ def analysis_options(case: Case) -> AnalysisOptions:
     with boundary_errors():
         relative, floor = accuracy.tolerance, accuracy.tolerance_floor_nm * NM
         allowed = None if relative is None else AllowedError(relative, floor)
-        own = {"tolerance": allowed, "effects": dict(case.effects)}
-        return AnalysisOptions(**in_si(AnalysisOptions, accuracy) | own)
+        converted = {"tolerance": allowed, "effects": dict(case.effects)}
+        return AnalysisOptions(**in_si(AnalysisOptions, accuracy) | converted)
 
 
 def study_options(options: AnalysisOptions) -> AnalysisOptions:

@@ -6,6 +6,7 @@ import json
 import math
 from collections import OrderedDict
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -25,12 +26,11 @@ from fe_contact.types import FloatArray
 from host import cpu_seconds
 from lineofaction.gearbox.convert.answers import curve_json
 from lineofaction.gearbox.convert.boundary_names import boundary_name
-from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
+from lineofaction.gearbox.convert.case import boundary_errors, gear_pair, with_flanks
 from lineofaction.gearbox.problems import BadInput, Fault, NotAnalyzed, NotFound
 from lineofaction.gearbox.schemas import Case
-from lineofaction.gearbox.schemas.gear import with_figures
 from lineofaction.gearbox.schemas.live import LiveInput
-from lineofaction.gearbox.schemas.reading import validated
+from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.units import MM, MPA, UM, factor, in_um
 
 if TYPE_CHECKING:
@@ -94,8 +94,8 @@ def _flanks_json(flanks: LoadDistribution) -> Json:
     }
 
 
-def _passage_json(flanks: LoadDistribution, apart: FloatArray) -> Json:
-    """Return what one pair of teeth meets on its way through the mesh; `apart` (P, N, K) in m.
+def _passage_json(flanks: LoadDistribution, separation: FloatArray) -> Json:
+    """Return what one pair of teeth meets on its way through the mesh; `separation` (P, N, K) in m.
 
     The place of a pair is position plus index. Rows are evenly spaced from where the pair begins to carry to
     where it ends. Where teeth differ, the period has several base pitches: the first one stands for all.
@@ -106,7 +106,9 @@ def _passage_json(flanks: LoadDistribution, apart: FloatArray) -> Json:
     loaded = (flanks.pressure[first] > 0.0).any(axis=-1).ravel()
     low, high = math.floor(place[loaded].min() * _STEPS) - 1, math.ceil(place[loaded].max() * _STEPS) + 1
     rows = np.arange(low, high + 1) / _STEPS
-    face = np.linspace(flanks.face_position[0], flanks.face_position[-1], min(_COLUMNS, len(apart[0, 0])))
+    face = np.linspace(
+        flanks.face_position[0], flanks.face_position[-1], min(_COLUMNS, len(separation[0, 0]))
+    )
 
     def laid(values: FloatArray) -> FloatArray:
         table = values[first].reshape(place.size, -1)[order]
@@ -119,7 +121,7 @@ def _passage_json(flanks: LoadDistribution, apart: FloatArray) -> Json:
         "step": 1.0 / _STEPS,
         "face_position_mm": _short(face / MM),
         "pressure_mpa": np.rint(laid(flanks.pressure) / MPA).astype(int).tolist(),
-        "apart_um": np.round(laid(apart) / UM, 2).tolist(),
+        "apart_um": np.round(laid(separation) / UM, 2).tolist(),
     }
 
 
@@ -141,8 +143,20 @@ def _short(values: FloatArray) -> Any:
     return (np.rint(values * scale) / scale).tolist()
 
 
-def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> tuple[Case, CondensedPair]:
-    """Return the case of a stored table, and its gears with the compliance that it was computed with.
+@dataclass(frozen=True)
+class CondensedCase:
+    """A case whose gears have their compliance, and what its questions have in common."""
+
+    case: Case
+    pair: ParallelAxes
+    """As the case states it."""
+    bodies: CondensedPair
+    drawn: OrderedDict[str, DrawnRipple] = field(default_factory=OrderedDict)
+    """Pairs solved within tolerances, by question: every answer adds some."""
+
+
+def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> CondensedCase:
+    """Return the case of a stored table, its gears with the compliance that it was computed with.
 
     Raises `NotFound`: the table was removed since it was requested; `NotAnalyzed`: the compliance is not in
     the cache, and is not to be computed.
@@ -152,37 +166,39 @@ def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> tuple[Cas
     database = SteDatabase.from_netcdf(file)
     # strict models take JSON's lists for tuples only from text
     case = Case.model_validate_json(json.dumps(database.metadata.case))
+    pair = gear_pair(case)
     with boundary_errors():
-        bodies = condensed_pair(gear_pair(case), database, dict(case.effects), cache, compute=compute)
+        bodies = condensed_pair(pair, database, dict(case.effects), cache, compute=compute)
     if bodies is None:
         raise NotAnalyzed(
             "The compliance of these gears is not in the cache of this service: they were analyzed "
             "elsewhere, or it was removed. Ask once with condense = true: it is then computed here first, in "
             "seconds in the plane and up to some minutes over the face."
         )
-    return case, bodies
+    return CondensedCase(case, pair, bodies)
 
 
-def live_curves(
-    case: Case, bodies: CondensedPair, change: LiveInput, drawn: OrderedDict[str, DrawnRipple]
-) -> Json:
+def live_curves(condensed: CondensedCase, change: LiveInput) -> Json:
     """Return the curves of the changed flanks; raises `BadInput` by the fields of the question.
 
-    `drawn` keeps the pairs solved within tolerances, by question: every answer adds some.
+    The case was checked when its table was made: only the flanks that change are made anew.
     """
     try:
-        facts = case.model_dump(mode="json")
-        for name in ("pinion", "wheel"):
-            own = getattr(change, name).model_dump(mode="json", exclude_none=True)
-            facts["pair"][name] = with_figures(facts["pair"][name], own)
-        pair = gear_pair(validated(Case, facts))
+        changes = {name: _figures_of(getattr(change, name)) for name in ("pinion", "wheel")}
+        pair = with_flanks(condensed.pair, condensed.case, changes)
         with boundary_errors():
-            answer = _answer(bodies, pair, change)
+            answer = _answer(condensed.bodies, pair, change)
             if change.tolerance_class is not None:
-                _add_band(answer, bodies, pair, change, drawn)
+                _add_band(answer, condensed.bodies, pair, change, condensed.drawn)
         return answer
     except BadInput as error:
         raise BadInput(_by_question(fault) for fault in error.faults) from None
+
+
+def _figures_of(flank: BoundaryModel) -> dict[str, object]:
+    """Return the figures that a change of a flank states."""
+    stated = {name: getattr(flank, name) for name in type(flank).model_fields}
+    return {name: value for name, value in stated.items() if value is not None}
 
 
 def _add_band(
@@ -248,9 +264,9 @@ def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput) -> Jso
         return (_flanks_json(loaded(k)) for k in range(table.force.size))
 
     def passages() -> Iterator[Json]:
-        apart = solved.problem.moved(solved.solution.force)
+        separation = solved.problem.moved(solved.solution.force)
         for k in range(table.force.size):
-            yield _passage_json(loaded(k), apart[:, k].reshape(loaded(k).force.shape))
+            yield _passage_json(loaded(k), separation[:, k].reshape(loaded(k).force.shape))
 
     def derivatives() -> Iterator[Json]:
         return iter(_derivatives_json(curve_derivatives(bodies, pair, torques, None, *alignment)))

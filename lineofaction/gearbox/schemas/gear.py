@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import operator
-from typing import Annotated, Self
+from collections.abc import Mapping
+from typing import Annotated, Self, TypeVar
 
 from pydantic import Field, model_validator
 
@@ -110,6 +111,9 @@ class ToothingInput(_ToothingFigures):
         return self
 
 
+Stated = TypeVar("Stated", bound=ToothingInput)
+
+
 @with_fields(as_fields(of_gear(Gear)))
 class GearInput(ToothingInput):
     """One external gear."""
@@ -119,6 +123,16 @@ def with_figures(gear: Json, own: Json) -> Json:
     """Return the table of a gear with figures of its flanks; a length replaces where the relief starts."""
     replaced = {field for name in own if name in _STARTS for field in _start_fields(_STARTS[name])}
     return {name: value for name, value in gear.items() if name not in replaced} | own
+
+
+def with_flank(gear: Stated, own: Mapping[str, object]) -> Stated:
+    """Return a gear with figures of its flanks, which are within the bounds of their fields.
+
+    A length replaces where the relief starts.
+    """
+    replaced = {field for name in own if name in _STARTS for field in _start_fields(_STARTS[name])}
+    left_out = {field: type(gear).model_fields[field].get_default() for field in replaced}
+    return gear.model_copy(update=left_out | dict(own))
 
 
 def has_extent(gear: ToothingInput, relief: str) -> bool:

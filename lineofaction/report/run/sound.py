@@ -14,9 +14,10 @@ from bounds.types import Json
 from dynamics.acoustics import Recording, common_full_scale, wav_file
 from dynamics.acoustics.recording import PASSED, SAMPLE_RATE
 from dynamics.errors import InputError
+from dynamics.orders import driving_shaft
 from dynamics.results import RunResult
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.studies.listen.run import KIND, SCHEMA, HeardRun, driving_shaft
+from lineofaction.gearbox.studies.listen.run import KIND, SCHEMA, HeardRun
 from lineofaction.report.drawing.figure import Axis, Sound, Track, number, unit_of
 from lineofaction.report.run.view import (
     QUANTITIES,

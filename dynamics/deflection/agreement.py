@@ -4,35 +4,43 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
-from dynamics.deflection import Deflection, deflect
+from dynamics.deflection.deflect import Deflection, deflect
+from dynamics.meshes import MeshTable
 from dynamics.scene import Scene
 from dynamics.settings.load_case import LoadCase
-from lineofaction.gearbox.studies.deflect.mesh_contact import MeshContact
 from model_studies.workers import InProcess, Workers
 
 TOLERANCE = 1e-6
-"""Change of every misalignment by the last pass, of its size or of `SMALL`."""
-SMALL = 1e-6  # m
+"""Largest change of a misalignment by the last pass, over its size or `SMALL`."""
+SMALL = 1e-6
+"""Misalignment below which a change counts over this one, m."""
 PASSES = 6
+"""Most passes."""
 MARGIN, LEAST_MARGIN = 0.5, 2e-6
-"""Of the first knots beyond the misalignments without contact: a part of their range, at least in m."""
+"""How far the first knots lie beyond the misalignments without contact: part of their range, least in m."""
 CLOSEST = 2e-8
 """Least distance of knots, m: a closer one takes the place of the one before."""
 
 
+class FaceContact(Protocol):
+    """The contact of a mesh whose load may vary over the face."""
+
+    def table(self, misalignments: Sequence[float], /) -> MeshTable:
+        """Return the mesh-force table over misalignments, m, increasing."""
+
+
 @dataclass(frozen=True)
 class Agreement:
-    """The deflection with the tables that belong to it.
-
-    `change`: largest change of a misalignment by the last pass, over its size or `SMALL`.
-    """
+    """The deflection with the tables that belong to it."""
 
     deflection: Deflection
     passes: int
     change: float
+    """Largest change of a misalignment by the last pass, over its size or `SMALL`."""
 
     @property
     def reached(self) -> bool:
@@ -44,7 +52,7 @@ def in_agreement(
     scene: Scene,
     cases: Sequence[LoadCase],
     positions: int,
-    contacts: Mapping[str, MeshContact],
+    contacts: Mapping[str, FaceContact],
     first: Deflection,
     complete: Callable[[Mapping[str, Sequence[float]]], object] = lambda _knots: None,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
@@ -67,8 +75,8 @@ def in_agreement(
     """
     if not contacts:
         return Agreement(first, 1, 0.0)
-    stated = {mesh.name: mesh.misalignment for mesh in scene.meshes}
-    knots = {name: _first_knots(_misalignments(first, name), stated[name]) for name in contacts}
+    in_scene = {mesh.name: mesh.misalignment for mesh in scene.meshes}
+    knots = {name: _first_knots(_misalignments(first, name), in_scene[name]) for name in contacts}
     last, deflection, change, passes = first, first, float("inf"), 0
     while passes < PASSES:
         passes += 1
@@ -79,38 +87,39 @@ def in_agreement(
         change = _change(last, deflection, contacts)
         if change <= TOLERANCE or not deflection.converged:
             break
-        knots = {name: _with_knots(own, _misalignments(deflection, name)) for name, own in knots.items()}
+        knots = {name: _with_knots(row, _misalignments(deflection, name)) for name, row in knots.items()}
         last = deflection
     return Agreement(deflection, passes, change)
 
 
-def _misalignments(deflection: Deflection, mesh: str) -> list[float]:
+def _misalignments(deflection: Deflection, name: str) -> list[float]:
     """Return the misalignments of a mesh over the load cases, m."""
-    return [own.misalignment for case in deflection.cases for own in case.meshes if own.name == mesh]
+    return [mesh.misalignment for case in deflection.cases for mesh in case.meshes if mesh.name == name]
 
 
-def _first_knots(misalignments: Sequence[float], stated: float) -> list[float]:
+def _first_knots(misalignments: Sequence[float], in_scene: float) -> list[float]:
     """Return knots from the misalignments without the moment of uneven loads, m, increasing.
 
     They reach to the misalignment that the scene states, at which its rest begins.
     """
     low, high = min(misalignments), max(misalignments)
     margin = max(MARGIN * (high - low), MARGIN * max(abs(low), abs(high)), LEAST_MARGIN)
-    return _with_knots([min(low - margin, stated), max(high + margin, stated)], misalignments, 0.1 * margin)
+    ends = [min(low - margin, in_scene), max(high + margin, in_scene)]
+    return _with_knots(ends, misalignments, 0.1 * margin)
 
 
 def _with_knots(knots: Sequence[float], further: Sequence[float], closest: float = CLOSEST) -> list[float]:
     """Return knots with further ones, increasing; of closer ones than `closest` the later stays."""
-    kept = list(knots)
+    row = list(knots)
     for knot in further:
-        kept = [*(own for own in kept if abs(own - knot) >= closest), knot]
-    return sorted(kept)
+        row = [*(earlier for earlier in row if abs(earlier - knot) >= closest), knot]
+    return sorted(row)
 
 
-def _change(last: Deflection, deflection: Deflection, contacts: Mapping[str, MeshContact]) -> float:
-    """Return the largest change of a misalignment, over its size or `SMALL`."""
+def _change(last: Deflection, deflection: Deflection, meshes: Mapping[str, object]) -> float:
+    """Return the largest change of a misalignment of the meshes, over its size or `SMALL`."""
     changes = [0.0]
-    for name in contacts:
-        before, now = (np.array(_misalignments(each, name)) for each in (last, deflection))
+    for name in meshes:
+        before, now = (np.array(_misalignments(result, name)) for result in (last, deflection))
         changes.append(float(np.max(np.abs(now - before) / np.maximum(np.abs(now), SMALL))))
     return max(changes)
