@@ -10,9 +10,9 @@ import numpy as np
 from bounds import engineering
 from bounds.types import Json
 from fe_contact.ste import Curve, SteDatabase, ToothLoads
-from fe_contact.ste.curve import OperatingPoint
 from fe_contact.ste.curve_quantities import BY_SOURCE
 from fe_contact.ste.fields import CENTER_DISTANCE, MISALIGNMENT
+from fe_contact.ste.operating_point import OperatingPoint
 from fe_contact.types import Estimate, FloatArray
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.problems import JobFailed

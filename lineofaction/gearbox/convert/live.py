@@ -19,7 +19,7 @@ from fe_contact.analysis.flanks.pressure_map import pressure_map
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.stored_bodies import condensed_pair
 from fe_contact.geometry import ParallelAxes
-from fe_contact.microgeometry.linearized_design import CurveDerivatives, FlankDerivatives, curve_derivatives
+from fe_contact.microgeometry.curve_derivatives import CurveDerivatives, FlankDerivatives, curve_derivatives
 from fe_contact.microgeometry.tolerances import iso1328_tolerances
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray

@@ -20,7 +20,7 @@ from dynamics.loads import TimeLaw
 from dynamics.mechanism.rotor import build_rotor
 from dynamics.motion.force_balance import force_balance
 from dynamics.scene import Scene
-from fe_contact.ste.extraction import SMOOTHING
+from fe_contact.ste.load_levels import SMOOTHING
 
 PITCH = 2.0 * math.pi * BASE_RADIUS / 20
 UP = np.array([0.0, 0.0, 1.0])
