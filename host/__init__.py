@@ -9,40 +9,44 @@ nothing elsewhere; `host.loops`, which nothing here loads, is of numba.
 from __future__ import annotations
 
 import sys
+from importlib import import_module
 from importlib.util import find_spec
+from typing import TYPE_CHECKING
 
-from host.children.environment import ONE_THREAD, child_environment, keep_to_one_thread
-from host.children.json_child import ChildFailed, ChildOutOfMemory, ask_child
-from host.confinement import (
-    LOOK_S,
-    READING,
-    Limits,
-    confine,
-    excess,
-    limit_file_size,
-    limit_memory,
-    missing_protections,
-    prepare_confinement,
-)
 from host.directories import default_cache_directory
 from host.extras import MissingExtra, Unavailable, missing_extra, require
-from host.sessions import (
-    Ended,
-    ending_signal,
-    family_cpu_seconds,
-    handlers_kept,
-    has_exited,
-    kill,
-    kill_group,
-    kill_own_group,
-    lead_session,
-    lower_priority,
-    memory_figure,
-    never_wait_at,
-    processes_in,
-    reap,
-    require_sessions,
-)
+
+if TYPE_CHECKING:
+    from host.children.environment import ONE_THREAD as ONE_THREAD
+    from host.children.environment import child_environment as child_environment
+    from host.children.environment import keep_to_one_thread as keep_to_one_thread
+    from host.children.json_child import ChildFailed as ChildFailed
+    from host.children.json_child import ChildOutOfMemory as ChildOutOfMemory
+    from host.children.json_child import ask_child as ask_child
+    from host.confinement import LOOK_S as LOOK_S
+    from host.confinement import READING as READING
+    from host.confinement import Limits as Limits
+    from host.confinement import confine as confine
+    from host.confinement import excess as excess
+    from host.confinement import limit_file_size as limit_file_size
+    from host.confinement import limit_memory as limit_memory
+    from host.confinement import missing_protections as missing_protections
+    from host.confinement import prepare_confinement as prepare_confinement
+    from host.sessions import Ended as Ended
+    from host.sessions import ending_signal as ending_signal
+    from host.sessions import family_cpu_seconds as family_cpu_seconds
+    from host.sessions import handlers_kept as handlers_kept
+    from host.sessions import has_exited as has_exited
+    from host.sessions import kill as kill
+    from host.sessions import kill_group as kill_group
+    from host.sessions import kill_own_group as kill_own_group
+    from host.sessions import lead_session as lead_session
+    from host.sessions import lower_priority as lower_priority
+    from host.sessions import memory_figure as memory_figure
+    from host.sessions import never_wait_at as never_wait_at
+    from host.sessions import processes_in as processes_in
+    from host.sessions import reap as reap
+    from host.sessions import require_sessions as require_sessions
 
 if sys.platform == "win32" or find_spec("fcntl") is None or find_spec("resource") is None:
     from host.windows import (
@@ -68,6 +72,40 @@ else:
         peak_memory,
         physical_memory,
     )
+
+HOMES = {
+    "ChildFailed": "children.json_child",
+    "ChildOutOfMemory": "children.json_child",
+    "Ended": "sessions",
+    "LOOK_S": "confinement",
+    "Limits": "confinement",
+    "ONE_THREAD": "children.environment",
+    "READING": "confinement",
+    "ask_child": "children.json_child",
+    "child_environment": "children.environment",
+    "confine": "confinement",
+    "ending_signal": "sessions",
+    "excess": "confinement",
+    "family_cpu_seconds": "sessions",
+    "handlers_kept": "sessions",
+    "has_exited": "sessions",
+    "keep_to_one_thread": "children.environment",
+    "kill": "sessions",
+    "kill_group": "sessions",
+    "kill_own_group": "sessions",
+    "lead_session": "sessions",
+    "limit_file_size": "confinement",
+    "limit_memory": "confinement",
+    "lower_priority": "sessions",
+    "memory_figure": "sessions",
+    "missing_protections": "confinement",
+    "never_wait_at": "sessions",
+    "prepare_confinement": "confinement",
+    "processes_in": "sessions",
+    "reap": "sessions",
+    "require_sessions": "sessions",
+}
+"""The module of each name that is imported on first use: most processes start no other."""
 
 __all__ = [
     "LOOK_S",
@@ -115,3 +153,10 @@ __all__ = [
     "require",
     "require_sessions",
 ]
+
+
+def __getattr__(name: str) -> object:
+    """Import a name on first use."""
+    if name not in HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{HOMES[name]}"), name)

@@ -11,6 +11,7 @@ import line_growth
 import pytest
 import structure
 
+import host
 from lineofaction.gearbox import schemas
 
 ROOT = Path(__file__).parents[2]
@@ -177,6 +178,7 @@ def test_the_picture_is_drawn_from_the_imports() -> None:
 
 def test_names_imported_on_first_use_are_there() -> None:
     """A table says by text where each stands: no checker of types reads it."""
-    modules = {name: f"{schemas.__name__}.{module}" for name, module in schemas.HOMES.items()}
-    missing = [name for name, module in modules.items() if not hasattr(import_module(module), name)]
-    assert missing == []
+    for package in (host, schemas):
+        modules = {name: f"{package.__name__}.{module}" for name, module in package.HOMES.items()}
+        missing = [name for name, module in modules.items() if not hasattr(import_module(module), name)]
+        assert missing == []

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from bounds.brief import brief
-from host import ChildFailed, ask_child
+import host  # children are started by readers of files alone: a client has none
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.signals.channel import Channel
 from lineofaction.gearbox.signals.limits import LARGEST_FILE, READING, SECONDS
@@ -119,8 +119,9 @@ def _channels(path: Path, form: tuple[str, str], field: str, names: Sequence[str
         shutil.copyfile(path, copy)
         request = {"file": copy.name, "format": reader, "channels": list(names)}
         try:
-            answer = ask_child(request, SECONDS, (sys.executable, "-P", str(_WORKER)), copy.parent, READING)
-        except ChildFailed as error:
+            command = sys.executable, "-P", str(_WORKER)
+            answer = host.ask_child(request, SECONDS, command, copy.parent, READING)
+        except host.ChildFailed as error:
             limits = f"{READING.memory_mb} MB of memory and {READING.cpu_seconds} s of CPU time"
             bound = f"{noun} that is read within {limits} (the reader: {error.cause})"
             raise BadInput.of(field, path.name, bound, "Export less of it, or as HDF5.") from None
