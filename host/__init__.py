@@ -23,15 +23,15 @@ if TYPE_CHECKING:
     from host.children.json_child import ChildFailed as ChildFailed
     from host.children.json_child import ChildOutOfMemory as ChildOutOfMemory
     from host.children.json_child import ask_child as ask_child
-    from host.confinement import LOOK_S as LOOK_S
-    from host.confinement import READING as READING
-    from host.confinement import Limits as Limits
     from host.confinement import confine as confine
     from host.confinement import excess as excess
     from host.confinement import limit_file_size as limit_file_size
     from host.confinement import limit_memory as limit_memory
     from host.confinement import missing_protections as missing_protections
     from host.confinement import prepare_confinement as prepare_confinement
+    from host.reading_limits import LOOK_S as LOOK_S
+    from host.reading_limits import READING as READING
+    from host.reading_limits import Limits as Limits
     from host.sessions import Ended as Ended
     from host.sessions import ending_signal as ending_signal
     from host.sessions import family_cpu_seconds as family_cpu_seconds
@@ -77,10 +77,10 @@ HOMES = {
     "ChildFailed": "children.json_child",
     "ChildOutOfMemory": "children.json_child",
     "Ended": "sessions",
-    "LOOK_S": "confinement",
-    "Limits": "confinement",
+    "LOOK_S": "reading_limits",
+    "Limits": "reading_limits",
     "ONE_THREAD": "children.environment",
-    "READING": "confinement",
+    "READING": "reading_limits",
     "ask_child": "children.json_child",
     "child_environment": "children.environment",
     "confine": "confinement",

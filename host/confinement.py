@@ -15,12 +15,12 @@ import stat
 import sys
 from collections.abc import Iterable
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import cache
 from itertools import islice
 from pathlib import Path
 
 from host.extras import Unavailable
+from host.reading_limits import READING, Limits
 from host.system_calls import NO_NEW_PRIVILEGES, filters_calls, keep_to_reading
 
 # Limits on what processes may take: POSIX systems alone have them, elsewhere each raises `Unavailable`.
@@ -34,8 +34,6 @@ _LIBRARIES_MB = 1024
 """Addresses of libraries that are loaded later, beside memory: of scipy 130 MB, of gmsh 100 MB."""
 _STACK_MB = 64
 """gmsh asks for a stack without limit, and does not get it."""
-LOOK_S = 0.05
-"""How often whoever started a confined process looks at what it has written."""
 _CREATE, _ADD, _RESTRICT = 444, 445, 446
 """Numbers of the system calls, on every processor."""
 _VERSION = 1
@@ -72,28 +70,6 @@ def limit_file_size(pid: int, size: int) -> None:
     import resource  # noqa: PLC0415 (POSIX alone)
 
     resource.prlimit(pid, resource.RLIMIT_FSIZE, (size, size))
-
-
-@dataclass(frozen=True)
-class Limits:
-    """What a process that reads foreign bytes may take."""
-
-    memory_mb: int | None = 512
-    """Private memory that it may write, MB; None: as much as the process that started it."""
-    cpu_seconds: int = 10
-    """At their end the system kills it."""
-    file_bytes: int = 256_000_000
-    """Size of a file that it writes."""
-    written_bytes: int = 400_000_000
-    files: int = 100
-    """`written_bytes`, `files`: All bytes that it writes, its answer among them, and files in its folder:
-    whoever started it looks (`excess`).
-    """
-    open_files: int = 64
-
-
-READING = Limits()
-"""The limits of every reader whose work is reading alone."""
 
 
 def missing_protections() -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from typing import Any
 
 from host.children.environment import child_environment
 from host.children.watch import Watch
-from host.confinement import Limits
+from host.reading_limits import Limits
 from host.sessions import ending_signal
 
 _NO_MEMORY = ("MemoryError", "bad_alloc")

@@ -6,7 +6,8 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from host.confinement import LOOK_S, Limits, excess
+from host.confinement import excess
+from host.reading_limits import LOOK_S, Limits
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from bounds.brief import brief
 import host  # children are started by readers of files alone: a client has none
+from bounds.brief import brief
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.signals.channel import Channel
 from lineofaction.gearbox.signals.limits import LARGEST_FILE, READING, SECONDS
