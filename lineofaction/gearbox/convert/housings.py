@@ -26,7 +26,7 @@ from lineofaction.gearbox.schemas.bearings import BushingInput, RollingBearingIn
 from lineofaction.gearbox.schemas.file_content import FileContentInput
 from lineofaction.gearbox.schemas.housings import HousingInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.signals import UNIVERSAL
+from lineofaction.gearbox.signals.endings import UNIVERSAL
 from model_studies.progress import Progress, silent
 
 if TYPE_CHECKING:

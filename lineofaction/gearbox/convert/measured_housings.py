@@ -22,7 +22,8 @@ from lineofaction.gearbox.convert.placement import Placement
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.housings import HousingInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.signals import Channel, read_frequency_responses
+from lineofaction.gearbox.signals.channel import Channel
+from lineofaction.gearbox.signals.recording import read_frequency_responses
 
 SAME_LINES = 2e-5
 """Relative difference of frequencies that are the same line: a universal file has six digits of its step."""

@@ -15,7 +15,7 @@ from lineofaction.gearbox.schemas.file_content import FileContentInput
 from lineofaction.gearbox.schemas.flank_grid_files import with_flank_grids
 from lineofaction.gearbox.schemas.load_signals import with_load_signals
 from lineofaction.gearbox.schemas.named_files import Find, Table, own_name, read_text
-from lineofaction.gearbox.signals import UNIVERSAL
+from lineofaction.gearbox.signals.endings import UNIVERSAL
 from lineofaction.gearbox.units import MM, as_typed
 
 ROWS = "stiffness_matrix"

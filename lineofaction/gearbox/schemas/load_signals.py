@@ -13,7 +13,6 @@ from pydantic import Field, ValidationError
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.faults import faults_of
 from lineofaction.gearbox.schemas.model import BoundaryModel, Number
-from lineofaction.gearbox.signals import read_recording
 from lineofaction.gearbox.signals.units import SPEED, TORQUE
 from lineofaction.gearbox.units import RPM
 
@@ -118,6 +117,8 @@ def _series(
 ) -> tuple[FloatArray, FloatArray]:
     """Return times (n,) in s from 0, and values (n,) in the unit of the scene's field."""
     names = (signal.channel,) if signal.channel else ()
+    from lineofaction.gearbox.signals.recording import read_recording  # noqa: PLC0415 (a client reads no files)
+
     recording = read_recording(find(signal.file, f"{field}.file"), f"{field}.file", names)
     channel = recording.channel(f"{field}.channel", signal.channel, (course.quantity,))
     time, values = channel.measured(f"{field}.channel", course.quantity, signal.unit)

@@ -17,24 +17,10 @@ import host  # children are started by readers of files alone: a client has none
 from bounds.brief import brief
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.signals.channel import Channel
+from lineofaction.gearbox.signals.endings import ENDINGS, FORMATS, UNIVERSAL
 from lineofaction.gearbox.signals.limits import LARGEST_FILE, READING, SECONDS
 from lineofaction.gearbox.signals.units import measured_unit
 
-FORMATS = {
-    ".csv": ("csv_table", "a CSV file"),
-    ".unv": ("universal", "a universal file"),
-    ".uff": ("universal", "a universal file"),
-    ".uf": ("universal", "a universal file"),
-    ".wav": ("wav", "a WAV file"),
-    ".mat": ("matlab", "a MATLAB file"),
-    ".h5": ("hdf5", "an HDF5 file"),
-    ".hdf5": ("hdf5", "an HDF5 file"),
-    ".mf4": ("mdf", "an MDF4 file"),
-}
-"""Reader and noun of a format, by the ending of the file."""
-ENDINGS = tuple(FORMATS)
-UNIVERSAL = tuple(ending for ending, (reader, _) in FORMATS.items() if reader == "universal")
-"""Endings of universal files."""
 _EXTRAS = {"universal": ("pyuff", "uff"), "frequency_responses": ("pyuff", "uff"), "mdf": ("asammdf", "mdf")}
 """Module and extra of the readers that a base install lacks."""
 _WORKER = Path(__file__).with_name("worker.py")

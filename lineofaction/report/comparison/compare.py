@@ -17,7 +17,8 @@ from fe_contact.types import Estimate
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import results_in
 from lineofaction.gearbox.result_files import stamped
-from lineofaction.gearbox.signals import ENDINGS, Recording, begins_with_time, read_recording
+from lineofaction.gearbox.signals.endings import ENDINGS
+from lineofaction.gearbox.signals.recording import Recording, begins_with_time, read_recording
 from lineofaction.report.binding import bound
 from lineofaction.report.comparison.measured import (
     COLORS,

@@ -11,8 +11,8 @@ from dynamics.errors import InputError
 from dynamics.orders import PositionedSignal, Waterfall, recorded_waterfall
 from dynamics.results import RunResult
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.signals import Channel, Recording
-from lineofaction.gearbox.signals.channel import uniform_rate
+from lineofaction.gearbox.signals.channel import Channel, uniform_rate
+from lineofaction.gearbox.signals.recording import Recording
 from lineofaction.gearbox.signals.tacho import turns_of_pulses, turns_of_speed
 from lineofaction.gearbox.signals.units import ACCELERATION, FORCE, LENGTH, SPEED
 from lineofaction.gearbox.units import RPM

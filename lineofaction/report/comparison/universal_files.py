@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.signals import Channel, Recording, read_recording
+from lineofaction.gearbox.signals.channel import Channel
+from lineofaction.gearbox.signals.recording import Recording, read_recording
 from lineofaction.gearbox.signals.units import ACCELERATION, FORCE, LENGTH, measured_unit, required_unit
 from lineofaction.report.comparison.measured import MeasuredCurve, MeasuredOrders, averaged
 

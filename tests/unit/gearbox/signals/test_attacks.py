@@ -16,8 +16,8 @@ from recordings import WRITERS
 from scipy.io import savemat
 
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.signals import read_recording
 from lineofaction.gearbox.signals import recording as recordings
+from lineofaction.gearbox.signals.recording import read_recording
 
 TIME = np.arange(256) / 1024.0
 VALUES = np.sin(40.0 * TIME)

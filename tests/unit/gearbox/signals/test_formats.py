@@ -9,7 +9,7 @@ import pytest
 from recordings import FULL_SCALE, WRITERS, pyuff
 
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.signals import read_recording
+from lineofaction.gearbox.signals.recording import read_recording
 
 TIME = np.arange(4096) / 8192.0
 ACCELERATION = 30.0 * np.sin(2 * np.pi * 300.0 * TIME) + 4.0
