@@ -17,7 +17,7 @@ from starlette.responses import JSONResponse, Response
 
 from lineofaction.gearbox.problems import BadInput, ServiceError
 from service.routes import cases, queries
-from service.routes.middleware import refusal_of
+from service.routes.problem_answers import refusal_of
 from service.routes.scopes import ScopedRoute
 from service.schemas.answers import FaultBody
 
