@@ -9,7 +9,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from lineofaction.gearbox.schemas.files import FileContentInput
+from lineofaction.gearbox.schemas.file_content import FileContentInput
 
 _BOX = """
 import sys, gmsh

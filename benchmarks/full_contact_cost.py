@@ -13,9 +13,12 @@ from pathlib import Path
 from benchmarks.example_pair import TORQUES
 from benchmarks.figures import Figure
 from fe_contact import Gear, GearPair, frontier
-from fe_contact.analysis.studies.measured_full_contact import MeasuredFullContact
-from fe_contact.options import TableAxes
+from fe_contact.analysis.studies.frontier import Frontier
+from fe_contact.analysis.studies.full_contact_record import FullContactComparison
+from fe_contact.options import AnalysisOptions, TableAxes
+from model_studies.progress import unreported
 from model_studies.stage_clock import StageClock
+from verification.full_contact_record import record_full_contact
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "fakes"))
 from calculix import find_calculix, solve_position
@@ -31,11 +34,11 @@ def figures() -> list[Figure]:
     """Return times of all three, their ratios, and how far they are apart."""
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
     pair = GearPair(gear, gear, center_distance=80e-3)
-    found = frontier(pair, TableAxes(torques=list(TORQUES)), fidelities=FIDELITIES, full_contact=POSITIONS)
+    checked = Frontier.request(pair, TableAxes(torques=list(TORQUES)), AnalysisOptions())
+    records = [record_full_contact(checked, POSITIONS, unreported)]
+    found = frontier(checked, fidelities=FIDELITIES, full_contact=POSITIONS, records=records)
     other, here = found.full_contact, found.reference.cpu_seconds
-    if other is None:
-        sys.stderr.write(f"full contact left out: {found.left_out['full_contact']}\n")
-        return []
+    assert other is not None
     there = other.seconds(found.solves)
     return [
         Figure(SUBJECT, "condensed peer, a position, all loads, with its error", there / 64.0, "CPU s", 5.0),
@@ -47,7 +50,7 @@ def figures() -> list[Figure]:
     ]
 
 
-def _calculix(pair: GearPair, peer: MeasuredFullContact, solves: int, here: float) -> list[Figure]:
+def _calculix(pair: GearPair, peer: FullContactComparison, solves: int, here: float) -> list[Figure]:
     """Return the time of CalculiX, and how far the condensed peer is from it."""
     program = find_calculix()
     if program is None:
@@ -58,7 +61,7 @@ def _calculix(pair: GearPair, peer: MeasuredFullContact, solves: int, here: floa
         points = [solve_position(program, pair, force, n / POSITIONS, CPU_LIMIT) for n in range(POSITIONS)]
     each = clock.seconds["CalculiX"] / POSITIONS
     mean = sum(point.transmission_error for point in points) / POSITIONS
-    apart = abs(float(peer.tables[0].transmission_error[:, -1].mean()) / mean - 1.0)
+    apart = abs(float(peer.record.transmission_error[0, :, -1].mean()) / mean - 1.0)
     return [
         Figure(SUBJECT, f"CalculiX, a position at {max(TORQUES):.4g} N m", each, "CPU s"),
         Figure(SUBJECT, "here over CalculiX", 100.0 * here / (each * solves), "%", TARGET),

@@ -15,7 +15,6 @@ from benchmarks.figures import Figure
 from benchmarks.full_contact_cases import FullContactCase, full_contact_cases
 from benchmarks.marked_section import MEASURED, replace_section
 from fe_contact import SteDatabase, analyze
-from fe_contact.full_contact import solve_full_contact
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.model_error import in_small_displacements
 from fe_contact.ste.curve import AT_NODES, METHOD, PLANE, all_sources
@@ -24,6 +23,7 @@ from fe_contact.types import FloatArray
 from lineofaction.report.drawing import figure as drawn
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.image import png
+from verification.full_contact import solve_full_contact
 
 ROOT = Path(__file__).parents[1]
 REFERENCE = ROOT / "tests" / "reference" / "full_contact_curves.csv"

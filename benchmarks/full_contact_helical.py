@@ -20,9 +20,9 @@ from benchmarks.marked_section import MEASURED, replace_section
 from benchmarks.pair_cases import PairCase
 from benchmarks.recorded_peer import record, recorded
 from fe_contact import FlankModification, Gear, GearPair, analyze
-from fe_contact.full_contact import solve_full_contact_helical
 from fe_contact.geometry.backlash import reference_center_distance
 from fe_contact.types import FloatArray
+from verification.full_contact import solve_full_contact_helical
 
 REFERENCE = "full_contact_helical.csv"
 PAGE, SECTION = MEASURED / "accuracy.md", "helical full contact"

@@ -25,14 +25,14 @@ from fe_contact import (
     OperatingPoint,
     flank_results,
 )
-from fe_contact.full_contact import (
+from fe_contact.types import FloatArray
+from verification.full_contact import (
     HelicalMesh,
     Resolution,
     solve_full_contact_helical,
     solve_full_contact_over_face,
 )
-from fe_contact.full_contact.table import LineLoad
-from fe_contact.types import FloatArray
+from verification.full_contact.line_load import LineLoad
 
 REFERENCE = Path(__file__).parents[1] / "tests" / "reference" / "full_contact_line_load.csv"
 SUBJECT = "line load at free ends against full contact"

@@ -17,10 +17,10 @@ from benchmarks.figures import Figure
 from benchmarks.marked_section import MEASURED, replace_section
 from benchmarks.recorded_peer import record, recorded
 from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear, analyze
-from fe_contact.full_contact import Resolution, solve_full_contact_over_face
-from fe_contact.full_contact.over_face.solve import USUAL
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray
+from verification.full_contact import Resolution, solve_full_contact_over_face
+from verification.full_contact.over_face.solve import USUAL
 
 REFERENCE = "full_contact_over_face.csv"
 PAGE, SECTION = MEASURED / "accuracy.md", "full contact over the face"

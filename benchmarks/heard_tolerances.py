@@ -14,7 +14,7 @@ from benchmarks.figures import Figure
 from benchmarks.heard_flanks import PAIRS, two_shafts
 from fe_contact.types import FloatArray
 from host import cpu_seconds
-from lineofaction.gearbox.convert.errors import boundary_name
+from lineofaction.gearbox.convert.boundary_names import boundary_name
 from lineofaction.gearbox.studies.change.result import HIGH, LOW, MEDIAN
 from lineofaction.gearbox.units import factor
 from model_studies.spread import quantiles

@@ -10,7 +10,7 @@ from typing import Any
 
 from benchmarks.figures import Figure
 from host import cpu_seconds
-from lineofaction.gearbox.convert.case import CheckedCase
+from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.subjects import case_of
 from lineofaction.gearbox.tabled_scene import database_of
 from service.live.answer import answer_of

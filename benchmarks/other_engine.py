@@ -16,7 +16,6 @@ from benchmarks.example_pair import PAIR, TORQUES
 from benchmarks.figures import Figure
 from benchmarks.fresh_process import measure
 
-EXAMPLES = Path(__file__).parents[1] / "examples"
 ERROR = 1e-9
 SECONDS = 0.5
 TARGET = 100.0 / 30.0
@@ -31,13 +30,12 @@ measured = {{}}
 """
 )
 _RUNS = """
-import sys, time
+import time
 from dataclasses import replace
 from statistics import median
 import numpy as np
-sys.path.insert(0, {examples!r})
-from exudyn_scene import constant_speed_scene
-from dynamics.engines.exudyn_scene import run_in_exudyn
+from benchmarks.exudyn_pair import constant_speed_scene
+from benchmarks.exudyn_scene import run_in_exudyn
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.simulation import simulate
 from dynamics.assembly.assemble import assemble
@@ -85,12 +83,12 @@ measured["difference"] = rms(other("RK44", 32)[0] - exact) / float(np.std(exact)
 def figures() -> list[Figure]:
     """Return agreement, CPU seconds at the error, and their ratios; nothing without Exudyn."""
     if find_spec("exudyn") is None:
-        sys.stderr.write("  left out: Exudyn is not installed (pip install lineofaction[exudyn])\n")
+        sys.stderr.write("  left out: Exudyn is not installed (pip install exudyn)\n")
         return []
     with tempfile.TemporaryDirectory() as folder:
-        names = {"table": str(Path(folder) / "ste.nc"), "examples": str(EXAMPLES)}
-        measure(_TABLE.format(torques=list(TORQUES), **names))
-        code = _RUNS.format(seconds=SECONDS, error=ERROR, solvers=list(SOLVERS), methods=METHODS, **names)
+        table = str(Path(folder) / "ste.nc")
+        measure(_TABLE.format(torques=list(TORQUES), table=table))
+        code = _RUNS.format(table=table, seconds=SECONDS, error=ERROR, solvers=list(SOLVERS), methods=METHODS)
         found = measure(code)
     swing = 100.0 * found["difference"]
     rows = [Figure(SUBJECT, "difference of the transmission errors, rms over swing", swing, "%", 1.0)]

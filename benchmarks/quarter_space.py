@@ -17,17 +17,16 @@ from scipy.sparse.linalg import splu
 
 from benchmarks.figures import Figure
 from fe_contact.contact.free_end import FreeEnds, end_excess, end_softness
-from fe_contact.full_contact.over_face.extruded_stiffness import (
+from fe_contact.material import Material
+from fe_contact.types import BoolArray, FloatArray, IntArray
+from verification.full_contact.over_face.extruded_stiffness import (
     ExtrudedStiffness,
-    Layers,
     X,
     Y,
     Z,
     extruded_stiffness,
-    graded_layers,
 )
-from fe_contact.material import Material
-from fe_contact.types import BoolArray, FloatArray, IntArray
+from verification.full_contact.over_face.layers import Layers, graded_layers
 
 SUBJECT = "free end of a quarter space"
 MODULUS = 1e9

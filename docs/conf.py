@@ -26,8 +26,8 @@ extensions = [
     "sphinx_copybutton",
 ]
 source_suffix = {".md": "markdown"}
-# In the source tree alone: decisions, notes on measurements, licenses.
-exclude_patterns = ["decisions/*", "lab/*", "paper/*", "licenses.md"]
+# In the source tree alone: decisions, notes on measurements.
+exclude_patterns = ["decisions/*", "lab/*", "paper/*"]
 myst_enable_extensions = ["deflist", "dollarmath"]
 myst_heading_anchors = 4
 

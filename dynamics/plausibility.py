@@ -207,10 +207,10 @@ def _bearings(scene: Scene) -> Iterator[Finding]:
             for finding in assessed("support_stiffness", f"{path}.{name}", value, "N/m", skip_zero=True):
                 yield replace(finding, low=ROLLING[0], high=ROLLING[1])
         yield from assessed("damping_ratio", f"{path}.damping_ratio", part.damping_ratio, "1")
-    for contact in scene.rolling_contacts:
-        path = f"{paths[contact.bushing]}.rolling_contact"
-        yield from assessed("clearance", f"{path}.radial_clearance", contact.clearance, "m", skip_zero=True)
-        yield from assessed("damping_ratio", f"{path}.damping_ratio", contact.damping_ratio, "1")
+    for law in scene.scene_bearing_laws:
+        for item in law.plausible_values():
+            path = f"{paths[law.bushing]}.{item.field}"
+            yield from assessed(item.check, path, item.value, item.unit, skip_zero=item.skip_zero)
 
 
 def _meshes(scene: Scene) -> Iterator[Finding]:

@@ -137,13 +137,14 @@ __all__ += registry.__all__
 
 def __getattr__(name: str) -> object:
     """Load a name on first use."""
+    if name in registry.FUNCTIONS:
+        return registry.FUNCTIONS[name]
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    home = "lineofaction.gearbox.registry" if name in registry.__all__ else "lineofaction.gearbox.workbench"
-    module, own = _HOME.get(name, (home, name))
+    module, own = _HOME.get(name, ("lineofaction.gearbox.workbench", name))
     value = globals()[name] = getattr(import_module(module), own)
     return value
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return sorted({*__all__, *registry.FUNCTIONS})

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from bounds.types import Json
-from model_studies.netcdf import DAMAGE, NetcdfContent, UnreadableFile, Variable, opened_netcdf
+from model_studies.netcdf import DAMAGE, UnreadableFile, opened_netcdf
+from model_studies.netcdf_content import NetcdfContent, Variable
 
 SCHEMA_VERSION = 1
 PARTS = "part"  # dimension of the real and the imaginary part

@@ -1,27 +1,21 @@
-"""netCDF files, read from foreign bytes and checked, and written."""
+"""netCDF-4 files that are read: nothing in them lies in another file, or loads one.
+
+HDF5 lets a file name others: for the values of a dataset, for the parts of a virtual one, behind links and
+references, and as libraries that unpack it. A file comes from anyone, so it is walked before it is read.
+"""
 
 from __future__ import annotations
 
 import math
-import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from host.directories import whole_file
-
 if TYPE_CHECKING:
     import xarray
-
-
-# netCDF-4 files that are read: nothing in them lies in another file, or loads one.
-#
-# HDF5 lets a file name others: for the values of a dataset, for the parts of a virtual one, behind links and
-# references, and as libraries that unpack it. A file comes from anyone, so it is walked before it is read.
 
 MOST_VARIABLES = 4096
 MOST_ATTRIBUTES = 256
@@ -33,9 +27,6 @@ UNPACKED = 100
 """Bytes of values and texts per byte of a larger file."""
 DAMAGE = (OSError, ValueError, KeyError, RuntimeError, TypeError, AttributeError, IndexError, MemoryError)
 """What HDF5, its readers and a record of foreign fields raise is not one class."""
-
-_PACKED = {"compression": "gzip", "compression_opts": 4, "shuffle": True}
-_NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable."
 
 
 class UnreadableFile(ValueError):
@@ -189,119 +180,3 @@ def _parts(kind: Any) -> list[Any]:
         members = [kind.get_member_type(index) for index in range(kind.get_nmembers())]
         return [member for member in members if member.get_class() != h5t.INTEGER]
     return [kind.get_super()] if kind.get_class() == h5t.VLEN else [kind]
-
-
-class Variable(NamedTuple):
-    """An array of numbers, its dimensions, its attributes."""
-
-    dimensions: tuple[str, ...]
-    values: Any
-    attributes: Mapping[str, Any]
-
-
-@dataclass(frozen=True)
-class NetcdfContent:
-    """The content of a file."""
-
-    variables: Mapping[str, Variable]
-    """By name. One that is called as its only dimension is the coordinate along it."""
-    attributes: Mapping[str, Any]
-    """Of the file: texts and numbers."""
-    coordinates: tuple[str, ...] = ()
-    """Variables that are coordinates of others and have a name of their own, as a torque along the forces."""
-
-    def to_xarray(self) -> xarray.Dataset:
-        """Return the same as a dataset of xarray."""
-        import xarray  # noqa: PLC0415 - half a second, and not needed to write a file
-
-        content = xarray.Dataset(dict(self.variables), attrs=dict(self.attributes))
-        return content.set_coords(self.coordinates)
-
-    def write(self, path: Path) -> None:
-        """Write a netCDF-4 file; it appears whole or not at all.
-
-        Its bytes are made in memory: where a disk is full, HDF5 would leave objects that crash the process
-        later. Variables with entries are compressed, but for coordinates. A dimension without entries is
-        unlimited, since netCDF has no other.
-        """
-        content = self._packed()
-        with whole_file(path) as draft, draft.open("wb") as stream:
-            stream.write(content)
-            stream.flush()
-            os.fsync(stream.fileno())
-
-    @property
-    def sizes(self) -> dict[str, int]:
-        """Sizes of the dimensions, in their order."""
-        return {
-            dimension: size
-            for variable in self.variables.values()
-            for dimension, size in zip(variable.dimensions, np.shape(variable.values), strict=True)
-        }
-
-    def _packed(self) -> bytes:
-        import h5py  # noqa: PLC0415 - needed for files only
-
-        with h5py.File.in_memory(track_order=True) as file:
-            scales = {}
-            for number, (name, size) in enumerate(self.sizes.items()):
-                scales[name] = _scale(file, name, size, self.variables.get(name), number)
-            for name, variable in self.variables.items():
-                along_itself = variable.dimensions == (name,)
-                dataset = scales[name] if along_itself else self._added(file, name, scales)
-                describe(dataset, {**variable.attributes, **self._auxiliary(name)})
-            describe(file, self.attributes)
-            file.flush()
-            image: bytes = file.id.get_file_image()
-            return image
-
-    def _added(self, file: Any, name: str, scales: Mapping[str, Any]) -> Any:
-        """Add a variable that is not the coordinate along a dimension; netCDF marks one called as another."""
-        dimensions, values, _ = self.variables[name]
-        values = np.asarray(values)
-        packed = _PACKED if values.size and values.ndim and name not in self.coordinates else {}
-        dataset = file.create_dataset(
-            f"_nc4_non_coord_{name}" if name in scales else name,
-            data=values,
-            maxshape=_unlimited(values.shape),
-            track_order=True,
-            **packed,
-        )
-        for axis, dimension in enumerate(dimensions):
-            dataset.dims[axis].attach_scale(scales[dimension])
-        return dataset
-
-    def _auxiliary(self, name: str) -> dict[str, str]:
-        """Return the attribute that names coordinates beside those along the dimensions of a variable."""
-        dimensions = set(self.variables[name].dimensions)
-        along = [each for each in self.coordinates if dimensions.issuperset(self.variables[each].dimensions)]
-        is_coordinate = name in self.coordinates or name in dimensions
-        return {"coordinates": " ".join(along)} if along and not is_coordinate else {}
-
-
-def _scale(file: Any, name: str, size: int, variable: Variable | None, number: int) -> Any:
-    """Add a dimension: the coordinate along it, or a mark that there is none."""
-    content: dict[str, Any] = {"dtype": ">f4"}
-    called = f"{_NO_VARIABLE}{size:10}"
-    if variable is not None and variable.dimensions == (name,):
-        content, called = {"data": variable.values}, name
-    scale = file.create_dataset(name, (size,), maxshape=_unlimited((size,)), track_order=True, **content)
-    make_dimension(scale, number, called)
-    return scale
-
-
-def _unlimited(shape: tuple[int, ...]) -> tuple[int | None, ...] | None:
-    """Return the largest shape, with None for dimensions without entries; None if there are none such."""
-    return None if all(shape) else tuple(size or None for size in shape)
-
-
-def make_dimension(dataset: Any, number: int, called: str) -> None:
-    """Let a dataset of h5py be the `number`-th dimension of its file, called by its name if it has values."""
-    dataset.make_scale(called)
-    dataset.attrs["_Netcdf4Dimid"] = np.int32(number)
-
-
-def describe(target: Any, attributes: Mapping[str, Any]) -> None:
-    """Write attributes of a file or dataset of h5py; numbers are rows in netCDF."""
-    for name, value in attributes.items():
-        target.attrs[name] = value if isinstance(value, str) else np.atleast_1d(value)

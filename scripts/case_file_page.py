@@ -16,9 +16,10 @@ from types import MappingProxyType
 
 from bounds import Choice
 from fe_contact.geometry import Gear, GearPair, RingGear
-from lineofaction.gearbox.convert.errors import DECLARED
-from lineofaction.gearbox.schemas.case import OF_PAIR, RING
+from lineofaction.gearbox.convert.boundary_names import DECLARED
+from lineofaction.gearbox.schemas.case import OF_PAIR
 from lineofaction.gearbox.schemas.declared import Figure, figures
+from lineofaction.gearbox.schemas.driven_gear import RING
 from lineofaction.gearbox.schemas.gear import of_gear
 
 LISTS = {kind: figures(kind) for kind in DECLARED} | {GearPair: OF_PAIR, Gear: of_gear(Gear), RingGear: RING}

@@ -25,8 +25,13 @@ DOCS = "docs"
 PAGE = "service/page/static"
 """Folder of the page's scripts."""
 REGISTRY = "lineofaction.gearbox.registry"
-REGISTRIES = (REGISTRY, "lineofaction.cli.commands")
-"""Modules of rows: the studies, and the families of verbs."""
+REGISTRIES = (
+    REGISTRY,
+    "lineofaction.gearbox.computations",
+    "lineofaction.cli.commands",
+    "service.routes.offers",
+)
+"""Modules of rows: studies, their computations, families of verbs, routes that compute nothing."""
 ROWS = "Studies"
 """Class of the registry whose attributes are the rows."""
 
@@ -133,8 +138,8 @@ def _home(whole: str, files: Mapping[str, Path], offers: Mapping[str, Mapping[st
 
 
 def is_product(module: str) -> bool:
-    """Whether a module is part of a house, and not of tests or benchmarks."""
-    return module.partition(".")[0] in {house.partition(".")[0] for house in structure.HOUSES}
+    """Whether a module is part of the product, and not of references, tests or benchmarks."""
+    return module.partition(".")[0] in {house.partition(".")[0] for house in structure.PRODUCT}
 
 
 def is_row(module: str) -> bool:
@@ -205,7 +210,7 @@ def _without_rows(file: Path, module: str, inside: Collection[str]) -> None:
             names |= {node.module, node.module.removeprefix(f"{module}.")} if gone else set()
             _without_aliases(lines, node, gone)
     row = tuple(f'"{name}"' for name in names)
-    single = {f"{name}," for name in names}
+    single = {f"{name}{part}," for name in names for part in ("", ".router")}
     rest = (line for line in lines if not (line.strip().startswith(row) or line.strip() in single))
     file.write_text("\n".join(line for line in rest if line != DROPPED), "utf-8")
 

@@ -1,4 +1,4 @@
-"""Write docs/licenses.md: the dependencies of the lock files with the licenses of what is installed."""
+"""Write the dependencies of the lock files with the licenses of what is installed: out/site/licenses.md."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from importlib import metadata
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE = ROOT / "docs" / "licenses.md"
+PAGE = ROOT / "out" / "site" / "licenses.md"
 _HEAD = """# Dependencies and their licenses
 
 Every package of `requirements-dev.lock` with the license that its own metadata state, and what asks for it:
 the service itself, an extra, or the tests alone. Written by `scripts/licenses.py`. lineofaction is licensed
-GPL-3.0-or-later, because gmsh is GPL-2.0-or-later. The extra `exudyn` (BSD-3-Clause) is not locked. The image
-also holds packages of its Debian base, under their own licenses.
+GPL-3.0-or-later, because gmsh is GPL-2.0-or-later. The image also holds packages of its Debian base,
+under their own licenses.
 
 | package | version | license | requested by |
 |---|---|---|---|
@@ -93,18 +93,24 @@ def _plain(name: str) -> str:
     return re.sub(r"[-_.]+", "-", name).lower()
 
 
+def rows() -> list[tuple[str, str, str, str]]:
+    """Return name, versions, license and asker of each locked package; raises `PackageNotFoundError`."""
+    by = askers()
+    return [
+        (name, ", ".join(versions), license_of(name), by.get(_plain(name), "tests"))
+        for name, versions in sorted(locked().items())
+    ]
+
+
 def main() -> int:
     """Write the page."""
-    by = askers()
-    rows = []
-    for name, versions in sorted(locked().items()):
-        try:
-            text = license_of(name)
-        except metadata.PackageNotFoundError:
-            print(f"{name} is not installed", file=sys.stderr)
-            return 1
-        rows.append(f"| {name} | {', '.join(versions)} | {text} | {by.get(_plain(name), 'tests')} |")
-    PAGE.write_text(_HEAD + "\n".join(rows) + "\n", encoding="utf-8")
+    try:
+        lines = [f"| {' | '.join(row)} |" for row in rows()]
+    except metadata.PackageNotFoundError as error:
+        print(f"{error.name} is not installed", file=sys.stderr)
+        return 1
+    PAGE.parent.mkdir(parents=True, exist_ok=True)
+    PAGE.write_text(_HEAD + "\n".join(lines) + "\n", encoding="utf-8")
     return 0
 
 

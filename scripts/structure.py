@@ -14,6 +14,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 FLOORS = (
+    ("verification",),
     ("lineofaction.cli",),
     ("lineofaction.hardcases", "lineofaction.client"),
     ("service",),
@@ -25,6 +26,8 @@ FLOORS = (
 )
 """From the top; imports point down."""
 HOUSES = tuple(house for floor in FLOORS for house in floor)
+PRODUCT = tuple(house for house in HOUSES if house != "verification")
+"""The houses in the wheel."""
 WIDTH, HEIGHT, BOX, TALL = 760, 78, 200, 40
 
 

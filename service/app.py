@@ -23,7 +23,6 @@ from service.reading.reader import reading_pool, require_confinement
 from service.routes import (
     batches,
     callbacks,
-    cases,
     documents,
     drafts,
     events,
@@ -40,6 +39,7 @@ from service.routes.admission import Admission
 from service.routes.context import Context
 from service.routes.direct_routes import DirectRoutes
 from service.routes.middleware import API_PREFIX, Guard
+from service.routes.offers import ROUTERS
 from service.routes.openapi import ABOUT, install_description
 from service.routes.problem_answers import install_error_handlers
 from service.routes.warm_up import warm_up
@@ -102,8 +102,7 @@ def _route(app: FastAPI, offered: Registry) -> None:
     shown = (documents.router, processes.processes_router(offered), jobs.router)
     read = (job_results.job_results_router(offered), results.router, result_drawings.router)
     grouped = (queries.router, queries.live_router, drafts.router, batches.router, events.router)
-    converted = (cases.router, cases.scenes_router, cases.units_router, documents.effects_router)
-    for router in (*shown, *read, *grouped, *converted):
+    for router in (*shown, *read, *grouped, *ROUTERS):
         app.include_router(router, prefix=API_PREFIX)
     for router in (documents.pages_router, health.router):
         app.include_router(router)

@@ -34,7 +34,7 @@ __all__ = ["coarse_sectors", "condensed_bodies", "condensed_once"]
 
 # The same examples on every machine with every change; random ones, and more of them, at night.
 settings.register_profile("suite", deadline=None, derandomize=True, max_examples=12)
-settings.register_profile("nightly", deadline=None, max_examples=640)
+settings.register_profile("nightly", deadline=None, max_examples=160)
 settings.load_profile("suite")
 
 

@@ -47,7 +47,9 @@ from dynamics.acoustics.recording import (
     write_wav,
 )
 from dynamics.acoustics.sound_quality import (
+    SoundFigures,
     loudness_over_time,
+    sound_figures,
     sound_pressure_level,
     sound_quality,
 )
@@ -67,6 +69,7 @@ __all__ = [
     "RadiationModel",
     "Range",
     "Recording",
+    "SoundFigures",
     "a_weighting",
     "audible",
     "common_full_scale",
@@ -88,6 +91,7 @@ __all__ = [
     "radiation_efficiency",
     "resistance",
     "series_recording",
+    "sound_figures",
     "sound_power",
     "sound_power_level",
     "sound_pressure_level",

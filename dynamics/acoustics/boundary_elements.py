@@ -16,42 +16,28 @@ References
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
 from bounds import engineering
 from dynamics.acoustics.air import Air, directions
 from dynamics.acoustics.hull import Hull, LinearPanels
+from dynamics.acoustics.layer_operators import layer_operators, operators_cost
 from dynamics.errors import InputError, SolveError
 from dynamics.types import ComplexArray, FloatArray
 from dynamics.work_cost import Cost
-from host import MissingExtra
-from model_studies.progress import Progress, Report, by_cost, silent, unreported
-from model_studies.workers import InProcess, Workers, divided
+from model_studies.progress import Progress, by_cost, silent
+from model_studies.workers import InProcess, Workers
 
 MARGIN = 8
 """Spherical harmonics above the wavenumber times the radius, whose part of the far field is below 1e-6."""
 MIDDLES = 0.5 * (np.ones((3, 3)) - np.eye(3))  # barycentric coordinates of the edges' middles
-BLOCK = 512
-"""Panels, at most, whose rows of the operators are a task."""
-TESTED = "tested"
-"""Name of the panels of a block in the library's mesh."""
 EDGES = 2.6
 """Least number of the longest edges in a wavelength: gear cases are within 0.4 dB of six."""
 RESIDUAL = 1e-8
 """Greatest relative residual of the dense solve."""
 MOST_PANELS = 8000
 """So many take 7 GB at the peak."""
-SECONDS, GROWTH = 1.40e-6, 2.24
-"""CPU seconds of one panel, and the power of their number by which they grow.
-
-Fitted to spheres of 500 to 2880 panels, within 1.2; 7040 panels of a box took 615 CPU s, this says 585. That
-is more than the square of assembly: larger operators miss the cache more often.
-"""
-BYTES, LIBRARY = 110.0, 1e8
-"""For the square of the number of panels (5.9 GB measured with 7040), and of NGSolve."""
 SHARES = {"operators": 0.98, "pressure": 0.02}
 """Usual shares in the time."""
 STAGE = "boundary elements"
@@ -76,75 +62,6 @@ def _far_field_resistance(
         far += (-1j * wavenumber * cosines * phase) @ at - phase @ slope
     far /= 4.0 * np.pi
     return np.asarray((far.conj().T * weights) @ far)
-
-
-# Layer operators of the Helmholtz equation by NGSolve: the one module that loads it.
-
-
-def _layer_operators(
-    hull: Hull,
-    wavenumber: float,
-    done: Report = unreported,
-    workers: Workers = InProcess(),  # noqa: B008 (frozen)
-) -> tuple[ComplexArray, ComplexArray]:
-    """Return the dense single layer (T, T) and double layer (T, N), tested with the panels, m^3 and m^2.
-
-    Kernel e^{+ikr}/(4 pi r); the single layer acts on constants of the panels, the double layer on hats of
-    the nodes. Singular pairs are integrated by the library's own transformations. `done` is called with the
-    fraction of the panels that are done.
-    """
-    panels = len(hull.triangles)
-    single = np.empty((panels, panels), dtype=complex)
-    double = np.empty((panels, len(hull.nodes)), dtype=complex)
-    ends = np.linspace(0, panels, -(-panels // BLOCK) + 1).astype(int).tolist()
-    blocks = list(pairwise(ends))
-    seconds = BoundaryElements().cost(panels, 0.0, 0).seconds
-    rows = divided(workers, _layer_rows, (hull, wavenumber), blocks, seconds)
-    for (first, end), own in zip(blocks, rows, strict=True):
-        single[first:end], double[first:end] = own
-        done(end / panels)
-    return single, double
-
-
-def _layer_rows(shared: tuple[Hull, float], block: tuple[int, int]) -> tuple[ComplexArray, ComplexArray]:
-    """Return the rows of both operators that are tested with the panels of a block: one task."""
-    try:
-        import ngsolve  # noqa: PLC0415 (an extra)
-        from ngsolve.bem import HelmholtzDL, HelmholtzSL  # noqa: PLC0415
-    except ModuleNotFoundError:
-        raise MissingExtra("ngsolve", "boundary-elements") from None
-    (hull, wavenumber), ds = shared, ngsolve.ds
-    mesh = _mesh(hull, block)
-    hats = ngsolve.H1(mesh, order=1, complex=True, definedon=mesh.Boundaries(".*")).TrialFunction()
-    constant = ngsolve.SurfaceL2(mesh, order=0, complex=True).TrialFunction()
-    own = ngsolve.SurfaceL2(mesh, order=0, complex=True, definedon=mesh.Boundaries(TESTED)).TestFunction()
-    single = HelmholtzSL(constant * ds, wavenumber, use_fmm=False) * own * ds(TESTED)
-    double = HelmholtzDL(hats * ds, wavenumber, use_fmm=False) * own * ds(TESTED)
-    return _dense(single.mat, block), _dense(double.mat, block)
-
-
-def _mesh(hull: Hull, block: tuple[int, int]) -> Any:
-    """Return the hull as a mesh of the library, nodes and panels in the same order."""
-    import ngsolve  # noqa: PLC0415 (an extra)
-    from netgen.meshing import Element2D, FaceDescriptor, Mesh, MeshPoint, Pnt  # noqa: PLC0415
-
-    mesh = Mesh(dim=3)
-    for number, name in ((1, TESTED), (2, "other")):
-        mesh.Add(FaceDescriptor(surfnr=number, domin=1, bc=number))
-        mesh.SetBCName(number - 1, name)
-    points = [mesh.Add(MeshPoint(Pnt(*(float(value) for value in node)))) for node in hull.nodes]
-    for panel, triangle in enumerate(hull.triangles):
-        number = 1 if block[0] <= panel < block[1] else 2
-        mesh.Add(Element2D(number, [points[node] for node in triangle]))
-    return ngsolve.Mesh(mesh)
-
-
-def _dense(matrix: Any, block: tuple[int, int]) -> ComplexArray:
-    """Return the rows of a block, which are all that there are."""
-    rows, columns, values = (np.asarray(part) for part in matrix.COO())
-    entries = np.zeros((block[1] - block[0], matrix.width), dtype=complex)
-    entries[rows - block[0], columns] = values
-    return entries
 
 
 @dataclass(frozen=True)
@@ -189,7 +106,7 @@ class BoundaryElements:
     def cost(self, panels: int, ka: float, shapes: int) -> Cost:
         """Predict the cost: assembly of the dense operators."""
         del ka, shapes
-        return Cost(SECONDS * panels**GROWTH, LIBRARY + BYTES * float(panels) ** 2)
+        return operators_cost(panels)
 
     def error_band(self, ka: float) -> tuple[float, float]:
         """Return what the mesh is off: 1 % on spheres and boxes, 0.3 dB by the rounding of a coarse hull."""
@@ -227,7 +144,7 @@ def surface_pressure(
     panels = LinearPanels(hull)
     slope = 1j * wavenumber * air.impedance * shapes.conj()  # dp/dn of e^{-i omega t}, as the kernel has it
     parts = by_cost(lambda fraction: progress(STAGE, fraction), SHARES)
-    operators = _layer_operators(hull, wavenumber, lambda done: parts("operators", done), workers)
+    operators = layer_operators(hull, wavenumber, lambda done: parts("operators", done), workers)
     pressure, residual = _solve(hull, panels, wavenumber, slope, operators)
     parts("pressure", 1.0)
     if not residual <= RESIDUAL:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import struct
 from dataclasses import dataclass
 from fractions import Fraction
@@ -63,6 +64,11 @@ class Recording:
     def peak(self) -> float:
         """Return the largest magnitude, in `unit`."""
         return float(np.abs(self.samples).max())
+
+    @property
+    def rms(self) -> float:
+        """Return the root mean square, in `unit`."""
+        return math.sqrt(float((self.samples**2).mean()))
 
     def resampled(self, sample_rate: int = SAMPLE_RATE) -> Recording:
         """Return the same signal at another rate, by a polyphase filter without phase shift.

@@ -23,6 +23,10 @@ from host import MissingExtra
 
 SHORTEST = 0.01
 """s of a sound that has a loudness."""
+STEADY = 0.01
+"""Largest change of speed of a steady sound, over the largest speed."""
+EXCEEDED = 5.0
+"""Percent of the time for which the loudness of a changing sound is exceeded: N5 of ISO 532-1."""
 
 
 def sound_pressure_level(recording: Recording, *, weighted: bool = False) -> float:
@@ -93,3 +97,41 @@ def _metrics(recording: Recording) -> Any:
     except ModuleNotFoundError as error:
         raise MissingExtra(error.name or "mosqito", "psychoacoustics") from None
     return sq_metrics
+
+
+@dataclass(frozen=True)
+class SoundFigures:
+    """Figures of a sound pressure."""
+
+    level: float
+    weighted_level: float
+    """`level`, `weighted_level`: Of the rms over the whole run, dB and dB(A) re 20 uPa."""
+    steady: bool
+    """Whether the speed is constant."""
+    loudness: float | None = None
+    """sone, in the free field; of a changing sound that exceeded for 5 % of the time. None: not computed."""
+    sharpness: float | None = None
+    """acum, of the mean spectrum."""
+    tones: tuple[tuple[float, float], ...] = ()
+    """Hz and tone-to-noise ratio in dB of the prominent tones of a steady sound."""
+
+
+def is_steady(speed: FloatArray) -> bool:
+    """Whether a machine sounds alike all the time, by its speed (n,) without sign."""
+    return bool(np.ptp(speed) <= STEADY * speed.max())
+
+
+def sound_figures(recording: Recording, *, steady: bool) -> SoundFigures:
+    """Return the figures of a sound pressure; of a very short one, or without MoSQITo, its levels alone."""
+    level, weighted = (sound_pressure_level(recording, weighted=by_ear) for by_ear in (False, True))
+    if recording.samples.size < SHORTEST * recording.sample_rate:
+        return SoundFigures(level, weighted, steady)
+    try:
+        quality = sound_quality(recording)
+        loudness = quality.loudness
+        if not steady:
+            loudness = float(np.percentile(loudness_over_time(recording)[1], 100.0 - EXCEEDED))
+    except MissingExtra:
+        return SoundFigures(level, weighted, steady)
+    tones = zip(quality.tone_frequency.tolist(), quality.tone_to_noise.tolist(), strict=True)
+    return SoundFigures(level, weighted, steady, loudness, quality.sharpness, tuple(tones) if steady else ())

@@ -14,7 +14,7 @@ from dynamics.bearings.matrix import congruent, matrix_rows
 from dynamics.bearings.seat import SEAT, seat_matrix
 from dynamics.errors import SolveError
 from dynamics.forces.elements import Elements, potential
-from dynamics.forces.laws import OF_BEARINGS, STATED, Law, among
+from dynamics.forces.laws import BEARING_LAW_KINDS, BEARING_PARTS, Law, among
 from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled
 from dynamics.kernels.local_state import LocalState
@@ -48,7 +48,7 @@ def rest_on_bearings(arrays: SystemArrays, matrix: FloatArray, force: FloatArray
     ways = _resisted(arrays, matrix)
     largest = float(np.max(np.abs(ways.T @ matrix @ ways), initial=1.0))
     q, damping = np.zeros(force.size), max(largest, float(np.max(arrays.elements.stiffness, initial=0.0)))
-    bearing = among(arrays.elements.law, OF_BEARINGS)
+    bearing = among(arrays.elements.law, BEARING_LAW_KINDS)
     if np.all(arrays.elements.law[bearing] == Law.LINEAR_BEARING):
         damping = 0.0
     now = _on_bearings(arrays, matrix, q)
@@ -74,7 +74,7 @@ def rest_on_bearings(arrays: SystemArrays, matrix: FloatArray, force: FloatArray
 
 def bearing_rows(arrays: SystemArrays) -> IntArray:
     """Return the rows of bearings that are not linear."""
-    bearing = among(arrays.elements.law, OF_BEARINGS)
+    bearing = among(arrays.elements.law, BEARING_LAW_KINDS)
     return np.flatnonzero(np.repeat(bearing, np.diff(arrays.elements.first)))
 
 
@@ -100,7 +100,7 @@ def _on_bearings(arrays: SystemArrays, matrix: FloatArray, q: FloatArray) -> _An
     elements = arrays.elements
     local, force, stiffness = local_state(arrays, 0.0, q, np.zeros(q.size)), matrix @ q, matrix.copy()
     largest = float(np.max(np.abs(force / arrays.scale), initial=0.0))
-    bearings = np.flatnonzero(among(elements.law, OF_BEARINGS))
+    bearings = np.flatnonzero(among(elements.law, BEARING_LAW_KINDS))
     for e in bearings:
         rows = slice(elements.first[e], elements.first[e + 1])
         gradient = arrays.direction[rows]
@@ -147,7 +147,7 @@ def linear_scene(
     for start, (name, at) in zip(first, bearings, strict=False):
         linear[name] = _with_tangent(linear[name], at, local, slice(start, start + at.way.shape[0]))
     parts = [linear[part.name] for part in (*scene.ground_bearings, *scene.planet_bearings)]
-    none: dict[str, Any] = dict.fromkeys(STATED, ())
+    none: dict[str, Any] = dict.fromkeys(BEARING_PARTS, ())
     return replace(
         scene,
         bushings=tuple(part for part in parts if isinstance(part, Bushing)),

@@ -1,9 +1,10 @@
-"""What the laws of bearings have in common that are not linear: the mechanism asks nothing else of them."""
+"""What the nonlinear laws of bearings have in common; the rest of the model knows none of them by name."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol, Self
 
 from dynamics.types import FloatArray
 
@@ -46,3 +47,45 @@ class BearingLaw(Protocol):
 
     def missed(self, duty: BearingDuty) -> float:
         """Return what its tangent misses of the displacement under the typical load, m."""
+
+
+class PlausibleValue(NamedTuple):
+    """A value of a law that is held against those of real bearings."""
+
+    check: str
+    """Name of the check in `dynamics.plausibility`."""
+    field: str
+    """Where a scene file has the value: the law's table and its field, without the unit."""
+    value: float
+    unit: str
+    skip_zero: bool = False
+    """Whether 0 says that there is none."""
+
+
+class SceneBearingLaw:
+    """What a `BearingLaw` that is a part of the scene says beyond its force; others leave these defaults."""
+
+    def scaled(self, factor: float) -> Self:
+        """Return the law with all its elastic forces times `factor`."""
+        raise NotImplementedError
+
+    def after_growth(self, growth: float) -> Self:
+        """Return the law where the shaft has grown by `growth` (m) along z at the bearing."""
+        return self
+
+    @property
+    def holds_axially(self) -> bool:
+        """Whether the law holds the shaft along z."""
+        return False
+
+    @property
+    def fixed_direction(self) -> str | None:
+        """The name of the field that gives the law a direction across the axis in the fixed frame.
+
+        A shaft in a carrier's frame turns against such a law. None: it acts alike all around the axis.
+        """
+        return None
+
+    def plausible_values(self) -> Iterable[PlausibleValue]:
+        """Return the values that are held against those of real bearings."""
+        return ()

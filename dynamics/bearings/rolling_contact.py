@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from dynamics.bearings.bearing_law import BearingDuty
+from dynamics.bearings.bearing_law import BearingDuty, PlausibleValue, SceneBearingLaw
 from dynamics.checks import not_negative, positive, within
 from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
@@ -50,7 +50,7 @@ class RollingContactLaws(NamedTuple):
 
 
 @dataclass(frozen=True)
-class RollingContact:
+class RollingContact(SceneBearingLaw):
     """The radial force of a rolling bearing, in addition to the linear one of its bushing or planet bearing.
 
     The shaft moves across the axis by u, r = `abs(u)`; a planet relative to its pin. Beyond the clearance the
@@ -118,6 +118,18 @@ class RollingContact:
         """Return what its tangent misses of the displacement under the typical load, m."""
         load = self.typical_load(duty.load)
         return self.displacement(load) - load / self.tangent(load)
+
+    def scaled(self, factor: float) -> RollingContact:
+        """Return the contact with `factor` times its stiffness."""
+        return replace(self, stiffness=factor * self.stiffness)
+
+    def plausible_values(self) -> tuple[PlausibleValue, ...]:
+        """Return its clearance, where it has one, and its damping ratio."""
+        clearance, ratio = "rolling_contact.radial_clearance", "rolling_contact.damping_ratio"
+        return (
+            PlausibleValue("clearance", clearance, self.clearance, "m", skip_zero=True),
+            PlausibleValue("damping_ratio", ratio, self.damping_ratio, "1"),
+        )
 
 
 @routine

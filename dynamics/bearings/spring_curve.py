@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, NamedTuple
 
 import numpy as np
 import scipy
 
-from dynamics.bearings.bearing_law import BearingDuty
+from dynamics.bearings.bearing_law import BearingDuty, SceneBearingLaw
 from dynamics.checks import finite, increasing, one_of
 from dynamics.errors import InputError
 from dynamics.kernels.cubics import Cubics, area, piece_at, value_and_slope
@@ -44,7 +44,7 @@ class SpringCurveLaws(NamedTuple):
 
 
 @dataclass(frozen=True)
-class SpringCurve:
+class SpringCurve(SceneBearingLaw):
     """A force on the ground by the displacement of the shaft in one direction of a bushing.
 
     Acts beside what the bushing does linearly, its damping included. Through the points without overshoot
@@ -109,6 +109,26 @@ class SpringCurve:
         straight = np.interp(0.0, ways, forces) + self.slope * ways
         off = float(np.max(np.abs(forces - straight))) / self.slope
         return min(off, float(np.max(np.abs(ways[[0, -1]]))))
+
+    def scaled(self, factor: float) -> SpringCurve:
+        """Return the curve with all its forces times `factor`."""
+        return replace(self, force=tuple(factor * value for value in self.force))
+
+    def after_growth(self, growth: float) -> SpringCurve:
+        """Return the curve where the shaft has grown by `growth` (m) along z: shifted, if it acts along z."""
+        if self.direction != "z" or not growth:
+            return self
+        return replace(self, displacement=tuple(x - growth for x in self.displacement))
+
+    @property
+    def holds_axially(self) -> bool:
+        """Whether it acts along z."""
+        return self.direction == "z"
+
+    @property
+    def fixed_direction(self) -> str | None:
+        """Its direction, unless that is the axis."""
+        return None if self.direction == "z" else "direction"
 
     def pieces(self) -> tuple[FloatArray, FloatArray]:
         """Return the starts of the cubics (S,) and their ascending coefficients (S, 4).

@@ -18,8 +18,6 @@ from dynamics.settings.load_case import DRIVE, CaseForce, LoadCase, Vector
 from dynamics.types import FloatArray
 from model_studies import in_unit
 
-# The forces of a scene under a load case.
-
 STATIC = 1.0
 """Hz to which shafts are resolved: their deflections under forces at what is on them are exact anyway."""
 

@@ -1,4 +1,4 @@
-"""The mesh force for other engines: as an FMU, and as an element of Exudyn."""
+"""The mesh force for other engines: as an element by itself, and as an FMU."""
 
 from dynamics.engines.mesh_element import MeshElement, mesh_element
 

@@ -2,8 +2,9 @@
 
 An element has p local coordinates y = G q + y0 in meters and gives p local forces f(y, y', x) in newtons,
 which act on the freedoms as -G^T f. To add a law: its file (what a scene holds, packed arrays, compiled
-functions), and here its number, its arrays and its row of `COMPILED`; of a bearing also its field of
-`StatedLaws`, and its table at the boundary.
+functions), and here its number, its arrays and its row of `COMPILED`. A bearing law that is a part of the
+scene derives from `SceneBearingLaw`; here it also has its field of `BearingLawParts` and its row of
+`LAW_BY_ARRAYS`, and its table of a scene file is in `lineofaction/gearbox/schemas/bearings.py`.
 """
 
 from __future__ import annotations
@@ -122,25 +123,29 @@ COMPILED = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class StatedLaws:
-    """What a scene states of bearings that is not linear, by kind: each law names its bearing."""
+class BearingLawParts:
+    """The nonlinear laws of bearings that are parts of a scene, by kind.
+
+    Each names its bushing or planet bearing, which sits in no housing without mass.
+    """
 
     rolling_contacts: tuple[RollingContact, ...] = ()
     spring_curves: tuple[SpringCurve, ...] = ()
 
 
-STATED: dict[str, type[Any]] = {
-    kind: get_args(parts)[0] for kind, parts in get_type_hints(StatedLaws).items()
+BEARING_PARTS: dict[str, type[Any]] = {
+    kind: get_args(parts)[0] for kind, parts in get_type_hints(BearingLawParts).items()
 }
-"""The kinds of `StatedLaws`, by name."""
-STATED_OF_BEARINGS: dict[Any, Law] = {
+"""The kinds of `BearingLawParts`, by name."""
+LAW_BY_ARRAYS: dict[Any, Law] = {
     RollingContactLaws: Law.ROLLING_CONTACT,
     SpringCurveLaws: Law.SPRING_CURVE,
     BallElements: Law.BALLS,
     RollerElements: Law.ROLLERS,
 }
 """Kinds of a `BearingLaw`, by their arrays."""
-OF_BEARINGS = (*STATED_OF_BEARINGS.values(), Law.LINEAR_BEARING)
+BEARING_LAW_KINDS = (*LAW_BY_ARRAYS.values(), Law.LINEAR_BEARING)
+"""Laws of bearings; each is the gradient of a convex energy, so that bodies rest at one place alone."""
 
 
 def among(law: IntArray, laws: tuple[Law, ...]) -> BoolArray:
@@ -151,6 +156,3 @@ def among(law: IntArray, laws: tuple[Law, ...]) -> BoolArray:
 @cache
 def _marked(laws: tuple[Law, ...]) -> BoolArray:
     return np.array([law in laws for law in Law])
-
-
-"""Laws of bearings; each is the gradient of an energy without hollows."""

@@ -4,21 +4,22 @@ The only package of dynamics that uses scikit-fem, meshlane and, in a child proc
 """
 
 import host.analysis  # noqa: F401 (says what to install)
-from dynamics.housings.mesh_files import read_mesh, write_surface
+from dynamics.housings.kept_reduction import meshed_step, reduced_housing
+from dynamics.housings.mesh_faces import Bore, BoundedPlane, Box, Group, Plane
+from dynamics.housings.mesh_files import read_mesh
+from dynamics.housings.meshed_housing import MaterialDamping, MeshedHousing, ModalDamping
 from dynamics.housings.reduced_housing import ReducedHousing, receptance, scene_axes, scene_housing
 from dynamics.housings.reduced_matrices import (
-    MaterialDamping,
-    MeshedHousing,
-    ModalDamping,
     ReducedMatrices,
     housing_of_matrices,
     read_matrix_market,
     read_reduced_matrices,
 )
-from dynamics.housings.reduction import CostLimit, meshed_step, reduced_housing, reduction_cost
+from dynamics.housings.reduction_cost import CostLimit, reduction_cost
 from dynamics.housings.step_files import FlatFace, StepSolid, mesh_step, step_solid
 from dynamics.housings.supports import Foot, Mount, SeatBore, SeatFrame
-from dynamics.housings.tetrahedral_mesh import Bore, BoundedPlane, Box, Group, Plane, TetrahedralMesh
+from dynamics.housings.surface_files import write_surface
+from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.solid_housing import GRAY_CAST_IRON, SPHEROIDAL_CAST_IRON, Material, Ring
 
 __all__ = [

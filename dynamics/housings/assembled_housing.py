@@ -1,38 +1,26 @@
-"""The equations of motion of a meshed housing, its free modes, its deflections under forces on its seats."""
+"""The equations of motion of a meshed housing, some of whose faces are rigid or fixed."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
 from dataclasses import dataclass
-from enum import IntEnum
 
 import numpy as np
 import scipy.sparse as sp
 
 from bounds import inside
-from dynamics.errors import InputError, SolveError
+from dynamics.errors import InputError
+from dynamics.housings.meshed_housing import MeshedHousing
 from dynamics.housings.quadrature import over_surface, over_volume
-from dynamics.housings.reduced_housing import RigidBody, rigid_body, rigid_motions
-from dynamics.housings.reduced_matrices import MeshedHousing
+from dynamics.housings.rigid_body import RigidBody, rigid_body, rigid_motions
 from dynamics.housings.supports import Foot, SeatBore, SeatFrame, in_axes, mean_motion
 from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.solid_housing import Material, Ring
 from dynamics.types import FloatArray, IntArray
 
-# Freedoms of a mesh some of whose faces are rigid or fixed.
-
 HELD = 1e-12
 """Stiffness against a rigid motion below which mounts do not hold it, relative to the stiffest."""
 BLOCK = 3
 """Consecutive freedoms that are ordered as one: those of a node, half those of a rigid face."""
-Solve = Callable[[FloatArray], FloatArray]
-SHIFT = 1e-10
-"""Shift of a housing that may move freely, relative to a bound of the highest squared frequency."""
-REFINEMENTS = 8
-REFINED, ACCEPTED = 1e-12, 1e-6
-"""Work of the forces that a deflection leaves unbalanced, relative to that of its load: where refining ends,
-and the most that is accepted. Soft mounts and slender bodies are ill conditioned and stay between."""
 
 
 @dataclass(frozen=True)
@@ -94,9 +82,6 @@ def _independent_freedoms(points: FloatArray, faces: tuple[_RigidFace, ...]) -> 
     ).tocsr()
     motion.eliminate_zeros()
     return _Freedoms(motion, free, moving)
-
-
-# Mass and stiffness matrices of quadratic tetrahedra.
 
 
 def mass_and_stiffness(mesh: TetrahedralMesh, material: Material) -> tuple[sp.csr_array, sp.csr_array]:
@@ -227,150 +212,3 @@ def _loose(
     rigid = freedoms.rigid(points, center) / size
     value, vector = np.linalg.eigh(rigid.T @ (stiffness @ rigid))
     return np.asarray(rigid @ vector[:, value <= HELD * max(value[-1], 1e-300)])
-
-
-# Natural modes with the seats free, and static deflection under forces on them.
-
-
-# Factor of a symmetric positive definite matrix: SuperLU without pivoting on an ordering by METIS.
-
-
-def _factorized(matrix: sp.csr_array) -> Solve:
-    """Return x of matrix x = b; b is (f,) or (f, m); refuses a singular matrix."""
-    from scipy.sparse.linalg import splu  # noqa: PLC0415 (start-up time)
-
-    order = _nested_dissection(matrix)
-    permuted = sp.csc_array(matrix[order][:, order])
-    try:
-        factor = splu(permuted, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    except RuntimeError as error:
-        raise SolveError(f"The stiffness matrix of the housing cannot be factorized: {error}.") from error
-
-    def solve(right: FloatArray) -> FloatArray:
-        x = np.empty_like(right)
-        x[order] = factor.solve(right[order])
-        return x
-
-    return solve
-
-
-def _nested_dissection(matrix: sp.csr_array) -> IntArray:
-    """Return METIS' fill-reducing order, from the graph of blocks."""
-    import pymetis  # noqa: PLC0415 (start-up time)
-
-    blocks = matrix.tobsr(blocksize=(BLOCK, BLOCK))
-    graph = sp.csr_array((np.ones(len(blocks.indices)), blocks.indices, blocks.indptr))
-    graph.setdiag(0.0)
-    graph.eliminate_zeros()
-    order, _ = pymetis.nested_dissection(pymetis.CSRAdjacency(graph.indptr, graph.indices))
-    return (BLOCK * np.asarray(order, dtype=np.int64)[:, None] + np.arange(BLOCK)).ravel()
-
-
-class ModeStatus(IntEnum):
-    """The end of the search for modes and deflections."""
-
-    CONVERGED = 0
-    ITERATION_LIMIT = 1  # fewer modes than requested; those found are exact
-    ILL_CONDITIONED = 2  # deflections under forces on the seats miss their residual
-
-
-@dataclass(frozen=True)
-class FreeModes:
-    """Modes, unit modal mass, and static deflections."""
-
-    rigid: FloatArray
-    """Rigid motions that nothing holds. Shape (f, k)."""
-    shape: FloatArray
-    """Shape (f, m)."""
-    frequency: FloatArray
-    """Hz, rising; of elastic modes alone. Shape (m,)."""
-    deflection: FloatArray
-    """Under unit forces on the seats; where the housing is loose, in balance with its inertia. Shape (f, s).
-    """
-    status: ModeStatus
-    eigen_residual: float
-    """Largest |K x - w^2 M x| / |K x|."""
-    solve_residual: float
-    """Largest work of the unbalanced forces on a deflection, relative to that of its load."""
-    rigid_ratio: float
-    """Highest frequency found for a rigid motion over that of the first elastic mode; 0 where held."""
-
-
-def free_modes(housing: AssembledHousing, count: int) -> FreeModes:
-    """Find the lowest elastic modes by shift-invert Lanczos, and the deflections by the same factor.
-
-    What did not converge is in the status. Raises `SolveError`: the stiffness is singular.
-    """
-    loose = housing.loose.shape[1]
-    squares = housing.stiffness.diagonal() / housing.mass.diagonal() if loose else np.zeros(1)
-    shift = SHIFT * float(np.max(squares))
-    shifted = sp.csr_array(housing.stiffness + shift * housing.mass) if loose else housing.stiffness
-    solve = _factorized(shifted)
-    held = housing.loose
-    factor = np.linalg.cholesky(held.T @ (housing.mass @ held))
-    rigid: FloatArray = np.asarray(np.linalg.solve(factor, held.T).T)  # orthonormal
-    square, shape = _lanczos(housing, solve, shift, count + loose)
-    deflection, residual = _deflections(housing, solve, rigid)
-    elastic, own = shape[:, loose:], square[loose:]
-    force = housing.stiffness @ elastic
-    missed = np.linalg.norm(force - (housing.mass @ elastic) * own, axis=0)
-    status = ModeStatus.CONVERGED if residual <= ACCEPTED else ModeStatus.ILL_CONDITIONED
-    if own.size != count:
-        status = ModeStatus.ITERATION_LIMIT
-    return FreeModes(
-        rigid=rigid,
-        shape=elastic,
-        frequency=np.sqrt(np.maximum(own, 0.0)) / (2.0 * math.pi),
-        deflection=deflection,
-        status=status,
-        eigen_residual=float(np.max(missed / np.linalg.norm(force, axis=0), initial=0.0)),
-        solve_residual=residual,
-        rigid_ratio=math.sqrt(float(np.abs(square[:loose]).max()) / own[0]) if loose and own.size else 0.0,
-    )
-
-
-def _lanczos(
-    housing: AssembledHousing, solve: Solve, shift: float, count: int
-) -> tuple[FloatArray, FloatArray]:
-    """Return squared circular frequencies, rising, and their modes: those that converged."""
-    from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh  # noqa: PLC0415
-
-    size = housing.stiffness.shape[0]
-    inverse = LinearOperator((size, size), matvec=solve, dtype=float)
-    start = np.cos(np.arange(size, dtype=float))  # the same in every run
-    basis = min(size - 1, basis_vectors(count))
-    try:
-        square, shape = eigsh(
-            housing.stiffness, count, housing.mass, sigma=-shift, OPinv=inverse, v0=start, ncv=basis
-        )
-    except ArpackNoConvergence as error:
-        square, shape = error.eigenvalues, error.eigenvectors
-    order = np.argsort(square)
-    return square[order], shape[:, order]
-
-
-def basis_vectors(count: int) -> int:
-    """Return how many vectors Lanczos' method holds for so many modes."""
-    return count + max(count // 2, 20)
-
-
-def _deflections(housing: AssembledHousing, solve: Solve, rigid: FloatArray) -> tuple[FloatArray, float]:
-    """Return deflections and their residual.
-
-    A loose housing is accelerated by the loads: inertia balances them, and the shift of the factor is
-    taken out by iterative refinement.
-    """
-    inertia = housing.mass @ rigid
-    load = housing.seats.T.toarray()
-    load -= inertia @ (rigid.T @ load)
-    deflection, missed = np.zeros_like(load), load
-    residual = math.inf
-    for _ in range(REFINEMENTS):
-        deflection = deflection + solve(missed)
-        deflection -= rigid @ (inertia.T @ deflection)
-        missed = load - housing.stiffness @ deflection
-        lost, done = (np.einsum("fs,fs->s", deflection, force) for force in (missed, load))
-        previous, residual = residual, float(np.max(np.abs(lost) / done))
-        if residual <= REFINED or residual > 0.5 * previous:
-            break
-    return deflection, residual

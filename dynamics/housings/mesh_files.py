@@ -1,10 +1,8 @@
-"""Volume meshes from files, by meshlane in a child process; files of surfaces."""
+"""Volume meshes from files, by meshlane in a child process, and the checks that they pass."""
 
 from __future__ import annotations
 
-import os
 import sys
-from collections.abc import Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
@@ -21,9 +19,6 @@ from dynamics.housings.tetrahedral_mesh import EDGES, TetrahedralMesh, raised
 from dynamics.solid_housing import MESH_FORMATS, MESH_SUFFIXES, check_mesh_content, mesh_text
 from dynamics.types import FloatArray, IntArray
 from host import READING, ChildFailed, ask_child
-
-# Checks of a tetrahedral mesh: shape of its elements, its size, whether it hangs together.
-
 
 LEAST_SHAPE = 0.02
 """A sliver: its volume is that part of a regular tetrahedron's with edges of the same mean square."""
@@ -156,43 +151,3 @@ def _quadratic(content: _Content) -> tuple[FloatArray, IntArray]:
     corner = points[cells]
     turned = np.linalg.det(corner[:, 1:] - corner[:, :1]) < 0.0  # inside out
     return raised(np.where(turned[:, None], cells[:, [0, 2, 1, 3]], cells), points)
-
-
-# Surfaces with fields, as VTU.
-
-
-def write_surface(
-    path: str | Path,
-    points: FloatArray,
-    triangles: IntArray,
-    fields: Mapping[str, FloatArray],
-    of_triangles: Mapping[str, FloatArray] | None = None,
-) -> None:
-    """Write triangles with fields as VTU; the file appears whole or not at all.
-
-    Parameters
-    ----------
-    points : (p, 3) array
-        m.
-    triangles : (t, 3) or (t, 6) int array
-        Corners, then mid-side nodes.
-    fields : mapping of str to (p,) or (p, 3) array
-        At the nodes.
-    of_triangles : mapping of str to (t,) array, optional
-        Constant on triangles.
-    """
-    import meshlane  # noqa: PLC0415 (start-up time)
-
-    file = Path(path)
-    mesh = meshlane.Mesh(
-        points,
-        [("triangle" if triangles.shape[1] == CORNERS else "triangle6", triangles)],
-        point_data={name: np.ascontiguousarray(values) for name, values in fields.items()},
-        cell_data={name: [np.ascontiguousarray(values)] for name, values in (of_triangles or {}).items()},
-    )
-    unfinished = file.with_name(f".{file.name}.{os.getpid()}")
-    try:
-        meshlane.write(unfinished, mesh, file_format="vtu")
-        unfinished.replace(file)
-    finally:
-        unfinished.unlink(missing_ok=True)

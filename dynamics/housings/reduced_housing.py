@@ -9,19 +9,17 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-import scipy.sparse as sp
 from scipy.linalg import block_diag
 
 from bounds import Quantity, Text
 from dynamics.bearings.matrix import Matrix, matrix_rows
 from dynamics.checks import not_negative
 from dynamics.errors import InputError, ResultError
+from dynamics.housings.rigid_body import RigidBody
 from dynamics.housings.supports import SeatFrame
 from dynamics.joints import Housing
 from dynamics.types import FloatArray, IntArray
 from dynamics.work_cost import WorkCost
-
-# Rigid motions of points, and mass, center of gravity and inertia by them.
 
 SCHEMA = "lineofaction reduced housing"
 SINGULAR = 1e-14
@@ -30,45 +28,6 @@ VALID = 0.7
 """Of the highest frequency kept: to it a reduction follows the whole mesh within 1 %."""
 PARALLEL = 1e-3
 """Sine of the angle to z from which a bore is no seat of a shaft along z."""
-
-
-@dataclass(frozen=True)
-class RigidBody:
-    """A body that does not deform."""
-
-    mass: float
-    """kg."""
-    center: FloatArray
-    """Center of gravity, m. Shape (3,)."""
-    inertia: FloatArray
-    """About the center of gravity along the axes of the mesh, kg m^2; products with a minus sign. Shape (3,
-    3).
-    """
-
-
-def rigid_motions(points: FloatArray, about: FloatArray) -> FloatArray:
-    """Return displacements of points by unit translations and small rotations, (3 n, 6).
-
-    Columns: x, y, z, rotations about x, y, z through `about`: u = t + theta x (p - about).
-    """
-    motions = np.zeros((len(points), 3, 6))
-    motions[:, range(3), range(3)] = 1.0
-    for axis, unit in enumerate(np.eye(3)):
-        motions[:, :, 3 + axis] = np.cross(unit, points - about)
-    return motions.reshape(-1, 6)
-
-
-def rigid_body(points: FloatArray, mass: sp.csr_array) -> RigidBody:
-    """Return mass, center of gravity and inertia by a mass matrix between nodes, (n, n)."""
-    share = np.asarray(mass.sum(axis=0)).ravel()
-    whole = float(share.sum())
-    center = share @ points / whole
-    arm = points - center
-    second = arm.T @ (mass @ arm)
-    return RigidBody(whole, center, np.trace(second) * np.eye(3) - second)
-
-
-# A housing by the motion of its seats and a few modes.
 
 
 @dataclass(frozen=True)
@@ -190,9 +149,6 @@ class ReducedHousing:
         return housing
 
 
-# Forced vibration of a reduced housing.
-
-
 def receptance(
     housing: ReducedHousing, frequency: Sequence[float] | FloatArray, *, residual: bool = True
 ) -> FloatArray:
@@ -289,3 +245,12 @@ def _turned(matrix: FloatArray, turn: FloatArray) -> Matrix:
     """Return the rows of a matrix over motions along the scene's axes; unchanged where they are the same."""
     own = matrix if np.array_equal(turn, np.eye(len(turn))) else turn.T @ matrix @ turn
     return matrix_rows(own)
+
+
+@dataclass(frozen=True)
+class SurfaceHousing:
+    """A housing with a surface: its name, its reduction, and the bearings in the order of its seats."""
+
+    name: str
+    body: ReducedHousing
+    bearings: tuple[str, ...]

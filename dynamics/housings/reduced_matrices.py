@@ -3,29 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
-from bounds import Quantity, Text, declared, described, required
 from dynamics.bearings.matrix import check_matrix
-from dynamics.checks import declared_fields, distinct, one_of, within
+from dynamics.checks import one_of
 from dynamics.errors import InputError
+from dynamics.housings.meshed_housing import USUAL_DAMPING, _Damping
 from dynamics.housings.reduced_housing import ReducedHousing
-from dynamics.housings.supports import Foot, SeatBore, SeatFrame
-from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
+from dynamics.housings.supports import SeatFrame
 from dynamics.joints.housing import read_archive
-from dynamics.solid_housing import LOSS_FACTOR, MODES, Material
-from dynamics.types import FloatArray, IntArray
+from dynamics.types import FloatArray
 from host import MissingExtra
 
-# A housing by its mesh: what is reduced, and its damping by mode or by its material.
-
-
-HIGHEST_RATIO = 1.0
 PRECISION = 1e-6
 """Relative; what a finite-element program writes."""
 FIELD = "matrix_file"
@@ -35,98 +29,6 @@ NAMES = {
     "damping": ("damping", "b", "baa", "baax"),
 }
 """Names of the matrices in files, in small letters; Nastran writes KAA, or KAAX by EXTSEOUT."""
-
-
-class _Damping(Protocol):
-    """Gives the damping ratio of every mode."""
-
-    def ratios(self, elastic_share: FloatArray) -> FloatArray:
-        """Return damping ratios of modes by the share of the housing in their strain energy."""
-
-
-@dataclass(frozen=True)
-class ModalDamping:
-    """A damping ratio for each mode in rising order; the last one holds for all that follow."""
-
-    ratio: tuple[float, ...]
-
-    def __post_init__(self) -> None:
-        if not self.ratio:
-            raise InputError("ratio", self.ratio, "at least one number")
-        for index, value in enumerate(self.ratio):
-            within(f"ratio[{index}]", value, 0.0, HIGHEST_RATIO)
-
-    def ratios(self, elastic_share: FloatArray) -> FloatArray:
-        """Return the ratios; modes without strain have none."""
-        number = np.minimum(np.arange(len(elastic_share)), len(self.ratio) - 1)
-        return np.where(elastic_share > 0.0, np.array(self.ratio)[number], 0.0)
-
-
-@described
-@dataclass(frozen=True)
-class MaterialDamping:
-    """Half the loss factor is the damping ratio of a mode whose strain energy is all in the housing.
-
-    The equivalent viscous damping: at a mode's natural frequency it loses as much energy as the material.
-    """
-
-    loss_factor: float = required(LOSS_FACTOR)
-
-    def __post_init__(self) -> None:
-        declared_fields(self)
-
-    def ratios(self, elastic_share: FloatArray) -> FloatArray:
-        """Return the ratios; energy in mounts is not lost by the material."""
-        return 0.5 * self.loss_factor * elastic_share
-
-
-USUAL_DAMPING = MaterialDamping(0.01)
-"""Cast iron with bolted joints: a guess, 0.004 to 0.02."""
-
-
-@dataclass(frozen=True)
-class MeshedHousing:
-    """A housing of one material, with bearing seats, feet and points of interest."""
-
-    mesh: TetrahedralMesh
-    material: Material
-    seats: tuple[SeatBore, ...]
-    feet: tuple[Foot, ...] = ()
-    """Without any the housing is free, and six rigid-body modes are kept besides `modes`."""
-    points: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
-    """m; the motion of the node next to each is recovered."""
-    modes: int = declared(80, MODES)
-    damping: _Damping = USUAL_DAMPING
-    """Default: `USUAL_DAMPING`."""
-
-    def __post_init__(self) -> None:
-        declared_fields(self)
-        if not self.seats:
-            advice = "A housing acts through its bearing seats."
-            raise InputError("seats", self.seats, "at least one seat", advice)
-        distinct("seats", [seat.name for seat in self.seats])
-        distinct("feet", [foot.name for foot in self.feet])
-        columns = 6 + sum(seat.motions for seat in self.seats)
-        if self.modes + columns >= self.mesh.freedoms // 2:
-            bound = "below half the freedoms of the mesh"
-            raise InputError("modes", self.modes, bound, f"It has {self.mesh.freedoms}: refine it.")
-
-    def nodes_of_points(self) -> IntArray:
-        """Return the nodes next to the points.
-
-        Raises `InputError`: a point is farther from all nodes than the longest edge of an element.
-        """
-        corner = self.mesh.points[self.mesh.tetrahedra[:, :4]]
-        reach = float(np.max(np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2)))
-        nodes = []
-        for name, point in self.points.items():
-            distance = np.linalg.norm(self.mesh.points - np.array(point, dtype=float), axis=1)
-            if not distance.min() <= reach:
-                away = Quantity(float(distance.min()), "m", digits=6)
-                bound = Text.of("within an element of the mesh; the next node is ", away, " away")
-                raise InputError(f"points.{name}", point, bound)
-            nodes.append(int(distance.argmin()))
-        return np.array(nodes, dtype=np.int64)
 
 
 @dataclass(frozen=True)

@@ -1,74 +1,25 @@
-"""Meshes of STEP files and reductions kept on disk, by the hash of everything that decides them."""
+"""Component mode synthesis: free modes and residual flexibility, in coordinates of Craig and Bampton."""
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from importlib.metadata import version
-from pathlib import Path
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import eigh, null_space
 
-from bounds import MOST_BYTES, at_most
-from dynamics.errors import InputError, ResultError, SolveError
-from dynamics.housings.assembled_housing import (
-    ACCEPTED,
-    AssembledHousing,
-    FreeModes,
-    ModeStatus,
-    assemble,
-    basis_vectors,
-    free_modes,
-)
+from dynamics.errors import InputError, SolveError
+from dynamics.housings.assembled_housing import AssembledHousing, assemble
+from dynamics.housings.free_modes import ACCEPTED, FreeModes, ModeStatus, free_modes
+from dynamics.housings.meshed_housing import MaterialDamping, MeshedHousing
 from dynamics.housings.quadrature import over_surface
-from dynamics.housings.reduced_housing import (
-    PointMotion,
-    ReducedHousing,
-    ReductionChecks,
-    SurfaceMotion,
-    rigid_motions,
-)
-from dynamics.housings.reduced_matrices import MaterialDamping, MeshedHousing
-from dynamics.housings.step_files import WALL_ELEMENTS, mesh_step
+from dynamics.housings.reduced_housing import PointMotion, ReducedHousing, ReductionChecks, SurfaceMotion
+from dynamics.housings.rigid_body import rigid_motions
 from dynamics.housings.supports import in_axes
-from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.types import FloatArray, IntArray
-from dynamics.work_cost import Cost, measured, on_this_host
-from model_studies.kept_file import kept_in
-from model_studies.netcdf import UnreadableFile
-from model_studies.record_file import read_record, write_record
-
-# Component mode synthesis: free modes and residual flexibility, in coordinates of Craig and Bampton.
-
 
 INDEPENDENT = 1e-12
 """Share of a deflection that is not in the modes kept, in modal mass, below which it adds nothing."""
 SINGULAR = 1e-12
-REFERENCE = 1e5
-"""Freedoms at which the figures below hold: walls 10 mm thick, the reference host of `host_speed`.
-
-Fitted to a thin-walled cast box of 9 500 to 221 000 freedoms and 20 to 80 modes.
-"""
-ASSEMBLY, FACTOR, SOLVE = 2.9, 6.8, 0.074
-"""CPU seconds: matrices and their ordering, factor, one step of Lanczos' method or one deflection."""
-ORTHOGONALIZATION, PROJECTION = 2.7e-4, 1.6e-4
-"""CPU seconds: of a step against a vector of Lanczos' basis, of a pair of vectors in Galerkin's matrices."""
-FIRST_STEPS, STEPS_PER_MODE = 36.0, 1.8
-"""Of Lanczos' method, its restarts among them."""
-REFINED = 2.0
-"""Solutions for a deflection: one, and its refinement."""
-FILL = 0.935e9
-"""Bytes of the matrices and their factor."""
-REDUCTION_VERSION = 5
-"""Raised with every change of the numbers of a reduction, or of what is kept with them."""
-WORK = "housing reduction"
-"""Name of a reduction in the log of runs."""
-MESH_VERSION = 1
-"""Raised with every change of the mesh of a STEP file."""
-MESH_SCHEMA = "lineofaction housing mesh"
 
 
 @dataclass(frozen=True)
@@ -218,137 +169,3 @@ def _motion_of(nodes: IntArray, assembled: AssembledHousing, coordinates: _Coord
 
 def _symmetric(matrix: FloatArray) -> FloatArray:
     return np.asarray(0.5 * (matrix + matrix.T))
-
-
-# Time and memory of a reduction, predicted before it runs.
-
-
-class CostLimit(NamedTuple):
-    """What a reduction may cost: CPU seconds and bytes."""
-
-    seconds: float = 600.0
-    bytes: float = MOST_BYTES
-
-
-def reduction_cost(freedoms: int, modes: int, motions: int) -> Cost:
-    """Predict the cost of `reduce_housing` on the reference host.
-
-    A solid block fills its factor more.
-
-    Parameters
-    ----------
-    freedoms : int
-        Of the mesh.
-    motions : int
-        Of all seats.
-    """
-    size = freedoms / REFERENCE
-    steps, basis = FIRST_STEPS + STEPS_PER_MODE * modes, basis_vectors(modes)
-    seconds = (
-        ASSEMBLY * size**1.3
-        + FACTOR * size**1.55
-        + SOLVE * size**1.25 * (steps + REFINED * motions)
-        + size**1.1 * (ORTHOGONALIZATION * steps * basis + PROJECTION * (modes + motions) ** 2)
-    )
-    vectors = basis + modes + 4.0 * motions
-    return Cost(seconds, FILL * size**1.1 + 8.0 * freedoms * vectors)
-
-
-@dataclass(frozen=True)
-class _KeptMesh:
-    """Nodes and elements of a mesh, as `TetrahedralMesh` has them."""
-
-    points: FloatArray
-    tetrahedra: IntArray
-
-
-def meshed_step(
-    path: str | Path, element_size: float | None = None, cache: Path | None = None
-) -> TetrahedralMesh:
-    """Return the mesh of a STEP file, from the cache if it is there.
-
-    Parameters
-    ----------
-    path, element_size
-        As `mesh_step` takes them, and it raises the same.
-    cache : Path, optional
-        Directory of kept results; None: neither read nor written.
-    """
-    file = None
-    if cache is not None and Path(path).is_file():
-        facts = repr([MESH_VERSION, WALL_ELEMENTS, version("gmsh"), version("meshlane"), element_size])
-        content = hashlib.sha256(Path(path).read_bytes() + facts.encode()).hexdigest()
-        file = cache / f"mesh-{content}.nc"
-    return kept_in(file, _read_mesh, lambda: mesh_step(path, element_size), _write_mesh, UnreadableFile)
-
-
-def _read_mesh(file: Path) -> TetrahedralMesh:
-    kept = read_record(file, {MESH_SCHEMA: _KeptMesh})
-    return TetrahedralMesh(kept.points, kept.tetrahedra)
-
-
-def _write_mesh(mesh: TetrahedralMesh, file: Path) -> None:
-    write_record(_KeptMesh(mesh.points, mesh.tetrahedra), file, MESH_SCHEMA)
-
-
-def reduced_housing(
-    housing: MeshedHousing,
-    cache: Path | None = None,
-    limit: CostLimit | None = None,
-    expected: Callable[[Cost], object] = lambda _cost: None,
-) -> ReducedHousing:
-    """Return a housing's reduction with what it cost, from the cache if it is there.
-
-    Raises `InputError` as `reduce_housing`, or the predicted cost is above the limit; `SolveError` as
-    `reduce_housing`.
-
-    Parameters
-    ----------
-    cache : Path, optional
-        Directory of kept results (see `host.default_cache_directory`) and of what is known of the host; None:
-        neither read nor written.
-    limit : CostLimit, optional
-        What computing it may cost. Default: 600 CPU s and 8 GB.
-    expected : callable, optional
-        Called with the predicted cost before it is computed; not where it is in the cache.
-    """
-    file = None if cache is None else cache / f"housing-{content_key(housing)}.nc"
-
-    def reduced() -> ReducedHousing:
-        motions = sum(seat.motions for seat in housing.seats)
-        reference = reduction_cost(housing.mesh.freedoms, housing.modes, motions)
-        predicted = on_this_host(WORK, reference, cache)
-        most, own = limit or CostLimit(), f"{housing.mesh.freedoms} freedoms, {housing.modes} modes"
-        advice = f"{own}: use a coarser mesh or fewer modes."
-        if predicted.seconds > most.seconds:
-            raise InputError("predicted_seconds", predicted.seconds, at_most(most.seconds, "s"), advice)
-        if predicted.bytes > most.bytes:
-            raise InputError("predicted_bytes", predicted.bytes, at_most(most.bytes), advice)
-        expected(predicted)
-        body, cost = measured(WORK, reference, cache, lambda: reduce_housing(housing))
-        return replace(body, cost=cost)
-
-    return kept_in(file, ReducedHousing.from_netcdf, reduced, ReducedHousing.to_netcdf, ResultError)
-
-
-def content_key(housing: MeshedHousing) -> str:
-    """Return the SHA-256 of mesh, settings and versions, hexadecimal."""
-    mesh = housing.mesh
-    digest = hashlib.sha256()
-    for array in (mesh.points, mesh.tetrahedra, *(mesh.groups[name] for name in sorted(mesh.groups))):
-        values = np.ascontiguousarray(array)
-        digest.update(f"{values.dtype.str} {values.shape}".encode())
-        digest.update(values.tobytes())
-    facts = [
-        REDUCTION_VERSION,
-        *(version(name) for name in ("scipy", "scikit-fem")),
-        sorted(mesh.groups),
-        housing.material,
-        housing.seats,
-        housing.feet,
-        list(housing.points.items()),
-        housing.modes,
-        housing.damping,
-    ]
-    digest.update(repr(facts).encode())
-    return digest.hexdigest()

@@ -1,10 +1,10 @@
-"""STEP files of housings by gmsh in a child process: their mesh, and the bores and planes of their solid."""
+"""STEP files of housings by gmsh in a child process: their mesh, and the faces of their solid."""
 
 from __future__ import annotations
 
 import shutil
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -14,11 +14,12 @@ import numpy as np
 
 from dynamics.checks import one_of, positive
 from dynamics.errors import InputError, SolveError
+from dynamics.housings.mesh_faces import Bore, Plane
 from dynamics.housings.mesh_files import read_mesh
+from dynamics.housings.step_bores import BoreWall, bores_of_walls
 from dynamics.housings.step_worker import limits
-from dynamics.housings.tetrahedral_mesh import COVERED, Bore, Plane, TetrahedralMesh
+from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.solid_housing import STEP_SUFFIXES
-from dynamics.types import FloatArray
 from host import ChildFailed, ChildOutOfMemory, ask_child
 
 STEP_WORKER = Path(__file__).with_name("step_worker.py")
@@ -26,8 +27,6 @@ STEP_SECONDS = 600.0
 WALL_ELEMENTS = 0.7
 """Elements over the mean wall thickness, 2 V/S of the body, unless a size is given: quadratic ones bend."""
 Made = TypeVar("Made")
-_SAME = 1e-6
-"""Directions; lengths in m at which axes, radii and heights are the same."""
 
 
 def mesh_step(
@@ -95,8 +94,8 @@ def step_solid(path: str | Path, seconds: float = STEP_SECONDS) -> StepSolid:
             FlatFace(Plane(tuple(point), tuple(normal)), area) for point, normal, area in answer["planes"]
         ]
         planes.sort(key=lambda face: -face.area)
-        walls = [_Wall(np.array(point), np.array(axis), *rest) for point, axis, *rest in answer["walls"]]
-        return StepSolid(answer["volume"], answer["surface"], tuple(_bores(walls)), tuple(planes))
+        walls = [BoreWall(np.array(point), np.array(axis), *rest) for point, axis, *rest in answer["walls"]]
+        return StepSolid(answer["volume"], answer["surface"], tuple(bores_of_walls(walls)), tuple(planes))
 
     return _by_gmsh(Path(path), {"mesh": None}, solid, seconds)
 
@@ -128,61 +127,3 @@ def _by_gmsh(
             advice = "Unite the solids in the CAD program."
             raise InputError("step_file.solids", answer.get("solids"), "one solid", advice)
         return made(answer, copy.parent)
-
-
-# Bores: faces of cylinders about one axis that lie at the same height are one.
-
-
-@dataclass(frozen=True)
-class _Wall:
-    """A hollow face of a cylinder: a point on its axis and the axis, its radius, area, and ends along it."""
-
-    point: FloatArray
-    axis: FloatArray
-    radius: float
-    area: float
-    low: float
-    high: float
-
-
-def _bores(walls: Sequence[_Wall]) -> Iterator[Bore]:
-    for group in _coaxial(walls):
-        first, parts = group[0], sorted(map(_ends, group, [group[0]] * len(group)))
-        while parts:
-            low, high, area = parts.pop(0)
-            while parts and parts[0][0] < high - _SAME:
-                _, end, more = parts.pop(0)
-                high, area = max(high, end), area + more
-            if area >= 2.0 * np.pi * first.radius * (high - low) * COVERED:
-                middle = first.point + 0.5 * (low + high) * first.axis
-                yield Bore(_vector(middle), _vector(first.axis), 2.0 * first.radius, high - low)
-
-
-def _coaxial(walls: Sequence[_Wall]) -> Iterator[list[_Wall]]:
-    """Yield the walls that have axis and radius in common."""
-    groups: list[list[_Wall]] = []
-    for wall in walls:
-        own = next((group for group in groups if _same_cylinder(group[0], wall)), None)
-        if own is None:
-            groups.append([wall])
-        else:
-            own.append(wall)
-    yield from groups
-
-
-def _same_cylinder(one: _Wall, other: _Wall) -> bool:
-    arm = other.point - one.point
-    off = np.linalg.norm(arm - (arm @ one.axis) * one.axis)
-    parallel = np.linalg.norm(np.cross(one.axis, other.axis)) < _SAME
-    return bool(parallel and off < _SAME and abs(one.radius - other.radius) < _SAME)
-
-
-def _ends(wall: _Wall, first: _Wall) -> tuple[float, float, float]:
-    """Return the ends of a wall along the axis of the first from its point, and its area."""
-    ends = [float((wall.point + end * wall.axis - first.point) @ first.axis) for end in (wall.low, wall.high)]
-    return min(ends), max(ends), wall.area
-
-
-def _vector(values: FloatArray) -> tuple[float, float, float]:
-    x, y, z = map(float, values)
-    return x, y, z

@@ -9,13 +9,11 @@ import scipy.sparse as sp
 
 from dynamics.bearings.matrix import Matrix, check_matrix
 from dynamics.errors import InputError
+from dynamics.housings.mesh_faces import Bore, Face, unit
 from dynamics.housings.quadrature import over_surface, triangle
-from dynamics.housings.tetrahedral_mesh import Bore, Face, TetrahedralMesh, unit
+from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.solid_housing import Ring
 from dynamics.types import FloatArray
-
-# Bearing seats of a housing: what their motion is, and how a force on them is carried.
-
 
 MOTIONS = ("x", "y", "z", "tilt_x", "tilt_y", "rotation_z")
 """In the seat's own axes, z along the bore."""

@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from dynamics.arrays.arrays import SystemArrays
-from dynamics.assembly.assemble import NO_SIGNALS, BearingForce, System
+from dynamics.assembly.assemble import System
+from dynamics.assembly.bearing_force import NO_SIGNALS, BearingForce
 from dynamics.forces.elements import evaluate_all, has_unbalance, make_local
 from dynamics.integrators.workspace import Count, Workspace
 from dynamics.kernels.by_address import by_address, with_numbers

@@ -11,7 +11,7 @@ import numpy as np
 
 from bounds.brief import brief
 from dynamics.assembly.assemble import System
-from dynamics.assembly.references import drive_springs
+from dynamics.assembly.motion_and_loads import drive_springs
 from dynamics.bearings.seat import SEAT
 from dynamics.errors import InputError
 from dynamics.forces.laws import Law

@@ -12,7 +12,7 @@ from scipy.linalg import eigh, null_space
 
 from bounds import engineering
 from dynamics.assembly.assemble import System
-from dynamics.assembly.references import drive_springs
+from dynamics.assembly.motion_and_loads import drive_springs
 from dynamics.errors import InputError, SolveError
 from dynamics.integrators import StaticSolution, static_equilibrium
 from dynamics.mechanism.columns import elastic_terms

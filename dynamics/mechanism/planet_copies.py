@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 from dynamics.bearings import PlanetBearing
 from dynamics.checks import integer, one_of
 from dynamics.errors import InputError
-from dynamics.forces.laws import STATED
+from dynamics.forces.laws import BEARING_PARTS
 from dynamics.mechanism.kinematics import Kinematics, solve_kinematics
 from dynamics.meshes import GearMesh
 from dynamics.scene.scene import Scene, on_axis
@@ -58,7 +58,7 @@ def with_planets(
     bearings = planet_parts(scene, shaft)[1]
     copied = {name: [numbered(name, index) for index in range(1, number)] for name in bearings}
     of_pin = {numbered(shaft, index): error for index, error in enumerate(pin_errors or ())}
-    laws: dict[str, Any] = {kind: _on_copies(getattr(scene, kind), copied) for kind in STATED}
+    laws: dict[str, Any] = {kind: _on_copies(getattr(scene, kind), copied) for kind in BEARING_PARTS}
     return replace(
         scene,
         shafts=(

@@ -49,14 +49,8 @@ def warmed_bearings(scene: Scene) -> Scene:
         scene,
         rolling_bearings=tuple(rows[part.name].warm for part in scene.rolling_bearings),
         bushings=tuple(_pushed(part, growth[part.name]) for part in scene.bushings),
-        spring_curves=tuple(
-            replace(curve, displacement=tuple(x - growth[curve.bushing] for x in curve.displacement))
-            if curve.direction == "z" and growth.get(curve.bushing)
-            else curve
-            for curve in scene.spring_curves
-        ),
         temperatures=replace(warm, bearings=rows),
-    )
+    ).with_bearing_laws(lambda law: law.after_growth(growth.get(law.bushing, 0.0)))
 
 
 def _warm_row(scene: Scene, warm: Temperatures, bearing: RollingBearing) -> WarmBearing:
@@ -123,8 +117,8 @@ def _holds_axially(scene: Scene, bearing: Bushing | RollingBearing) -> bool:
     if isinstance(bearing, RollingBearing):
         rolls = not isinstance(bearing.row, BallBearing) and bearing.row.contact_angle == 0.0
         return bearing.locating != "none" and not rolls
-    curves = [curve for curve in scene.spring_curves if curve.bushing == bearing.name]
-    return float(bearing.seat_stiffness[2, 2]) > 0.0 or any(curve.direction == "z" for curve in curves)
+    laws = [law for law in scene.scene_bearing_laws if law.bushing == bearing.name]
+    return float(bearing.seat_stiffness[2, 2]) > 0.0 or any(law.holds_axially for law in laws)
 
 
 def _pushed(bushing: Bushing, growth: float) -> Bushing:

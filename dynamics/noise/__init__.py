@@ -1,5 +1,6 @@
 """Sound of the housings of a scene by `acoustics`: power by order and speed, shares, bands, recordings."""
 
+from dynamics.housings.reduced_housing import SurfaceHousing
 from dynamics.noise.coarse_hull import radiating_hull
 from dynamics.noise.estimated_radiation import EstimatedRadiation, estimated_radiation
 from dynamics.noise.exact_lines import CorrectedRadiation, ExactLine, corrected_radiation, with_exact_lines
@@ -11,6 +12,7 @@ from dynamics.noise.housing_recordings import (
     pressure_signal,
     pressure_transfer,
     scattered_pressure_transfer,
+    scene_pressure,
     sound_limit,
     velocity_recording,
 )
@@ -22,7 +24,7 @@ from dynamics.noise.scene_sound import HousingRegion, SceneSound, scene_sound
 from dynamics.noise.sensitivities import DesignFigure, Sensitivity, sound_sensitivities
 from dynamics.noise.sound_band import GUESSES, SoundBand, SoundModel, band_about, forced_power, sound_band
 from dynamics.noise.sound_over_time import SoundOverTime, sound_over_time
-from dynamics.noise.sounding_housing import Radiation, SoundingHousing, SurfaceHousing
+from dynamics.noise.sounding_housing import Radiation, SoundingHousing
 from dynamics.noise.transferred_quantities import (
     BearingForce,
     EquivalentSoundPower,
@@ -88,6 +90,7 @@ __all__ = [
     "radiating_hull",
     "regions",
     "scattered_pressure_transfer",
+    "scene_pressure",
     "scene_sound",
     "sound_band",
     "sound_limit",

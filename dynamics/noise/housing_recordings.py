@@ -25,7 +25,7 @@ from dynamics.acoustics import (
 from dynamics.acoustics.recording import LOWEST, SAMPLE_RATE, unit_vector
 from dynamics.checks import positive
 from dynamics.errors import InputError
-from dynamics.housings.reduced_housing import ReducedHousing
+from dynamics.housings.reduced_housing import ReducedHousing, SurfaceHousing
 from dynamics.noise.coarse_hull import radiating_hull
 from dynamics.noise.estimated_radiation import EstimatedRadiation, estimated_radiation
 from dynamics.noise.housing_radiation import kept_radiation, resolved_frequency
@@ -327,6 +327,36 @@ def pressure_recording(
 def check_microphone(housing: ReducedHousing, microphone: FloatArray) -> None:
     """Refuse a microphone that is no point of the air, as `pressure_transfer` does."""
     _paths(housing, microphone, MONOPOLES, None)
+
+
+def scene_pressure(
+    surfaces: Sequence[SurfaceHousing],
+    run: RunResult,
+    microphone: FloatArray,
+    cache: Path | None = None,
+    progress: Progress = silent,
+) -> Recording:
+    """Return the sound pressure at a microphone over a run, the sum over the housings.
+
+    Each radiates as its estimate. Raises `InputError` as `pressure_recording` of any housing.
+
+    Parameters
+    ----------
+    surfaces : sequence of SurfaceHousing
+        At least one.
+    microphone : (3,) array
+        In the frame of the scene, m.
+    cache, progress
+        As of `heard_estimate`.
+    """
+    for housing in surfaces:  # before any radiation is computed
+        check_microphone(housing.body, microphone)
+    parts = []
+    for housing in surfaces:
+        estimate = heard_estimate(housing.body, run, cache, progress)
+        parts.append(pressure_recording(housing.body, run, microphone, housing.bearings, estimate=estimate))
+    quantity = "; ".join(dict.fromkeys(part.quantity for part in parts))
+    return replace(parts[0], samples=np.sum([part.samples for part in parts], axis=0), quantity=quantity)
 
 
 def heard_estimate(

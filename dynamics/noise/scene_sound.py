@@ -7,13 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from dynamics.housings.reduced_housing import SurfaceHousing
 from dynamics.noise.estimated_radiation import LEAST, EstimatedRadiation
 from dynamics.noise.housing_radiation import HousingRadiation
 from dynamics.noise.model_levels import ModelLevels, model_levels
 from dynamics.noise.panel_sound import PanelSound, Region, panel_sound, regions
 from dynamics.noise.radiated_sound import LoudPoint, RadiatedSound, loudest
 from dynamics.noise.sound_over_time import BLOCK, SoundOverTime, sound_over_time
-from dynamics.noise.sounding_housing import Radiation, SoundingHousing, SurfaceHousing, sounding_housings
+from dynamics.noise.sounding_housing import Radiation, SoundingHousing, sounding_housings
 from dynamics.results import RunResult
 from dynamics.types import FloatArray
 from dynamics.vibration import BearingHarmonics

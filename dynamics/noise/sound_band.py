@@ -130,22 +130,15 @@ def _mesh_damping(model: SoundModel, factor: float) -> SoundModel:
 
 
 def _bearing_stiffness(model: SoundModel, factor: float) -> SoundModel:
-    """Scale linear bearings, curves and contacts; rows by their geometry follow from their load."""
+    """Scale linear bearings and the laws that the scene gives; rows by their geometry follow their load."""
     scene = model.scene
-    if not (scene.bushings or scene.planet_bearings or scene.rolling_contacts or scene.spring_curves):
+    if not (scene.bushings or scene.planet_bearings or scene.scene_bearing_laws):
         return model
     stiffer = replace(
         scene,
         bushings=tuple(_stiffened(part, factor) for part in scene.bushings),
         planet_bearings=tuple(_stiffened(part, factor) for part in scene.planet_bearings),
-        rolling_contacts=tuple(
-            replace(contact, stiffness=factor * contact.stiffness) for contact in scene.rolling_contacts
-        ),
-        spring_curves=tuple(
-            replace(curve, force=tuple(factor * value for value in curve.force))
-            for curve in scene.spring_curves
-        ),
-    )
+    ).with_bearing_laws(lambda law: law.scaled(factor))
     return replace(model, scene=stiffer)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from dynamics.acoustics import BoundaryElements, ElementalRadiators, EquivalentRadiatedPower, PanelModel
 from dynamics.acoustics.recording import LOWEST
-from dynamics.housings.reduced_housing import ReducedHousing
+from dynamics.housings.reduced_housing import ReducedHousing, SurfaceHousing
 from dynamics.noise.estimated_radiation import NAME as ESTIMATE
 from dynamics.noise.estimated_radiation import EstimatedRadiation, estimated_radiation
 from dynamics.noise.exact_lines import BUDGET, CorrectedRadiation, corrected_radiation
@@ -47,15 +47,6 @@ class Radiation:
     def model(self) -> PanelModel:
         """Return the panel model."""
         return MODELS[self.name]
-
-
-@dataclass(frozen=True)
-class SurfaceHousing:
-    """A housing with a surface: its name, its reduction, and the bearings in the order of its seats."""
-
-    name: str
-    body: ReducedHousing
-    bearings: tuple[str, ...]
 
 
 @dataclass(frozen=True)

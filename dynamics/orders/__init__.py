@@ -4,6 +4,8 @@ from dynamics.orders.bearing_orders import BearingOrders, bearing_orders, bearin
 from dynamics.orders.noise_floor import OrderPower, order_power, shared_frequencies
 from dynamics.orders.recorded_orders import PositionedSignal, recorded_waterfall
 from dynamics.orders.resampling import (
+    driving_shaft,
+    driving_speed,
     highest_valid_order,
     leading_shaft,
     order_frequency,
@@ -38,6 +40,8 @@ __all__ = [
     "band_sums",
     "bearing_orders",
     "bearing_signals",
+    "driving_shaft",
+    "driving_speed",
     "find_peaks",
     "frequency_waterfall",
     "highest_valid_order",

@@ -35,6 +35,19 @@ def leading_shaft(result: RunResult) -> str:
     return str([*result.case["drives"], *result.case["free_rotations"]][0]["shaft"])
 
 
+def driving_shaft(result: RunResult, mesh: int = 0) -> str:
+    """Return the shaft of the driving gear of a mesh; without meshes the leading one."""
+    if not result.mesh:
+        return leading_shaft(result)
+    driver = result.case["meshes"][mesh]["driver"]
+    return str(next(gear["shaft"] for gear in result.case["gears"] if gear["name"] == driver))
+
+
+def driving_speed(result: RunResult, mesh: int = 0) -> FloatArray:
+    """Return the speed of the `driving_shaft`, rad/s without sign, (n,)."""
+    return np.asarray(np.abs(result.speed[result.shaft.index(driving_shaft(result, mesh))]))
+
+
 def highest_valid_order(result: RunResult, mesh: int = 0) -> int:
     """Return the highest multiple of a mesh's frequency below the pass frequency at its highest speed.
 

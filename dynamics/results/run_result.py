@@ -21,7 +21,8 @@ from dynamics.results.energy_audit import EnergyAudit
 from dynamics.results.headlines import headlines
 from dynamics.types import FloatArray, Json, RunStatus
 from model_studies.array_file import Stored
-from model_studies.netcdf import DAMAGE, UnreadableFile, describe, make_dimension, read_dataset
+from model_studies.netcdf import DAMAGE, UnreadableFile, read_dataset
+from model_studies.netcdf_content import describe, make_dimension
 
 if TYPE_CHECKING:
     import xarray

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields, is_dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from itertools import chain
 from typing import Any, get_args, get_origin, get_type_hints
 
@@ -19,7 +19,7 @@ from dynamics.bearings.seat import SEAT
 from dynamics.checks import distinct, finite, not_negative, one_of, positive, within
 from dynamics.errors import InputError, SolveError
 from dynamics.forces import SpeedTorque
-from dynamics.forces.laws import STATED, StatedLaws
+from dynamics.forces.laws import BEARING_PARTS, BearingLawParts
 from dynamics.identity_cache import cached_by
 from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
 from dynamics.joints.housing import DEFINITE
@@ -180,18 +180,19 @@ def on_axis(shaft: Shaft, carrier: Shaft) -> bool:
 def _check_bearing_laws(scene: Scene) -> None:
     """Every law, by kind, has its own direction of a bearing that can have it."""
     bearings = {bearing.name: bearing for bearing in (*scene.bushings, *scene.planet_bearings)}
-    stated = {kind: getattr(scene, kind) for kind in STATED}
+    stated = {kind: getattr(scene, kind) for kind in BEARING_PARTS}
     for kind, parts in stated.items():
         for index, part in enumerate(parts):
             one_of(f"{kind}[{index}].bushing", part.bushing, list(bearings))
     for kind, parts in stated.items():
         distinct(kind, [part.acts_at for part in parts])
-    for index, curve in enumerate(scene.spring_curves):
-        bearing = bearings[curve.bushing]
-        turns = isinstance(bearing, Bushing) and scene.shaft(bearing.shaft).frame is not None
-        if turns and curve.direction != "z":
-            bound = '"z" on a shaft described in a carrier\'s frame, which turns against the bushing'
-            raise InputError(f"spring_curves[{index}].direction", curve.direction, bound)
+    for kind, parts in stated.items():
+        for index, law in enumerate(parts):
+            bearing, field = bearings[law.bushing], law.fixed_direction
+            turns = isinstance(bearing, Bushing) and scene.shaft(bearing.shaft).frame is not None
+            if turns and field is not None:
+                bound = '"z" on a shaft described in a carrier\'s frame, which turns against the bushing'
+                raise InputError(f"{kind}[{index}].{field}", getattr(law, field), bound)
     for index, row in enumerate(scene.rolling_bearings):
         try:
             row_law(row).shift  # noqa: B018 (computed and kept)
@@ -296,15 +297,8 @@ def _check_parts(scene: Scene) -> None:
 
 
 @dataclass(frozen=True)
-class Scene(StatedLaws):
-    """A geared system and its run.
-
-    Attributes
-    ----------
-    rolling_contacts, spring_curves : tuples
-        Nonlinear laws of bearings; each names its bushing or planet bearing, which sits in no housing without
-        mass.
-    """
+class Scene(BearingLawParts):
+    """A geared system and its run."""
 
     shafts: tuple[Shaft, ...]
     gears: tuple[GearBody, ...]
@@ -392,7 +386,19 @@ class Scene(StatedLaws):
     def laws_with(self, passing: frozenset[str]) -> tuple[BearingLaw, ...]:
         """Return all that bearings do which is not linear; the elements of those `passing` one by one."""
         rows = (row_law(bearing, bearing.name in passing) for bearing in self.rolling_bearings)
-        return (*chain.from_iterable(getattr(self, kind) for kind in STATED), *rows)
+        return (*self.scene_bearing_laws, *rows)
+
+    @property
+    def scene_bearing_laws(self) -> tuple[Any, ...]:
+        """The nonlinear laws of bearings that are parts of the scene, each a `SceneBearingLaw`."""
+        return tuple(chain.from_iterable(getattr(self, kind) for kind in BEARING_PARTS))
+
+    def with_bearing_laws(self, change: Callable[[Any], BearingLaw]) -> Scene:
+        """Return the scene with `change` of each of its `scene_bearing_laws` in its place."""
+        laws: dict[str, Any] = {
+            kind: tuple(change(law) for law in getattr(self, kind)) for kind in BEARING_PARTS
+        }
+        return replace(self, **laws)
 
     def require_meshes(self) -> None:
         """Refuse a scene without meshes to a study that compares transmission errors."""

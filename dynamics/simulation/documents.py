@@ -16,7 +16,7 @@ from dynamics.bearings.loaded_bearing import LoadedBearing
 from dynamics.bearings.row_law import row_law
 from dynamics.errors import SolveError
 from dynamics.forces.elements import Elements
-from dynamics.forces.laws import Law, among
+from dynamics.forces.laws import BEARING_PARTS, Law, among
 from dynamics.influence import (
     Decided,
     Influence,
@@ -149,7 +149,7 @@ def _resolved_case(system: System) -> Json:
         "meshes": [_mesh(system, index) for index in range(len(scene.meshes))],
         **parts("drives", "speed_torques", "forces", "unbalances"),
         "housings": [vars(housing) for housing in scene.housings],  # as it is: matrices of 10^4 numbers
-        **parts("rolling_contacts", "spring_curves", "rolling_bearings", "couplings", "free_rotations"),
+        **parts(*BEARING_PARTS, "rolling_bearings", "couplings", "free_rotations"),
         "speed_ratios": {
             shaft.name: [str(value) for value in row]
             for shaft, row in zip(scene.shafts, system.kinematics.ratio, strict=True)

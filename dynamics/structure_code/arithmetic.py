@@ -3,9 +3,6 @@
 Operations, their order and their rounding are those of the ordinary compiled loops.
 """
 
-# llvmlite annotates little
-# mypy: disable-error-code="no-untyped-call"
-
 from __future__ import annotations
 
 import ast

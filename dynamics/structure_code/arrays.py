@@ -1,8 +1,5 @@
 """Tuples by address in loops written out: what is known of their arrays, and how the rest is read."""
 
-# llvmlite annotates little
-# mypy: disable-error-code="no-untyped-call"
-
 from __future__ import annotations
 
 import ast

@@ -1,8 +1,5 @@
 """Machine code of modules, kept in memory and, for other processes, beside that of the ordinary loops."""
 
-# llvmlite annotates little
-# mypy: disable-error-code="no-untyped-call"
-
 from __future__ import annotations
 
 from collections import OrderedDict

@@ -1,8 +1,5 @@
 """Routines written out for the tuples they get, as one module of instructions."""
 
-# llvmlite annotates little
-# mypy: disable-error-code="no-untyped-call"
-
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence

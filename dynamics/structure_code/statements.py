@@ -5,10 +5,6 @@ passes all do the same with numbers stays a loop. Names that a branch or a loop 
 become variables: which of their values holds is known when it runs.
 """
 
-# llvmlite annotates little
-# mypy: disable-error-code="no-untyped-call"
-# ruff: noqa: N802 (names of Python's grammar)
-
 from __future__ import annotations
 
 import ast

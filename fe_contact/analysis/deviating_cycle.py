@@ -106,14 +106,12 @@ def cycle_contact(
     positions = options.positions or POSITIONS
     options = replace(options, positions=positions)
     within("positions", positions, 2 * HARMONICS + 1, 4096, "They tell twenty mesh harmonics apart.")
-    decided = decide(check_request(pair, axes, options, whole_table=False), run.cache)
-    request, plan = decided.checked.request, decided.plan
-    bodies = condensed_bodies(decided.checked, plan, StageClock(run.workers.cost), run)
+    choice = decide(check_request(pair, axes, options, whole_table=False), run.cache)
+    request, plan = choice.checked.request, choice.plan
+    bodies = condensed_bodies(choice.checked, plan, StageClock(run.workers.cost), run)
     (point,) = operating_points(request.scene, request.choices, bodies).places
     work = unit_work(request.pair, plan, plan.discretization.slices)
-    predicted = CycleSeconds.of(
-        work, request.pair, decided.checked.model.period, positions, (plan.load.size,)
-    )
+    predicted = CycleSeconds.of(work, request.pair, choice.checked.model.period, positions, (plan.load.size,))
     return CycleContact(point, np.arange(positions) / positions, plan.load), predicted
 
 

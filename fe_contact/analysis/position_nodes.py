@@ -67,16 +67,16 @@ def adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) ->
     settled = np.zeros(rule.start, dtype=bool)
     error, between = np.full(values.shape[1:], np.inf), np.zeros_like(values)
     for remaining in reversed(range(MAX_ROUNDS)):
-        own = values[values.shape[0] // 2]
-        allowed = rule.tolerance * rule.ripple(own)
+        nominal = values[values.shape[0] // 2]
+        allowed = rule.tolerance * rule.ripple(nominal)
         middles, at_middle, probed = _probed(nodes, values, solve, ~settled, PROBES)
         error[~settled], between[:, ~settled] = probed[~settled], at_middle[:, ~settled]
-        missed = np.any(error > allowed, axis=1)
-        if not missed.any() or not remaining or nodes.size + missed.sum() > rule.most:
+        beyond = np.any(error > allowed, axis=1)
+        if not beyond.any() or not remaining or nodes.size + beyond.sum() > rule.most:
             break
-        nodes, values, settled, error, between = _inserted(nodes, values, missed, middles, between, error)
-    own = values.shape[0] // 2
-    return PositionNodes(nodes, error, values[own], between[own])
+        nodes, values, settled, error, between = _inserted(nodes, values, beyond, middles, between, error)
+    nominal = values.shape[0] // 2
+    return PositionNodes(nodes, error, values[nominal], between[nominal])
 
 
 def _probed(
@@ -90,11 +90,11 @@ def _probed(
     spacing = Axis(nodes, 1.0).spacing
     where = nodes[open_, None] + spacing[open_, None] * probes
     solved = solve(where.ravel())
-    own = solved[solved.shape[0] // 2]
-    missed = np.abs(_interpolated(nodes, values, where.ravel()) - own).reshape(*where.shape, -1)
+    nominal = solved[solved.shape[0] // 2]
+    deviation = np.abs(_interpolated(nodes, values, where.ravel()) - nominal).reshape(*where.shape, -1)
     at_middle, error = np.zeros_like(values), np.zeros(values.shape[1:])
     at_middle[:, open_] = solved.reshape(solved.shape[0], *where.shape, -1)[:, :, probes.size // 2]
-    error[open_] = missed.max(axis=1)
+    error[open_] = deviation.max(axis=1)
     return nodes + 0.5 * spacing, at_middle, error
 
 
@@ -108,21 +108,21 @@ def _interpolated(nodes: FloatArray, values: FloatArray, where: FloatArray) -> F
 def _inserted(
     nodes: FloatArray,
     values: FloatArray,
-    missed: BoolArray,
+    beyond: BoolArray,
     middles: FloatArray,
     at_middle: FloatArray,
     error: FloatArray,
 ) -> tuple[FloatArray, FloatArray, BoolArray, FloatArray, FloatArray]:
     """Insert the middles of the missed intervals; both halves and the neighbors are measured again."""
-    touched = missed | np.roll(missed, 1) | np.roll(missed, -1)
-    order = np.argsort(np.concatenate([nodes, middles[missed]]), kind="stable")
-    merged = np.concatenate([nodes, middles[missed]])[order]
+    touched = beyond | np.roll(beyond, 1) | np.roll(beyond, -1)
+    order = np.argsort(np.concatenate([nodes, middles[beyond]]), kind="stable")
+    merged = np.concatenate([nodes, middles[beyond]])[order]
     return (
         merged,
-        np.concatenate([values, at_middle[:, missed]], axis=1)[:, order],
-        np.concatenate([~touched, np.zeros(int(missed.sum()), dtype=bool)])[order],
-        np.concatenate([error, np.full((int(missed.sum()), error.shape[1]), np.inf)])[order],
-        np.concatenate([at_middle, np.zeros_like(at_middle[:, missed])], axis=1)[:, order],
+        np.concatenate([values, at_middle[:, beyond]], axis=1)[:, order],
+        np.concatenate([~touched, np.zeros(int(beyond.sum()), dtype=bool)])[order],
+        np.concatenate([error, np.full((int(beyond.sum()), error.shape[1]), np.inf)])[order],
+        np.concatenate([at_middle, np.zeros_like(at_middle[:, beyond])], axis=1)[:, order],
     )
 
 
@@ -141,14 +141,14 @@ def table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreported
     def solve(position: FloatArray) -> FloatArray:
         """STE (W, P, pitches x places x L) in m; beside the pitches NaN where interpolants do not reach."""
         nonlocal tried
-        own = _curves(points, plan.load, position, pitches)
+        curves = _curves(points, plan.load, position, pitches)
         tried += position.size
         report(min(tried / expected, 1.0))
         if points.period == 1:
-            return own
+            return curves
         near = plan.nodes.reached_beside(position)
-        values = np.full((3, *own.shape[1:]), np.nan)
-        values[1] = own[0]
+        values = np.full((3, *curves.shape[1:]), np.nan)
+        values[1] = curves[0]
         for way in (-1, 1) if near.any() else ():
             values[1 + way, near] = _curves(points, plan.load, position[near], pitches + way)[0]
         return values
@@ -156,10 +156,10 @@ def table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreported
     return adaptive_nodes(replace(plan.nodes, most=most_positions(plan, times)), solve)
 
 
-def assessed_pitches(pair: ParallelAxes, model: ContactModel, most: int) -> IntArray:
+def assessed_pitches(pair: ParallelAxes, model: ContactModel, limit: int) -> IntArray:
     """Return base pitches to assess.
 
-    Where all teeth are alike, the one pitch there is. Else pitches m, at most `most`, evenly taken from all
+    Where all teeth are alike, the one pitch there is. Else pitches m, at most `limit`, evenly taken from all
     in the order of how much the gaps of the pairs at m - 1, m, m + 1 differ, both ends among them: these
     differences move and steepen the handovers.
     """
@@ -168,7 +168,7 @@ def assessed_pitches(pair: ParallelAxes, model: ContactModel, most: int) -> IntA
     meeting = np.arange(model.period)[:, None] + np.arange(-1, 2)
     spread = np.ptp(model.gap_of_teeth(MeetingTeeth.at_pitch_point(pair, meeting)), axis=1)
     order = np.argsort(spread, kind="stable")
-    chosen = np.linspace(0, order.size - 1, min(most, order.size)).astype(np.int64)
+    chosen = np.linspace(0, order.size - 1, min(limit, order.size)).astype(np.int64)
     return np.asarray(order[np.unique(chosen)])
 
 

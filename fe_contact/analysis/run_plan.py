@@ -114,7 +114,7 @@ def plan_run(
     curves = expected_curves(checked)
     others = [_planned(checked, name, curves, cache) for name in LEVELS if name != choice.level]
     needed = () if decided.wished is None else (_decided(decided.wished, curves, cache),)
-    passes = tuple(_decided(own, curves, cache) for own in decided.passes)
+    passes = tuple(_decided(later, curves, cache) for later in decided.passes)
     rows = {(row.model, row.level, row.slices): row for row in (*others, *needed, *passes)}
     levels = sorted(rows.values(), key=lambda row: LEVELS.index(row.level))
     conflict = ""
@@ -154,28 +154,28 @@ def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
     cache : Path, optional
         Of flank compliances: what is in it costs nothing.
     """
-    decided = decide(checked, cache)
-    pair, model = decided.checked.request.pair, decided.checked.model
-    whole = predict_run(pair, decided.plan, model, (1, 1), cache)
+    choice = decide(checked, cache)
+    pair, model = choice.checked.request.pair, choice.checked.model
+    whole = predict_run(pair, choice.plan, model, (1, 1), cache)
     parts = whole.parts
     bodies = parts["compliance"]["bodies"] + parts["error estimate"]["bodies"]
     design = _DESIGN * parts["contact"]["table"]
     errors = parts["error estimate"]["solutions"]
     table = whole.stages["contact"] + whole.correction["error estimate"] * errors
     slowness = host_slowness(cache)
-    unit = unit_work(pair, decided.plan, decided.plan.discretization.slices)
-    work = ContactWork(*(slowness * each for each in unit))
+    unit = unit_work(pair, choice.plan, choice.plan.discretization.slices)
+    work = ContactWork(*(slowness * work_of_part for work_of_part in unit))
     memory = float(whole.memory_bytes)
     return PredictedDesigns(bodies, design, errors, whole.positions, model.across_face, memory, table, work)
 
 
-def _decided(decided: Decided, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:
+def _decided(choice: Decided, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:
     """Predict what was decided; its error is the one by which it was, where it was by an error."""
-    checked, option = decided.checked, decided.mesh.option
+    checked, option = choice.checked, choice.mesh.option
     error = option.error
     if not error.mean:
-        error = expected_error(checked.request.pair, decided.plan, curves, bound=checked.request.model_chosen)
-    return PlannedLevel(checked.model_name, option.level, option.slices, decided.predicted(cache), error)
+        error = expected_error(checked.request.pair, choice.plan, curves, bound=checked.request.model_chosen)
+    return PlannedLevel(checked.model_name, option.level, option.slices, choice.predicted(cache), error)
 
 
 def _planned(checked: Checked, level: str, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:
@@ -186,11 +186,11 @@ def _planned(checked: Checked, level: str, curves: ExpectedCurves | None, cache:
     return PlannedLevel(checked.model_name, level, plan.discretization.slices, cost, error)
 
 
-def _conflict(decided: Decided, time_budget: float, cache: Path | None) -> str:
-    tolerance = decided.checked.request.options.tolerance
-    goal = f"level {decided.mesh.level}" if tolerance is None else tolerance.words
+def _conflict(choice: Decided, time_budget: float, cache: Path | None) -> str:
+    tolerance = choice.checked.request.options.tolerance
+    goal = f"level {choice.mesh.level}" if tolerance is None else tolerance.words
     refusal = f"{goal} within {time_budget:.3g} CPU s cannot be had"
-    if not decided.mesh.met:
-        return f"{refusal}: {decided.mesh.reason}"
-    seconds = decided.predicted(cache).cpu_seconds
+    if not choice.mesh.met:
+        return f"{refusal}: {choice.mesh.reason}"
+    seconds = choice.predicted(cache).cpu_seconds
     return f"{refusal}: it needs {engineering(seconds, 2)} CPU s" if seconds > time_budget else ""

@@ -53,27 +53,29 @@ def table_of_solution(
     )
 
 
-def table_fields(points: OperatingPoints, kept: Sequence[KeptContact]) -> dict[str, NDArray[Any]]:
+def table_fields(points: OperatingPoints, contacts: Sequence[KeptContact]) -> dict[str, NDArray[Any]]:
     """Arrays of the database at the requested loads, (P, F, M, D, ...), and its pair axis."""
-    seen = np.concatenate([each.problem.candidates.pair for each in kept])
+    seen = np.concatenate([contact.problem.candidates.pair for contact in contacts])
     pairs = np.arange(seen.min(), seen.max() + 1)
-    stored = [dict(each.stored) for each in kept]
-    for arrays, each in zip(stored, kept, strict=True):
-        own = np.unique(each.problem.candidates.pair)
+    stored = [dict(contact.stored) for contact in contacts]
+    for arrays, contact in zip(stored, contacts, strict=True):
+        numbers = np.unique(contact.problem.candidates.pair)
         if points.period == 1:
             del arrays["pair_pressure"]
         for name in arrays.keys() & OF_PAIRS:
             values = arrays[name]
             arrays[name] = np.zeros((*values.shape[:2], pairs.size))
-            arrays[name][..., own - pairs[0]] = values
-    no_load = points.gathered([each.solution.no_load[:, None] for each in kept])[:, 0]
+            arrays[name][..., numbers - pairs[0]] = values
+    no_load = points.gathered([contact.solution.no_load[:, None] for contact in contacts])[:, 0]
     gathered = {name: points.gathered([arrays[name] for arrays in stored]) for name in stored[0]}
     return gathered | {"pair": pairs, "no_load_transmission_error": no_load}
 
 
-def table_support(points: OperatingPoints, kept: Sequence[KeptContact]) -> dict[str, NDArray[Any]]:
+def table_support(points: OperatingPoints, contacts: Sequence[KeptContact]) -> dict[str, NDArray[Any]]:
     """Support loads that converged everywhere, and their arrays (P, S, M, D)."""
-    good = np.all([each.solution.status == Status.CONVERGED for each in kept], axis=(0, 1))
-    arrays = {name: points.gathered([each.stored[name][:, good] for each in kept]) for name in OF_SUPPORT}
+    good = np.all([contact.solution.status == Status.CONVERGED for contact in contacts], axis=(0, 1))
+    arrays = {
+        name: points.gathered([contact.stored[name][:, good] for contact in contacts]) for name in OF_SUPPORT
+    }
     support = {f"support_{name.removeprefix('static_')}": values for name, values in arrays.items()}
-    return support | {"support_force": kept[0].solution.load[good]}
+    return support | {"support_force": contacts[0].solution.load[good]}

@@ -59,7 +59,7 @@ class SolvedTable(SolvedRun):
     @property
     def edge_depths(self) -> list[FloatArray]:
         """See `SolvedRun`; they were found with the solutions."""
-        return [each.edge_depth for each in self.kept]
+        return [contact.edge_depth for contact in self.kept]
 
 
 def solve_table(
@@ -96,12 +96,23 @@ def solve_table(
         points, sets, condition, derived = _solved_places(
             points, nodes.position, decided, full=full, report=partial(progress, "table")
         )
-        kept, support = sets
-        table = assembled_table(request, points, nodes, kept, support)
+        contacts, support = sets
+        table = assembled_table(request, points, nodes, contacts, support)
         run.progress("contact", 1.0)
-    solved = [(each.problem, each.solution) for each in kept]
+    solved = [(contact.problem, contact.solution) for contact in contacts]
     return SolvedTable(
-        checked, plan, points, solved, decided, prediction, nodes, kept, support, table, condition, derived
+        checked,
+        plan,
+        points,
+        solved,
+        decided,
+        prediction,
+        nodes,
+        contacts,
+        support,
+        table,
+        condition,
+        derived,
     )
 
 
@@ -115,7 +126,7 @@ def _solved_places(
     """
     checked, plan, known = decided.checked, decided.plan, None
     loads, edges = (plan.load, plan.support), edges_left_out(checked)
-    sizes = [each.size for each in loads]
+    sizes = [levels.size for levels in loads]
     pair = checked.request.pair
     work = unit_work(pair, plan, plan.discretization.slices)
     predicted = CycleSeconds.of(work, pair, points.period, position.size, sizes)
@@ -124,10 +135,10 @@ def _solved_places(
         if known.tables:
             report(1.0)
             return known.places, known.kept, None, known
-    kept, condition = solve_operating_points(
+    contacts, condition = solve_operating_points(
         points, position, loads, conditioned=full, edges=edges, report=report
     )
-    return points, kept, condition, known
+    return points, contacts, condition, known
 
 
 def _subject(checked: Checked, prediction: Prediction) -> str:
@@ -164,10 +175,10 @@ def _condensed(
     if isinstance(condensing(run.workers), InProcess) or not isinstance(made, FaceDiscretization):
         return pair_contact(pair, plan, run.cache, coarse, changes, report)
     with TemporaryDirectory() as folder:
-        kept = run.cache or Path(folder)
+        cache = run.cache or Path(folder)
         recipes = made.coarse_recipes if coarse else made.recipes
-        condense_remotely(plan.bodies(pair), recipes, kept, run.workers, report)
-        return pair_contact(pair, plan, kept, coarse, changes)
+        condense_remotely(plan.bodies(pair), recipes, cache, run.workers, report)
+        return pair_contact(pair, plan, cache, coarse, changes)
 
 
 def _same_bodies(own: Plan, other: Plan) -> bool:
@@ -179,7 +190,7 @@ def assembled_table(
     request: Request,
     points: OperatingPoints,
     nodes: PositionNodes,
-    kept: Sequence[KeptContact],
+    contacts: Sequence[KeptContact],
     support: Sequence[KeptContact],
 ) -> SteDatabase:
     """Assemble the table, its errors not yet estimated; `support` may be empty."""
@@ -194,6 +205,6 @@ def assembled_table(
         period=points.period,
         error_estimate=np.full((position.size, request.load.size, *points.shape), np.nan),
         metadata=Metadata(),
-        **table_fields(points, kept),
+        **table_fields(points, contacts),
         **(table_support(points, support) if support else {}),
     )

@@ -69,15 +69,15 @@ def _alone(directory: Path, key: str) -> Iterator[None]:
 
     The lock ends with its process. Its file goes while it is held: who waited for it finds the result first.
     """
-    file, descriptor, held = directory / f"compliance-{key}.lock", None, False
+    file, descriptor, locked = directory / f"compliance-{key}.lock", None, False
     with suppress(OSError):
         directory.mkdir(parents=True, exist_ok=True)
         descriptor = os.open(file, os.O_CREAT | os.O_RDWR, 0o600)
     try:
-        held = descriptor is not None and _locked(descriptor)
+        locked = descriptor is not None and _locked(descriptor)
         yield
     finally:
-        if held:
+        if locked:
             with suppress(OSError):
                 file.unlink()
         if descriptor is not None:

@@ -40,11 +40,13 @@ class _CoarseFace:
         `frames` (m, 20, 3, 3) are the axes of the nodes above; those of this face are cylindrical.
         """
         transform = np.zeros((len(frames), 20, 3, 20, 3))
-        own = np.setdiff1d(np.arange(20), LOWER_FACE)
-        transform[:, own, :, own] = frames[:, own].transpose(1, 0, 2, 3)
-        moved = self.weights[:, None, :, None] * cylindrical_frames(self.nodes).transpose(0, 2, 1, 3)[:, None]
+        free_nodes = np.setdiff1d(np.arange(20), LOWER_FACE)
+        transform[:, free_nodes, :, free_nodes] = frames[:, free_nodes].transpose(1, 0, 2, 3)
+        interpolation = (
+            self.weights[:, None, :, None] * cylindrical_frames(self.nodes).transpose(0, 2, 1, 3)[:, None]
+        )
         hanging = np.array(LOWER_FACE)
-        transform[:, hanging[:, None], :, hanging] = moved.transpose(1, 3, 0, 2, 4)
+        transform[:, hanging[:, None], :, hanging] = interpolation.transpose(1, 3, 0, 2, 4)
         return transform.reshape(len(frames), 60, 60)
 
 

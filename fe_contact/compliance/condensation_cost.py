@@ -145,13 +145,13 @@ def _ring_operations(sizes: _SectorSizes) -> float:
 def _working_bytes(tree: EliminationTree, sizes: _SectorSizes) -> int:
     """Return the bytes of the largest working set: factorizing, holding the flank, closing the ring."""
     nf, nc, loads, space = sizes.flank, sizes.cut, sizes.loads, sizes.space
-    kept = 3600 * sizes.matrices + tree.factor_entries
-    held = nf**2 + 4 * nc**2 + 2 * nf * nc
+    factors = 3600 * sizes.matrices + tree.factor_entries
+    sector = nf**2 + 4 * nc**2 + 2 * nf * nc
     scaled = 2 * nf * nc + 2 * nc**2
     summed = 2 * (sizes.reach + 1 + sizes.harmonics) * space * loads
     blocks = (sizes.reach + 2) * nf**2 + 2 * sizes.reach * nf * loads
-    ring = held + scaled + max(5 * nc**2 + 4 * nc * loads, summed + blocks)
-    return int(NUMBER * (kept + max(tree.working_entries(), (nf + 2 * nc) ** 2 + held, ring)))
+    ring = sector + scaled + max(5 * nc**2 + 4 * nc * loads, summed + blocks)
+    return int(NUMBER * (factors + max(tree.working_entries(), (nf + 2 * nc) ** 2 + sector, ring)))
 
 
 @lru_cache(maxsize=1)

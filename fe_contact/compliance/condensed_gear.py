@@ -41,8 +41,8 @@ class CondensedGear:
 
     def flank(self, tooth: int, loads: FloatArray) -> FloatArray:
         """Return the flank displacements (nf, p) of a tooth under the probe `loads` (nf, p) on tooth 0."""
-        own = self.held.flank @ loads if tooth == 0 else 0.0
-        return np.asarray(own + self.held.transmitted.T @ self.cuts(tooth))
+        direct = self.held.flank @ loads if tooth == 0 else 0.0
+        return np.asarray(direct + self.held.transmitted.T @ self.cuts(tooth))
 
     def cuts(self, tooth: int) -> FloatArray:
         """Return the displacement of the left and right cut of a tooth under the probe loads, (2 nc, p)."""
@@ -134,11 +134,11 @@ def condensed_tooth(
     report = partial(clock.progress, "condensation")
     matrix, condensation = condense(sector_tree(sector), sector.element_freedoms, stiffness, report)
     clock.finish("condensation")
-    held = hold_sector(matrix, len(sector.loaded))
+    clamped = hold_sector(matrix, len(sector.loaded))
     s_form = tooth_profile(gear).s_form
     loads = np.zeros((len(sector.loaded), 2))
     loads[: len(sector.flank)] = probe_loads(section.s, sector.layers.ends, sector.flank_index, s_form)
-    return CondensedTooth(sector, stiffness, condensation, held), loads
+    return CondensedTooth(sector, stiffness, condensation, clamped), loads
 
 
 def free_turn(section: QuadSector, sector: SweptSector) -> FreeTurn | None:

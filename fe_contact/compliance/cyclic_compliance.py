@@ -112,8 +112,8 @@ def flank_compliances_3d(
         ),
     )
     return tuple(
-        each if each.base_helix_angle * gear.helix_angle >= 0.0 else each.mirrored()
-        for gear, each in zip(gears, compliances, strict=True)
+        compliance if compliance.base_helix_angle * gear.helix_angle >= 0.0 else compliance.mirrored()
+        for gear, compliance in zip(gears, compliances, strict=True)
     )
 
 

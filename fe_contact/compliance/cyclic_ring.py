@@ -153,21 +153,21 @@ def hold_sector(matrix: FloatArray, flank: int) -> HeldSector:
     return HeldSector(_full(inverse), transmitted, _full(cuts))
 
 
-def even_sector(held: HeldSector) -> EvenSector:
+def even_sector(sector: HeldSector) -> EvenSector:
     """Scale the cuts of a sector; SolveError if one between two held ones is not stiff in all directions."""
-    size = held.cut_size
-    own = held.cuts[:size, :size] + held.cuts[size:, size:]
-    scale, info = lapack.dpotrf(np.asfortranarray(own), lower=1, clean=1, overwrite_a=1)
+    size = sector.cut_size
+    diagonal = sector.cuts[:size, :size] + sector.cuts[size:, size:]
+    scale, info = lapack.dpotrf(np.asfortranarray(diagonal), lower=1, clean=1, overwrite_a=1)
     if info:
         raise SolveError(f"ring of teeth: the stiffness of a cut is not positive definite (pivot {info})")
-    even = EvenSector(held.transmitted, held.cuts[:size, size:], scale)
+    even = EvenSector(sector.transmitted, sector.cuts[:size, size:], scale)
     across = blas.dtrsm(1.0, scale, even.force(even.across), side=1, lower=1, trans_a=1, overwrite_b=1)
-    transmitted = np.concatenate([even.force(part) for part in np.split(held.transmitted, 2)])
+    transmitted = np.concatenate([even.force(part) for part in np.split(sector.transmitted, 2)])
     return EvenSector(transmitted, across, scale)
 
 
 def close_ring(
-    held: HeldSector,
+    sector: HeldSector,
     teeth: int,
     reach: int,
     probes: FloatArray,
@@ -191,20 +191,20 @@ def close_ring(
     report : callable
         Called after each solved harmonic with the fraction of them done.
     """
-    even, count = even_sector(held), probes.shape[1]
-    flank = len(held.flank) if free is None else free.flank
-    largest = float(np.abs(held.flank[:flank, :flank]).max())
+    even, count = even_sector(sector), probes.shape[1]
+    flank = len(sector.flank) if free is None else free.flank
+    largest = float(np.abs(sector.flank[:flank, :flank]).max())
     least = least_passed(teeth)
     # The probes are among them: blocks hold their energy but for rounding.
     modes, _ = np.linalg.qr(np.concatenate([probes, row_space(even.transmitted, least * largest)], axis=1))
     loads, rank = even.transmitted @ np.concatenate([modes, probes], axis=1), modes.shape[1]
-    ring, basis, restraint = _turning(held, even, TurningLoads(even.across, loads, teeth), free)
+    ring, basis, restraint = _turning(sector, even, TurningLoads(even.across, loads, teeth), free)
     closed = solve_few(ring, basis, modes, largest, slice(rank, rank + count), report)
     cuts = left_cuts(closed.solutions, teeth, reach, rank)
     within = np.concatenate([closed.basis.T @ part for part in np.split(even.transmitted, 2)])
     near = [np.concatenate([cuts.near[m], cuts.near[m - 1]]) for m in range(-reach, reach + 1)]
-    blocks = _blocks([within.T @ each for each in near], modes)
-    blocks[0] += held.flank
+    blocks = _blocks([within.T @ motion for motion in near], modes)
+    blocks[0] += sector.flank
     everywhere = even.displacement(closed.basis) @ cuts.everywhere
     solved = np.stack([even.displacement(left) for left in closed.solved])
     return RingSolution(
@@ -220,34 +220,36 @@ def close_ring(
 
 
 def _turning(
-    held: HeldSector, even: EvenSector, ring: TurningLoads, free: FreeTurn | None
+    sector: HeldSector, even: EvenSector, ring: TurningLoads, free: FreeTurn | None
 ) -> tuple[TurningLoads, FloatArray, float]:
     """Restrain a ring that may turn and load its bore; with what its space holds, and the restraint."""
-    size = held.cut_size
+    size = sector.cut_size
     if free is None:
         return ring, np.empty((size, 0)), 0.0
     on_cut = np.zeros((2 * size, len(free.key_cut)))
     on_cut[:size] = even.force(np.eye(size)[:, free.key_cut])
     loads = np.concatenate([ring.loads, even.transmitted[:, free.flank :], on_cut], axis=1)
-    restraint = float(np.trace(held.cuts) / (free.turn @ free.turn))
+    restraint = float(np.trace(sector.cuts) / (free.turn @ free.turn))
     spring = np.sqrt(restraint) * even.force(free.turn[:, None])
     basis = even.scale.T @ free.turn[:, None]
     return replace(ring, loads=loads, spring=spring), basis / np.linalg.norm(basis), restraint
 
 
-def _blocks(moved: list[FloatArray], modes: FloatArray) -> FloatArray:
+def _blocks(motions: list[FloatArray], modes: FloatArray) -> FloatArray:
     """Return B' G_m B (reach + 1, nf, nf) from what modes V (nf, r) move, T_m of m from -reach to reach."""
-    reach = len(moved) // 2
+    reach = len(motions) // 2
     blocks = np.empty((reach + 1, len(modes), len(modes)))
     for m in range(reach + 1):
-        ahead = moved[reach + m] - modes @ (modes.T @ moved[reach + m])
-        blocks[m] = ahead @ modes.T + modes @ moved[reach - m].T
+        ahead = motions[reach + m] - modes @ (modes.T @ motions[reach + m])
+        blocks[m] = ahead @ modes.T + modes @ motions[reach - m].T
     return blocks
 
 
-def loaded_cuts(held: HeldSector, loads: FloatArray, teeth: int, reach: int = -1, first: int = 0) -> LeftCuts:
+def loaded_cuts(
+    sector: HeldSector, loads: FloatArray, teeth: int, reach: int = -1, first: int = 0
+) -> LeftCuts:
     """Return the left cuts under flank `loads` (nf, p) on tooth 0, every harmonic solved; see `left_cuts`."""
-    even = even_sector(held)
+    even = even_sector(sector)
     ring = TurningLoads(even.across, even.transmitted @ loads, teeth)
     cuts = left_cuts((ring.solve(number) for number in ring.harmonics), teeth, reach, first)
     near = {j: even.displacement(left) for j, left in cuts.near.items()}
@@ -258,7 +260,7 @@ def _full(lower: FloatArray) -> FloatArray:
     """Mirror the lower triangle of a matrix up, in its place and strip by strip."""
     for begin in range(0, len(lower), STRIP):
         stop = begin + STRIP
-        own = np.tril(lower[begin:stop, begin:stop])
-        lower[begin:stop, begin:stop] = own + np.tril(own, -1).T
+        triangle = np.tril(lower[begin:stop, begin:stop])
+        lower[begin:stop, begin:stop] = triangle + np.tril(triangle, -1).T
         lower[begin:stop, stop:] = lower[stop:, begin:stop].T
     return lower

@@ -74,8 +74,8 @@ def deformed_solids(
     elements = sector_elements(right, section, solved.sector)
     deformed = []
     for case in range(len(loads)):
-        own = [i for i, (number, _) in enumerate(sources) if number == case]
-        loaded = _Loaded(np.array([sources[i][1] for i in own]), np.array(own), columns[:, own])
+        members = [i for i, (number, _) in enumerate(sources) if number == case]
+        loaded = _Loaded(np.array([sources[i][1] for i in members]), np.array(members), columns[:, members])
         deformed.append(_deformed(gear.teeth, solved, elements, loaded, beside, mirror, left))
     return tuple(deformed)
 
@@ -100,21 +100,21 @@ def _mirrored_back(values: FloatArray, mirror: IntArray | None) -> FloatArray:
 
 def _shown(loaded: IntArray, beside: int, teeth: int) -> IntArray:
     """Return consecutive tooth numbers from the first to the last loaded one and beside them, at most all."""
-    shown = np.arange(loaded.min() - beside, loaded.max() + beside + 1)
-    return shown if len(shown) <= teeth else np.arange(teeth) - (teeth - 1) // 2
+    teeth_in_view = np.arange(loaded.min() - beside, loaded.max() + beside + 1)
+    return teeth_in_view if len(teeth_in_view) <= teeth else np.arange(teeth) - (teeth - 1) // 2
 
 
-def _fields(gear: CondensedGear, loaded: _Loaded, shown: IntArray) -> tuple[FloatArray, FloatArray]:
-    """Return all freedoms (n, T) and the flank loads (nf, T) of the teeth `shown`."""
+def _fields(gear: CondensedGear, loaded: _Loaded, view: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return all freedoms (n, T) and the flank loads (nf, T) of the teeth `view`."""
     left = gear.ring.left
     size, teeth = gear.held.cut_size, len(left)
-    cuts = np.zeros((2 * size, len(shown)))
-    forces = np.zeros((len(loaded.forces), len(shown)))
+    cuts = np.zeros((2 * size, len(view)))
+    forces = np.zeros((len(loaded.forces), len(view)))
     for tooth, column, force in zip(loaded.teeth, loaded.columns, loaded.forces.T, strict=True):
-        apart = shown - tooth
-        cuts[:size] += left[apart % teeth, :, column].T
-        cuts[size:] += left[(apart - 1) % teeth, :, column].T
-        forces[:, apart % teeth == 0] += force[:, None]
+        distance = view - tooth
+        cuts[:size] += left[distance % teeth, :, column].T
+        cuts[size:] += left[(distance - 1) % teeth, :, column].T
+        forces[:, distance % teeth == 0] += force[:, None]
     flank = gear.held.flank @ forces + gear.held.transmitted.T @ cuts
     return gear.condensation.expand(np.concatenate([flank, cuts])), forces
 
@@ -128,19 +128,19 @@ def _deformed(
     mirror: IntArray | None,
     left: bool,
 ) -> DeformedGear:
-    shown = _shown(loaded.teeth, beside, teeth)
-    fields, forces = _fields(gear, loaded, shown)
-    closed = len(shown) == teeth
-    numbers = _numbers(gear.sector, elements, len(shown), closed)
+    view = _shown(loaded.teeth, beside, teeth)
+    fields, forces = _fields(gear, loaded, view)
+    closed = len(view) == teeth
+    numbers = _numbers(gear.sector, elements, len(view), closed)
     count = int(numbers.max()) + 1
     points, displacement = np.empty((count, 3)), np.empty((count, 3))
     stress = np.empty((*numbers.shape, 3, 3))
-    for i, tooth in enumerate(shown):
+    for i, tooth in enumerate(view):
         turn = turn_about_axis(2.0 * math.pi * tooth / teeth)
-        moved = elements.displacement(fields[:, i])
+        motion = elements.displacement(fields[:, i])
         points[numbers[i]] = elements.nodes @ turn.T
-        displacement[numbers[i]] = moved @ turn.T
-        stress[i] = turn @ elements.stress(moved) @ turn.T
+        displacement[numbers[i]] = motion @ turn.T
+        stress[i] = turn @ elements.stress(motion) @ turn.T
     cells = numbers.reshape(-1, numbers.shape[-1])
     mean = nodal_mean(cells, stress.reshape(-1, *stress.shape[2:]), count)
     flip = np.array([1.0, 1.0, -1.0 if left else 1.0])
@@ -148,12 +148,12 @@ def _deformed(
     return DeformedGear(
         points=points * flip,
         cells=cells[:, UPSIDE_DOWN] if left else cells,
-        tooth=np.repeat(shown, len(elements.nodes)),
+        tooth=np.repeat(view, len(elements.nodes)),
         displacement=displacement * flip,
         stress=mean * np.outer(flip, flip),
-        quality={name: np.tile(values, len(shown)) for name, values in elements.quality.items()},
+        quality={name: np.tile(values, len(view)) for name, values in elements.quality.items()},
         flank_displacement={
-            int(tooth): flank[:, i] if mirror is None else flank[mirror, i] for i, tooth in enumerate(shown)
+            int(tooth): flank[:, i] if mirror is None else flank[mirror, i] for i, tooth in enumerate(view)
         },
         residual=_residual(gear, fields, forces, closed),
     )
@@ -161,15 +161,15 @@ def _deformed(
 
 def _numbers(sector: SweptSector, elements: SectorElements, count: int, closed: bool) -> IntArray:
     """Return the point of every element node, (T, e, 20); a left cut is the next sector's right cut."""
-    each = elements.points
-    numbers = np.arange(count * each).reshape(count, each)
+    points_of_tooth = elements.points
+    numbers = np.arange(count * points_of_tooth).reshape(count, points_of_tooth)
     left, right = (sector.nodes[:, column] for column in (sector.grid.left, sector.grid.right))
     left, right = left[left >= 0], right[right >= 0]
     following = range(count) if closed else range(count - 1)
     for i in following:
         numbers[i, left] = numbers[(i + 1) % count, right]
     _, packed = np.unique(numbers, return_inverse=True)
-    return np.asarray(packed.reshape(count, each)[:, elements.numbers])
+    return np.asarray(packed.reshape(count, points_of_tooth)[:, elements.numbers])
 
 
 def _residual(gear: CondensedGear, fields: FloatArray, forces: FloatArray, closed: bool) -> float:

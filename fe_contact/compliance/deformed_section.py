@@ -86,10 +86,10 @@ def element_stress(
 
     `out_of_plane` is the stress along the axis per unit of e_xx + e_yy, Pa.
     """
-    nodes, moved = mesh.points[mesh.triangles], displacement[mesh.triangles]
+    nodes, motion = mesh.points[mesh.triangles], displacement[mesh.triangles]
     slopes = shape_derivatives(INNER)  # (q, 2, 6)
     jacobian = np.einsum("qdk,mkx->mqdx", slopes, nodes)
-    gradient = np.linalg.solve(jacobian, np.einsum("qdk,mkc->mqdc", slopes, moved))  # d_x u_c
+    gradient = np.linalg.solve(jacobian, np.einsum("qdk,mkc->mqdc", slopes, motion))  # d_x u_c
     lam, mu = lame
     trace = gradient[..., 0, 0] + gradient[..., 1, 1]
     stress = np.zeros((*trace.shape, 3, 3))

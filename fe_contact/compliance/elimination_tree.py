@@ -74,26 +74,26 @@ class EliminationTree:
 
 def _working(front: Front) -> int:
     """Return the peak of one front: its children's results wait for it."""
-    peak = held = 0
+    peak = borders = 0
     for child in front.children:
-        peak = max(peak, held + _working(child))
-        held += len(child.border) ** 2
+        peak = max(peak, borders + _working(child))
+        borders += len(child.border) ** 2
     inner, border = len(front.inner), len(front.border)
-    return max(peak, held + inner * (inner + border) + border**2)
+    return max(peak, borders + inner * (inner + border) + border**2)
 
 
 def bisected_tree(
-    nodes: IntArray, freedoms: IntArray, position: FloatArray, kept: IntArray, leaf: int = LEAF
+    nodes: IntArray, freedoms: IntArray, position: FloatArray, retained: IntArray, leaf: int = LEAF
 ) -> EliminationTree:
     """Bisect the elements along grid lines and eliminate every freedom as soon as it is complete.
 
     Elements have `nodes` (e, p), -1 where nothing is free, `freedoms` (e, q) of 0 .. n - 1, -1 where
-    held, and a `position` (e, d) on the logical grid. Freedoms `kept` are not eliminated; `leaf` is the
+    held, and a `position` (e, d) on the logical grid. Freedoms `retained` are not eliminated; `leaf` is the
     most elements gathered in one front.
     """
-    builder = _Builder(nodes, freedoms, position, kept, leaf)
+    builder = _Builder(nodes, freedoms, position, retained, leaf)
     draft = builder.build(np.arange(len(nodes)))
-    builder.order[kept] = builder.done + np.arange(len(kept))
+    builder.order[retained] = builder.done + np.arange(len(retained))
     return EliminationTree(_sorted(draft, builder.order), builder.order)
 
 
@@ -117,11 +117,11 @@ class _Builder:
     """Counts occurrences of freedoms while the tree grows."""
 
     def __init__(
-        self, nodes: IntArray, freedoms: IntArray, position: FloatArray, kept: IntArray, leaf: int
+        self, nodes: IntArray, freedoms: IntArray, position: FloatArray, retained: IntArray, leaf: int
     ) -> None:
         self.nodes, self.freedoms, self.leaf = nodes, freedoms, leaf
         self.occurrences = np.bincount(freedoms[freedoms >= 0])
-        self.occurrences[kept] += 1  # never complete
+        self.occurrences[retained] += 1  # never complete
         self.order = np.full(len(self.occurrences), -1)
         self.done = 0
         self._seen = np.zeros((2, nodes.max() + 2), dtype=bool)  # the last for -1
@@ -131,8 +131,8 @@ class _Builder:
         """Return the front of a group of elements and number what it eliminates."""
         if len(group) <= self.leaf:
             children: tuple[_Draft, ...] = ()
-            own = self.freedoms[group]
-            freedoms, count = np.unique(own[own >= 0], return_counts=True)
+            in_group = self.freedoms[group]
+            freedoms, count = np.unique(in_group[in_group >= 0], return_counts=True)
         else:
             children = tuple(self.build(half) for half in self._halves(group))
             freedoms, inverse = np.unique(np.concatenate([c.border for c in children]), return_inverse=True)
@@ -171,7 +171,7 @@ class _Builder:
 
 def sector_tree(sector: SweptSector) -> EliminationTree:
     """Return the elimination that keeps loaded freedoms, left cut and right cut, in this order."""
-    kept = np.concatenate([sector.loaded, sector.left, sector.right])
+    retained = np.concatenate([sector.loaded, sector.left, sector.right])
     free = sector.freedoms.max(axis=1) >= 0
     nodes = np.where(free[sector.elements], sector.elements, -1)
-    return bisected_tree(nodes, sector.element_freedoms, sector.place, kept)
+    return bisected_tree(nodes, sector.element_freedoms, sector.place, retained)

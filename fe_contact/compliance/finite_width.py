@@ -122,10 +122,10 @@ def even_load(z: FloatArray, index: IntArray) -> FloatArray:
     share = np.diff(z) / (z[-1] - z[0])
     sides, middles = np.arange(0, count, 2), np.arange(1, count, 2)
     for low, part in zip(range(0, len(index) - 1, 2), share, strict=True):
-        for plane, simpson, beside in ((low, 1.0, -1.0), (low + 1, 4.0, 2.0), (low + 2, 1.0, -1.0)):
+        for plane, simpson, neighbor_weight in ((low, 1.0, -1.0), (low + 1, 4.0, 2.0), (low + 2, 1.0, -1.0)):
             forces[index[plane, sides], sides] += part * simpson / 6.0
             for neighbor in (middles - 1, middles + 1):
-                forces[index[plane, neighbor], middles] += part * beside / 6.0
+                forces[index[plane, neighbor], middles] += part * neighbor_weight / 6.0
         for plane in (low, low + 2):
             forces[index[plane, middles], middles] += 0.5 * part
     return forces

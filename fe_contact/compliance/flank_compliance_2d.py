@@ -109,9 +109,9 @@ def field_under(ring: Ring, tooth_index: int, forces: FloatArray) -> Field:
 def _stiffness_alone(ring: Ring) -> FloatArray:
     """Return the stiffness (N,) in Pa of each node with all others held, along its stiffer axis."""
     mesh = ring.mesh
-    stiffness, own = np.zeros(len(mesh.points)), _larger(ring.sector.matrix)
+    stiffness, sector_entries = np.zeros(len(mesh.points)), _larger(ring.sector.matrix)
     for nodes in mesh.sector_nodes:
-        stiffness[nodes] += own
+        stiffness[nodes] += sector_entries
     if ring.hub_matrix is not None:
         stiffness[mesh.hub_nodes] += _larger(ring.hub_matrix)
     return stiffness
@@ -234,10 +234,10 @@ def section_keys(
 def condensed_teeth(gear: Toothing, recipe: MeshRecipe, teeth: int | None) -> int:
     """Return the number of condensed teeth, checked against the real ones."""
     real = min(gear.teeth, recipe.real_teeth or gear.teeth)
-    most = real - 1 + real % 2
+    limit = real - 1 + real % 2
     if teeth is None:
-        return min(USUAL_TEETH, most)
-    count = integer("teeth", teeth, 1, most, "Condensed teeth must be real ones; see MeshRecipe.real_teeth.")
+        return min(USUAL_TEETH, limit)
+    count = integer("teeth", teeth, 1, limit, "Condensed teeth must be real ones; see MeshRecipe.real_teeth.")
     if count % 2 == 0:
         raise InputError("teeth", teeth, "odd", "The teeth are centered on tooth 0.")
     return count

@@ -32,15 +32,20 @@ def gear_checks(gear: CondensedGear, loads: FloatArray, lever: float, bore_radiu
     solved = replace(gear, ring=replace(ring, left=ring.solved))
     everywhere = np.tile(ring.solved.sum(axis=0), (2, 1))[:, :1]
     turning = gear.held.flank @ load * ring.shares.sum() + gear.held.transmitted.T @ everywhere
-    values = [np.concatenate([each.flank(0, loads)[:, :1], each.cuts(0)[:, :1]]) for each in (gear, solved)]
+    values = [
+        np.concatenate([solution.flank(0, loads)[:, :1], solution.cuts(0)[:, :1]])
+        for solution in (gear, solved)
+    ]
     values.append(np.concatenate([turning, everywhere]))
     fields = gear.condensation.expand(np.concatenate(values, axis=1)).T
     forces = [element_forces(sector, gear.stiffness, field) for field in fields]
     cuts = np.concatenate([ring.left, np.roll(ring.left, 1, axis=0)], axis=1)[1:, :, 0]
-    moved = float(np.sum(cuts @ gear.held.cuts * cuts) + np.sum(ring.left[:, :, 0] @ ring.restraining[:, 0]))
+    at_cuts = float(
+        np.sum(cuts @ gear.held.cuts * cuts) + np.sum(ring.left[:, :, 0] @ ring.restraining[:, 0])
+    )
     free = sector.element_freedoms >= 0
     inside = float(np.sum(fields[0][sector.element_freedoms] * forces[0] * free))
-    works = [inside + moved, float(load[:, 0] @ values[0][: len(load), 0])]
+    works = [inside + at_cuts, float(load[:, 0] @ values[0][: len(load), 0])]
     works.append(float(load[:, 0] @ ring.blocks[0] @ load[:, 0]))
     moment = _bore_moment(solved, forces[2], bore_radius)
     diagonals = np.einsum("mii->mi", gear.stiffness.matrices)[gear.stiffness.of_element]
@@ -113,8 +118,8 @@ def _reciprocity(gear: CondensedGear, loads: FloatArray) -> float:
     works = {m: loads.T @ gear.flank(m, loads) for m in range(-reach, reach + 1)}
     scale = float(np.abs(works[0]).max())
     mutual = max(float(np.abs(works[m] - works[-m].T).max()) for m in range(reach + 1)) / scale
-    own = gear.ring.blocks[0]
-    return max(mutual, float(np.abs(own - own.T).max() / np.abs(own).max()))
+    block = gear.ring.blocks[0]
+    return max(mutual, float(np.abs(block - block.T).max() / np.abs(block).max()))
 
 
 def least_eigenvalue(matrix: FloatArray) -> float:

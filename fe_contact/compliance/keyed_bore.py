@@ -64,18 +64,18 @@ def key_update(gear: Toothing, solved: CondensedGear, twist: float, span: int) -
         Teeth on either side of tooth 0.
     """
     points = _key_points(gear, solved.sector, twist)
-    held, flank = solved.held, len(solved.sector.flank)
+    clamped, flank = solved.held, len(solved.sector.flank)
     sectors, number, foundation = _modes(points, len(solved.sector.key_bore) + len(solved.sector.key_cut))
     teeth, under = np.arange(-span, span + 1), np.unique(sectors)
-    apart = np.unique((np.concatenate([teeth, under])[:, None] - under) % gear.teeth)
-    moved = _moved(solved, apart)
-    between = np.searchsorted(apart, (sectors[:, None] - sectors) % gear.teeth)
-    coupled = foundation.T @ moved[between, flank + number[:, None], number] @ foundation
-    turned = held.transmitted[:, :flank].T @ np.tile(solved.ring.turn, 2)
+    distances = np.unique((np.concatenate([teeth, under])[:, None] - under) % gear.teeth)
+    motion = _moved(solved, distances)
+    between = np.searchsorted(distances, (sectors[:, None] - sectors) % gear.teeth)
+    coupled = foundation.T @ motion[between, flank + number[:, None], number] @ foundation
+    turned = clamped.transmitted[:, :flank].T @ np.tile(solved.ring.turn, 2)
     key_turn = gear.held_radius * foundation.sum(axis=0)
     rows = np.empty((len(teeth), 1 + foundation.shape[1], flank))
     for i, tooth in enumerate(teeth):
-        response = moved[np.searchsorted(apart, (tooth - sectors) % gear.teeth), :flank, number]
+        response = motion[np.searchsorted(distances, (tooth - sectors) % gear.teeth), :flank, number]
         rows[i, 0], rows[i, 1:] = turned, -foundation.T @ response
     matrix = np.zeros((rows.shape[1], rows.shape[1]))
     matrix[0, 1:] = matrix[1:, 0] = key_turn
@@ -83,16 +83,16 @@ def key_update(gear: Toothing, solved: CondensedGear, twist: float, span: int) -
     return _compressed(rows, matrix)
 
 
-def _moved(solved: CondensedGear, apart: IntArray) -> FloatArray:
-    """Return what unit forces on the bore of sector 0 move: flank and bore of the sectors `apart`.
+def _moved(solved: CondensedGear, distances: IntArray) -> FloatArray:
+    """Return what unit forces on the bore of sector 0 move: flank and bore of the sectors `distances`.
 
     (m, nf + p, p): flank, bore between the cuts, bore on the left cut; p loads on the latter two.
     """
-    held, sector, left = solved.held, solved.sector, solved.ring.bore
+    clamped, sector, left = solved.held, solved.sector, solved.ring.bore
     inner = len(sector.key_bore)
-    both = np.concatenate([left[apart], left[apart - 1]], axis=1)
-    inside = held.transmitted.T @ both
-    inside[np.flatnonzero(apart == 0), :, :inner] += held.flank[:, len(sector.flank) :]
+    both = np.concatenate([left[distances], left[distances - 1]], axis=1)
+    inside = clamped.transmitted.T @ both
+    inside[np.flatnonzero(distances == 0), :, :inner] += clamped.flank[:, len(sector.flank) :]
     return np.concatenate([inside, both[:, sector.key_cut]], axis=1)
 
 
@@ -173,8 +173,8 @@ def _modes(points: _KeyPoints, count: int) -> tuple[IntArray, IntArray, FloatArr
     shares = np.zeros((len(points.shares), len(used)))
     np.add.at(shares, (np.arange(len(shares))[:, None], column.reshape(points.shares.shape)), points.shares)
     values, vectors = np.linalg.eigh(shares.T @ shares)
-    kept = values > 1e-13 * values[-1]
-    return used // count, used % count, vectors[:, kept] * np.sqrt(values[kept])
+    significant = values > 1e-13 * values[-1]
+    return used // count, used % count, vectors[:, significant] * np.sqrt(values[significant])
 
 
 def _compressed(rows: FloatArray, matrix: FloatArray) -> _KeyUpdate:
@@ -185,8 +185,8 @@ def _compressed(rows: FloatArray, matrix: FloatArray) -> _KeyUpdate:
     scale = np.linalg.norm(flat, axis=1)
     scale[1:] = scale[1:].max()
     left, values, right = np.linalg.svd(flat / scale[:, None], full_matrices=False)
-    kept = values > KEPT * values[0]
-    left = left[:, kept] * values[kept] * scale[:, None]
+    significant = values > KEPT * values[0]
+    left = left[:, significant] * values[significant] * scale[:, None]
     core = left.T @ np.linalg.solve(matrix, left)
-    shaped = right[kept].reshape(-1, teeth, flank).transpose(1, 0, 2)
+    shaped = right[significant].reshape(-1, teeth, flank).transpose(1, 0, 2)
     return _KeyUpdate(np.ascontiguousarray(shaped), 0.5 * (core + core.T))

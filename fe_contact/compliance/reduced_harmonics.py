@@ -79,21 +79,21 @@ def solve_few(
             report(len(known) / (len(known) + 2.0))
         within = ring.within(basis)
         solutions = [within.solve(number) for number in ring.harmonics]
-        missed = _missed(ring, basis, solutions, modes)
-        if missed.sum(axis=0).max() <= LARGEST_MISSED * largest:
+        residual = _missed(ring, basis, solutions, modes)
+        if residual.sum(axis=0).max() <= LARGEST_MISSED * largest:
             break
-        chosen = [int(missed.max(axis=1).argmax())]
+        chosen = [int(residual.max(axis=1).argmax())]
         # as large as the problem, or rounding alone is left
         direct = 4 * basis.shape[1] > 3 * len(basis) or chosen[0] in known
     if direct:
         solutions = [ring.solve(number) for number in ring.harmonics]
         known = {number: x[:, probes] for number, x in enumerate(solutions)}
-        basis, missed = np.eye(len(basis)), np.zeros((1, 1))
+        basis, residual = np.eye(len(basis)), np.zeros((1, 1))
     parts = weights(ring.teeth)[list(known)]
     parts /= parts.sum()
     turns = np.exp(2j * np.pi / ring.teeth * np.outer(np.arange(ring.teeth), list(known)))
     solved = np.tensordot(parts * turns, np.stack(list(known.values())), axes=1).real
-    return ClosedRing(basis, solutions, solved, turns.real @ parts, float(missed.sum(axis=0).max()))
+    return ClosedRing(basis, solutions, solved, turns.real @ parts, float(residual.sum(axis=0).max()))
 
 
 def _extended(basis: FloatArray, columns: FloatArray, least: float) -> FloatArray:
@@ -104,10 +104,10 @@ def _extended(basis: FloatArray, columns: FloatArray, least: float) -> FloatArra
     while True:
         columns = columns - basis @ (basis.T @ columns)
         gram = _gram(columns)
-        most = gram.diagonal().max()
-        if most <= least:
+        largest = gram.diagonal().max()
+        if largest <= least:
             return basis
-        added = columns @ _whitening(gram, max(least, RESOLVED * most))[0]
+        added = columns @ _whitening(gram, max(least, RESOLVED * largest))[0]
         added -= basis @ (basis.T @ added)
         basis = np.concatenate([basis, added @ _whitening(_gram(added), 0.5)[0]], axis=1)
 
@@ -121,16 +121,16 @@ def _missed(
     """
     signs = np.random.default_rng(0).choice([-1.0, 1.0], size=(SKETCH, len(basis))) / np.sqrt(SKETCH)
     left, right = (signs @ part for part in np.split(ring.loads, 2))
-    own, behind, ahead = signs @ basis, signs @ ring.across @ basis, signs @ ring.across.T @ basis
-    rank, missed = modes.shape[1], []
+    within, behind, ahead = signs @ basis, signs @ ring.across @ basis, signs @ ring.across.T @ basis
+    rank, residuals = modes.shape[1], []
     for number, (x, weight) in enumerate(zip(solutions, weights(ring.teeth), strict=True)):
         turn = np.exp(2j * np.pi * number / ring.teeth)
-        out = left + turn * right - (own + turn.conj() * behind + turn * ahead) @ x
+        out = left + turn * right - (within + turn.conj() * behind + turn * ahead) @ x
         if number == 0 and ring.spring is not None:
             out -= (signs @ ring.spring) @ (ring.spring.T @ basis @ x)
         out = np.concatenate([out[:, :rank] @ modes.T, out[:, rank:]], axis=1)
-        missed.append(weight * (out.real**2 + out.imag**2).sum(axis=0))
-    return np.stack(missed)
+        residuals.append(weight * (out.real**2 + out.imag**2).sum(axis=0))
+    return np.stack(residuals)
 
 
 def row_space(matrix: FloatArray, least: float) -> FloatArray:
@@ -152,7 +152,7 @@ def _whitening(gram: FloatArray, least: float) -> tuple[FloatArray, FloatArray]:
     factor, pivots, rank, _ = lapack.dpstrf(np.asfortranarray(gram), lower=1, tol=least)
     lower = np.tril(factor[:, :rank])
     values, vectors = np.linalg.eigh(lower.T @ lower)
-    kept = values > least
-    whitening = np.empty((len(gram), int(kept.sum())))
-    whitening[pivots - 1] = lower @ (vectors[:, kept] / values[kept])
-    return whitening, values[kept]
+    significant = values > least
+    whitening = np.empty((len(gram), int(significant.sum())))
+    whitening[pivots - 1] = lower @ (vectors[:, significant] / values[significant])
+    return whitening, values[significant]

@@ -49,10 +49,10 @@ def rotation(angle: float) -> FloatArray:
 
 def assemble_ring(mesh: GearMesh, sector: CondensedSector, hub_matrix: sp.csc_array | None) -> Ring:
     """Add up the condensed sectors and the hub, clamp the bore, factorise."""
-    kept = np.unique(np.concatenate([mesh.sector_nodes[:, sector.boundary].ravel(), mesh.hub_nodes]))
-    kept = np.setdiff1d(kept, mesh.bore_nodes)
+    retained = np.unique(np.concatenate([mesh.sector_nodes[:, sector.boundary].ravel(), mesh.hub_nodes]))
+    retained = np.setdiff1d(retained, mesh.bore_nodes)
     position = np.full(2 * len(mesh.points), -1)
-    position[freedoms(kept)] = np.arange(2 * len(kept))
+    position[freedoms(retained)] = np.arange(2 * len(retained))
     rows, columns, values = [], [], []
     for i in range(len(mesh.teeth)):
         turned = _turned_matrix(sector.stiffness, mesh.teeth[i] * mesh.pitch_angle)
@@ -68,7 +68,7 @@ def assemble_ring(mesh: GearMesh, sector: CondensedSector, hub_matrix: sp.csc_ar
         columns.append(at[coo.col[free]])
         values.append(coo.data[free])
     entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
-    matrix = sp.csc_array(sp.coo_array(entries, shape=(2 * len(kept), 2 * len(kept))))
+    matrix = sp.csc_array(sp.coo_array(entries, shape=(2 * len(retained), 2 * len(retained))))
     return Ring(mesh, sector, hub_matrix, matrix, position, factorise(matrix, block=2))
 
 
@@ -106,10 +106,10 @@ def flank_matrices(ring: Ring, teeth: IntArray) -> tuple[FloatArray, FloatArray]
         transmitted[at[n], n * k : (n + 1) * k] = block
     unit = np.zeros((ring.matrix.shape[0], len(used)))
     unit[used, np.arange(len(used))] = 1.0
-    moved = ring.solve(unit)[used] @ transmitted
-    matrix = transmitted.T @ moved
+    motion = ring.solve(unit)[used] @ transmitted
+    matrix = transmitted.T @ motion
     for n in range(count):
         matrix[n * k : (n + 1) * k, n * k : (n + 1) * k] += sector.flank
     middle = (count - 1) // 2
-    boundary = moved[at[middle], middle * k : (middle + 1) * k]
+    boundary = motion[at[middle], middle * k : (middle + 1) * k]
     return np.asarray(matrix), sector.along + sector.along_boundary @ boundary

@@ -115,14 +115,14 @@ def _unit_load_stress(
     tooth: CondensedTooth, functionals: sp.csr_array, modes: FloatArray, cuts: LeftCuts, reach: int
 ) -> FloatArray:
     """Return the stresses (2 reach + 1, r, nf) of tooth m = -reach .. reach by forces on tooth 0."""
-    kept = _kept_functionals(tooth.condensation, functionals)
-    held, count = tooth.held, len(tooth.sector.flank)
-    by_cuts = kept[:, count:] + kept[:, :count] @ held.transmitted.T
-    stress = np.empty((2 * reach + 1, len(kept), count))
+    retained = _kept_functionals(tooth.condensation, functionals)
+    clamped, count = tooth.held, len(tooth.sector.flank)
+    by_cuts = retained[:, count:] + retained[:, :count] @ clamped.transmitted.T
+    stress = np.empty((2 * reach + 1, len(retained), count))
     for m in range(-reach, reach + 1):
-        moved = np.concatenate([cuts.near[m], cuts.near[m - 1]])
-        stress[reach + m] = (by_cuts @ moved) @ modes.T
-    stress[reach] += kept[:, :count] @ held.flank
+        motion = np.concatenate([cuts.near[m], cuts.near[m - 1]])
+        stress[reach + m] = (by_cuts @ motion) @ modes.T
+    stress[reach] += retained[:, :count] @ clamped.flank
     return stress
 
 

@@ -72,12 +72,12 @@ def face_stress(elements: SurfaceElements, material: Material, size: int) -> sp.
     plane, shear = material.plane_strain_modulus, material.youngs_modulus / (1.0 + nu)
     along, across, between = strains
     stresses = np.stack([plane * (along + nu * across), plane * (across + nu * along), shear * between])
-    own = np.einsum("kmgia,miab->kmgib", stresses, elements.frames)
-    freedoms = np.broadcast_to(elements.freedoms[:, None], own.shape)
-    rows = np.arange(own[..., 0, 0].size).reshape(*own.shape[:3], 1, 1)
+    in_frames = np.einsum("kmgia,miab->kmgib", stresses, elements.frames)
+    freedoms = np.broadcast_to(elements.freedoms[:, None], in_frames.shape)
+    rows = np.arange(in_frames[..., 0, 0].size).reshape(*in_frames.shape[:3], 1, 1)
     free = freedoms >= 0
-    entries = own[free], (np.broadcast_to(rows, own.shape)[free], freedoms[free])
-    return sp.csr_array(sp.coo_array(entries, shape=(own[..., 0, 0].size, size)))
+    entries = in_frames[free], (np.broadcast_to(rows, in_frames.shape)[free], freedoms[free])
+    return sp.csr_array(sp.coo_array(entries, shape=(in_frames[..., 0, 0].size, size)))
 
 
 def _surface_strains(nodes: FloatArray) -> FloatArray:

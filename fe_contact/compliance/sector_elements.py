@@ -55,19 +55,19 @@ class SectorElements:
         """Return the displacement (e, 20, 3) in m at the nodes for the freedoms `field` (n,)."""
         freedoms = self.sector.element_freedoms
         local = np.where(freedoms >= 0, field[freedoms], 0.0)
-        moved = np.empty_like(self.nodes)
+        motion = np.empty_like(self.nodes)
         for part in self.parts:
             values = np.einsum("mij,cmj->cmi", part.frames, local[part.elements])
             values = values.reshape(*part.elements.shape, 20, 3)
-            moved[part.elements] = np.einsum("cxy,cmpy->cmpx", part.turns, values)
-        return moved
+            motion[part.elements] = np.einsum("cxy,cmpy->cmpx", part.turns, values)
+        return motion
 
-    def stress(self, moved: FloatArray) -> FloatArray:
+    def stress(self, motion: FloatArray) -> FloatArray:
         """Return the stress (e, 20, 3, 3) in Pa at the nodes for displacements (e, 20, 3)."""
-        stress = np.empty((*moved.shape, 3))
+        stress = np.empty((*motion.shape, 3))
         for part in self.parts:
             # gradients are known in the frame of the layer: turn the displacement into it, the stress out
-            local = np.einsum("cxy,cmpx->cmpy", part.turns, moved[part.elements])
+            local = np.einsum("cxy,cmpx->cmpy", part.turns, motion[part.elements])
             gradient = np.einsum("mqpi,cmpj->cmqij", part.gradient, local)
             inner = stress_of(gradient, self.lame)
             nodal = np.einsum("aq,cmqij->cmaij", _EXTRAPOLATION, inner)
@@ -105,9 +105,9 @@ def sector_elements(gear: Toothing, section: QuadSector, sector: SweptSector) ->
         parts.append(_Part(batch.elements, frames, gradients(mesh, inner), turns))
         if batch.half:
             hanging = (batch.elements.size, len(LOWER_FACE))
-            own = points + np.arange(hanging[0] * hanging[1]).reshape(hanging)
-            numbers[batch.elements.ravel()[:, None], LOWER_FACE] = own
-            points += own.size
+            hanging_numbers = points + np.arange(hanging[0] * hanging[1]).reshape(hanging)
+            numbers[batch.elements.ravel()[:, None], LOWER_FACE] = hanging_numbers
+            points += hanging_numbers.size
     angle = quad_quality(section.points, section.grid.quads).angle
     quality = {"scaled_jacobian": jacobian, "corner_angle_deg": np.empty(sector.bodies)}
     for batch in bodies:

@@ -68,8 +68,8 @@ def sector_stiffness(gear: Toothing, section: QuadSector, sector: SweptSector) -
     solid = stiffness_of(np.concatenate([nodes for nodes, _ in placed]), lame)
     ends = np.cumsum([len(batch.quads) for batch in bodies])
     matrices = [
-        moved.transpose(0, 2, 1) @ local @ moved
-        for local, (_, moved) in zip(np.split(solid, ends[:-1]), placed, strict=True)
+        transform.transpose(0, 2, 1) @ local @ transform
+        for local, (_, transform) in zip(np.split(solid, ends[:-1]), placed, strict=True)
     ]
     for batch in sector.batches[len(bodies) :]:
         seat = seat_stiffness(gear, sector.grid, batch.thickness, sector.seat)

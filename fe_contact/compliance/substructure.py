@@ -118,8 +118,10 @@ def _gathered(
     for child in front.children:
         _add_part(blocks, parts.pop(0), np.searchsorted(numbers, order[child.border]))
     if len(front.elements):
-        own = freedoms[front.elements]
-        positions = np.where(own >= 0, np.searchsorted(numbers, order[own]), -1)
+        numbers_of_elements = freedoms[front.elements]
+        positions = np.where(
+            numbers_of_elements >= 0, np.searchsorted(numbers, order[numbers_of_elements]), -1
+        )
         _add_elements(blocks, stiffness.matrices, stiffness.of_element[front.elements], positions)
     return blocks
 

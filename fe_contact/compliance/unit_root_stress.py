@@ -178,11 +178,11 @@ def _compute_in_plane(
     clock.finish("factorisation")
     rows = [edge_stress(mesh.sector.points, chain, gear.material, hypothesis) for chain in root.nodes]
     functionals = sp.csr_array(sp.vstack(rows))
-    own, index = tooth_indices(mesh, 1), tooth_indices(mesh, teeth)
-    stress = _unit_load_stress(ring, functionals, int(own[0]), index)
+    loaded_tooth, index = tooth_indices(mesh, 1), tooth_indices(mesh, teeth)
+    stress = _unit_load_stress(ring, functionals, int(loaded_tooth[0]), index)
     clock.finish("stress")
     forces = uniform_pressure(mesh.sector.s, profile.s_form, gear.base_radius).forces
-    checks = _checks_in_plane(ring, functionals, int(own[0]), forces, stress[teeth // 2])
+    checks = _checks_in_plane(ring, functionals, int(loaded_tooth[0]), forces, stress[teeth // 2])
     clock.finish("checks")
     stations = between_nodes(root.s)
     count = mesh.sector.s.size
@@ -204,32 +204,32 @@ def _compute_in_plane(
     )
 
 
-def _unit_load_stress(ring: Ring, functionals: sp.csr_array, own: int, index: IntArray) -> FloatArray:
-    """Return the stresses (t, r, k) of tooth `own` by how far it is ahead of the loaded ones of `index`."""
+def _unit_load_stress(ring: Ring, functionals: sp.csr_array, tooth: int, index: IntArray) -> FloatArray:
+    """Return the stresses (t, r, k) of tooth `tooth` by how far it is ahead of the loaded ones of `index`."""
     sector = ring.sector
     inner, border = sector.interior, freedoms(sector.boundary)
     by_row = sector.solve(functionals[:, inner].T.toarray())
     local = np.asarray((sector.loads[inner].T @ by_row).T)
     on_border = functionals[:, border].toarray() - (sector.matrix[border][:, inner] @ by_row).T
     right = np.zeros((ring.matrix.shape[0], len(on_border)))
-    right[ring.rows(own)] = ring.turned(own, on_border.T)
+    right[ring.rows(tooth)] = ring.turned(tooth, on_border.T)
     shared = ring.solve(right)
     # Tooth `own` is n ahead of tooth own - n.
-    loaded = 2 * own - index
+    loaded = 2 * tooth - index
     stress = np.stack([shared[ring.rows(int(i))].T @ ring.turned(int(i), sector.transmitted) for i in loaded])
     stress[len(index) // 2] += local
     return stress
 
 
 def _checks_in_plane(
-    ring: Ring, functionals: sp.csr_array, own: int, forces: FloatArray, stress: FloatArray
+    ring: Ring, functionals: sp.csr_array, tooth: int, forces: FloatArray, stress: FloatArray
 ) -> RootStressChecks:
-    """Compare with the displacement of the whole mesh under `forces` (k,) on tooth `own`."""
+    """Compare with the displacement of the whole mesh under `forces` (k,) on tooth `tooth`."""
     mesh = ring.mesh
-    field = field_under(ring, own, forces)
+    field = field_under(ring, tooth, forces)
     out_of_balance = field.load - field.internal
     out_of_balance[mesh.bore_nodes] = 0.0
-    direct = functionals @ field.displacement[mesh.sector_nodes[own]].ravel()
+    direct = functionals @ field.displacement[mesh.sector_nodes[tooth]].ravel()
     return RootStressChecks(
         residual=float(np.linalg.norm(out_of_balance) / np.linalg.norm(field.load)),
         recovery=relative_difference(stress @ forces, direct),
@@ -278,5 +278,5 @@ def edge_stress(
     profile = hypothesis.contact_modulus(material) * sp.csr_array(
         (strain.ravel(), (rows.ravel(), freedoms.ravel())), shape=shape
     )
-    held = material.poissons_ratio if hypothesis is PlaneHypothesis.PLANE_STRAIN else 0.0
-    return sp.csr_array(sp.vstack([profile, held * profile, sp.csr_array(shape)]))
+    lateral = material.poissons_ratio if hypothesis is PlaneHypothesis.PLANE_STRAIN else 0.0
+    return sp.csr_array(sp.vstack([profile, lateral * profile, sp.csr_array(shape)]))

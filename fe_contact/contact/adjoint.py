@@ -90,12 +90,12 @@ def weigh(
     for row in range(count):
         bodies = row_bodies(every, row)
         for p in range(row, force.shape[0], count):
-            problem, here = problem_on(every, bodies, p)
-            rows = np.ascontiguousarray(shares[:, p][:, here])
+            problem, touching = problem_on(every, bodies, p)
+            rows = np.ascontiguousarray(shares[:, p][:, touching])
             for k in range(force.shape[1]):
-                parts = _pushed(problem, force[p, k][here], rows)
-                for q in range(here.size):
-                    at, carried = here[q], force[p, k, here[q]]
+                parts = _pushed(problem, force[p, k][touching], rows)
+                for q in range(touching.size):
+                    at, carried = touching[q], force[p, k, touching[q]]
                     pushed[:, p, k, at] = parts[:, q]
                     if carried > 0.0:
                         middle[p, k, at], half[p, k, at] = carrying_strip(problem.law, q, carried)
@@ -113,19 +113,19 @@ def _pushed(problem: PointProblem, force: FloatArray, rows: FloatArray) -> Float
             state.slope[q] = 1.0 / approach(problem.law, q, force[q])[1]
     system = empty_system(problem)
     size = newton_system(problem, state, system)
-    held, motion = np.zeros((2, state.held.size))
+    pressed, motion = np.zeros((2, state.held.size))
     right, out = np.zeros((len(rows), size)), np.full(rows.shape, np.nan)
     for a in range(len(rows)):
-        press(problem, state.slope * rows[a], held)
+        press(problem, state.slope * rows[a], pressed)
         for r in range(size):
-            right[a, r] = held[system.member[r]]
+            right[a, r] = pressed[system.member[r]]
     if not eliminate(system.matrix, right, size):
         return out
     for a in range(len(rows)):
-        held[:] = 0.0
+        pressed[:] = 0.0
         for r in range(size):
-            held[system.member[r]] = right[a, r]
-        yield_to(state.yielding, held, motion)
+            pressed[system.member[r]] = right[a, r]
+        yield_to(state.yielding, pressed, motion)
         out[a] = state.slope * (rows[a] - motions(problem, motion))
     return out
 
@@ -156,13 +156,13 @@ def _respond(every: PointProblems, force: FloatArray, opened: FloatArray, change
     for row in range(count):
         bodies = row_bodies(every, row)
         for p in range(row, force.shape[0], count):
-            problem, here = problem_on(every, bodies, p)
-            rows = np.empty((len(opened) + 1, here.size))
+            problem, touching = problem_on(every, bodies, p)
+            rows = np.empty((len(opened) + 1, touching.size))
             rows[0] = problem.motion_arm
             for k in range(force.shape[1]):
-                rows[1:] = opened[:, p, k][:, here]
-                parts = _pushed(problem, force[p, k][here], rows)
-                stiff = dot(problem.torque_arm, parts[0], here.size)
+                rows[1:] = opened[:, p, k][:, touching]
+                parts = _pushed(problem, force[p, k][touching], rows)
+                stiff = dot(problem.torque_arm, parts[0], touching.size)
                 for a in range(len(opened)):
-                    lag = dot(problem.torque_arm, parts[a + 1], here.size) / stiff
-                    changes[a, p, k][here] = lag * parts[0] - parts[a + 1]
+                    lag = dot(problem.torque_arm, parts[a + 1], touching.size) / stiff
+                    changes[a, p, k][touching] = lag * parts[0] - parts[a + 1]

@@ -123,16 +123,16 @@ def _laid(
     """
     short, long = patch.stretched(-_STRETCH, mate), patch.stretched(_STRETCH, mate)
     widest = patch.half_width.max()
-    near, most = NEAR * widest, end - widest
-    above = np.minimum(patch.center + near, most)
+    near, highest = NEAR * widest, end - widest
+    above = np.minimum(patch.center + near, highest)
     plain = np.full(above.shape, widest), np.zeros(above.shape)
     at_edge = side != 0.0
     low, high = (
-        np.where(at_edge, (each.center, each.half_width, each.edge_share), (center, *plain))
-        for each, center in ((short, above - 2.0 * near), (long, above))
+        np.where(at_edge, (stretched.center, stretched.half_width, stretched.edge_share), (center, *plain))
+        for stretched, center in ((short, above - 2.0 * near), (long, above))
     )
-    apart = 2.0 * _STRETCH * np.where(patch.at_tip, patch.edge_distance, mate.edge_distance)
-    way = np.where(at_edge, side * apart, tip * 2.0 * near)
+    spread = 2.0 * _STRETCH * np.where(patch.at_tip, patch.edge_distance, mate.edge_distance)
+    way = np.where(at_edge, side * spread, tip * 2.0 * near)
     return np.stack([(patch.center, patch.half_width, patch.edge_share), low, high]), way
 
 
@@ -182,11 +182,11 @@ def _add_gear(
                     continue
                 value, change = 0.0, 0.0
                 for a in range(first[i], last[i]):
-                    moved, plain = 0.0, 0.0
+                    motion, plain = 0.0, 0.0
                     for b in range(first[j], last[j]):
-                        moved += blocks[i, j, a, b] * load[0, j, b]
+                        motion += blocks[i, j, a, b] * load[0, j, b]
                         plain += blocks[i, j, a, b] * (load[1, j, b] + load[2, j, b])
-                    value += load[0, i, a] * moved
+                    value += load[0, i, a] * motion
                     change += (load[2, i, a] - load[1, i, a]) * plain
                 arms = lever[p, i] * lever[p, j]
                 value, change = arms * value, arms * change

@@ -46,11 +46,17 @@ class CarryingStrips:
     @classmethod
     def of(cls, pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> CarryingStrips:
         """Gather them from a solution of a problem."""
-        found = adjoint(pair, problem, solution)
-        at = np.nonzero(found.weight)
+        weights = adjoint(pair, problem, solution)
+        at = np.nonzero(weights.weight)
         turned = TurnedForces.of(pair, problem, solution.force)
         following = FollowingPatches.of(pair, problem, solution.force) if problem.tilt.size else None
-        strips = found.middle[at], found.half[at], found.weight[at], found.arm_weight[at], found.added_arm
+        strips = (
+            weights.middle[at],
+            weights.half[at],
+            weights.weight[at],
+            weights.arm_weight[at],
+            weights.added_arm,
+        )
         return cls._at(pair, problem.candidates, at, (turned, following), *strips)
 
     def at_edges(self, candidates: Candidates, at: tuple[IntArray, ...], half: float) -> CarryingStrips:

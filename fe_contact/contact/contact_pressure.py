@@ -26,14 +26,14 @@ def contact_pressure(problem: ContactProblem, force: FloatArray) -> tuple[FloatA
     """
     candidates = problem.candidates
     loaded = np.nonzero(force.any(axis=1))
-    here, none = candidates.gap_at(loaded), np.full(loaded[0].size, np.inf)
+    gap, none = candidates.gap_at(loaded), np.full(loaded[0].size, np.inf)
     line_load = np.moveaxis(force, 1, 2)[loaded] / candidates.width[loaded][:, None]
-    at_edge = (here.low >= 0.0) | (here.high <= 0.0)
-    endless = _unchamfered(here)._replace(low=-none, high=none)
+    at_edge = (gap.low >= 0.0) | (gap.high <= 0.0)
+    endless = _unchamfered(gap)._replace(low=-none, high=none)
     endless = endless._replace(slope=np.where(at_edge, 0.0, endless.slope))
     half = _strips(gap_table(endless), line_load, problem.modulus)
-    chamfer = np.where(here.jump >= _EDGE, np.abs(here.place), np.inf).min(axis=-1, initial=np.inf)
-    reach = np.minimum(np.minimum(-here.low, here.high), chamfer)[:, None]
+    chamfer = np.where(gap.jump >= _EDGE, np.abs(gap.place), np.inf).min(axis=-1, initial=np.inf)
+    reach = np.minimum(np.minimum(-gap.low, gap.high), chamfer)[:, None]
     pressure, edge = np.zeros(force.shape), np.zeros(force.shape, dtype=np.bool_)
     row, contact = loaded
     pressure[row, :, contact] = np.divide(
@@ -50,10 +50,10 @@ def _unchamfered(about: Gap) -> Gap:
     what the chamfer to the right of it is added to.
     """
     chamfer = about.jump >= _EDGE
-    held = chamfer & (about.place == 0.0)
-    to_the_left = held & (about.slope[..., None] < -0.5 * about.jump)
+    at_chamfer = chamfer & (about.place == 0.0)
+    to_the_left = at_chamfer & (about.slope[..., None] < -0.5 * about.jump)
     return about._replace(
-        slope=np.where(held.any(axis=-1), 0.0, about.slope),
+        slope=np.where(at_chamfer.any(axis=-1), 0.0, about.slope),
         curvature=about.curvature + np.where(to_the_left, about.bend, 0.0).sum(axis=-1),
         jump=np.where(chamfer, 0.0, about.jump),
         bend=np.where(chamfer, 0.0, about.bend),

@@ -145,28 +145,28 @@ def _corner(edge: FloatArray, i: int, force: float) -> tuple[float, float]:
             rigid += 0.5 * offset * offset / radius
             reached = offset * offset / (radius * softness)
     law = force * math.log(half) - 2.0 * rigid / softness  # the integral of ln h over the force
-    beside = law + 0.5 * reached if half == far else force * math.log(far)
+    strip_part = law + 0.5 * reached if half == far else force * math.log(far)
     length = math.log(edge[i, LENGTH])
-    missing = part * force * length - beside + (1.0 - part) * law
+    missing = part * force * length - strip_part + (1.0 - part) * law
     steep = part * length - math.log(far) + (1.0 - part) * math.log(half)
     return edge[i, CORNER] * missing, edge[i, CORNER] * steep
 
 
 @njit(cache=True, error_model="numpy")
-def edge_motions(edge: FloatArray, tilt: FloatArray, held: FloatArray, moved: FloatArray) -> None:
+def edge_motions(edge: FloatArray, tilt: FloatArray, pressed: FloatArray, motions: FloatArray) -> None:
     """Add to motions (P, L, n) in m what strips at edges move under forces (P, L, n) in N.
 
     `edge` (Q, n, 8) is a table, `tilt` (Q, n, n) that of the contact problem, P a multiple of Q.
     """
-    for p in range(held.shape[0]):
-        row, here = tilt[p % tilt.shape[0]], edge[p % edge.shape[0]]
-        for k in range(held.shape[1]):
-            for j in range(held.shape[2]):
-                if here[j, SIDE] != 0.0:
+    for p in range(pressed.shape[0]):
+        row, edges = tilt[p % tilt.shape[0]], edge[p % edge.shape[0]]
+        for k in range(pressed.shape[1]):
+            for j in range(pressed.shape[2]):
+                if edges[j, SIDE] != 0.0:
                     slope = 0.0
-                    for i in range(held.shape[2]):
-                        slope += row[j, i] * held[p, k, i]
-                    motion = edge_motion(here, j, held[p, k, j], slope)
-                    moved[p, k, j] += motion.by_force + motion.corner
-                    for i in range(held.shape[2]):
-                        moved[p, k, i] += motion.by_tilt * row[j, i]
+                    for i in range(pressed.shape[2]):
+                        slope += row[j, i] * pressed[p, k, i]
+                    motion = edge_motion(edges, j, pressed[p, k, j], slope)
+                    motions[p, k, j] += motion.by_force + motion.corner
+                    for i in range(pressed.shape[2]):
+                        motions[p, k, i] += motion.by_tilt * row[j, i]

@@ -30,17 +30,17 @@ def eliminate(a: FloatArray, right: FloatArray, n: int) -> bool:
             return False
         if pivot != j:
             _swap(a[j], a[pivot], n)
-            for each in right:
-                each[j], each[pivot] = each[pivot], each[j]
+            for column in right:
+                column[j], column[pivot] = column[pivot], column[j]
         for i in range(j + 1, n):
             if a[i, j] != 0.0:
                 part = a[i, j] / a[j, j]
                 subtract(a[i, j + 1 : n], a[j, j + 1 : n], part)
-                for each in right:
-                    each[i] -= part * each[j]
-    for each in right:
+                for column in right:
+                    column[i] -= part * column[j]
+    for column in right:
         for i in range(n - 1, -1, -1):
-            each[i] = (each[i] - dot(a[i, i + 1 : n], each[i + 1 : n], n - i - 1)) / a[i, i]
+            column[i] = (column[i] - dot(a[i, i + 1 : n], column[i + 1 : n], n - i - 1)) / a[i, i]
     return True
 
 

@@ -74,12 +74,12 @@ class KeyedFlanks(NamedTuple):
     def compliance(self, tooth: IntArray, loads: FaceLoads) -> FloatArray:
         """Return what is added between patches (n, n) on the teeth (n,)."""
         rows = self.rows[tooth + len(self.rows) // 2]
-        moved = np.empty((len(tooth), rows.shape[1]))
+        motion = np.empty((len(tooth), rows.shape[1]))
         for i, (row, nodes, forces, used) in enumerate(
             zip(rows, loads.nodes, loads.forces, loads.used, strict=True)
         ):
-            moved[i] = row[:, nodes[:used]] @ forces[:used]
-        added = moved @ self.core @ moved.T
+            motion[i] = row[:, nodes[:used]] @ forces[:used]
+        added = motion @ self.core @ motion.T
         return added if self.couple_teeth else np.where(tooth[:, None] == tooth, added, 0.0)
 
 
@@ -108,9 +108,9 @@ class _FaceGear:
             added = np.zeros((rows.size, self.teeth.size, self.teeth.size))
             add_compliance(self.blocks, order, self.teeth, loads, at, arms, added)
             for p in range(rows.size if len(self.key.rows) else 0):
-                here = at[0] == p
-                on = at[1, here]
-                by_key = self.key.compliance(self.teeth[on], loads.rows(here))
+                at_position = at[0] == p
+                on = at[1, at_position]
+                by_key = self.key.compliance(self.teeth[on], loads.rows(at_position))
                 added[p][np.ix_(on, on)] += by_key * np.outer(arms[p, on], arms[p, on])
             yield rows, added
 
@@ -138,8 +138,8 @@ class _DisplacedGear(_FaceGear):
         above, below = (face_loads(self.grid, center + way, *alike) for way in (near, -near))
         steep = 0.5 * self.tip / near
         plain, change = above.plus(0.5, below, 0.5), above.plus(steep, below, -steep)
-        in_turn = (np.stack(each, axis=1) for each in zip(plain, change, strict=True))
-        nodes, forces, used = (each.reshape(on.size, *each.shape[2:]) for each in in_turn)
+        in_turn = (np.stack(values, axis=1) for values in zip(plain, change, strict=True))
+        nodes, forces, used = (values.reshape(on.size, *values.shape[2:]) for values in in_turn)
         return FaceLoads(nodes, forces, used)
 
 

@@ -44,10 +44,10 @@ class FaceLoads(NamedTuple):
 
     def plus(self, part: float, other: FaceLoads, times: float) -> FaceLoads:
         """Return `part` of these loads and `times` others, as many, behind each other."""
-        most, others = self.used.max(), other.used.max()
-        nodes = np.concatenate([self.nodes[:, :most], other.nodes[:, :others]], axis=1)
+        count, others = self.used.max(), other.used.max()
+        nodes = np.concatenate([self.nodes[:, :count], other.nodes[:, :others]], axis=1)
         nodes = np.where(nodes < 0, nodes[:, :1], nodes)
-        forces = np.concatenate([part * self.forces[:, :most], times * other.forces[:, :others]], axis=1)
+        forces = np.concatenate([part * self.forces[:, :count], times * other.forces[:, :others]], axis=1)
         return FaceLoads(nodes, forces, np.full(len(nodes), nodes.shape[1]))
 
 
@@ -232,10 +232,10 @@ def add_compliance(
     room = np.empty(needed[:, 0].max() ** 2)
     for a in range(ends.size - 1):
         for b in range(ends.size - 1):
-            apart = tooth[ends[a]] - tooth[ends[b]]
-            if 0 <= apart < blocks.shape[0] and (apart > 0 or a == b):
+            distance = tooth[ends[a]] - tooth[ends[b]]
+            if 0 <= distance < blocks.shape[0] and (distance > 0 or a == b):
                 rows, columns = needed[a, 1 : needed[a, 0] + 1], needed[b, 1 : needed[b, 0] + 1]
-                _add_teeth(_gathered(blocks[apart], rows, columns, room), slices, ends, a, b, out)
+                _add_teeth(_gathered(blocks[distance], rows, columns, room), slices, ends, a, b, out)
 
 
 class _SliceForces(NamedTuple):
@@ -337,8 +337,8 @@ def _ranges(
     low, high = np.full(ends[-1], place.shape[1]), np.zeros(ends[-1], dtype=np.int64)
     for r in range(on.size):
         for k in range(loads.used[r]):
-            here = place[on[r], loads.nodes[r, k]]
-            low[on[r]], high[on[r]] = min(low[on[r]], here), max(high[on[r]], here + 1)
+            rank = place[on[r], loads.nodes[r, k]]
+            low[on[r]], high[on[r]] = min(low[on[r]], rank), max(high[on[r]], rank + 1)
     low = np.minimum(low, high)
     start = np.zeros(ends[-1] + 1, dtype=np.int64)
     start[1:] = np.cumsum(high - low)

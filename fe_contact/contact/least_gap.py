@@ -206,8 +206,8 @@ def samples(
     """
     low, high = window
     nearest, beyond = _nodes_within(window, nodes)
-    most = (parts.size + 1) * low.size + (beyond - nearest).sum()
-    x, of = np.empty(most), np.empty(most, dtype=np.int64)
+    room = (parts.size + 1) * low.size + (beyond - nearest).sum()
+    x, of = np.empty(room), np.empty(room, dtype=np.int64)
     first = 0
     for n in range(low.size):
         last = first
@@ -220,11 +220,11 @@ def samples(
                 last = _insert(x, nodes.s[node] - nodes.origin[k, n], first, last)
         count, below = first, -np.inf
         for at in range(first, last):
-            here = x[at]
-            if here - below > alike[n]:
-                x[count], of[count] = here, n
+            sample = x[at]
+            if sample - below > alike[n]:
+                x[count], of[count] = sample, n
                 count += 1
-            below = here
+            below = sample
         first = count
     return x[:first], of[:first]
 

@@ -47,7 +47,7 @@ def load_weights(
     stiffness, *of_rows = np.einsum("rplm,pm->rpl", pushed, c.motion_arm)
     weight = pushed[0] / stiffness[..., None]
     weights = [
-        (more[..., None] * weight - own) / solution.load[:, None]
-        for more, own in zip(of_rows, pushed[1:], strict=True)
+        (more[..., None] * weight - nominal) / solution.load[:, None]
+        for more, nominal in zip(of_rows, pushed[1:], strict=True)
     ]
     return weight, np.stack(weights) if weights else pushed[1:]

@@ -70,7 +70,7 @@ def approach(law: LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
         Whether the strip has outgrown the reference length.
     """
     width, modulus = law.strip[i, _WIDTH], law.strip[i, MODULUS]
-    p, (k, least, most) = force / width, _limits(law, i)
+    p, (k, least, widest) = force / width, _limits(law, i)
     half, rigid = 0.0, 0.0
     if p > 0.0:
         middle, half, rigid = half_strip(
@@ -81,9 +81,9 @@ def approach(law: LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
         load, rigid = strip_load(law.gap, i, least, modulus)
         slope = rigid / load + k * (-math.log(SMALLEST_STRIP) - 0.25)
         return slope * p, slope / width, False
-    beyond = half > most
+    beyond = half > widest
     if beyond:
-        half, (_, rigid) = most, strip_load(law.gap, i, most, modulus)
+        half, (_, rigid) = widest, strip_load(law.gap, i, widest, modulus)
     slope = k * (math.log(law.strip[i, REFERENCE_LENGTH] / half) - 0.25)
     return rigid + slope * p, slope / width, beyond
 
@@ -91,9 +91,9 @@ def approach(law: LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
 @inner(error_model="numpy")
 def plain_approach(law: LocalLaw, i: int, force: float) -> float:
     """Return the local approach in m of contact `i` under `force` in N, > 0, on a gap that is a parabola."""
-    p, (k, least, most) = force / law.strip[i, _WIDTH], _limits(law, i)
+    p, (k, least, widest) = force / law.strip[i, _WIDTH], _limits(law, i)
     curvature = float(law.gap[i, CURVATURE])
-    half = min(max(math.sqrt(2.0 * k * p / curvature), least), most)
+    half = min(max(math.sqrt(2.0 * k * p / curvature), least), widest)
     return float(
         0.25 * curvature * half * half + k * p * (math.log(law.strip[i, REFERENCE_LENGTH] / half) - 0.25)
     )
@@ -108,10 +108,10 @@ def width_of(law: LocalLaw, i: int) -> float:
 @inner(error_model="numpy")
 def carrying_strip(law: LocalLaw, i: int, force: float) -> tuple[float, float]:
     """Return middle and half length in m of the strip over which contact `i` carries `force` in N, > 0."""
-    _, least, most = _limits(law, i)
+    _, least, widest = _limits(law, i)
     p, modulus = force / law.strip[i, _WIDTH], law.strip[i, MODULUS]
     _, half, _ = half_strip(law.gap, i, p, modulus, law.strip[i, MIDDLE], law.strip[i, HALF_STRIP])
-    half = min(max(half, least), most)
+    half = min(max(half, least), widest)
     return (0.0 if half <= law.strip[i, _FREE] else strip_middle(law.gap, i, half)), half
 
 
@@ -132,13 +132,13 @@ def force_at(law: LocalLaw, i: int, value: float) -> tuple[float, float]:
     if half <= free:
         load, slope = plain_load(curvature, law.strip[i, REFERENCE_LENGTH], modulus, half, value)
     else:
-        _, least, most = _limits(law, i)
+        _, least, widest = _limits(law, i)
         guess = max(half, least)
         middle, half, first, rigid = strip_at(
             law.gap, i, value, law.strip[i, REFERENCE_LENGTH], middle, guess
         )
         carried = 0.5 * math.pi * modulus * half * first
-        if not least < half < most:
+        if not least < half < widest:
             half, middle = half_strip_at(law, i, value, guess), 0.0
             carried, rigid = strip_load(law.gap, i, half, modulus)
         load, slope = _load_on(half, carried, rigid, law.strip[i, REFERENCE_LENGTH], modulus, value)

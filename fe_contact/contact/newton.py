@@ -179,11 +179,11 @@ def _iterate(
         if not eliminate(system.matrix, system.right, size):
             return math.nan, math.nan, SINGULAR, iteration
         excess = dot(problem.torque_arm, state.force, gap.size) - total
-        stiff, missed = _condensed(problem, state, system, size)
+        stiff, residual = _condensed(problem, state, system, size)
         if not 0.0 < stiff < math.inf:
             return math.nan, math.nan, SINGULAR, iteration
         tangent = 1.0 / stiff
-        step = -(excess + missed) * tangent
+        step = -(excess + residual) * tangent
         change[:] = state.pressed - state.held  # where nothing touches the forces go
         for r in range(size):
             change[system.member[r]] = step * system.right[0, r] + system.right[1, r]
@@ -204,10 +204,10 @@ def _settle(
 ) -> bool:
     """Add what a last step changes of the forces; not if a law is bent by more than the tolerance over it."""
     m, arm = gap.size, problem.motion_arm
-    nearer, moved = motions(problem, motion), motions(problem, state.moved)
+    nearer, motion_before = motions(problem, motion), motions(problem, state.moved)
     for q in range(m):
         nearer[q] = arm[q] * step - nearer[q]
-        closer = arm[q] * elastic - gap[q] - moved[q]
+        closer = arm[q] * elastic - gap[q] - motion_before[q]
         if not nearer[q] * nearer[q] <= STEP_TOLERANCE * elastic * abs(closer):
             return False
     for q in range(m):
@@ -219,15 +219,15 @@ def _settle(
 @inner(error_model="numpy")
 def _condensed(problem: PointProblem, state: State, system: NewtonSystem, size: int) -> tuple[float, float]:
     """Return the stiffness of the position in N/m, and what the curves miss of the load in N."""
-    stiff, missed = stiffness(problem, state), 0.0
+    stiff, residual = stiffness(problem, state), 0.0
     for r in range(state.held.size):
         if system.shares[r] != 0.0:
             for s in range(size):
                 yielding = system.shares[r] * state.yielding[r, system.member[s]]
                 stiff -= yielding * system.right[0, s]
-                missed -= yielding * system.right[1, s]
-            missed += system.shares[r] * dot(state.yielding[r], system.left, system.left.size)
-    return stiff, missed
+                residual -= yielding * system.right[1, s]
+            residual += system.shares[r] * dot(state.yielding[r], system.left, system.left.size)
+    return stiff, residual
 
 
 @inner(error_model="numpy")
@@ -242,13 +242,13 @@ def _advance(
     state: State,
 ) -> float:
     """Take a step, or the part of it to where the energy is level; return the elastic deflection."""
-    held, before = state.held.copy(), elastic
+    pressed, before = state.held.copy(), elastic
     fall = (dot(problem.torque_arm, state.force, gap.size) - total) * step
     fall += dot(motion, state.held - state.pressed, motion.size)
     low, high, at_low, at_high, length = 0.0, math.inf, fall, math.inf, 1.0
     for _ in range(_CUTS):
         elastic = before + length * step
-        state.held[:] = held + length * change
+        state.held[:] = pressed + length * change
         move(problem, state)
         evaluate(problem, gap, elastic, state)
         rise = (dot(problem.torque_arm, state.force, gap.size) - total) * step
@@ -289,9 +289,9 @@ def newton_system(problem: PointProblem, state: State, system: NewtonSystem) -> 
         row[:] = 0.0
         row[r] = 1.0
         for s in range(max(r - width + 1, 0), min(r + width, size)):
-            apart = abs(member[r] - member[s])
-            if apart < width:
-                part = system.touching[max(member[r], member[s]), apart]
+            distance = abs(member[r] - member[s])
+            if distance < width:
+                part = system.touching[max(member[r], member[s]), distance]
                 subtract(row, system.moved[s, :size], -part)
                 system.right[1, r] += part * pushed[s]
     return size

@@ -27,9 +27,9 @@ def touching_places(gap: Gap, low: FloatArray, high: FloatArray) -> FloatArray:
                 if (position - at) * rising > 0.0 and (at - stop) * rising > 0.0:
                     stop = at
             curvature = _curvature(gap, i, 0.5 * (position + stop))
-            here = _slope_beside(gap, i, position, -rising)
-            step = -here / curvature if curvature > 0.0 else -rising * math.inf
-            if here * rising <= 0.0:
+            slope = _slope_beside(gap, i, position, -rising)
+            step = -slope / curvature if curvature > 0.0 else -rising * math.inf
+            if slope * rising <= 0.0:
                 break
             if (position + step - stop) * rising >= 0.0:
                 position += step
@@ -81,16 +81,16 @@ def moved_gap(gap: Gap, shift: FloatArray) -> tuple[FloatArray, Gap]:
         x = shift[i]
         least[i] = gap.slope[i] * x + 0.5 * gap.curvature[i] * x * x
         curvature[i] = gap.curvature[i]
-        held = x == gap.low[i] or x == gap.high[i]
+        at_end = x == gap.low[i] or x == gap.high[i]
         for k in range(breaks):
             at = gap.place[i, k]
             right = at >= 0.0
             beyond = max((x - at) if right else (at - x), 0.0)
             least[i] += beyond * (gap.jump[i, k] + 0.5 * gap.bend[i, k] * beyond)
-            held = held or x == at
+            at_end = at_end or x == at
             position[i, k] = at - x
             if (position[i, k] >= 0.0) != right:
                 curvature[i] += gap.bend[i, k]
                 bend[i, k] = -gap.bend[i, k]
-        slope[i] = _slope_beside(gap, i, x, -1.0) if held else 0.0
+        slope[i] = _slope_beside(gap, i, x, -1.0) if at_end else 0.0
     return least, Gap(slope, curvature, gap.low - shift, gap.high - shift, position, gap.jump, bend)

@@ -56,7 +56,9 @@ class Patches:
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return centers, half-widths and edge shares (k, Q) on some slices, at one position or one each."""
         arrays = (self.center, self.half_width, self.edge_share)
-        first, second, third = (each.reshape(len(each), -1, self.count)[position, slices] for each in arrays)
+        first, second, third = (
+            values.reshape(len(values), -1, self.count)[position, slices] for values in arrays
+        )
         return first, second, third
 
     @property

@@ -119,12 +119,12 @@ def row_bodies(every: PointProblems, row: int) -> RowBodies:
     """Return what positions share that repeat row `row` in further base pitches."""
     there = every.present[row]
     slices = np.flatnonzero(there)
-    moved, tilt = every.bodies[row][slices][:, slices], np.zeros((0, 0))
-    moved = _turned(every.heights, _turned(every.heights, moved))
+    motion, tilt = every.bodies[row][slices][:, slices], np.zeros((0, 0))
+    motion = _turned(every.heights, _turned(every.heights, motion))
     if every.tilt.size:
         tilt = _turned(every.heights, _turned(every.heights, every.tilt[row][slices][:, slices]))
     curve, first = _beside(every.curves)
-    return RowBodies(there, moved, tilt, curve, first)
+    return RowBodies(there, motion, tilt, curve, first)
 
 
 @inner(error_model="numpy")
@@ -138,24 +138,26 @@ def problem_on(every: PointProblems, bodies: RowBodies, p: int) -> tuple[PointPr
     """Return the problem of a position on the bodies of its row, and its contacts among all candidates."""
     row, (points, count) = p % every.bodies.shape[0], every.curves.shape
     pairs = np.cumsum(bodies.there[::count]) - 1  # of all pairs among those that are there
-    here = np.flatnonzero(~(every.gap[p] == np.inf))  # also those that are not a number
+    touching = np.flatnonzero(~(every.gap[p] == np.inf))  # also those that are not a number
     radius = every.radius[p % every.radius.shape[0]][bodies.there]
-    law = local_law(every.about[p][here], every.width[p][here], every.modulus[row][here], every.length)
-    law.strip[:, REFERENCE_LENGTH] = every.lengths[row][here]
-    point = here % points
-    first = pairs[here // points] * count + bodies.first[point]
-    arms = every.motion_arm[p][here], every.torque_arm[p][here]
+    law = local_law(
+        every.about[p][touching], every.width[p][touching], every.modulus[row][touching], every.length
+    )
+    law.strip[:, REFERENCE_LENGTH] = every.lengths[row][touching]
+    point = touching % points
+    first = pairs[touching // points] * count + bodies.first[point]
+    arms = every.motion_arm[p][touching], every.torque_arm[p][touching]
     edge = every.edge[p % every.edge.shape[0]][bodies.there]
     held = bodies.moved, bodies.tilt, radius, edge
-    return PointProblem(*held, bodies.curve[point], first, every.gap[p][here], *arms, law), here
+    return PointProblem(*held, bodies.curve[point], first, every.gap[p][touching], *arms, law), touching
 
 
 @inner(error_model="numpy")
-def _turned(heights: FloatArray, moved: FloatArray) -> FloatArray:
+def _turned(heights: FloatArray, motion: FloatArray) -> FloatArray:
     """Return the heights (r, n) of the curves of all pairs for motions (n, r) of their slices."""
-    count, turned = heights.shape[0], np.empty(moved.shape)
-    for first in range(0, moved.shape[0], count):
-        np.dot(heights, moved[first : first + count], turned[first : first + count])
+    count, turned = heights.shape[0], np.empty(motion.shape)
+    for first in range(0, motion.shape[0], count):
+        np.dot(heights, motion[first : first + count], turned[first : first + count])
     return np.ascontiguousarray(turned.T)
 
 
@@ -168,10 +170,10 @@ def _beside(curves: FloatArray) -> tuple[FloatArray, IntArray]:
         there = np.flatnonzero(curves[i])
         first[i], width = there[0], max(width, there[-1] - there[0] + 1)
     first = np.minimum(first, count - width)
-    beside = np.empty((points, width))
+    columns = np.empty((points, width))
     for i in range(points):
-        beside[i] = curves[i, first[i] : first[i] + width]
-    return beside, first
+        columns[i] = curves[i, first[i] : first[i] + width]
+    return columns, first
 
 
 class State(NamedTuple):
@@ -221,13 +223,13 @@ def press(problem: PointProblem, force: FloatArray, out: FloatArray) -> None:
 
 
 @inner(error_model="numpy")
-def motions(problem: PointProblem, moved: FloatArray) -> FloatArray:
+def motions(problem: PointProblem, of_slices: FloatArray) -> FloatArray:
     """Return the motions of the bodies at the contacts (m,) from those of the curves, m."""
     curve, first, out = problem.curve, problem.first, np.empty(problem.first.size)
     for q in range(out.size):
         value = 0.0
         for a in range(curve.shape[1]):
-            value += curve[q, a] * moved[first[q] + a]
+            value += curve[q, a] * of_slices[first[q] + a]
         out[q] = value
     return out
 

@@ -181,7 +181,9 @@ class Candidates:
     @cached_property
     def strips(self) -> StripMiddles:
         """Where the middles of strips under a two-hundredth of the largest load are, arrays (P, m)."""
-        return StripMiddles(*(each.reshape(self.gap.shape) for each in strip_middles(*self._small_strips)))
+        return StripMiddles(
+            *(values.reshape(self.gap.shape) for values in strip_middles(*self._small_strips))
+        )
 
     @property
     def rolling_radius(self) -> FloatArray:
@@ -392,25 +394,25 @@ class ContactProblem:
 
         Without the local approach of a candidate that carries.
         """
-        held = self.candidates.on_slices(force)
+        pressed = self.candidates.on_slices(force)
         radius, longest = self.radius, self.candidates.slices.law_length
         edges = self.edges
         radius = radius.reshape(-1, len(self.compliance), 1, radius.shape[1])
         radius = np.where(edges[None, :, None, :, SIDE] == 0.0, radius, 0.0)
-        by_pitch = held.reshape(-1, len(self.compliance), *held.shape[1:])
+        by_pitch = pressed.reshape(-1, len(self.compliance), *pressed.shape[1:])
 
         def times(matrices: FloatArray, forces: FloatArray) -> FloatArray:
             return np.asarray(np.einsum("qij,tqlj->tqli", matrices, forces, optimize=True))
 
         if not self.rolling.size:
-            return self.candidates.at_points(times(self.bodies, by_pitch).reshape(held.shape))
+            return self.candidates.at_points(times(self.bodies, by_pitch).reshape(pressed.shape))
         tilt = times(self.tilt, by_pitch)
         way = np.clip(-radius * tilt, -longest, longest)
         rolled = way * (tilt + np.divide(0.5 * way, radius, out=np.zeros(way.shape), where=radius > 0.0))
-        moved = times(self.bodies, by_pitch) + rolled + times(np.swapaxes(self.tilt, 1, 2), way * by_pitch)
-        moved = np.ascontiguousarray(moved.reshape(held.shape))
-        edge_motions(edges, self.tilt, np.ascontiguousarray(held), moved)
-        return self.candidates.at_points(moved)
+        motion = times(self.bodies, by_pitch) + rolled + times(np.swapaxes(self.tilt, 1, 2), way * by_pitch)
+        motion = np.ascontiguousarray(motion.reshape(pressed.shape))
+        edge_motions(edges, self.tilt, np.ascontiguousarray(pressed), motion)
+        return self.candidates.at_points(motion)
 
     def rows(self, keep: IntArray) -> ContactProblem:
         """Return the problem of some positions, one row of compliance each."""

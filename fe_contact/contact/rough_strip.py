@@ -77,11 +77,11 @@ def rough_strip(gap_of: GapOf, place: FloatArray, curvature: FloatArray, spread:
         Bound of highest less lowest deviation from these, m.
     """
     count = place.size
-    crest, center, missed = np.empty((3, count))
+    crest, center, error = np.empty((3, count))
     ends, bends = np.empty((2, count, BREAKS // 2))
     for part in np.array_split(np.arange(count), count // _AT_ONCE + 1):
         excess, center[part] = _excess(gap_of, part, place[part], curvature[part], spread[part])
-        crest[part], ends[part], bends[part], missed[part] = _even_gaps(excess, HALF_STRIPS, LOADS)
+        crest[part], ends[part], bends[part], error[part] = _even_gaps(excess, HALF_STRIPS, LOADS)
     ends, bends = ends / curvature[:, None], bends * curvature[:, None]
     places, no_end = np.concatenate([ends, -ends], axis=1), np.full(count, np.inf)
     gap = Gap(
@@ -93,7 +93,7 @@ def rough_strip(gap_of: GapOf, place: FloatArray, curvature: FloatArray, spread:
         jump=np.zeros(places.shape),
         bend=np.concatenate([bends, bends], axis=1),
     )
-    return RoughStrip(gap, center / curvature, missed)
+    return RoughStrip(gap, center / curvature, error)
 
 
 def _excess(
@@ -145,8 +145,8 @@ def _kernel(count: int, cell: float) -> FloatArray:
     kernel[count - 1] = 1.0 - math.log(0.5 * cell)
     for d in range(1, count):
         far, near = d + 0.5, d - 0.5
-        moved = 1.0 - math.log(cell) - far * math.log(far) + near * math.log(near)
-        kernel[count - 1 - d], kernel[count - 1 + d] = moved, moved
+        motion = 1.0 - math.log(cell) - far * math.log(far) + near * math.log(near)
+        kernel[count - 1 - d], kernel[count - 1 + d] = motion, motion
     return kernel
 
 
@@ -154,13 +154,13 @@ def _kernel(count: int, cell: float) -> FloatArray:
 def _moved(kernel: FloatArray, force: FloatArray) -> FloatArray:
     """Return the displacements under forces on even cells."""
     count = force.size
-    moved = np.zeros(count)
+    motion = np.zeros(count)
     for j in range(count):
         pushed, first = force[j], count - 1 - j
         if pushed != 0.0:
             for i in range(count):
-                moved[i] += kernel[first + i] * pushed
-    return moved
+                motion[i] += kernel[first + i] * pushed
+    return motion
 
 
 @inner(error_model="numpy")
@@ -224,7 +224,7 @@ def _even_gaps(
     interval gives that of the next its length. Behind the last break flanks are plain.
     """
     count, loads = excess.shape
-    crest, missed = np.empty(count), np.zeros(count)
+    crest, error = np.empty(count), np.zeros(count)
     places, bends = np.empty((count, loads)), np.zeros((count, loads))
     for i in range(count):
         reached, below, half, total = 0.0, 0.0, 0.0, 0.0
@@ -244,9 +244,9 @@ def _even_gaps(
             below = load[k]
             of_plain = below * (0.25 - math.log(plain[k]))
             reached = _approach_under(below, crest[i], places[i], bends[i], k) - of_plain
-            missed[i] = max(missed[i], abs(reached - excess[i, k]) / math.sqrt(below))
+            error[i] = max(error[i], abs(reached - excess[i, k]) / math.sqrt(below))
         bends[i, loads - 1] = 1.0 - total
-    return crest, places, bends, missed
+    return crest, places, bends, error
 
 
 @inner(error_model="numpy")

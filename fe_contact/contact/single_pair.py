@@ -63,10 +63,10 @@ class _SinglePairs:
         """Return the deflection of the bodies per load (Q, J), m/N."""
         q, pairs, count = self.share.shape
         force = np.zeros((q, pairs, pairs, count))
-        each = np.arange(pairs)
-        force[:, each, each] = self.share
-        held = self.problem.candidates.on_slices(force.reshape(q, pairs, -1))
-        return np.asarray(np.einsum("qjn,qnk,qjk->qj", held, self.problem.bodies, held, optimize=True))
+        numbers = np.arange(pairs)
+        force[:, numbers, numbers] = self.share
+        pressed = self.problem.candidates.on_slices(force.reshape(q, pairs, -1))
+        return np.asarray(np.einsum("qjn,qnk,qjk->qj", pressed, self.problem.bodies, pressed, optimize=True))
 
     def _strips(self, load: FloatArray) -> FloatArray:
         """Return what strips add (Q, J, L), m: 2/p times the integral of k p [ln(l/b) + 1/4] over p."""

@@ -31,13 +31,13 @@ class Start:
         A candidate takes the line load of the nearest one of its pair; a pair that was not there starts
         unloaded.
         """
-        here = self.candidates
-        if np.array_equal(here.pair, candidates.pair) and np.array_equal(
-            here.face_position, candidates.face_position
+        known = self.candidates
+        if np.array_equal(known.pair, candidates.pair) and np.array_equal(
+            known.face_position, candidates.face_position
         ):
             return self.force
-        alike = candidates.pair[:, None] == here.pair
-        apart = np.where(alike, np.abs(candidates.face_position[:, None] - here.face_position), np.inf)
-        nearest = alike & (apart == apart.min(axis=1)[:, None])
+        alike = candidates.pair[:, None] == known.pair
+        distance = np.where(alike, np.abs(candidates.face_position[:, None] - known.face_position), np.inf)
+        nearest = alike & (distance == distance.min(axis=1)[:, None])
         share = nearest / np.maximum(nearest.sum(axis=1), 1)[:, None]
-        return np.asarray(self.force @ share.T * (candidates.point_width / here.point_width))
+        return np.asarray(self.force @ share.T * (candidates.point_width / known.point_width))

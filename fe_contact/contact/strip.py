@@ -148,9 +148,9 @@ def half_strip(
     if hertz <= free_strip(gap, i):
         return 0.0, hertz, 0.25 * gap[i, CURVATURE] * hertz * hertz
     scaled = 2.0 * line_load / (math.pi * modulus)
-    found, half, _, rigid = strip_at(gap, i, scaled, 0.0, center, guess if guess > 0.0 else hertz)
+    half_width, half, _, rigid = strip_at(gap, i, scaled, 0.0, center, guess if guess > 0.0 else hertz)
     if half > 0.0:
-        return found, half, rigid
+        return half_width, half, rigid
     widest = widest_strip(gap, i)
     below, above = 0.0, math.inf
     half, power = min(hertz, widest), 2.0
@@ -261,18 +261,18 @@ class StripMiddles(NamedTuple):
 def strip_middles(gap: FloatArray, half: FloatArray) -> StripMiddles:
     """Return the middles of strips of half lengths (n,) in m, at most from edge to edge."""
     zero, half = np.zeros(half.size), np.minimum(half, 0.5 * (gap[:, _HIGH] - gap[:, _LOW]))
-    found = StripMiddles(zero, half, zero.copy(), gap[:, CURVATURE].copy())
+    middles = StripMiddles(zero, half, zero.copy(), gap[:, CURVATURE].copy())
     for i in range(half.size):
         h = half[i]
         if h > free_strip(gap, i):
             center = strip_middle(gap, i, h)
             inside = gap[i, _LOW] + h < center < gap[i, _HIGH] - h
-            found.middle[i], found.slope[i] = center, 0.0 if inside else _means(gap, i, center, h)[0]
+            middles.middle[i], middles.slope[i] = center, 0.0 if inside else _means(gap, i, center, h)[0]
             if h > 0.0:
                 near = _NEAR * h
                 rise = _means(gap, i, center + near, h)[0] - _means(gap, i, center - near, h)[0]
-                found.curvature[i] = 0.5 * rise / near
-    return found
+                middles.curvature[i] = 0.5 * rise / near
+    return middles
 
 
 @njit(cache=True, error_model="numpy")

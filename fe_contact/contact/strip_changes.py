@@ -47,13 +47,13 @@ class Strips:
         smooth, breaks = self._parted(gap)
         bend = (smooth[2] - 2.0 * smooth[1] + smooth[0]) / _NODE**2
         mean = smooth[1] + 0.25 * bend
-        return np.asarray(mean + sum(self._past(*each)[0] for each in breaks))
+        return np.asarray(mean + sum(self._past(*line)[0] for line in breaks))
 
     def slopes(self, gap: GapTerm) -> FloatArray:
         """Return the mean slope of a gap over the strips (k,)."""
         smooth, breaks = self._parted(gap)
         slope = (smooth[2] - smooth[0]) / (2.0 * _NODE * self.half)
-        return np.asarray(slope + sum(each.side * self._past(each, distance)[1] for each, distance in breaks))
+        return np.asarray(slope + sum(line.side * self._past(line, distance)[1] for line, distance in breaks))
 
     @cached_property
     def _nodes(self) -> tuple[FloatArray, tuple[FloatArray, FloatArray]]:
@@ -64,8 +64,8 @@ class Strips:
     def _parted(self, gap: GapTerm) -> tuple[FloatArray, list[tuple[Break, FloatArray]]]:
         """Return a gap without its breaks at three places of each strip (3, k); breaks and distances."""
         x, rolls = self._nodes
-        breaks = [(each, each.distance(self.s_1, self.s_2)) for each in gap.breaks(self.pair, self.face)]
-        of_breaks = sum(each.height(x - distance) for each, distance in breaks)
+        breaks = [(line, line.distance(self.s_1, self.s_2)) for line in gap.breaks(self.pair, self.face)]
+        of_breaks = sum(line.height(x - distance) for line, distance in breaks)
         return gap(self.pair, *rolls, self.face) - of_breaks, breaks
 
     def _past(self, start: Break, distance: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -134,14 +134,14 @@ class ClosingLag:
         """Return how far the touching points move (k,), m: those at breaks with these."""
         strips, near = self.strips, _AT_TOUCH * self._step
         slope = (self._change(gap, over, near) - self._change(gap, over, -near)) / (2.0 * near)
-        moved = self.way * slope
-        breaks = [each.breaks(strips.pair, strips.face) for each in (gap, over)]
+        shift = self.way * slope
+        breaks = [term.breaks(strips.pair, strips.face) for term in (gap, over)]
         if len(breaks[0]) != len(breaks[1]):
-            return np.asarray(moved)  # a relief that is none yet holds nothing
+            return np.asarray(shift)  # a relief that is none yet holds nothing
         for after, before in zip(*breaks, strict=True):
-            there, here = (each.distance(strips.s_1, strips.s_2) for each in (after, before))
-            moved = np.where(self.at_break & (np.abs(here) < near), there - here, moved)
-        return np.asarray(moved)
+            there, before_move = (term.distance(strips.s_1, strips.s_2) for term in (after, before))
+            shift = np.where(self.at_break & (np.abs(before_move) < near), there - before_move, shift)
+        return np.asarray(shift)
 
     def nodes(
         self, gear: int, roll_length: FloatArray, face_position: FloatArray
@@ -202,21 +202,21 @@ class FollowingPatches:
     @classmethod
     def of(cls, pair: ParallelAxes, problem: ContactProblem, force: FloatArray) -> FollowingPatches:
         """Take those of a solved problem."""
-        c, held = problem.candidates, problem.candidates.on_slices(force)
+        c, pressed = problem.candidates, problem.candidates.on_slices(force)
         touch, rest = c.touch, c.strips
         free = (rest.slope == 0.0) & (np.abs(touch.moved) < c.slices.law_length) & np.isfinite(c.gap)
-        loaded = np.repeat(held.any(axis=1), c.pair.size // held.shape[2], axis=1)
+        loaded = np.repeat(pressed.any(axis=1), c.pair.size // pressed.shape[2], axis=1)
         at = np.nonzero(free & loaded)
         places = touch.s_1[at], touch.s_2[at], touch.roll_1[at], c.face_position[at[1]]
         at_rest = Strips(pair, *places, rest.middle[at], rest.half[at])
         way = -math.cos(c.base_helix_angle) / rest.curvature[at]
-        return cls(problem, held, at_rest, np.ravel_multi_index(at, c.gap.shape), way)
+        return cls(problem, pressed, at_rest, np.ravel_multi_index(at, c.gap.shape), way)
 
     def opened(self, slopes: FloatArray) -> FloatArray:
         """Return what normal approach small slopes (k,) take away from the candidates (P, L, m), m."""
-        c, moved = self.problem.candidates, np.zeros(self.problem.candidates.gap.shape)
-        moved.flat[self.index] = self.way * slopes
-        by_slice = c.on_mean(moved)[:, None]
+        c, shift = self.problem.candidates, np.zeros(self.problem.candidates.gap.shape)
+        shift.flat[self.index] = self.way * slopes
+        by_slice = c.on_mean(shift)[:, None]
         rolled = by_slice * self._tilts + self._times(by_slice * self.held, back=True)
         return c.at_points(rolled)
 
@@ -257,14 +257,14 @@ class TurnedForces:
     @classmethod
     def of(cls, pair: ParallelAxes, problem: ContactProblem, force: FloatArray) -> TurnedForces:
         """Take those of a solved problem."""
-        c, held = problem.candidates, problem.candidates.on_slices(force)
-        loaded = np.repeat(held.any(axis=1), c.pair.size // held.shape[2], axis=1)
+        c, pressed = problem.candidates, problem.candidates.on_slices(force)
+        loaded = np.repeat(pressed.any(axis=1), c.pair.size // pressed.shape[2], axis=1)
         at = np.nonzero(loaded & np.isfinite(c.gap))
         none = np.zeros(at[0].size)
         places = c.touch.s_1[at], c.touch.s_2[at], c.touch.roll_1[at], c.face_position[at[1]]
         closing = ClosingLag.of(Strips(pair, *places, none, none), c, at)
         return cls(
-            problem, held, _times(problem.bodies, held), closing, np.ravel_multi_index(at, c.gap.shape)
+            problem, pressed, _times(problem.bodies, pressed), closing, np.ravel_multi_index(at, c.gap.shape)
         )
 
     def opened(self, gap: GapTerm, over: GapTerm) -> FloatArray:

@@ -107,11 +107,11 @@ def _sweep(
     for row in range(rows):
         bodies = row_bodies(every, row)
         for p in range(row, every.gap.shape[0], rows):
-            point, here = problem_on(every, bodies, p)
-            start, last = np.zeros(here.size), np.zeros(here.size)
+            point, touching = problem_on(every, bodies, p)
+            start, last = np.zeros(touching.size), np.zeros(touching.size)
             for k in range(loads.size):
                 if first.shape[0] > 0:
-                    start = first[p, k][here]
+                    start = first[p, k][touching]
                 elif k > 0:
                     below = loads[k - 2] if k > 1 else 0.0
                     part = (loads[k] - loads[k - 1]) / (loads[k - 1] - below)
@@ -119,12 +119,12 @@ def _sweep(
                 guessed = not start.any()
                 d, t, code, count, over = solve_point(point, loads[k], start, residuals[p, k])
                 if code != CONVERGED and not guessed:
-                    start = np.zeros(here.size)
+                    start = np.zeros(touching.size)
                     d, t, code, further, over = solve_point(point, loads[k], start, residuals[p, k])
                     count += further
                 status[p, k], iterations[p, k], beyond[p, k] = code, count, over
                 if code == CONVERGED:
                     deflection[p, k], tangent[p, k] = d, t
-                    force[p, k][here] = start
+                    force[p, k][touching] = start
                 else:
-                    start = np.zeros(here.size)
+                    start = np.zeros(touching.size)

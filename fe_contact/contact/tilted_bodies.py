@@ -34,9 +34,9 @@ def move(problem: PointProblem, state: State) -> None:
 
 
 @inner(error_model="numpy")
-def rolled(problem: PointProblem, j: int, held: FloatArray) -> tuple[float, float, float]:
+def rolled(problem: PointProblem, j: int, pressed: FloatArray) -> tuple[float, float, float]:
     """Return the tilt of the flanks at a curve, how far it moves their strip in m, and per tilt."""
-    tilt, radius = dot(problem.tilt[j], held, held.size), problem.radius[j]
+    tilt, radius = dot(problem.tilt[j], pressed, pressed.size), problem.radius[j]
     way = min(max(-radius * tilt, -problem.law.length), problem.law.length)
     return tilt, way, -radius if abs(way) < problem.law.length else 0.0
 

@@ -69,14 +69,16 @@ def tooth_touch(
     counts as a lag: a pitch error of gear 2 turns its flank, and as much of a lag closes it on any slope.
     """
     there = np.nonzero(touch.gap != np.inf)  # more than a third of the candidates cannot touch
-    parts = list(zip(*(np.array_split(each, there[0].size // _AT_ONCE + 1) for each in there), strict=True))
-    beside = []
+    parts = list(
+        zip(*(np.array_split(indices, there[0].size // _AT_ONCE + 1) for indices in there), strict=True)
+    )
+    results = []
     for at in parts:
         common = Touch(*(getattr(touch, name)[at] for name in touch.__dataclass_fields__))
-        beside.append(_beside(_Part(pair, model, common, face[at[1]], meeting[at])))
-    breaks = max((arrays[-1].shape[-1] for arrays in beside), default=0)
+        results.append(_beside(_Part(pair, model, common, face[at[1]], meeting[at])))
+    breaks = max((arrays[-1].shape[-1] for arrays in results), default=0)
     changed = _with_breaks(tuple(getattr(touch, name).copy() for name in _MOVING), breaks)
-    for at, arrays in zip(parts, beside, strict=True):
+    for at, arrays in zip(parts, results, strict=True):
         for every, values in zip(changed, _with_breaks(arrays, breaks), strict=True):
             every[at] = values
     return replace(touch, **dict(zip(_MOVING, changed, strict=True)))
@@ -94,14 +96,14 @@ def _beside(part: _Part) -> tuple[FloatArray, ...]:
     Where the teeth are less hollow than the flanks are round, one parabola leads to the least gap; where
     they are not, or where the true gap there is another, it is searched for together with the common gap.
     """
-    beside, poor = _stepped(part)
+    stepped, poor = _stepped(part)
     rough = np.flatnonzero(poor | _sharp(part))
     if rough.size:
-        found = _searched(part.some(rough))
-        beside = _with_breaks(beside, found[-1].shape[-1])
-        for values, replaced in zip(beside, found, strict=True):
+        searched = _searched(part.some(rough))
+        stepped = _with_breaks(stepped, searched[-1].shape[-1])
+        for values, replaced in zip(stepped, searched, strict=True):
             values[rough] = replaced
-    return beside
+    return stepped
 
 
 def _stepped(part: _Part) -> tuple[tuple[FloatArray, ...], BoolArray]:
@@ -109,19 +111,19 @@ def _stepped(part: _Part) -> tuple[tuple[FloatArray, ...], BoolArray]:
     common, none = part.common, np.zeros(part.face.size)
     half = np.minimum(STEP / common.curvature, 0.2 * (common.high - common.low))
     middle = np.clip(none, common.low + half, common.high - half)
-    before, here, after = (part.gap(middle + way) for way in (-half, none, half))
-    bend = (before - 2.0 * here + after) / half**2
+    before, center, after = (part.gap(middle + way) for way in (-half, none, half))
+    bend = (before - 2.0 * center + after) / half**2
     steepness = (after - before) / (2.0 * half) - bend * middle
-    level = here - middle * (steepness + 0.5 * bend * middle)
+    level = center - middle * (steepness + 0.5 * bend * middle)
     gap, way, least, far = _free_steps(common.about, steepness, bend)
     if far.any():
         _step_on(common, gap, (steepness, bend), (way, least), np.flatnonzero(far))
     teeth = part.gap(way)
-    missed = teeth - level - way * (steepness + 0.5 * bend * way)
-    poor = (np.abs(way) > half) | (np.abs(missed) > ALLOWED / common.curvature)
-    moved = common.s_1 + way, common.s_2 - way, common.gap + least + teeth, common.missed
+    remainder = teeth - level - way * (steepness + 0.5 * bend * way)
+    poor = (np.abs(way) > half) | (np.abs(remainder) > ALLOWED / common.curvature)
+    touching = common.s_1 + way, common.s_2 - way, common.gap + least + teeth, common.missed
     slopes = (getattr(common, name) for name in _SLOPES)
-    return (*moved, *slopes, *gap), poor
+    return (*touching, *slopes, *gap), poor
 
 
 @njit(cache=True, error_model="numpy")
@@ -146,9 +148,9 @@ def _free_steps(
             hollow += min(gap.bend[i, k], 0.0)
         far[i] = curvature[i] + hollow < FLATTEST * gap.curvature[i]
         if slope[i] != 0.0:  # at a tip edge that stays in contact, or at a break
-            held = (low[i] == 0.0 and whole > 0.0) or (high[i] == 0.0 and whole < 0.0)
+            at_end = (low[i] == 0.0 and whole > 0.0) or (high[i] == 0.0 and whole < 0.0)
             slope[i] = whole
-            far[i] = far[i] or not held
+            far[i] = far[i] or not at_end
             continue
         way = -steepness[i] / curvature[i]
         far[i] = far[i] or way <= low[i] or way >= high[i]
@@ -194,5 +196,5 @@ def _searched(part: _Part) -> tuple[FloatArray, ...]:
     pair, roll_1 = part.pair, part.common.roll_1[None]  # candidates of one position
     plain = conjugate_touch(pair, roll_1, pair.mating_roll_length(roll_1), part.model.corner_contact)
     plain = replace(plain, gap=np.where(np.isfinite(plain.gap), plain.gap, 0.0))
-    found = modified_touch(pair, plain, part.face, part.model.gaps, part.deviating)
-    return tuple(getattr(found, name)[0] for name in _MOVING)
+    touch = modified_touch(pair, plain, part.face, part.model.gaps, part.deviating)
+    return tuple(getattr(touch, name)[0] for name in _MOVING)

@@ -83,12 +83,12 @@ def modified_touch(
     """
     moving = tuple(term for term in gaps if term.along_profile)
     steady = tuple(term for term in gaps if not term.along_profile)
-    moved = _moved(pair, touch, face, moving, teeth) if moving or teeth else touch
+    modified = _moved(pair, touch, face, moving, teeth) if moving or teeth else touch
     if not steady:
-        return moved
+        return modified
     roll_2 = pair.mating_roll_length(touch.roll_1)
     removed = sum(term(pair, touch.roll_1, roll_2, face) for term in steady)
-    return replace(moved, gap=moved.gap + removed * moved.lag)
+    return replace(modified, gap=modified.gap + removed * modified.lag)
 
 
 def _moved(
@@ -101,7 +101,7 @@ def _moved(
     """Move the touching points to where conjugate gap, `gaps` and those of teeth together are least."""
     shape, possible = touch.gap.shape, np.flatnonzero(np.isfinite(touch.gap))
     plain = {name: each.reshape(touch.gap.size, *each.shape[2:]) for name, each in vars(touch).items()}
-    here = Touch(**{name: values[possible] for name, values in plain.items()})
+    near = Touch(**{name: values[possible] for name, values in plain.items()})
     faces = np.broadcast_to(face, shape).ravel()[possible]
     if teeth is not None:
         teeth = teeth._replace(meeting=np.broadcast_to(teeth.meeting, shape).ravel()[possible])
@@ -111,14 +111,14 @@ def _moved(
         for gear, grid in enumerate(term.grids)
         if grid is not None
     )
-    flanks = _Flanks(pair, here, faces, gaps, teeth, surfaces)
+    flanks = _Flanks(pair, near, faces, gaps, teeth, surfaces)
     touching = _touching(flanks)
     shift, about = touching.shift, touching.about
-    moved = {"s_1": here.s_1 + shift, "s_2": here.s_2 - shift}
-    moved |= {"moved": shift + touching.off, "missed": touching.missed}
-    moved |= flanks.closed(shift, touching.gap) | about._asdict()
+    places = {"s_1": near.s_1 + shift, "s_2": near.s_2 - shift}
+    places |= {"moved": shift + touching.off, "missed": touching.missed}
+    places |= flanks.closed(shift, touching.gap) | about._asdict()
     result = {}
-    for name, values in moved.items():
+    for name, values in places.items():
         alike = plain[name].shape[1:] == values.shape[1:]
         every = plain[name].copy() if alike else np.zeros((touch.gap.size, *values.shape[1:]))
         every[possible] = values
@@ -162,21 +162,21 @@ def _touching(flanks: _Flanks) -> _Touching:
         place, least = whole[0][part], whole[1][part]
         if again.size:
             place[again], least[again] = near.some(again).least(place[again])
-        off, missed, beside = near.beside(place, wavy=wavy[part])
-        beside = with_breaks(beside, about.place.shape[1])
-        whole = _replaced(whole, part, (place, least, off, missed, *beside))
-    shift, now, off, missed, *beside_all = whole
-    return _Touching(shift, now, off, missed, Gap(*beside_all))
+        off, error, local_gap = near.beside(place, wavy=wavy[part])
+        local_gap = with_breaks(local_gap, about.place.shape[1])
+        whole = _replaced(whole, part, (place, least, off, error, *local_gap))
+    shift, now, off, error, *beside_all = whole
+    return _Touching(shift, now, off, error, Gap(*beside_all))
 
 
 def _by_parabolas(flanks: _Flanks) -> tuple[FloatArray, FloatArray, BoolArray, Gap]:
     """Return touching points of gaps made of parabolas, the true gap there, where it is poor, that about."""
     shift, now = flanks.lowest_sample()
     of: IntArray = np.arange(now.size)
-    poor, found = np.zeros(now.size, dtype=bool), ()  # type: BoolArray, _Arrays
+    poor, arrays = np.zeros(now.size, dtype=bool), ()  # type: BoolArray, _Arrays
     step: FloatArray = np.zeros(0)
     for _ in range(_CUT_TIP_PASSES if flanks.cut_tips else _PASSES):
-        if found:  # where there was no step, the next is none either
+        if arrays:  # where there was no step, the next is none either
             on = np.flatnonzero(step)
             flanks, of = flanks.some(on), of[on]
         x = shift[of]
@@ -186,18 +186,18 @@ def _by_parabolas(flanks: _Flanks) -> tuple[FloatArray, FloatArray, BoolArray, G
         ahead = flanks.gap(x + step)
         down = (ahead <= now[of]) | (np.abs(step) < 1e-3 * flanks.step)
         step = np.where(down, step, 0.0)
-        least, beside = moved_gap(about, step)
-        found = _replaced(found, of, tuple(beside))
+        least, local_gap = moved_gap(about, step)
+        arrays = _replaced(arrays, of, tuple(local_gap))
         poor[of] = ~down | (np.abs(now[of] + least - ahead) > _MISSED * flanks.allowed)
         shift[of], now[of] = x + step, np.where(down, ahead, now[of])
-    return shift, now, poor, Gap(*found)
+    return shift, now, poor, Gap(*arrays)
 
 
-def _replaced(whole: _Arrays, of: IntArray, some: _Arrays) -> _Arrays:
+def _replaced(whole: _Arrays, of: IntArray, part: _Arrays) -> _Arrays:
     """Return arrays with new values of some of their entries, or of all."""
     if not whole or len(of) == len(whole[0]):
-        return some
-    for every, values in zip(whole, some, strict=True):
+        return part
+    for every, values in zip(whole, part, strict=True):
         every[of] = values
     return whole
 
@@ -216,8 +216,8 @@ class _Flanks:
     ) -> None:
         self._pair, self._touch, self._face, self._gaps = pair, touch, face, gaps
         self._teeth, self._surfaces = teeth, surfaces
-        self._breaks = [each for term in gaps for each in term.breaks(pair, face)]
-        cut = {_SIDES[each.gear] for each in self._breaks if each.ends_flank}
+        self._breaks = [line for term in gaps for line in term.breaks(pair, face)]
+        cut = {_SIDES[line.gear] for line in self._breaks if line.ends_flank}
         self.cut_tips = [side for side in _SIDES if side in cut]
         # towards a base circle; away from both on the flank of a ring gear
         inwards = np.minimum(touch.s_1, np.where(touch.s_2 < 0.0, -touch.s_2, np.inf))
@@ -257,7 +257,7 @@ class _Flanks:
 
     def _extents(self) -> list[tuple[int, Extent]]:
         """Return gear and extent of the gaps that may be rough."""
-        surfaces = [(each.gear, each.extent) for each in self._surfaces]
+        surfaces = [(surface.gear, surface.extent) for surface in self._surfaces]
         return surfaces if self._teeth is None else surfaces + self._teeth.extents()
 
     def least(self, start: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -291,14 +291,16 @@ class _Flanks:
         """Return the nodes of all gaps along the flanks; those of the wheel run the other way."""
         touch, pair = self._touch, self._pair
         count = touch.s_1.size
-        sets = [(each.gear, [each.nodes], np.zeros(count, dtype=np.int64)) for each in self._surfaces]
+        sets = [
+            (surface.gear, [surface.nodes], np.zeros(count, dtype=np.int64)) for surface in self._surfaces
+        ]
         sets += [] if self._teeth is None else self._teeth.nodes(pair)
         along, list_of = [np.zeros(0)], np.zeros((len(sets), count), dtype=np.int64)
         for k, (gear, lists, of) in enumerate(sets):
             sign, toothing = (1.0, pair.pinion) if gear == 0 else (-1.0, pair.wheel)
             list_of[k] = of + len(along)
             along += [np.sort(sign * flank_coordinate(toothing, nodes)) for nodes in lists]
-        start = np.cumsum([0, *(each.size for each in along)])
+        start = np.cumsum([0, *(surface.size for surface in along)])
         gears = np.array([gear for gear, _, _ in sets], dtype=bool)[:, None]
         return Nodes(np.concatenate(along), start, list_of, np.where(gears, -touch.s_2, touch.s_1))
 
@@ -322,9 +324,9 @@ class _Flanks:
         if bounded:
             below = gap < least[may]
             gap[below] += near._removed(x[below], np.nonzero(below)[1])
-        best, each = gap.argmin(axis=0), np.arange(may.size)
-        lower = gap[best, each] < least[may]
-        lowest[may[lower]], least[may[lower]] = x[best, each][lower], gap[best, each][lower]
+        best, columns = gap.argmin(axis=0), np.arange(may.size)
+        lower = gap[best, columns] < least[may]
+        lowest[may[lower]], least[may[lower]] = x[best, columns][lower], gap[best, columns][lower]
         return lowest, least
 
     def about(self, x: FloatArray) -> Gap:
@@ -334,11 +336,11 @@ class _Flanks:
         without the breaks, over the length of a strip within the flanks.
         """
         touch, step = self._touch, self.step
-        breaks = [(each, each.distance(touch.s_1, touch.s_2) - x) for each in self._breaks]
+        breaks = [(line, line.distance(touch.s_1, touch.s_2) - x) for line in self._breaks]
         middle = np.clip(x, self.first + step, self.last - step)
         at = []
         for position in (middle - step, middle, middle + step):
-            beyond = sum(each.height(position - x - distance) for each, distance in breaks)
+            beyond = sum(line.height(position - x - distance) for line, distance in breaks)
             at.append(self._removed(position) - beyond)
         bend = (at[2] - 2.0 * at[1] + at[0]) / step**2
         slope = touch.slope + touch.curvature * x + (at[2] - at[0]) / (2.0 * step) + bend * (x - middle)
@@ -347,13 +349,13 @@ class _Flanks:
             slope = slope + (self._excess(side, x + near) - self._excess(side, x - near)) / (2.0 * near)
         curvature = touch.curvature + bend
         position, jump, bends = np.zeros((3, x.size, len(breaks)))
-        for k, (each, distance) in enumerate(breaks):
-            inside = distance < 0.0 if each.side > 0 else distance >= 0.0
+        for k, (line, distance) in enumerate(breaks):
+            inside = distance < 0.0 if line.side > 0 else distance >= 0.0
             depth = np.where(inside, np.abs(distance), 0.0)
-            slope = slope + np.where(inside, each.side * (each.jump + each.bend * depth), 0.0)
-            curvature = curvature + np.where(inside, each.bend, 0.0)
-            position[:, k], jump[:, k] = distance, each.jump
-            bends[:, k] = np.where(inside, -each.bend, each.bend)
+            slope = slope + np.where(inside, line.side * (line.jump + line.bend * depth), 0.0)
+            curvature = curvature + np.where(inside, line.bend, 0.0)
+            position[:, k], jump[:, k] = distance, line.jump
+            bends[:, k] = np.where(inside, -line.bend, line.bend)
         ends = touch.low - x, touch.high - x
         # flanks hollowed out more than they are round would touch at several places
         return rounded(Gap(slope, curvature, *ends, position, jump, bends), FLATTEST * touch.curvature)
@@ -364,10 +366,10 @@ class _Flanks:
         That of `wavy` flanks is the one that gives way as they do; not where an edge touches.
         """
         touch = self._touch
-        (off, missed), (_, gap) = np.zeros((2, x.size)), moved_gap(self.about(x), np.zeros(x.size))
+        (off, error), (_, gap) = np.zeros((2, x.size)), moved_gap(self.about(x), np.zeros(x.size))
         inside = np.flatnonzero(wavy & (gap.slope == 0.0) & (gap.low < 0.0) & (gap.high > 0.0))
         if not inside.size:
-            return off, missed, gap
+            return off, error, gap
 
         def within_flanks(way: FloatArray, of: IntArray) -> FloatArray:
             """Return the gap, no nearer than plain flanks where bodies have ended: strips end there."""
@@ -386,8 +388,8 @@ class _Flanks:
         gap = with_breaks(gap, BREAKS)
         felt = strip.gap._replace(low=gap.low[inside], high=gap.high[inside])
         felt = with_breaks(felt, gap.place.shape[1])
-        off[inside], missed[inside] = strip.center, strip.missed
-        return off, missed, Gap(*_replaced(tuple(gap), inside, tuple(felt)))
+        off[inside], error[inside] = strip.center, strip.missed
+        return off, error, Gap(*_replaced(tuple(gap), inside, tuple(felt)))
 
     def closed(self, x: FloatArray, now: FloatArray) -> dict[str, FloatArray]:
         """Return gap, lag, slopes and turns of a `Touch` at x.
@@ -432,11 +434,11 @@ class _Flanks:
         Up to `STEEPEST`: a steeper flank falls back nearly as fast as it is turned, and nothing touches it.
         """
         near = _NEAR * self.step
-        here, beside = (
+        slope, next_slope = (
             np.clip(flank_slope(self._pair, gear, self._designed, places, self.step), -STEEPEST, STEEPEST)
             for places in (self._places(x), self._places(x + near))
         )
-        return np.where(at_edge, 0.0, here), np.where(at_edge, 0.0, (beside - here) / near)
+        return np.where(at_edge, 0.0, slope), np.where(at_edge, 0.0, (next_slope - slope) / near)
 
     def _plain(self, x: FloatArray) -> FloatArray:
         """Return the gap of plain flanks at x, m."""

@@ -15,7 +15,7 @@ from fe_contact.types import Json
 CHOICES = ("on", "off", "auto")
 
 
-def flipped(registry: Sequence[Effect], decided: Mapping[str, str], name: str, choice: str) -> dict[str, str]:
+def flipped(registry: Sequence[Effect], present: Mapping[str, str], name: str, choice: str) -> dict[str, str]:
     """Return the choices with `name` on or off.
 
     The plane that stands in for three dimensions is corrected for its finite width where it can be, and three
@@ -23,10 +23,10 @@ def flipped(registry: Sequence[Effect], decided: Mapping[str, str], name: str, c
 
     Parameters
     ----------
-    decided : mapping of str to str
+    present : mapping of str to str
         Every effect "on" or "off".
     """
-    choices = {**decided, name: choice}
+    choices = {**present, name: choice}
     face, width = named(registry, "across_face"), named(registry, "finite_width")
     if name == face:
         choices[width] = "auto" if choice == "off" else "off"

@@ -85,7 +85,10 @@ class PitchError(Effect):
             -gear.pitch_deviation.on_line_of_action(gear.transverse_pressure_angle)
             for gear in scene.gears.values()
         )
-        gaps = (PitchGap(index, tuple(each.tolist()), _period(scene)) for index, each in enumerate(late))
+        gaps = (
+            PitchGap(index, tuple(deviations.tolist()), _period(scene))
+            for index, deviations in enumerate(late)
+        )
         return replace(model, tooth_gaps=(*model.tooth_gaps, *gaps))
 
     def without(self, scene: ContactScene) -> ContactScene:

@@ -152,5 +152,5 @@ def _skew(scene: ContactScene) -> float:
     face = pair.common_face_center + np.array([-half, 0.0, half])
     roll_1, roll_2 = (np.full((1, 3), float(roll)) for roll in pair.roll_lengths(0.0))
     force = float(pair.normal_force(scene.torque.max())) / math.cos(pair.base_helix_angle)
-    moved = force * _term(scene)(pair, roll_1, roll_2, face)[0, :, 1]
-    return float(moved[2] - moved[0])
+    deflection = force * _term(scene)(pair, roll_1, roll_2, face)[0, :, 1]
+    return float(deflection[2] - deflection[0])

@@ -53,8 +53,10 @@ class ToothDeviations(Effect):
 
     def across_face(self, scene: ContactScene) -> str | None:
         """Wobble, waves inclined to the contact lines, and flanks of teeth that vary along the face."""
-        found = dict.fromkeys(words for gear in scene.gears.values() for words in _across_face(gear).values())
-        return " and ".join(found) or None
+        causes = dict.fromkeys(
+            words for gear in scene.gears.values() for words in _across_face(gear).values()
+        )
+        return " and ".join(causes) or None
 
     def refuse_plane(self, scene: ContactScene) -> None:
         """Refuse what varies along the face."""
@@ -97,8 +99,8 @@ def _hollow_surface(pair: ParallelAxes, index: int) -> float:
     middle, deepest = np.zeros(rolls.shape), 0.0
     for flank in gear.tooth_flanks:
         if flank.flank_grid is not None:
-            before, here, after = flank.flank_grid.material_removed(rolls, middle)
-            deepest = max(deepest, float(np.max((2.0 * here - before - after) / (strip**2 * curvature))))
+            before, center, after = flank.flank_grid.material_removed(rolls, middle)
+            deepest = max(deepest, float(np.max((2.0 * center - before - after) / (strip**2 * curvature))))
     return deepest
 
 
@@ -112,12 +114,12 @@ def _across_face(gear: Toothing) -> dict[str, str]:
     """Return the fields of what varies along the face of a gear, in words."""
     inclined = any(wave.amplitude and wave.face_waves for wave in gear.waves)
     flanks = any(flank.varies_along_face for flank in gear.tooth_flanks)
-    found = {
+    causes = {
         "run_out.wobble": ("wobble", bool(gear.run_out.wobble)),
         "waves": ("waves across the face", inclined),
         "tooth_flanks": ("helix deviations of teeth", flanks),
     }
-    return {field: words for field, (words, there) in found.items() if there}
+    return {field: words for field, (words, there) in causes.items() if there}
 
 
 def _figures(gear: Toothing) -> str:

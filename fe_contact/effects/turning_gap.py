@@ -73,7 +73,7 @@ class TurningGap:
             face = face - pair.axial_offset
         shape = np.broadcast_shapes(teeth.meeting.shape, roll.shape, face.shape)
         meeting = np.broadcast_to(teeth.meeting, shape).ravel()
-        roll, face = (np.broadcast_to(each, shape).ravel() for each in (roll, face))
+        roll, face = (np.broadcast_to(values, shape).ravel() for values in (roll, face))
         gap = np.zeros(meeting.size)
         if self._harmonics.size:
             _take_harmonics(gap, self._harmonics, self._turning(pair, gear), meeting, roll, face)

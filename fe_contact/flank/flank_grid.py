@@ -153,9 +153,9 @@ def _slope(values: FloatArray, axis: FloatArray, direction: int) -> FloatArray:
     curvature = _curvature(secant, step)
     before, after = secant + curvature * step, secant - curvature * step  # at the end, at the begin of cells
     bound = _lesser(before[:-1], after[1:])
-    most = np.maximum(3.0 * np.abs(_lesser(secant[:-1], secant[1:])), 1.5 * np.abs(bound))
+    limit = np.maximum(3.0 * np.abs(_lesser(secant[:-1], secant[1:])), 1.5 * np.abs(bound))
     parabola = (step[1:] * secant[:-1] + step[:-1] * secant[1:]) / (step[:-1] + step[1:])
-    inner = _lesser(parabola, np.copysign(most, bound))
+    inner = _lesser(parabola, np.copysign(limit, bound))
     first = _end_slope(secant[0], secant[1], step[0], step[1], after[0])
     last = _end_slope(secant[-1], secant[-2], step[-1], step[-2], before[-1])
     return np.moveaxis(np.stack([first, *inner, last]), 0, direction)

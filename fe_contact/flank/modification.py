@@ -173,8 +173,8 @@ def fields_of(*kinds: Kind) -> tuple[str, ...]:
 
 def _part(modification: FlankModification, kind: type[FlankPart]) -> FlankPart:
     plain, default = _DEFAULTS[kind]
-    own = {name: getattr(modification, name) for name in default}
-    return plain if own == default else kind(**own)
+    values = {name: getattr(modification, name) for name in default}
+    return plain if values == default else kind(**values)
 
 
 def _own_fields(part: FlankPart) -> dict[str, Any]:
@@ -182,8 +182,8 @@ def _own_fields(part: FlankPart) -> dict[str, Any]:
 
 
 def _together(parts: Iterable[FlankPart]) -> FlankModification:
-    own = (_own_fields(part) for part in parts)
-    return FlankModification(**{name: value for facts in own for name, value in facts.items()})
+    fields_of_parts = (_own_fields(part) for part in parts)
+    return FlankModification(**{name: value for facts in fields_of_parts for name, value in facts.items()})
 
 
 UNMODIFIED = FlankModification()

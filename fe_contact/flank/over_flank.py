@@ -97,9 +97,9 @@ class _CornerRelief(ProfileRelief):
         start, end = self._span(gear)
         inset = self._inset(gear, np.asarray(face_position))
         reached = np.abs(inset) < abs(end - start)
-        here = self._begins(gear, np.clip(start + inset, *involute(gear)), end - start)
-        jump, bend = (np.where(reached, value, 0.0) for value in (here.jump, here.bend))
-        return (ReliefStart(here.roll_length, here.towards_tip, jump, bend),)
+        begin = self._begins(gear, np.clip(start + inset, *involute(gear)), end - start)
+        jump, bend = (np.where(reached, value, 0.0) for value in (begin.jump, begin.bend))
+        return (ReliefStart(begin.roll_length, begin.towards_tip, jump, bend),)
 
     def _inset(self, gear: Tooth, face_position: FloatArray) -> FloatArray:
         """Return how much later than at the corner's end of the face it starts, m of roll length."""

@@ -105,22 +105,22 @@ class StatedStarts:
     def _start_of(self, relief: str, modification: Mapping[str, Any]) -> dict[str, float]:
         """Return the one way in which a start is stated, and its value; none where a length is."""
         by_field = {f"{relief}_{way}": way for way in WAYS}
-        stated = {field: value for field in by_field if (value := getattr(self, field)) is not None}
+        starts = {field: value for field in by_field if (value := getattr(self, field)) is not None}
         length, words = modification.get(f"{relief}_length", 0.0), relief.replace("_", " ")
-        ways = [*([f"{relief}_length"] if length else []), *stated]
+        ways = [*([f"{relief}_length"] if length else []), *starts]
         if len(ways) > 1:
             bound, advice = (
                 Text.of("left out beside ", FieldName(ways[0])),
                 f"State once where the {words} starts.",
             )
-            raise InputError(f"modification.{ways[1]}", stated[ways[1]], bound, advice)
+            raise InputError(f"modification.{ways[1]}", starts[ways[1]], bound, advice)
         if not ways and modification.get(relief, 0.0):
             names = tuple(part for field in by_field for part in (", ", FieldName(field)))
             bound = Text.of("above 0, or left out beside one of ", *names[1:])
             raise InputError(
                 f"modification.{relief}_length", length, bound, f"State where the {words} starts."
             )
-        return {by_field[field]: value for field, value in stated.items()}
+        return {by_field[field]: value for field, value in starts.items()}
 
 
 def _along_radius(gear: Tooth, field: str, value: float) -> float:

@@ -92,8 +92,10 @@ def _beyond_rounding(pair: ParallelAxes) -> Text:
         -pair.transverse_base_backlash,
         backlash_rounding(pair.pinion, pair.wheel, pair.center_distance),
     )
-    most = Text.of("rounding of the printed values makes ", Quantity(rounding, "m", digits=2), " at most")
-    return Text.of("Jam ", Quantity(jam, "m", digits=3), "; ", most)
+    allowance = Text.of(
+        "rounding of the printed values makes ", Quantity(rounding, "m", digits=2), " at most"
+    )
+    return Text.of("Jam ", Quantity(jam, "m", digits=3), "; ", allowance)
 
 
 def _refuse_contact_ratio(pair: ParallelAxes) -> None:
@@ -112,7 +114,7 @@ def _refuse_short_flanks(pair: ParallelAxes) -> None:
     if value >= 1.0:
         return
     gears = {"pinion": pair.pinion, "wheel": pair.wheel}
-    name = max(gears, key=lambda each: abs(gears[each].tip_roll_length - gears[each].tip_form_roll_length))
+    name = max(gears, key=lambda gear: abs(gears[gear].tip_roll_length - gears[gear].tip_form_roll_length))
     shape = gears[name].modification
     field = "tip_rounding" if shape.tip_rounding else "tip_chamfer"
     bound = f"smaller: between the tip form circles the contact ratio is {value:.6g}, below 1"

@@ -82,7 +82,10 @@ class ToothSurfaces:
             amounts=amounts,
             grids=PackedGrids.of(grids),
             extents=_extents(ends, amounts, grids),
-            nodes=tuple(profile_nodes(ends, *each) for each in zip(amounts[:, 2], grids, strict=True)),
+            nodes=tuple(
+                profile_nodes(ends, *amount_and_grid)
+                for amount_and_grid in zip(amounts[:, 2], grids, strict=True)
+            ),
         )
 
     def excess(self, tooth: IntArray, roll_length: FloatArray, face: FloatArray) -> FloatArray:
@@ -99,7 +102,7 @@ class ToothSurfaces:
         from fe_contact.geometry.tooth_surface_loops import surfaces_excess  # noqa: PLC0415 (loads the compiler)
 
         shape = np.broadcast_shapes(tooth.shape, roll_length.shape, face.shape)
-        roll, along = (np.broadcast_to(each, shape).ravel() for each in (roll_length, face))
+        roll, along = (np.broadcast_to(values, shape).ravel() for values in (roll_length, face))
         teeth = np.broadcast_to(tooth, shape).ravel().astype(np.int64, copy=False)
         excess = surfaces_excess(teeth, roll, along, self.ends, self.face_width, self.amounts, self.grids)
         return np.asarray(excess.reshape(shape))
@@ -122,7 +125,7 @@ def profile_nodes(ends: tuple[float, float], waves: float, grid: FlankGrid | Non
 def _extents(ends: tuple[float, float], amounts: FloatArray, grids: Sequence[FlankGrid | None]) -> Extent:
     """Return the extents (T,) of the gaps of teeth by their `amounts` (T, 6) and surfaces."""
     surfaces = [Extent() if grid is None else grid.extent(ends) for grid in grids]
-    parts = (np.array([getattr(each, field.name) for each in surfaces]) for field in fields(Extent))
+    parts = (np.array([getattr(surface, field.name) for surface in surfaces]) for field in fields(Extent))
     slope, helix = np.abs(amounts[:, 0]), np.abs(amounts[:, 3])
     tilted, (_, form, waves) = 0.5 * (slope + helix), np.abs(amounts[:, :3]).T
     profile, across = _form_ends(*amounts[:, 1:3].T), _form_ends(*amounts[:, 4:6].T)

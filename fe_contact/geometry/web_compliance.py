@@ -41,8 +41,8 @@ def web_compliance(gear: Toothing) -> float:
     if web is None:
         return 0.0
     radii = (web.inner_radius, web.outer_radius, gear.material)
-    each = gear.base_radius**2 * torsion_compliance(*radii) + shift_compliance(*radii)
-    return each * (1.0 / web.thickness - 1.0 / gear.face_width)
+    rotation = gear.base_radius**2 * torsion_compliance(*radii) + shift_compliance(*radii)
+    return rotation * (1.0 / web.thickness - 1.0 / gear.face_width)
 
 
 def shear_modulus(material: Material) -> float:

@@ -38,9 +38,9 @@ class ClampedBore:
 
     def held(self, grid: SectorGrid, z: FloatArray) -> BoolArray:
         """Hold all components on the bore."""
-        held = np.zeros((len(z), grid.nodes, 3), dtype=bool)
-        held[:, grid.bore] = True
-        return held
+        fixed = np.zeros((len(z), grid.nodes, 3), dtype=bool)
+        fixed[:, grid.bore] = True
+        return fixed
 
 
 @dataclass(frozen=True)
@@ -52,9 +52,9 @@ class PlaneStrain:
 
     def held(self, grid: SectorGrid, z: FloatArray) -> BoolArray:
         """Hold all components on the bore and the axial one everywhere."""
-        held = ClampedBore().held(grid, z)
-        held[..., 2] = True
-        return held
+        fixed = ClampedBore().held(grid, z)
+        fixed[..., 2] = True
+        return fixed
 
 
 @dataclass(frozen=True)
@@ -74,9 +74,9 @@ class _SeatedBore:
         low, high = self.seat.ends(self.face_width)
         close = ROUNDING * self.face_width
         planes = np.flatnonzero((z > low - close) & (z < high + close))
-        held = np.zeros((len(z), grid.nodes, 3), dtype=bool)
-        held[planes[:, None], grid.bore] = np.isinf(self.seat.stiffness)
-        return held
+        fixed = np.zeros((len(z), grid.nodes, 3), dtype=bool)
+        fixed[planes[:, None], grid.bore] = np.isinf(self.seat.stiffness)
+        return fixed
 
 
 def bore_support(gear: Toothing) -> BoreSupport:

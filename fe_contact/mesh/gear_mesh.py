@@ -102,13 +102,13 @@ def _number_sectors(sector: ToothSector, count: int, closed: bool) -> IntArray:
     size = len(sector.points)
     owned = np.ones(size, dtype=bool)
     owned[sector.left_side] = False
-    each = int(owned.sum())
+    nodes_of_sector = int(owned.sum())
     nodes = np.empty((count, size), dtype=np.int64)
-    nodes[:, owned] = np.arange(count * each).reshape(count, each)
+    nodes[:, owned] = np.arange(count * nodes_of_sector).reshape(count, nodes_of_sector)
     following = np.roll(nodes[:, sector.right_side], -1, axis=0)
     nodes[:, sector.left_side] = following
     if not closed:
-        nodes[-1, sector.left_side] = count * each + np.arange(len(sector.left_side))
+        nodes[-1, sector.left_side] = count * nodes_of_sector + np.arange(len(sector.left_side))
     return nodes
 
 

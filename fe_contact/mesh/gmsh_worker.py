@@ -133,16 +133,16 @@ def _rows_above(bottom: list[int], quads: list[list[int]]) -> list[list[int]]:
 
     Relies on nothing but which quadrilaterals share a side.
     """
-    beside: dict[frozenset[int], list[int]] = {}
+    neighbors: dict[frozenset[int], list[int]] = {}
     for number, quad in enumerate(quads):
         for a, b in zip(quad, quad[1:] + quad[:1], strict=True):
-            beside.setdefault(frozenset((a, b)), []).append(number)
+            neighbors.setdefault(frozenset((a, b)), []).append(number)
     rows: list[list[int]] = [bottom]
     used: set[int] = set()
     while len(used) < len(quads):
         row: list[int] = []
         for a, b in zip(rows[-1], rows[-1][1:], strict=False):
-            (number,) = set(beside[frozenset((a, b))]) - used
+            (number,) = set(neighbors[frozenset((a, b))]) - used
             used.add(number)
             row += [_neighbor(quads[number], a, b)] if not row else []
             row.append(_neighbor(quads[number], b, a))

@@ -79,13 +79,13 @@ def _plain_rim(side: Piece, missing: int, pitch: float, inside: float, recipe: M
 
 def inner_rings(gear: Toothing, bottom_radius: float, recipe: MeshRecipe) -> tuple[_InnerRing, ...]:
     """Return what lies below the sectors from there on: one ring, or the rim's rest, web and hub."""
-    held, web = gear.held_radius, gear.web
-    radii, thickness = [bottom_radius, held], [1.0]
+    held_radius, web = gear.held_radius, gear.web
+    radii, thickness = [bottom_radius, held_radius], [1.0]
     if web is not None:
         radii = [bottom_radius, web.outer_radius, web.inner_radius]
         thickness = [1.0, web.thickness / gear.face_width]
-        if web.inner_radius > held:
-            radii, thickness = [*radii, held], [*thickness, 1.0]
+        if web.inner_radius > held_radius:
+            radii, thickness = [*radii, held_radius], [*thickness, 1.0]
     depths = [*(abs(a - b) for a, b in pairwise(radii)), np.inf]
     return tuple(
         _InnerRing(_divided_circle(r, min(near), abs(bottom_radius - r), recipe), part)
@@ -136,13 +136,13 @@ def joined_hub(
 
 def _joined(outside: QuadraticMesh, inside: QuadraticMesh) -> QuadraticMesh:
     """Join two meshes along the inner boundary of one and the outer one of the other, its reverse."""
-    own = np.ones(len(inside.points), dtype=bool)
-    own[inside.boundary[0]] = False
-    number = np.empty(len(own), dtype=np.int64)
-    number[own] = len(outside.points) + np.arange(int(own.sum()))
+    added = np.ones(len(inside.points), dtype=bool)
+    added[inside.boundary[0]] = False
+    number = np.empty(len(added), dtype=np.int64)
+    number[added] = len(outside.points) + np.arange(int(added.sum()))
     number[inside.boundary[0]] = np.roll(outside.boundary[1][::-1], 1)
     return QuadraticMesh(
-        points=np.concatenate([outside.points, inside.points[own]]),
+        points=np.concatenate([outside.points, inside.points[added]]),
         triangles=np.concatenate([outside.triangles, number[inside.triangles]]),
         boundary=(outside.boundary[0], number[inside.boundary[1]]),
     )

@@ -146,9 +146,9 @@ def swept_sector(
     batches, elements, position = with_seat(
         grid, layers, (batches, elements, position), support.seat.ends(face_width), support.seat.elastic
     )
-    held = support.held(grid, between_ends(layers.ends))
-    held[0, :, 2] |= recipe.half_face
-    free = ~held[exists]
+    fixed = support.held(grid, between_ends(layers.ends))
+    fixed[0, :, 2] |= recipe.half_face
+    free = ~fixed[exists]
     freedoms = np.where(free, np.cumsum(free).reshape(free.shape) - 1, -1)
     return SweptSector(grid, layers, nodes, elements, position, batches, freedoms, support.seat)
 

@@ -121,13 +121,13 @@ def contact_seconds(
 ) -> tuple[float, float, float]:
     """CPU seconds of the search of positions, of the table, and of the solutions that measure its errors."""
     points, distances, loads = alignments[0] * alignments[1], alignments[1], plan.load.size
-    kept, assessed = expected_positions(pair, plan, model.period, points), min(points, _JUDGED)
+    nodes, assessed = expected_positions(pair, plan, model.period, points), min(points, _JUDGED)
     tried, window = expected_tries(pair, plan, model.period, points), plan.nodes.searched(model.period)
     work = unit_work(pair, plan, plan.discretization.slices)
     search = work.of(tried * distances, 0) + work.in_pitches(tried * assessed, (loads,), window)
-    cycle = CycleSeconds.of(work, pair, model.period, kept, (loads, plan.support.size))
+    cycle = CycleSeconds.of(work, pair, model.period, nodes, (loads, plan.support.size))
     derived = with_errors and cycle.pays_in_table(model.period)
-    table = work.of(kept * distances, 0)
+    table = work.of(nodes * distances, 0)
     table += points * (cycle.expected if derived else cycle.exact)
     table += _FACE_CHECK if plan.discretization.slices > 1 else 0.0
     solved = 1 + solved_pitches(model.period, in_table=True)[1] if derived else model.period
@@ -140,36 +140,39 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
     In as many base pitches as are `solved` of its period.
     """
     made, loads = plan.discretization, plan.load.size
-    kept = expected_positions(pair, plan, period, alignments[0] * alignments[1])
+    nodes = expected_positions(pair, plan, period, alignments[0] * alignments[1])
     work = unit_work(pair, plan, made.slices)
     rougher = [work, *([work] if made.corrected else [])]
     if made.slices > 1:
         rougher.append(unit_work(pair, plan, made.coarse_slices))
     if plan.coarse_patch != plan.patch:
         rougher.append(work)
-    some, rows = min(loads, LOADS), some_positions(kept).size
+    sampled_loads, rows = min(loads, LOADS), some_positions(nodes).size
     skews, distances = (min(count, ALIGNMENTS) for count in alignments)
     seconds = sum(
-        w.of(rows * distances, 0) + w.in_pitches(rows * skews * distances, (some,), solved) for w in rougher
+        w.of(rows * distances, 0) + w.in_pitches(rows * skews * distances, (sampled_loads,), solved)
+        for w in rougher
     )
     if plan.positions is not None or period > 1:
-        middles, assessed = _SOLVED_MIDDLES * kept, min(alignments[0] * alignments[1], _JUDGED)
-        seconds += work.of(middles * alignments[1], 0) + work.in_pitches(middles * assessed, (some,), solved)
+        middles, assessed = _SOLVED_MIDDLES * nodes, min(alignments[0] * alignments[1], _JUDGED)
+        seconds += work.of(middles * alignments[1], 0) + work.in_pitches(
+            middles * assessed, (sampled_loads,), solved
+        )
     held_out_loads = (loads - 1) * (WIDE_PROBES if loads - 1 <= WIDE_INTERVALS else 1)
-    held = rows * (held_out_loads + WIDE_PROBES * (alignments[0] - 1) * some)
-    apart = rows * (alignments[1] - 1)
-    seconds += work.of(apart, held + apart * some)
+    held_out = rows * (held_out_loads + WIDE_PROBES * (alignments[0] - 1) * sampled_loads)
+    further_rows = rows * (alignments[1] - 1)
+    seconds += work.of(further_rows, held_out + further_rows * sampled_loads)
     seconds += _FACE_CHECK if made.slices > 1 else _PLANE_CHECK
-    return seconds + _TABLE_POINT * kept * period * alignments[0] * alignments[1] * loads
+    return seconds + _TABLE_POINT * nodes * period * alignments[0] * alignments[1] * loads
 
 
 def memory_of_contact(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, int]) -> float:
     """Return the bytes of compliance, touching points and table that are held at once."""
-    held = _HELD_POSITIONS if plan.positions is None else _HELD_PART * plan.positions
+    stored = _HELD_POSITIONS if plan.positions is None else _HELD_PART * plan.positions
     count = _candidates(pair, plan.discretization.slices)
     points = count * (POINTS if plan.discretization.slices > 1 else 1)
     blocks = 2 if _with_tilt(pair, plan) else 1
-    numbers = held * (blocks * count**2 + _POINT_NUMBERS * points)
+    numbers = stored * (blocks * count**2 + _POINT_NUMBERS * points)
     if period > 1:
         rows = expected_positions(pair, plan, period, alignments[0] * alignments[1]) * period
         numbers += _PART_NUMBERS * min(rows * points, POINTS_AT_ONCE)
@@ -253,9 +256,9 @@ class _Cost(NamedTuple):
     held: float
 
     @classmethod
-    def of(cls, each: Iterable[_Cost]) -> _Cost:
+    def of(cls, parts: Iterable[_Cost]) -> _Cost:
         """One after the other."""
-        costs = list(each)
+        costs = list(parts)
         working = max((cost.working for cost in costs), default=0.0)
         return cls(sum(cost.seconds for cost in costs), working, sum(cost.held for cost in costs))
 
@@ -368,8 +371,8 @@ def _compliance(pair: ParallelAxes, plan: Plan, cache: Path | None, *, coarse: b
 
 
 def _solid(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> _Cost:
-    if kept := solid_kept(gear, recipe, cache):
-        return _Cost(_READ_SOLID[gear.helix_angle != 0.0], _READING * kept, kept)
+    if size := solid_kept(gear, recipe, cache):
+        return _Cost(_READ_SOLID[gear.helix_angle != 0.0], _READING * size, size)
     predicted = predict_cost(gear, recipe, cache=cache)
     return _Cost(predicted.seconds, _WORKING * predicted.bytes, 0.0)
 
@@ -385,8 +388,8 @@ def _free_ends(
         return
     teeth = condensed_teeth(pair)
     for gear, recipe in dict.fromkeys(zip(bodies, made.finite_width, strict=True)):
-        if kept := free_ends_kept(gear, recipe, teeth, cache):
-            yield _Cost(_READ_PLANE, 0.0, kept)
+        if size := free_ends_kept(gear, recipe, teeth, cache):
+            yield _Cost(_READ_PLANE, 0.0, size)
         else:
             predicted = predict_cost(gear, recipe, cache=cache)
             yield _Cost(2.0 * predicted.seconds, _WORKING * predicted.bytes, 0.0)
@@ -395,8 +398,8 @@ def _free_ends(
 def _section(
     pair: ParallelAxes, gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, cache: Path | None
 ) -> _Cost:
-    if kept := section_kept(gear, recipe, hypothesis, condensed_teeth(pair), cache):
-        return _Cost(_READ_PLANE, 0.0, kept)
+    if size := section_kept(gear, recipe, hypothesis, condensed_teeth(pair), cache):
+        return _Cost(_READ_PLANE, 0.0, size)
     return _Cost(*_section_cost(gear, recipe), 0.0)
 
 

@@ -55,8 +55,8 @@ class ContactWork(NamedTuple):
 
     def in_pitches(self, rows: float, sets: Sequence[float], pitches: float) -> float:
         """Return the CPU seconds of rows of positions in so many pitches, at sets of so many loads."""
-        beside = self.pitch + len(sets) * self.begun if pitches > 1 else 0.0
-        return rows * pitches * (sum(sets) * self.point + beside)
+        overhead = self.pitch + len(sets) * self.begun if pitches > 1 else 0.0
+        return rows * pitches * (sum(sets) * self.point + overhead)
 
     def of_flanks(self, positions: float, loads: float) -> float:
         """Return the CPU seconds of other flanks at positions that are assembled, at so many loads each."""

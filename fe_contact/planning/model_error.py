@@ -69,36 +69,36 @@ def flank_tilt(pair: ParallelAxes, force: FloatArray) -> FloatArray:
     return (_ALIKE + _UNLIKE * unlike**2) * line_load * slenderness / contact_modulus(first, second)
 
 
-def model_errors(pair: ParallelAxes, force: FloatArray, own: FloatArray, *, over_face: bool) -> FloatArray:
+def model_errors(pair: ParallelAxes, force: FloatArray, values: FloatArray, *, over_face: bool) -> FloatArray:
     """Return the errors of the quantities of curves, m.
 
     Parameters
     ----------
     force : ndarray, shape (F,)
         Normal forces, N.
-    own : ndarray, shape (Q, F, ...)
+    values : ndarray, shape (Q, F, ...)
         Mean, peak-to-peak and harmonics of the curves, m; at least the mean.
     over_face : bool
         Whether they are of a model over the face.
     """
-    strain = own[MEAN] / pair.pinion.normal_module
-    large = np.multiply.outer(_by_quantity(LARGE_DISPLACEMENT[over_face], own), strain)
-    floor = _by_quantity(floor_of(pair), own).reshape(-1, *[1] * strain.ndim)
-    moved = (floor + large) * of_bending(pair, own)
-    return np.asarray(np.maximum(in_small_displacements(pair, force, own, over_face=over_face), moved))
+    strain = values[MEAN] / pair.pinion.normal_module
+    large = np.multiply.outer(_by_quantity(LARGE_DISPLACEMENT[over_face], values), strain)
+    floor = _by_quantity(floor_of(pair), values).reshape(-1, *[1] * strain.ndim)
+    of_motion = (floor + large) * of_bending(pair, values)
+    return np.asarray(np.maximum(in_small_displacements(pair, force, values, over_face=over_face), of_motion))
 
 
 def in_small_displacements(
-    pair: ParallelAxes, force: FloatArray, own: FloatArray, *, over_face: bool
+    pair: ParallelAxes, force: FloatArray, values: FloatArray, *, over_face: bool
 ) -> FloatArray:
     """Return the errors against full contact whose displacements are small, as those of the bodies are, m.
 
     Parameters are those of `model_errors`.
     """
-    tilted = flank_tilt(pair, force).reshape(-1, *[1] * (own.ndim - 2))
-    floor = _by_quantity(floor_of(pair), own).reshape(-1, *[1] * tilted.ndim)
-    tilt = np.multiply.outer(_by_quantity(TILT[over_face], own), tilted)
-    return np.asarray((floor + tilt) * of_bending(pair, own))
+    tilted = flank_tilt(pair, force).reshape(-1, *[1] * (values.ndim - 2))
+    floor = _by_quantity(floor_of(pair), values).reshape(-1, *[1] * tilted.ndim)
+    tilt = np.multiply.outer(_by_quantity(TILT[over_face], values), tilted)
+    return np.asarray((floor + tilt) * of_bending(pair, values))
 
 
 def floor_of(pair: ParallelAxes) -> tuple[float, float, float]:
@@ -107,13 +107,13 @@ def floor_of(pair: ParallelAxes) -> tuple[float, float, float]:
     return FLOOR if plain else MODIFIED_FLOOR
 
 
-def of_bending(pair: ParallelAxes, own: FloatArray) -> FloatArray:
-    """Return of what size the quantities (Q, ...) in m are as far as teeth bend: at least `own`."""
+def of_bending(pair: ParallelAxes, values: FloatArray) -> FloatArray:
+    """Return of what size the quantities (Q, ...) in m are as far as teeth bend: at least `values`."""
     ripple = bending_ripple(pair)
     number = np.arange(1, QUANTITIES - FIRST_HARMONIC + 1)
     harmonics = ripple * HARMONIC_OVER_PEAK * np.minimum(1.0, FLAT_HARMONICS / number)
     over_mean = np.array([1.0, ripple, 0.0, *harmonics])
-    return np.asarray(np.maximum(own, np.multiply.outer(over_mean[: len(own)], own[MEAN])))
+    return np.asarray(np.maximum(values, np.multiply.outer(over_mean[: len(values)], values[MEAN])))
 
 
 def bending_ripple(pair: ParallelAxes) -> float:
@@ -133,12 +133,12 @@ def point_error(
     pair: ParallelAxes, force: FloatArray, deflection: FloatArray, *, over_face: bool
 ) -> FloatArray:
     """Return the error at points (P, F) whose STE is `deflection`, m."""
-    own = np.abs(deflection).T[None]
-    mean = model_errors(pair, force, own, over_face=over_face)[0]
-    return np.asarray(AT_A_POINT * (mean + (POINT_FLOOR - floor_of(pair)[0]) * own[0]).T)
+    lag = np.abs(deflection).T[None]
+    mean = model_errors(pair, force, lag, over_face=over_face)[0]
+    return np.asarray(AT_A_POINT * (mean + (POINT_FLOOR - floor_of(pair)[0]) * lag[0]).T)
 
 
-def _by_quantity(part: tuple[float, float, float], own: FloatArray) -> FloatArray:
+def _by_quantity(part: tuple[float, float, float], values: FloatArray) -> FloatArray:
     """Return the parts of the quantities (Q,) that there are."""
     mean, ripple, harmonic = part
-    return np.array([mean, ripple, *[harmonic] * (QUANTITIES - BESIDE_MESH)])[: len(own)]
+    return np.array([mean, ripple, *[harmonic] * (QUANTITIES - BESIDE_MESH)])[: len(values)]

@@ -188,8 +188,8 @@ def face_discretization(pair: ParallelAxes, level: str, slices: int | None = Non
     """Choose the sectors of both gears and, unless they are given, the slices."""
     first, second = (SECTOR_RECIPE[level](gear) for gear in (pair.pinion, pair.wheel))
     coarse = _coarser(first, pair.pinion), _coarser(second, pair.wheel)
-    most = min(_most_slices(pair, *side) for side in ((pair.pinion, first), (pair.wheel, second)))
-    return FaceDiscretization((first, second), coarse, min(slices or SLICES, most), most)
+    largest = min(_most_slices(pair, *side) for side in ((pair.pinion, first), (pair.wheel, second)))
+    return FaceDiscretization((first, second), coarse, min(slices or SLICES, largest), largest)
 
 
 def _most_slices(pair: ParallelAxes, gear: Toothing, recipe: SectorRecipe) -> int:
@@ -230,16 +230,16 @@ class NodeRule:
 
     def searched(self, period: int) -> float:
         """Return in how many base pitches the search solves a position: beside those assessed at the ends."""
-        beside = 4.0 * _REACH / self.start
-        return 1.0 if period == 1 else (1.0 + beside) * min(self.assessed_pitches, period)
+        probes = 4.0 * _REACH / self.start
+        return 1.0 if period == 1 else (1.0 + probes) * min(self.assessed_pitches, period)
 
     def for_tolerance(self, allowed: AllowedError) -> NodeRule:
         """Return the rule by which positions take their share of a tolerance, and no more than usual."""
-        asked = POSITION_SHARE * allowed.relative / self.tolerance
-        closer = min(max(asked, CLOSEST), 1.0)
-        most = round(self.most / math.sqrt(closer))
-        least = FLOOR_SHARE * allowed.least_scale * asked / closer  # the floor is as asked, however close
-        return replace(self, tolerance=closer * self.tolerance, most=most, least_ripple=least)
+        wanted = POSITION_SHARE * allowed.relative / self.tolerance
+        closer = min(max(wanted, CLOSEST), 1.0)
+        limit = round(self.most / math.sqrt(closer))
+        least = FLOOR_SHARE * allowed.least_scale * wanted / closer  # the floor is as asked, however close
+        return replace(self, tolerance=closer * self.tolerance, most=limit, least_ripple=least)
 
     def ripple(self, curves: FloatArray) -> FloatArray:
         """Return the peak-to-peak STE (C,) in m of curves (P, C) in m that the tolerance is a part of."""

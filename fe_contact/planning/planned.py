@@ -154,10 +154,10 @@ def expected_error(
         The caller chose the model.
     """
     known = curves or _usual_curves(pair, plan)
-    parts, own = _parts(pair, plan, known), np.stack([known.mean, known.peak_to_peak])
+    parts, values = _parts(pair, plan, known), np.stack([known.mean, known.peak_to_peak])
     relative = np.sqrt(sum(np.square(part) for part in parts.values())) / known.scale
     if bias := plane_bias(pair, plan.discretization):
-        bias = bias.of_curves(*own) if known.absolute and _modified(pair) else bias
+        bias = bias.of_curves(*values) if known.absolute and _modified(pair) else bias
     counted = [part for name, part in parts.items() if not (bias and name == "plane")]
     absolute = np.sqrt(sum(np.square(part) for part in counted))
     worst = np.unravel_index(int(np.argmax(relative)), relative.shape)
@@ -183,7 +183,7 @@ def _parts(pair: ParallelAxes, plan: Plan, known: ExpectedCurves) -> dict[str, F
     """Return the errors of mean and peak-to-peak by source, each (2, C) in m."""
     made = plan.discretization
     mean, ripple = known.mean, known.peak_to_peak
-    own = np.stack([mean, ripple])
+    values = np.stack([mean, ripple])
     by_mesh = np.outer(usual_mesh_error(pair, plan), known.added)
     nothing = np.zeros_like(by_mesh)
     slices, plane = nothing.copy(), nothing.copy()
@@ -195,7 +195,7 @@ def _parts(pair: ParallelAxes, plan: Plan, known: ExpectedCurves) -> dict[str, F
     elif bias := plane_bias(pair, made):
         plane = bias.largest(mean, ripple)
     left = model_errors if known.absolute else in_small_displacements  # large ones are known in m alone
-    method = left(pair, known.force, own, over_face=isinstance(made, FaceDiscretization))
+    method = left(pair, known.force, values, over_face=isinstance(made, FaceDiscretization))
     positions = nothing.copy()
     over_allowed = _FACE_POSITIONS if isinstance(made, FaceDiscretization) else _PLANE_POSITIONS
     positions[1] = over_allowed * plan.nodes.tolerance * np.maximum(ripple, plan.nodes.least_ripple)

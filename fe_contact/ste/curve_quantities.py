@@ -126,8 +126,8 @@ def quantity_changes(
     """
     knots = position if at is None else at
     good = np.isfinite(curves) if at is not None else np.isfinite(curves) & np.isfinite(other)
-    beside = np.isfinite(other) if at is not None else good
-    if good.all() and beside.all():
+    finite = np.isfinite(other) if at is not None else good
+    if good.all() and finite.all():
         if at is not None:
             return _changes(_quantities(position, curves, period), _quantities(knots, other, period))
         ripple, lines, _ = _quantities(position, np.concatenate([curves, other], axis=1), period)
@@ -135,7 +135,7 @@ def quantity_changes(
         return _with_bend(_changes(*(Quantities(*each, period) for each in parts)), curves - other)
     changes = np.full((QUANTITIES, curves.shape[1]), np.nan)
     for c in range(curves.shape[1]):
-        rows, others = good[:, c], beside[:, c]
+        rows, others = good[:, c], finite[:, c]
         if min(rows.sum(), others.sum()) >= _FEWEST_ROWS:
             first = _quantities(position[rows], curves[rows, c : c + 1], period)
             second = _quantities(knots[others], other[others, c : c + 1], period)

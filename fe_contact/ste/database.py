@@ -363,5 +363,5 @@ def _of_all_sources(errors: list[FloatArray], name: str) -> list[FloatArray]:
     """Return arrays with as many sources of errors: one that a table lacks adds none to it."""
     if name not in ("curve_error", "load_arm_error"):
         return errors
-    most = max(len(each) for each in errors)
-    return [np.concatenate([each, np.zeros((most - len(each), *each.shape[1:]))]) for each in errors]
+    count = max(len(array) for array in errors)
+    return [np.concatenate([array, np.zeros((count - len(array), *array.shape[1:]))]) for array in errors]

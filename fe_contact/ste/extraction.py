@@ -106,8 +106,8 @@ def _inserted_counts(levels: LoadLevels, kinked: BoolArray) -> dict[int, int]:
     inserted = min(max(bearable, len(kinks)), _INSERTED) if kinks else 0
     counts = {k: -(-inserted // len(kinks)) for k in kinks}
     ratio = levels.force[2:] / levels.force[1:-1]
-    apart = np.ceil(np.log(ratio) / math.log(_CLOSE_LOADS) * (1.0 - 1e-9)).astype(int) - 1
-    wide = {k: int(apart[k - 1]) for k in steps if k not in counts and apart[k - 1] > 0}
+    steps_between = np.ceil(np.log(ratio) / math.log(_CLOSE_LOADS) * (1.0 - 1e-9)).astype(int) - 1
+    wide = {k: int(steps_between[k - 1]) for k in steps if k not in counts and steps_between[k - 1] > 0}
     return counts | wide if sum(wide.values()) + inserted <= bearable else counts
 
 

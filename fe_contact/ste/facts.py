@@ -122,7 +122,7 @@ class PairFacts:
         try:
             return cls(**content)
         except (TypeError, ValueError, IndexError) as error:
-            missing = sorted({each.name for each in fields(cls) if each.default is MISSING} - set(content))
+            missing = sorted({fact.name for fact in fields(cls) if fact.default is MISSING} - set(content))
             words = f"without {', '.join(missing)}" if missing else "of other kinds"
             raise DatabaseError(f"the pair facts are not readable: {words}") from error
 

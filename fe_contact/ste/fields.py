@@ -244,11 +244,11 @@ class SteFields:
             f"{text}\nWARNING: {self.failure_message()}" if self.n_failed else f"{text}; all points converged"
         )
 
-    def failure_message(self, shown: int = 5) -> str:
-        """Return number, reasons and positions of the points that failed (the first `shown`)."""
+    def failure_message(self, limit: int = 5) -> str:
+        """Return number, reasons and positions of the points that failed (the first `limit`)."""
         points = np.argwhere(self.failed)
-        listed = "; ".join(self._describe(tuple(point)) for point in points[:shown])
-        more = f"; and {len(points) - shown} more" if len(points) > shown else ""
+        listed = "; ".join(self._describe(tuple(point)) for point in points[:limit])
+        more = f"; and {len(points) - limit} more" if len(points) > limit else ""
         return f"{len(points)} of {self.status.size} points FAILED ({listed}{more})"
 
     def _describe(self, point: tuple[int, ...]) -> str:

@@ -179,8 +179,8 @@ def _knot_minimum(axes: tuple[Axis, ...], per_cell: FloatArray) -> FloatArray:
     """Smallest value among the cells that share a knot."""
     for i, axis in enumerate(axes):
         if len(axis.knots) > 1:
-            moved = np.moveaxis(per_cell, i, 0)
-            before, after = axis.neighbors(moved, np.inf)
+            cells = np.moveaxis(per_cell, i, 0)
+            before, after = axis.neighbors(cells, np.inf)
             per_cell = np.moveaxis(np.minimum(before, after), 0, i)
     return per_cell
 
@@ -220,8 +220,8 @@ class ForceCubic:
         s = 1.0 - t
         width, width_slope = self.width, self.deflection_slopes[:, 1] - self.deflection_slopes[:, 0]
         end_tangents = width_slope[:, None] * self.stiffness_ends + width[:, None] * self.stiffness_slopes
-        moved = -(self.deflection_slopes[:, 0] + t * width_slope) / width
-        return np.asarray(tangent * moved + t * s * (s * end_tangents[:, 0] - t * end_tangents[:, 1]))
+        slope = -(self.deflection_slopes[:, 0] + t * width_slope) / width
+        return np.asarray(tangent * slope + t * s * (s * end_tangents[:, 0] - t * end_tangents[:, 1]))
 
     def sample(
         self, d: FloatArray, lifted: NDArray[np.bool_], above: NDArray[np.bool_]
@@ -318,7 +318,7 @@ class ForceTable:
         at = slice(index, index + 1)
         arms = (None if arm is None else arm[at] for arm in self.arms)
         numbers = self.deflection, self.deflection_slope, self.stiffness, self.stiffness_slope
-        deflection, across, stiffness, along = (each[at] for each in numbers)
+        deflection, across, stiffness, along = (stack[at] for stack in numbers)
         axes = self.position, self.level, misalignment, self.center_distance_change
         return ForceTable(*axes, deflection, across, stiffness, along, self.period, None, None, *arms)
 

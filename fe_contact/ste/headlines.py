@@ -57,9 +57,9 @@ def _positions(table: SteFields) -> str:
 
 def _figures(table: SteFields, curve_at: Callable[..., Curve]) -> list[Row]:
     """Return mean, peak-to-peak and first harmonic at some of the loads, aligned or nearest to it."""
-    most = MOST_LOADS if table.period <= LONGEST_PERIOD else 1
+    limit = MOST_LOADS if table.period <= LONGEST_PERIOD else 1
     chosen = np.unique(
-        np.linspace(0, table.torque.size - 1, min(most, table.torque.size)).round().astype(int)
+        np.linspace(0, table.torque.size - 1, min(limit, table.torque.size)).round().astype(int)
     )
     rows = []
     for torque in table.torque[chosen]:

@@ -17,7 +17,8 @@ from fe_contact.ste.curve_quantities import BESIDE_MESH
 from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.ste.fields import DIMENSIONS, OPTIONAL, RESIDUALS, SteFields
 from fe_contact.types import Json, Status
-from model_studies.netcdf import NetcdfContent, UnreadableFile, Variable, opened
+from model_studies.netcdf import UnreadableFile, opened
+from model_studies.netcdf_content import NetcdfContent, Variable
 
 # Result files: netCDF-4 read without decoding, checked by a digest of their arrays.
 

@@ -63,8 +63,8 @@ class NodePlaces:
         others = [stencil for i, stencil in enumerate(self.stencils) if i != axis]
         inside = (at.fraction > 0.0) & (at.fraction < 1.0)
         every = np.arange(at.left.size)
-        stated = _linear(others, lower, (every,))
-        return np.where(inside.reshape(-1, *[1] * (stated.ndim - 1)), stated, 0.0)
+        errors = _linear(others, lower, (every,))
+        return np.where(inside.reshape(-1, *[1] * (errors.ndim - 1)), errors, 0.0)
 
     def interval_error(self, table: SteFields) -> FloatArray:
         """Return the error (Q,) of a point by interpolation along all three axes, m; NaN: not estimated."""

@@ -72,14 +72,14 @@ def tooth_loads(table: SteFields, point: OperatingPoint) -> tuple[ToothLoads, ..
     values = [point.force * share / share.sum(axis=1, keepdims=True)]
     if table.pair_pressure.size:
         values.append(np.maximum(at_operating_point(table, table.pair_pressure, point), 0.0))
-    found = [_of_gear(table, values, gear) for gear in gears]
-    return tuple(loads for loads in found if loads.most_loaded or loads.most_pressed)
+    loads_of_gears = [_of_gear(table, values, gear) for gear in gears]
+    return tuple(loads for loads in loads_of_gears if loads.most_loaded or loads.most_pressed)
 
 
 def _worst(largest: FloatArray) -> tuple[int, ...]:
     """Return the teeth of the largest value; none where that is no more than the mean."""
-    most = np.flatnonzero(largest >= (1.0 - _ALIKE) * largest.max())
-    return tuple(int(k) + 1 for k in most) if largest.max() > (1.0 + _ALIKE) * largest.mean() else ()
+    worst = np.flatnonzero(largest >= (1.0 - _ALIKE) * largest.max())
+    return tuple(int(k) + 1 for k in worst) if largest.max() > (1.0 + _ALIKE) * largest.mean() else ()
 
 
 def _of_gear(table: SteFields, values: list[FloatArray], gear: int) -> ToothLoads:
@@ -89,8 +89,8 @@ def _of_gear(table: SteFields, values: list[FloatArray], gear: int) -> ToothLoad
     tooth = (pitch[:, None] - table.pair) % teeth
     way = np.arange(table.pair.size) * nodes.size + node[:, None]
     largest = [np.full((teeth, table.pair.size * nodes.size), np.nan) for _ in values]
-    for own, each in zip(largest, values, strict=True):
-        np.fmax.at(own, (tooth, way), each)
+    for maximum, samples in zip(largest, values, strict=True):
+        np.fmax.at(maximum, (tooth, way), samples)
     force, pressure = (*largest, np.empty((teeth, 0)))[:2]
     return ToothLoads(gear, (table.pair[:, None] + nodes).ravel(), force, pressure)
 

@@ -28,7 +28,7 @@ from lineofaction.cli.subjects import assessed_case
 from lineofaction.cli.tolerance_lines import NODES, tolerance_lines, tolerance_warnings
 from lineofaction.cli.verb_warnings import warn
 from lineofaction.gearbox.convert.answers import draft_line, source_rows, summary_json
-from lineofaction.gearbox.convert.case import CheckedCase
+from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.effects import (
     assumption_lines,
     by_size,

@@ -23,7 +23,7 @@ from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated
-from lineofaction.gearbox.schemas.gear import FlankPoint
+from lineofaction.gearbox.schemas.flank_point import FlankPoint
 from lineofaction.gearbox.units import UM
 
 _MOST_POSITIONS = 256

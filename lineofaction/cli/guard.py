@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import importlib
 import os
 import sys
 import traceback
@@ -15,7 +14,7 @@ import typer
 
 from lineofaction.cli.verb_parameters import R, keyword, parameters_of, with_parameters
 from lineofaction.cli.verb_warnings import begin_warnings, in_lines, warnings_so_far
-from lineofaction.gearbox.loading import on_demand
+from lineofaction.gearbox.loading import load, on_demand
 from lineofaction.gearbox.problems import EXIT_INTERRUPTED, EXIT_WARNINGS, ServiceError, Unexpected
 
 P = ParamSpec("P")
@@ -34,7 +33,7 @@ def computing(verb: Callable[..., R]) -> Callable[..., R]:
     @functools.wraps(verb)
     def tidied(*args: Any, **kwargs: Any) -> R:
         answer = verb(*args, **kwargs)
-        importlib.import_module("lineofaction.cli.cache").keep_small()
+        load("lineofaction.cli.cache:keep_small")()
         return answer
 
     guard = guarded(tidied)
@@ -75,7 +74,7 @@ def guarded(verb: Callable[P, R]) -> Callable[P, R]:
 
 def _logged(error: Exception) -> Unexpected:
     """Return what is said of a defect, which is written to a log under its reference."""
-    directory = importlib.import_module("host.directories").cache_home() / "log"
+    directory = load("host.directories:cache_home")() / "log"
     reference = uuid.uuid4().hex[:12]
     directory.mkdir(parents=True, exist_ok=True)
     file = directory / f"{reference}.log"

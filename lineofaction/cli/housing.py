@@ -23,8 +23,9 @@ from lineofaction.gearbox.from_step.housing import DIRECTIONS, StepHousing, even
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.number_list import number_list
 from lineofaction.gearbox.problems import BadInput, JobFailed
-from lineofaction.gearbox.schemas.files import READERS, beside, read_text, written_out
-from lineofaction.gearbox.schemas.housings import PERPENDICULAR
+from lineofaction.gearbox.schemas.files import READERS, written_out
+from lineofaction.gearbox.schemas.housing_solid import PERPENDICULAR
+from lineofaction.gearbox.schemas.named_files import beside, read_text
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.reading import read_model, read_table, validated
 from lineofaction.gearbox.schemas.scene import SceneInput

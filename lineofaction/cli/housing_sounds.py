@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from bounds import engineering
+from dynamics.acoustics import SoundFigures
 from dynamics.results import RunResult
 from host.directories import cache_home
 from lineofaction.cli.output import progress_bar
@@ -22,7 +23,6 @@ from lineofaction.gearbox.studies.listen.run import (
     HeardRun,
     Receiver,
     SceneHousings,
-    SoundFigures,
     heard_run,
 )
 from lineofaction.report.drawing.figure import number

@@ -16,7 +16,8 @@ from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from host.directories import cache_home
 from lineofaction.cli.output import Report
 from lineofaction.cli.verb_warnings import warn
-from lineofaction.gearbox.convert.case import CheckedCase, CheckedCases, case_json
+from lineofaction.gearbox.convert.case import case_json
+from lineofaction.gearbox.convert.checked_case import CheckedCase, CheckedCases
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.mesh_tables import MeshTables, finished
 from lineofaction.gearbox.schemas import Case

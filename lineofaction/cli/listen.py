@@ -14,7 +14,6 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import SOUND, run_in
 from lineofaction.gearbox.studies.listen.run import (
     recording_facts,
-    rms,
 )
 from lineofaction.report.comparison.compare import named_files
 from lineofaction.report.document import read_run
@@ -87,7 +86,7 @@ def _show(sounds: Sequence[RunSound], scale: float, remark: str) -> None:
     rows = [
         [
             sound.name,
-            engineering(rms(sound.recording), 4),
+            engineering(sound.recording.rms, 4),
             f"{sound.recording.samples.size / sound.recording.sample_rate:.3f}",
             *(sound.cells.get(name, "") for name in more),
         ]

@@ -17,7 +17,7 @@ from lineofaction.gearbox.inspection.reading import FIELD
 from lineofaction.gearbox.inspection.sheet import Flank, sheet_text
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model
-from lineofaction.gearbox.schemas.files import read_text
+from lineofaction.gearbox.schemas.named_files import read_text
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.toml import toml_text
 from lineofaction.gearbox.units import MM, UM

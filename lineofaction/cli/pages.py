@@ -14,13 +14,15 @@ from bounds import engineering
 from host.directories import cache_home
 from lineofaction.cli.output import Report, check_writable, console, print_json, progress_bar
 from lineofaction.cli.verb_warnings import warn
-from lineofaction.gearbox.convert.case import CheckedCase, case_at
+from lineofaction.gearbox.convert.case import case_at
+from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import about, results_by_part, results_in
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.result_files import stamped
 from lineofaction.gearbox.schemas import Case
-from lineofaction.gearbox.schemas.gear import FlankPoint
+from lineofaction.gearbox.schemas.flank_point import FlankPoint
+from lineofaction.gearbox.studies.computation import Means
 from lineofaction.report.binding import bound
 from lineofaction.report.document import (
     Inputs,
@@ -105,10 +107,9 @@ def _flanks(read: Inputs, report: Report) -> LoadDistribution:
 
     Raises `BadInput`: there is no database to take the case from, or flank results are there already.
     """
-    from fe_contact.options import Run  # noqa: PLC0415 (start-up time)
-    from lineofaction.gearbox.studies.flank.run import flanks_of  # noqa: PLC0415
-
     database = read.database
+    if "flank" not in STUDIES:
+        raise BadInput.of("--flank", True, "left out", "This installation has no study of flanks.")
     if "flanks" in read.pages:
         raise BadInput.of("--flank", True, "left out with a file of flank results", "Name one or the other.")
     if database is None:
@@ -125,5 +126,7 @@ def _flanks(read: Inputs, report: Report) -> LoadDistribution:
         misalignment_um=1e6 * misalignment,
         center_distance_change_mm=1e3 * change,
     )
-    run = Run(cache=cache_home() / "compliance", progress=report)
-    return flanks_of(CheckedCase(case_at(case, point)), run)
+    found: LoadDistribution = STUDIES["flank"].run.compute(
+        CheckedCase(case_at(case, point)), point, Means(cache_home(), report)
+    )
+    return found

@@ -13,7 +13,7 @@ from lineofaction.cli.output import (
     table,
 )
 from lineofaction.cli.subjects import assessed_case
-from lineofaction.gearbox.convert.live import plan_json, plan_of
+from lineofaction.gearbox.convert.plan import plan_json, plan_of
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.units import UM
 

@@ -30,7 +30,8 @@ from lineofaction.cli.output import (
 from lineofaction.cli.study_cache import cached_workers
 from lineofaction.cli.subjects import announce_cost, assessed_scene, inputs_of_study, study_cost, tables_cost
 from lineofaction.cli.verb_warnings import messages, warn, warnings_so_far
-from lineofaction.gearbox.convert.case import CheckedCase, case_json
+from lineofaction.gearbox.convert.case import case_json
+from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.complaint import marks_of_case
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.executor import open_executor
@@ -41,10 +42,11 @@ from lineofaction.gearbox.project import result_name
 from lineofaction.gearbox.registry import SUFFIX
 from lineofaction.gearbox.result_files import COMPLAINT, stamp, stamp_scene
 from lineofaction.gearbox.schemas import Case, read_model, read_table
-from lineofaction.gearbox.schemas.model import BoundaryModel, item_type, spelling_of
-from lineofaction.gearbox.schemas.reading import located
+from lineofaction.gearbox.schemas.fault_lines import located
+from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.report import ReportInput
 from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.schemas.spelling import item_type, spelling_of
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.study import Study
 from lineofaction.report.document import read_run, write_whole

@@ -11,7 +11,7 @@ from host.directories import cache_home
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.study import Study
 from model_studies.workers import Remembering, Workers
-from model_studies.workers.remembering import content_digest
+from model_studies.workers.content_digest import content_digest
 from service.version import solver_version
 
 

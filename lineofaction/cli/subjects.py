@@ -11,17 +11,18 @@ from bounds.types import Json
 from host.directories import cache_home
 from lineofaction.cli.kept_tables import KeptTables
 from lineofaction.cli.verb_warnings import in_lines, warn
-from lineofaction.gearbox.convert.case import CheckedCase, case_at
-from lineofaction.gearbox.convert.live import costs_of
+from lineofaction.gearbox.convert.case import case_at
+from lineofaction.gearbox.convert.checked_case import CheckedCase
+from lineofaction.gearbox.convert.plan import costs_of
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import inputs_in, usual_speeds
 from lineofaction.gearbox.schemas import Case, read_model, validated
-from lineofaction.gearbox.schemas.gear import FlankPoint
+from lineofaction.gearbox.schemas.fault_lines import located
+from lineofaction.gearbox.schemas.flank_point import FlankPoint
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.plan import left_out_warnings
-from lineofaction.gearbox.schemas.reading import located
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.studied import OverSpeeds
 from lineofaction.gearbox.studies.cost import StudyCost, Work, panels_work

@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import warnings
 from collections.abc import Callable, Sequence
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -13,6 +12,7 @@ from lineofaction.client.offers import subject_inputs
 from lineofaction.client.steps import Steps
 from lineofaction.client.surface import Surface, operation
 from lineofaction.gearbox import schemas
+from lineofaction.gearbox.loading import load
 from lineofaction.gearbox.problems import BadInput
 
 if TYPE_CHECKING:
@@ -143,4 +143,4 @@ def _text(answer: dict[str, Any]) -> str:
 
 def _model(name: str) -> Any:
     """Return a model of answers; all are loaded with the first of them."""
-    return getattr(import_module("service.schemas.answers"), name)
+    return load(f"service.schemas.answers:{name}")

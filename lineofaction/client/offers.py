@@ -6,16 +6,16 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache, partial
-from importlib import import_module
 from inspect import Parameter, Signature
 from pathlib import Path
 from typing import Any
 
+from lineofaction.gearbox.loading import load
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.study import Study
 
-_SUBJECTS: Callable[[], Any] = partial(import_module, "lineofaction.gearbox.subjects")
-"""Loads what declares the fields of a case, with the first call."""
+_SUBJECTS = "lineofaction.gearbox.subjects"
+"""Declares the fields of a case; loaded with the first call."""
 
 _ADVICE = (
     "Results as objects need the libraries: pip uninstall lineofaction-client, pip install lineofaction. "
@@ -49,14 +49,16 @@ class Offer:
         except TypeError as error:
             raise TypeError(f"{self.attribute}{self.signature}: {error}") from None
         subject = subject_inputs(self.subject, bound[next(iter(self.signature.parameters))])
-        varied: dict[str, Any] = _SUBJECTS().study_inputs(bound.get("study", bound.get("options", {})))
+        varied: dict[str, Any] = load(f"{_SUBJECTS}:study_inputs")(
+            bound.get("study", bound.get("options", {}))
+        )
         return subject | varied
 
 
 def subject_inputs(kind: str, subject: Any) -> dict[str, Any]:
     """Return a case, a scene, or what is either of them, as JSON; raises `BadInput`."""
     name = {"case": "case_inputs", "scene": "scene_inputs", "case or scene": "inputs_of"}[kind]
-    inputs: dict[str, Any] = getattr(_SUBJECTS(), name)(subject)
+    inputs: dict[str, Any] = load(f"{_SUBJECTS}:{name}")(subject)
     return inputs
 
 
@@ -78,7 +80,7 @@ def libraries() -> Iterator[None]:
 def _read(module: str, kind: str, file: Path) -> Any:
     """Read a file as a class of a library, which is loaded now."""
     with libraries():
-        result = getattr(import_module(module), kind)
+        result = load(f"{module}:{kind}")
     return result.from_netcdf(file)
 
 

@@ -15,14 +15,22 @@ LOADING = threading.RLock()
 """Held while modules are loaded that handlers import when they are called."""
 
 
+def load(entry: str) -> Any:
+    """Return what ``"module:name"`` names, its module imported now.
+
+    Used where a start was measured: `loa --help` and `import lineofaction` load neither studies nor the
+    libraries that compute.
+    """
+    module, _, name = entry.partition(":")
+    with LOADING:
+        return getattr(import_module(module), name)
+
+
 def on_demand(entry: str) -> Callable[..., Any]:
     """Return a function that calls ``"module:function"``, imported when it is called first."""
 
     def call(*arguments: object) -> Any:
         """Import, then call."""
-        module, _, name = entry.partition(":")
-        with LOADING:
-            function = getattr(import_module(module), name)
-        return function(*arguments)
+        return load(entry)(*arguments)
 
     return call

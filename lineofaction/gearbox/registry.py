@@ -2,7 +2,7 @@
 
 Process, routes, result kind, client method, function, verb, report and example follow from the row and from
 the package ``lineofaction.gearbox.studies.NAME``, which is loaded when it is requested: its inputs and its
-`run`. What it shows is in the file of its name in a subject of `lineofaction.report`.
+computation. What it shows is in the file of its name in a subject of `lineofaction.report`.
 """
 
 from __future__ import annotations
@@ -11,28 +11,11 @@ from collections.abc import Callable
 from inspect import Parameter, signature
 from typing import TYPE_CHECKING, Any, Concatenate, Protocol, TypeVar
 
-from lineofaction.gearbox.study import F, P, StudyOf, T, Takes
+from lineofaction.gearbox import computations
+from lineofaction.gearbox.study import F, P, Q, StudyOf, T, Takes
 
 if TYPE_CHECKING:
     from lineofaction.gearbox.schemas.figures import Figures
-    from lineofaction.gearbox.studies.ablate.run import RUN as ABLATE
-    from lineofaction.gearbox.studies.change.run import RUN as CHANGE
-    from lineofaction.gearbox.studies.complaint.run import RUN as COMPLAINT
-    from lineofaction.gearbox.studies.deflect.run import RUN as DEFLECT
-    from lineofaction.gearbox.studies.flank.run import RUN as FLANK
-    from lineofaction.gearbox.studies.frontier.run import RUN as FRONTIER
-    from lineofaction.gearbox.studies.listen.run import RUN as LISTEN
-    from lineofaction.gearbox.studies.modes.run import RUN as MODES
-    from lineofaction.gearbox.studies.noise.run import RUN as NOISE
-    from lineofaction.gearbox.studies.optimize.run import RUN as OPTIMIZE
-    from lineofaction.gearbox.studies.response.run import RUN as RESPONSE
-    from lineofaction.gearbox.studies.root_stress.run import RUN as ROOT_STRESS
-    from lineofaction.gearbox.studies.scatter.run import RUN as SCATTER
-    from lineofaction.gearbox.studies.sensitivity.run import RUN as SENSITIVITY
-    from lineofaction.gearbox.studies.steady.run import RUN as STEADY
-    from lineofaction.gearbox.studies.study.run import RUN as STUDY
-    from lineofaction.gearbox.studies.sweep.run import RUN as SWEEP
-    from lineofaction.gearbox.studies.vibration.run import RUN as VIBRATION
     from lineofaction.gearbox.subjects import CaseLike, SceneLike, StudyLike
 
 NETCDF = "application/x-netcdf"
@@ -62,41 +45,41 @@ __all__ = [
     "sweep",
     "vibration",
 ]
-"""The studies as functions of `lineofaction`."""
+"""The studies as functions of `lineofaction`, by the names that an editor knows."""
 
 
 T_co = TypeVar("T_co", covariant=True)
 F_co = TypeVar("F_co", bound="Figures", covariant=True)
 
 
-class _Work(Protocol[P, T_co, F_co]):
-    """A `Computation`, by what the types of its study follow from; the lambda that names it is not called."""
+class _Work(Protocol[Q, T_co, F_co]):
+    """A `Computation`, by what the types of its study follow from."""
 
     @property
-    def inputs(self) -> Callable[P, object]: ...
+    def inputs(self) -> Callable[Q, object]: ...
     @property
     def compute(self) -> Callable[..., T_co]: ...
     @property
     def answer(self) -> Callable[..., F_co]: ...
 
 
-def _case(_work: Callable[[], _Work[P, T, F]]) -> Takes[Concatenate[CaseLike, P], T, F]:
-    return Takes("case")
+def _case(work: Callable[[], _Work[Q, T, F]]) -> Takes[Concatenate[CaseLike, Q], Q, T, F]:
+    return Takes("case", work)
 
 
-def _scene(_work: Callable[[], _Work[P, T, F]]) -> Takes[Concatenate[SceneLike, P], T, F]:
-    return Takes("scene")
+def _scene(work: Callable[[], _Work[Q, T, F]]) -> Takes[Concatenate[SceneLike, Q], Q, T, F]:
+    return Takes("scene", work)
 
 
-def _either(_work: Callable[[], _Work[P, T, F]]) -> Takes[Concatenate[CaseLike | SceneLike, P], T, F]:
-    return Takes("case or scene")
+def _either(work: Callable[[], _Work[Q, T, F]]) -> Takes[Concatenate[CaseLike | SceneLike, Q], Q, T, F]:
+    return Takes("case or scene", work)
 
 
-def _as(call: Callable[P, None], _work: Callable[[], _Work[..., T, F]]) -> Takes[P, T, F]:
+def _as(call: Callable[P, None], work: Callable[[], _Work[Q, T, F]]) -> Takes[P, Q, T, F]:
     """Take what a function takes: what is studied, by its name, and the file of what is varied."""
     subject, file = signature(call).parameters.values()
     name = subject.name.replace("_", " ")
-    return Takes(name, from_file=True, bare=file.default is not Parameter.empty)
+    return Takes(name, work, from_file=True, bare=file.default is not Parameter.empty)
 
 
 def _either_and_file(case_or_scene: CaseLike | SceneLike, study: StudyLike) -> None: ...
@@ -112,7 +95,7 @@ class Studies:
     """Every study: a function of the class, a process of a client that inherits from it."""
 
     flank = StudyOf(
-        _case(lambda: FLANK),
+        _case(lambda: computations.FLANK),
         "Flank pressure",
         "Compute flank pressure",
         "Compute pressure, line load and gap on the flanks at one load: contact pattern and K_Hbeta.",
@@ -123,7 +106,7 @@ class Studies:
         version="3",
     )
     ablate = StudyOf(
-        _either(lambda: ABLATE),
+        _either(lambda: computations.ABLATE),
         "Effects",
         "Toggle every effect",
         "Toggle each effect of a case or a scene: what it changes, what was estimated, what it costs.",
@@ -134,7 +117,7 @@ class Studies:
         version="4",
     )
     frontier = StudyOf(
-        _either(lambda: FRONTIER),
+        _either(lambda: computations.FRONTIER),
         "Accuracy frontier",
         "Run the accuracy study",
         "Study the accuracy of a case (ISO 6336 to fine finite elements) or a scene: error against time.",
@@ -146,7 +129,7 @@ class Studies:
         folder="frontier",
     )
     sensitivity = StudyOf(
-        _case(lambda: SENSITIVITY),
+        _case(lambda: computations.SENSITIVITY),
         "Sensitivity",
         "Study the sensitivity",
         "Vary misalignment and center distance of a case at its highest load: peak-to-peak STE.",
@@ -160,7 +143,7 @@ class Studies:
         several=True,
     )
     root_stress = StudyOf(
-        _case(lambda: ROOT_STRESS),
+        _case(lambda: computations.ROOT_STRESS),
         "Tooth-root stress",
         "Compute the root stress",
         "Compute the stress of the tooth roots at one load: peaks, where they are, and their history.",
@@ -173,7 +156,7 @@ class Studies:
         aliases=("--image",),
     )
     optimize = StudyOf(
-        _as(_either_and_file, lambda: OPTIMIZE),
+        _as(_either_and_file, lambda: computations.OPTIMIZE),
         "Optimize the flanks",
         "Search better flanks",
         "Choose flank modifications: of a case for the least peak-to-peak STE over torques and scatter, of a "
@@ -195,7 +178,7 @@ class Studies:
         further=(".toml",),
     )
     scatter = StudyOf(
-        _case(lambda: SCATTER),
+        _case(lambda: computations.SCATTER),
         "Tolerances",
         "Draw pairs within tolerances",
         "Draw pairs within tolerances (Monte Carlo): distribution of peak-to-peak STE with confidence "
@@ -207,7 +190,7 @@ class Studies:
         version="7",
     )
     sweep = StudyOf(
-        _case(lambda: SWEEP),
+        _case(lambda: computations.SWEEP),
         "Maps",
         "Map the figures",
         "Map ripple, mesh harmonics, flank pressure and K_Hbeta over one or two of torque, alignment and "
@@ -220,7 +203,7 @@ class Studies:
         further=(".csv",),
     )
     change = StudyOf(
-        _as(_scene_and_file, lambda: CHANGE),
+        _as(_scene_and_file, lambda: computations.CHANGE),
         "Change of flanks",
         "Compare the flanks",
         "Compare two flanks of a mesh by what is heard of a scene over one sample of tolerances: levels by "
@@ -232,7 +215,7 @@ class Studies:
         version="4",
     )
     modes = StudyOf(
-        _scene(lambda: MODES),
+        _scene(lambda: computations.MODES),
         "Modes",
         "Find the modes",
         "Find natural modes about the loaded equilibrium, whirl modes over speed, and critical speeds.",
@@ -243,7 +226,7 @@ class Studies:
         version="5",
     )
     response = StudyOf(
-        _scene(lambda: RESPONSE),
+        _scene(lambda: computations.RESPONSE),
         "Forced response",
         "Find the response",
         "Find the linear response to the transmission error over speed: mesh and bearing forces by order.",
@@ -254,7 +237,7 @@ class Studies:
         version="3",
     )
     complaint = StudyOf(
-        _either(lambda: COMPLAINT),
+        _either(lambda: computations.COMPLAINT),
         "Complaint",
         "Find what it is",
         "Find which mesh and harmonic a complaint is, what else passes the same frequency, and the modes "
@@ -266,7 +249,7 @@ class Studies:
         version="2",
     )
     noise = StudyOf(
-        _scene(lambda: NOISE),
+        _scene(lambda: computations.NOISE),
         "Noise",
         "Find the sound power",
         "Find the sound power of the housings over speed: dB(A) by order, third octaves, and which order "
@@ -288,7 +271,7 @@ class Studies:
         housed=True,
     )
     vibration = StudyOf(
-        _scene(lambda: VIBRATION),
+        _scene(lambda: computations.VIBRATION),
         "Vibration of the housing",
         "Find the vibration",
         "Find the vibration of a housing under its bearings over speed: points and surface by order, "
@@ -302,7 +285,7 @@ class Studies:
         housed=True,
     )
     listen = StudyOf(
-        _scene(lambda: LISTEN),
+        _scene(lambda: computations.LISTEN),
         "Sound of a run",
         "Listen to the run",
         "Hear a run through the housings of a scene: sound pressure at a microphone, with level, "
@@ -315,7 +298,7 @@ class Studies:
         housed=True,
     )
     steady = StudyOf(
-        _scene(lambda: STEADY),
+        _scene(lambda: computations.STEADY),
         "Steady states",
         "Find the steady states",
         "Find periodic steady states at rising and falling speeds by shooting: stability, jumps, contact.",
@@ -326,7 +309,7 @@ class Studies:
         version="3",
     )
     deflect = StudyOf(
-        _as(_scene_perhaps_file, lambda: DEFLECT),
+        _as(_scene_perhaps_file, lambda: computations.DEFLECT),
         "Deflection",
         "Deflect the gearbox",
         "Deflect a scene under load cases: misalignment of each mesh by cause, K_Hbeta, contact pattern, "
@@ -340,7 +323,7 @@ class Studies:
         further=(".toml",),
     )
     study = StudyOf(
-        _as(_scene_and_file, lambda: STUDY),
+        _as(_scene_and_file, lambda: computations.STUDY),
         "Many scenes",
         "Run the study",
         "Run many scenes: a grid, a list or a Monte Carlo over anything a scene declares; maps, spread, "
@@ -353,35 +336,37 @@ class Studies:
     )
 
 
-flank = Studies.flank
-ablate = Studies.ablate
-change = Studies.change
-frontier = Studies.frontier
-sensitivity = Studies.sensitivity
-root_stress = Studies.root_stress
-optimize = Studies.optimize
-scatter = Studies.scatter
-sweep = Studies.sweep
-modes = Studies.modes
-response = Studies.response
-complaint = Studies.complaint
-noise = Studies.noise
-vibration = Studies.vibration
-listen = Studies.listen
-steady = Studies.steady
-deflect = Studies.deflect
-study = Studies.study
+flank = Studies.flank.function
+ablate = Studies.ablate.function
+change = Studies.change.function
+frontier = Studies.frontier.function
+sensitivity = Studies.sensitivity.function
+root_stress = Studies.root_stress.function
+optimize = Studies.optimize.function
+scatter = Studies.scatter.function
+sweep = Studies.sweep.function
+modes = Studies.modes.function
+response = Studies.response.function
+complaint = Studies.complaint.function
+noise = Studies.noise.function
+vibration = Studies.vibration.function
+listen = Studies.listen.function
+steady = Studies.steady.function
+deflect = Studies.deflect.function
+study = Studies.study.function
 
-STUDIES: dict[str, StudyOf[..., Any, Any]] = {
+STUDIES: dict[str, StudyOf[..., ..., Any, Any]] = {
     row.name: row for row in vars(Studies).values() if isinstance(row, StudyOf)
 }
 """By name."""
+FUNCTIONS = {row.package: row.function for row in STUDIES.values()}
+"""By name; those that an editor knows are listed above."""
 
 RESULT_KINDS = ("database", "run", *(study.kind for study in STUDIES.values()))
 """Kinds of results, by their names in the store and in the results of a job."""
 
 
-def study_of(kind: str) -> StudyOf[..., Any, Any] | None:
+def study_of(kind: str) -> StudyOf[..., ..., Any, Any] | None:
     """Return the study whose results are of a kind, None if no study's are."""
     return next((study for study in STUDIES.values() if study.kind == kind), None)
 

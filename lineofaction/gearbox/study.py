@@ -1,14 +1,13 @@
-"""A study as the registry states it: its row, which is also its function and the process of a client."""
+"""A study as the registry states it: its row, of which are its function and the process of a client."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from importlib import import_module
-from inspect import Signature, signature
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Generic, ParamSpec, Protocol, Self, TypeVar, overload
 
-from lineofaction.gearbox.loading import LOADING
+from lineofaction.gearbox.loading import load
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -24,11 +23,16 @@ if TYPE_CHECKING:
     Work = Computation[Any, Any, Any, Any, Any]
 
 P = ParamSpec("P")
+Q = ParamSpec("Q")
 T = TypeVar("T")
 F = TypeVar("F", bound="Figures")
 C = TypeVar("C")
 S_contra = TypeVar("S_contra", contravariant=True)
 C_co = TypeVar("C_co", covariant=True)
+
+
+STUDIES = "lineofaction.gearbox.studies"
+"""Package of the studies."""
 
 
 class _Caller(Protocol[S_contra, C_co]):
@@ -38,11 +42,16 @@ class _Caller(Protocol[S_contra, C_co]):
 
 
 @dataclass(frozen=True)
-class Takes(Generic[P, T, F]):
-    """What a call of a study takes, and with its types what comes of it: the result, the figures."""
+class Takes(Generic[P, Q, T, F]):
+    """What a call of a study takes, and with its types what comes of it.
+
+    The types are the parameters of a client's call, those of the study's inputs, its result, its figures.
+    """
 
     subject: str
     """What is studied."""
+    work: Callable[[], object]
+    """Loads the `Computation`."""
     from_file: bool = False
     """Whether the inputs are a file of the verb and a mapping of the client, rather than options."""
     bare: bool = False
@@ -73,7 +82,7 @@ class Offered(Generic[P, T, F]):
 class Study:
     """A row of the registry."""
 
-    takes: Takes[..., Any, Any]
+    takes: Takes[..., ..., Any, Any]
     """What a call takes."""
     title: str
     action: str
@@ -128,45 +137,50 @@ class Study:
     @property
     def inputs(self) -> type[BoundaryModel]:
         """Model of what is varied."""
-        inputs: type[BoundaryModel] = self._part("", "Inputs")
+        inputs: type[BoundaryModel] = load(f"{STUDIES}.{self.package}:Inputs")
         return inputs
 
     @property
     def run(self) -> Work:
         """Its work."""
-        work: Work = self._part(".run", "RUN")
-        return work
+        work: Any = self.takes.work()
+        loaded: Work = work
+        return loaded
 
     @property
     def answer(self) -> type[Figures]:
         """Model of its figures."""
-        figures: type[Figures] = self._part("", f"{self.name.title().replace('-', '')}Figures")
+        name = f"{self.name.title().replace('-', '')}Figures"
+        figures: type[Figures] = load(f"{STUDIES}.{self.package}:{name}")
         return figures
 
-    def _part(self, module: str, name: str) -> Any:
-        """Load a module of the package; return what it offers."""
-        with LOADING:
-            return getattr(import_module(f"lineofaction.gearbox.studies.{self.package}{module}"), name)
 
+class StudyFunction(Generic[Q, T]):
+    """A study as a Python user calls it."""
 
-@dataclass(frozen=True)
-class StudyOf(Study, Offered[P, T, F]):
-    """A study that is called, and that clients offer."""
-
-    takes: Takes[P, T, F]
+    def __init__(self, study: Study) -> None:
+        self.study = study
 
     @property
     def __doc__(self) -> str:  # type: ignore[override]
         """What the study does, and its inputs."""
-        fields = self.inputs.model_fields.items()
+        fields = self.study.inputs.model_fields.items()
         inputs = "".join(f"\n{name}: {field.description or ''}" for name, field in fields)
-        return f"{self.description}\n{inputs}"
+        return f"{self.study.description}\n{inputs}"
 
-    @property
-    def __signature__(self) -> Signature:
-        """That of its calls: an object with ``__get__`` may have none."""
-        return signature(self.__call__)
-
+    # by its inputs alone, or with at least one of what a call of any study takes
+    @overload
+    def __call__(self, subject: Subject, *inputs: Q.args, **fields: Q.kwargs) -> T: ...
+    @overload
+    def __call__(self, subject: Subject, inputs: Mapping[str, Any], **further: Any) -> T: ...
+    @overload
+    def __call__(self, subject: Subject, *, run: RunResult | None, **further: Any) -> T: ...
+    @overload
+    def __call__(self, subject: Subject, *, workers: Workers | None, **further: Any) -> T: ...
+    @overload
+    def __call__(self, subject: Subject, *, progress: Progress | None, **further: Any) -> T: ...
+    @overload
+    def __call__(self, subject: Subject, *, folder: Path | None, **further: Any) -> T: ...
     def __call__(
         self,
         subject: Subject,
@@ -177,7 +191,7 @@ class StudyOf(Study, Offered[P, T, F]):
         progress: Progress | None = None,
         folder: Path | None = None,
         **fields: Any,
-    ) -> T:
+    ) -> Any:
         """Study a case, a scene or a unit.
 
         Raises `BadInput`, `JobFailed`.
@@ -200,8 +214,20 @@ class StudyOf(Study, Offered[P, T, F]):
         object
             The result of the study, with errors and cost; `lineofaction.report` draws it.
         """
-        with LOADING:
-            studied = import_module("lineofaction.gearbox.workbench").studied
+        studied = load("lineofaction.gearbox.workbench:studied")
         varied = {**(inputs or {}), **fields}
-        result: T = studied(self, subject, varied, run=run, workers=workers, progress=progress, folder=folder)
-        return result
+        return studied(
+            self.study, subject, varied, run=run, workers=workers, progress=progress, folder=folder
+        )
+
+
+@dataclass(frozen=True)
+class StudyOf(Study, Offered[P, T, F], Generic[P, Q, T, F]):
+    """A study that clients offer, and that is a function."""
+
+    takes: Takes[P, Q, T, F]
+
+    @cached_property
+    def function(self) -> StudyFunction[Q, T]:
+        """The study as `lineofaction` has it."""
+        return StudyFunction(self)

@@ -10,13 +10,8 @@ from typing import Any
 from fe_contact.options import Run
 from fe_contact.ste import PairFacts, SteDatabase
 from host import cpu_seconds
-from lineofaction.gearbox.convert.case import (
-    CheckedCase,
-    CheckedCases,
-    allowed_misalignment,
-    boundary_errors,
-    case_json,
-)
+from lineofaction.gearbox.convert.case import allowed_misalignment, boundary_errors, case_json
+from lineofaction.gearbox.convert.checked_case import CheckedCase, CheckedCases
 from lineofaction.gearbox.convert.housings import housings_in
 from lineofaction.gearbox.convert.plausibility import case_warnings, phrased_for, scene_warnings, within
 from lineofaction.gearbox.convert.scene import TabledScene, check_scene, dynamic_scene

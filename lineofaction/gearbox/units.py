@@ -19,18 +19,45 @@ RPM = 2.0 * math.pi / 60.0
 N_PER_UM = 1e6
 N_PER_MM3 = 1e9
 
-BY_SUFFIX: dict[str, Unit] = {
-    "_g_mm": Unit("g mm", G_MM, "kg m"),  # before "_mm", with which it ends
-    "_mm": Unit("mm", MM, "m"),
+UNITS: dict[str, Unit] = {
+    "_g_mm": Unit("g mm", G_MM, "kg m"),
     "_n_per_um": Unit("N/µm", N_PER_UM, "N/m"),
     "_n_per_mm3": Unit("N/mm^3", N_PER_MM3, "N/m^3"),
+    "_mm_per_s": Unit("mm/s", MM, "m/s"),
+    "_mm": Unit("mm", MM, "m"),
     "_um": Unit("µm", UM, "m"),
     "_mrad": Unit("mrad", MRAD, "rad"),
     "_nm": Unit("nm", NM, "m"),
     "_gpa": Unit("GPa", GPA, "Pa"),
+    "_mpa": Unit("MPa", MPA, "Pa"),
     "_deg": Unit("deg", DEGREE, "rad"),
     "_rpm": Unit("rpm", RPM, "rad/s"),
+    "_kg_per_m3": Unit("kg/m^3"),
+    "_kg_m2": Unit("kg m^2"),
+    "_kg": Unit("kg"),
+    "_n_m_per_rad": Unit("N m/rad"),
+    "_n_m_s_per_rad": Unit("N m s/rad"),
+    "_n_s_per_m": Unit("N s/m"),
+    "_n_per_m": Unit("N/m"),
+    "_n_m": Unit("N m"),
+    "_n": Unit("N"),
+    "_m_per_s2": Unit("m/s^2"),
+    "_m2": Unit("m^2"),
+    "_m": Unit("m"),
+    "_hz": Unit("Hz"),
+    "_s": Unit("s"),
+    "_w": Unit("W"),
+    "_db_a": Unit("dB(A)"),
+    "_db": Unit("dB"),
+    "_degc": Unit("degC"),
+    "_per_k": Unit("1/K"),
+    "_mib": Unit("MiB"),
+    "_mb": Unit("MB"),
 }
+"""The unit that the ending of a name states. An ending stands before those that it ends with."""
+
+BY_SUFFIX = {ending: unit for ending, unit in UNITS.items() if unit.factor != 1.0}
+"""The endings of units that are not SI's."""
 
 _OF_SI = {
     "m": "_mm",
@@ -69,10 +96,14 @@ def suffix_of(declaration: Declared) -> str:
     return "_um" if declaration.kind in DEPTHS else _OF_SI.get(declaration.unit, "")
 
 
+def ending_of(name: str) -> str:
+    """Return the ending of a name that states its unit, a key of `UNITS`; empty if none does."""
+    return next((ending for ending in UNITS if name.endswith(ending)), "")
+
+
 def unit_of(name: str) -> Unit | None:
     """Return the unit of the boundary field `name`, or of an entry of it; None where it is SI's."""
-    own = name.rpartition(".")[2].partition("[")[0]
-    return next((unit for suffix, unit in BY_SUFFIX.items() if own.endswith(suffix)), None)
+    return BY_SUFFIX.get(ending_of(name.rpartition(".")[2].partition("[")[0]))
 
 
 def unit_name(name: str) -> str | None:

@@ -20,7 +20,7 @@ from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Json
 from host.directories import cache_home
-from lineofaction.gearbox.convert.case import CheckedCase, CheckedCases
+from lineofaction.gearbox.convert.checked_case import CheckedCase, CheckedCases
 from lineofaction.gearbox.convert.housings import HousedScene, housings_in
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.convert.scene import TabledScene
@@ -31,7 +31,8 @@ from lineofaction.gearbox.mesh_tables import MeshTables, finished
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
-from lineofaction.gearbox.schemas.files import READERS, beside, written_out
+from lineofaction.gearbox.schemas.files import READERS, written_out
+from lineofaction.gearbox.schemas.named_files import beside
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means
@@ -41,7 +42,7 @@ from lineofaction.gearbox.tabled_scene import ComputedTables, database_of
 from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
 from model_studies.progress import Progress, silent
 from model_studies.workers import InProcess, Workers
-from model_studies.workers.remembering import content_digest
+from model_studies.workers.content_digest import content_digest
 
 
 class InputWarning(UserWarning):

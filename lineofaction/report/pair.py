@@ -36,7 +36,7 @@ from fe_contact.plausibility import mesh_findings
 from fe_contact.ste import PairFacts, SteDatabase
 from fe_contact.types import IntArray, Json
 from lineofaction.gearbox.convert.case import gear_pair
-from lineofaction.gearbox.convert.live import pair_outline
+from lineofaction.gearbox.convert.outline import pair_outline
 from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.units import DEGREE, MM, UM
 from lineofaction.report.drawing import palette

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from pkgutil import iter_modules
 from typing import Any
 
 from fe_contact.ste import SteDatabase
-from lineofaction.gearbox.convert.effects import assumed_lines, beyond_lines, run_lines, scene_table
-from lineofaction.gearbox.loading import LOADING
+from lineofaction.gearbox.convert.effects import run_lines
+from lineofaction.gearbox.convert.scene_effects import assumed_lines, beyond_lines, scene_table
+from lineofaction.gearbox.loading import LOADING, load
 from lineofaction.gearbox.studies.bodies import UNIT
 from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.units import boundary_ledger
@@ -43,9 +43,9 @@ class Presentation:
 
 def presentation_of(study: Study) -> Presentation:
     """Return how a study shows its result; its file, in the folder of its subject, is loaded on demand."""
+    files = (f"{__package__}.{subject}.{study.package}" for subject in _SUBJECTS)
     with LOADING:
-        files = (f"{__package__}.{subject}.{study.package}" for subject in _SUBJECTS)
-        shown: Presentation = import_module(next(filter(find_spec, files))).PAGE
+        shown: Presentation = load(f"{next(filter(find_spec, files))}:PAGE")
     return _of_its_unit(shown)
 
 

@@ -7,11 +7,10 @@ from collections import OrderedDict
 from pathlib import Path
 from typing import Any
 
-from fe_contact.analysis.live.condensed_pair import CondensedPair
-from fe_contact.microgeometry.drawn_ripple import DrawnRipple
 from host import cpu_seconds
-from lineofaction.gearbox.convert.case import CheckedCase
-from lineofaction.gearbox.convert.live import condensed_of, live_curves, plan_json, plan_of
+from lineofaction.gearbox.convert.checked_case import CheckedCase
+from lineofaction.gearbox.convert.live import CondensedCase, condensed_of, live_curves
+from lineofaction.gearbox.convert.plan import plan_json, plan_of
 from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.live import LiveInput
@@ -20,8 +19,7 @@ Json = dict[str, Any]
 
 KEPT_PAIRS = 4
 
-_Kept = tuple[Case, CondensedPair, OrderedDict[str, DrawnRipple]]
-_pairs: OrderedDict[str, _Kept] = OrderedDict()
+_cases: OrderedDict[str, CondensedCase] = OrderedDict()
 
 
 def live_ste(inputs: Json) -> Json:
@@ -29,9 +27,9 @@ def live_ste(inputs: Json) -> Json:
     begin = cpu_seconds()
     question = LiveInput.model_validate_json(json.dumps(inputs["question"]))
     paths = Path(inputs["file"]), Path(inputs["cache"])
-    case, bodies, drawn = _bodies(inputs["key"], *paths, compute=question.condense)
+    condensed = _condensed(inputs["key"], *paths, compute=question.condense)
     read = cpu_seconds() - begin
-    answer = live_curves(case, bodies, question, drawn)
+    answer = live_curves(condensed, question)
     answer["cost"]["compliance_cpu_seconds"] += read
     return answer | {"cpu_seconds": cpu_seconds() - begin}
 
@@ -43,10 +41,10 @@ def live_plan(inputs: Json) -> Json:
     return plan_json(plan) | {"warnings": case_warnings(case)}
 
 
-def _bodies(key: str, file: Path, cache: Path, *, compute: bool) -> _Kept:
-    if key not in _pairs:
-        _pairs[key] = *condensed_of(file, cache, compute=compute), OrderedDict()
-    _pairs.move_to_end(key)
-    while len(_pairs) > KEPT_PAIRS:
-        _pairs.popitem(last=False)
-    return _pairs[key]
+def _condensed(key: str, file: Path, cache: Path, *, compute: bool) -> CondensedCase:
+    if key not in _cases:
+        _cases[key] = condensed_of(file, cache, compute=compute)
+    _cases.move_to_end(key)
+    while len(_cases) > KEPT_PAIRS:
+        _cases.popitem(last=False)
+    return _cases[key]

@@ -9,6 +9,7 @@ from __future__ import annotations
 import threading
 import time
 import uuid
+from importlib.util import find_spec
 from pathlib import Path
 
 import structlog
@@ -34,6 +35,7 @@ MODULES = (
     "lineofaction.gearbox.from_rexs.opened",
     "service.reading.child",
     "service.reading.texts",
+    *filter(find_spec, ["service.reading.sheets"]),  # an instrument
     "scipy.optimize",
 )
 _WARM_WITHIN_S = 30.0

@@ -1,4 +1,4 @@
-"""The text of a case or scene file with the files that it names, or of a sheet, read as routes answer it."""
+"""The text of a case or scene file with the files that it names, read as routes answer it."""
 
 from __future__ import annotations
 
@@ -7,18 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from lineofaction.gearbox.convert.case import case_as_filed
-from lineofaction.gearbox.inspection.as_made import Inspected, drawn_case, measured_case
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
-from lineofaction.gearbox.schemas.files import (
-    LARGEST,
-    SENT,
-    FileContentInput,
-    Find,
-    own_name,
-    read_text,
-    written_out,
-)
+from lineofaction.gearbox.schemas.file_content import LARGEST, FileContentInput
+from lineofaction.gearbox.schemas.files import SENT, written_out
+from lineofaction.gearbox.schemas.named_files import Find, own_name, read_text
 from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_table
@@ -75,17 +68,6 @@ def case_of_toml(inputs: Json, folder: Path, announce: Announce) -> Json:
     The files are written into a folder.
     """
     return {"case": case_as_filed(validated(Case, _table(inputs, folder, announce, _written_out)))}
-
-
-def case_as_made(inputs: Json, _folder: Path, _announce: Announce) -> Json:
-    """Return the case in ``{"inputs": {"case": ...}, ...}`` with gears as made; raises `BadInput`."""
-    case, sheet = validated(Case, inputs["inputs"]["case"]), inputs["measured"]
-    if sheet is None:
-        drawn = drawn_case(case, inputs["tolerance_class"], inputs["seed"])
-        return {"case": case_as_filed(drawn), "left_out": []}
-    of = Inspected(sheet["gear"], sheet["loaded"], sheet["cutoff_mm"])
-    made, found = measured_case(case, sheet["csv"], "csv", of)
-    return {"case": case_as_filed(made), "left_out": found.left_out}
 
 
 def scene_of_toml(inputs: Json, folder: Path, announce: Announce) -> Json:

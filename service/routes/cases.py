@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Request
 from pydantic import BaseModel, Field, Strict
@@ -13,10 +13,12 @@ from starlette.responses import JSONResponse, Response
 from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import LiveUnavailable, QueueFull, TooLarge, TooManyHeld
 from lineofaction.gearbox.schemas import Case
-from lineofaction.gearbox.schemas.files import FileContentInput, side_files
+from lineofaction.gearbox.schemas.file_content import FileContentInput
+from lineofaction.gearbox.schemas.files import side_files
 from lineofaction.gearbox.schemas.housings import HousingInput
-from lineofaction.gearbox.schemas.model import BoundaryModel, Named
-from lineofaction.gearbox.schemas.plan import OutlineBody
+from lineofaction.gearbox.schemas.model import BoundaryModel
+from lineofaction.gearbox.schemas.named_parts import Named
+from lineofaction.gearbox.schemas.outline import OutlineBody
 from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_text
@@ -38,7 +40,7 @@ _MOST_FILES = 16
 router = APIRouter(tags=["cases"], route_class=ScopedRoute)
 case_json = on_demand("lineofaction.gearbox.convert.case:case_json")
 case_as_filed = on_demand("lineofaction.gearbox.convert.case:case_as_filed")
-outline_json = on_demand("lineofaction.gearbox.convert.live:outline_json")
+outline_json = on_demand("lineofaction.gearbox.convert.outline:outline_json")
 scenes_router = APIRouter(tags=["scenes"], route_class=ScopedRoute)
 units_router = APIRouter(tags=["units"], route_class=ScopedRoute)
 ENTRY = "lineofaction.gearbox.from_rexs.unit_answer:unit_of_rexs"
@@ -79,48 +81,6 @@ class CaseBody(BaseModel):
     case: Annotated[dict[str, Any], Named("Case")]
 
 
-class InspectionInput(BoundaryModel):
-    """The sheet of an inspection, and how its gear is mounted."""
-
-    csv: str = Field(
-        min_length=1,
-        max_length=16_000_000,
-        description="The sheet, CSV or the curve file of a machine (docs/how-to/measured-gear.md)",
-        examples=["tooth,flank,trace,deviation_um\n1,right,pitch,0.0\n"],
-    )
-    gear: Literal["pinion", "wheel"] = Field(description="The gear that was inspected", examples=["pinion"])
-    loaded: Literal["left", "right"] = Field(
-        default="right", description="Which of its flanks carry", examples=["right"]
-    )
-    cutoff_mm: float | None = Field(
-        default=None,
-        gt=0.0,
-        le=1000.0,
-        description="Cut-off of the filter in mm; left out: a thirtieth of the trace",
-        examples=[0.8],
-    )
-
-
-class AsMadeRequest(CaseRequest):
-    """A case, and what its gears are as made: measured, or else drawn within a class."""
-
-    measured: InspectionInput | None = Field(
-        default=None, description="The inspection of one gear; left out: both are drawn", examples=[None]
-    )
-    tolerance_class: int = Field(
-        default=6, ge=1, le=11, description="Class of ISO 1328-1:2013 of gears that are drawn", examples=[6]
-    )
-    seed: int = Field(
-        default=0, ge=0, le=2**53 - 1, description="Seed of the draw; equal seeds, equal gears", examples=[1]
-    )
-
-
-class AsMadeBody(CaseBody):
-    """A case of gears as made."""
-
-    left_out: list[str] = Field(description="Points of the loaded flanks that are left out, and why")
-
-
 @router.get("/examples", summary="Example cases")
 @needs(Scope.READ)
 def example_cases(context: Ctx) -> list[ExampleBody]:
@@ -151,24 +111,13 @@ def case_outline(body: CaseRequest) -> Response:
 @needs(Scope.READ, body=CaseText)
 async def case_from_toml(body: CaseText, context: Ctx, request: Request) -> Response:
     """Read the case in a file's text and in the files that it names, with all defaults."""
-    return await _read_by(context, "service.reading.texts:case_of_toml", body, request)
+    return await read_by(context, "service.reading.texts:case_of_toml", body, request)
 
 
-async def _read_by(context: Context, entry: str, body: BaseModel, request: Request) -> Response:
+async def read_by(context: Context, entry: str, body: BaseModel, request: Request) -> Response:
+    """Answer by what a reader of foreign bytes makes of a body; `entry` names its function."""
     answer = context.reader.ask(LiveOrder(entry, body.model_dump(mode="json")), asker_of(request))
     return Response(await asyncio.wrap_future(answer), media_type=JSON)
-
-
-@router.post(
-    "/cases/as-made",
-    summary="State what gears are as made",
-    response_model=AsMadeBody,
-    responses=documented(*READING_FAILURES),
-)
-@needs(Scope.READ, body=AsMadeRequest)
-async def case_as_made(body: AsMadeRequest, context: Ctx, request: Request) -> Response:
-    """Return the case with one gear as its inspection measured it, or both drawn within a class."""
-    return await _read_by(context, "service.reading.texts:case_as_made", body, request)
 
 
 @router.post("/cases/to-toml", summary="Write a case file")
@@ -213,7 +162,7 @@ class SceneBody(BaseModel):
 @needs(Scope.READ, body=SceneText)
 async def scene_from_toml(body: SceneText, context: Ctx, request: Request) -> Response:
     """Read the scene in a file's text and in the files that it names; names of cases not given stay."""
-    return await _read_by(context, "service.reading.texts:scene_of_toml", body, request)
+    return await read_by(context, "service.reading.texts:scene_of_toml", body, request)
 
 
 @scenes_router.post("/scenes/to-toml", summary="Write a scene file")
@@ -267,7 +216,7 @@ async def housing_surface(body: HousingsRequest, context: Ctx, request: Request)
     known = await run_in_threadpool(context.kept.find, tag)
     if known is not None:
         return Response(known, media_type=JSON)
-    answer = await _read_by(
+    answer = await read_by(
         context, "lineofaction.gearbox.convert.drawn_housing:drawn_housings", body, request
     )
     await run_in_threadpool(context.kept.keep, tag, bytes(answer.body))
@@ -286,4 +235,4 @@ async def open_unit(body: UnitFile, context: Ctx, request: Request) -> Response:
 
     A process of its own reads the file; nothing outside of it is opened.
     """
-    return await _read_by(context, ENTRY, body, request)
+    return await read_by(context, ENTRY, body, request)

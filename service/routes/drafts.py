@@ -16,7 +16,8 @@ from pydantic import BaseModel, Field
 from starlette.responses import JSONResponse, Response
 
 from lineofaction.gearbox.problems import BadInput, ServiceError
-from service.routes import cases, queries
+from service.routes import queries
+from service.routes.offers import ROUTERS
 from service.routes.problem_answers import refusal_of
 from service.routes.scopes import ScopedRoute
 from service.schemas.answers import FaultBody
@@ -87,6 +88,6 @@ def _add(route: APIRoute) -> None:
     )
 
 
-for asked in (*cases.router.routes, *cases.scenes_router.routes, *queries.live_router.routes):
+for asked in (route for router in (*ROUTERS, queries.live_router) for route in router.routes):
     if isinstance(asked, APIRoute) and asked.path in DRAFTS:
         _add(asked)

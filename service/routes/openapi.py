@@ -34,7 +34,7 @@ from lineofaction.gearbox.problems import (
     UnsupportedMediaType,
     last_part,
 )
-from lineofaction.gearbox.schemas.model import with_named
+from lineofaction.gearbox.schemas.named_parts import with_named
 from lineofaction.gearbox.schemas.plan import InputWarning
 from lineofaction.gearbox.schemas.query import QueryInput
 from service.access.holder import MEANINGS

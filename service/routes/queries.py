@@ -20,7 +20,8 @@ from lineofaction.gearbox.problems import (
     Superseded,
     TooManyHeld,
 )
-from lineofaction.gearbox.schemas.live import LiveInput, LiveOutput, PlanRequest
+from lineofaction.gearbox.schemas.live import LiveInput, PlanRequest
+from lineofaction.gearbox.schemas.live_answer import LiveOutput
 from lineofaction.gearbox.schemas.model import HASH
 from lineofaction.gearbox.schemas.plan import PlanBody
 from lineofaction.gearbox.schemas.query import LIMITS, QueryInput, QueryOutput

@@ -13,6 +13,8 @@ HEAVY = (
     "service.worker.preparations",
     "lineofaction.gearbox.convert.answers",
     "lineofaction.gearbox.convert.live",
+    "lineofaction.gearbox.convert.outline",
+    "lineofaction.gearbox.convert.plan",
     "lineofaction.gearbox.result_files",
     "service.worker.study_work",
     "fe_contact.ste.compiled_force",

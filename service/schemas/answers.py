@@ -7,7 +7,8 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, create_model
 
 from lineofaction.gearbox.schemas.figures import Headline
-from lineofaction.gearbox.schemas.model import BoundaryModel, Named
+from lineofaction.gearbox.schemas.model import BoundaryModel
+from lineofaction.gearbox.schemas.named_parts import Named
 
 Uri = Annotated[str, Field(max_length=2000, examples=["https://hooks.example.com/loa?case=12"])]
 JobStatus = Literal["accepted", "running", "successful", "failed", "dismissed"]

@@ -17,7 +17,7 @@ from fastapi.testclient import TestClient
 from housing_solid import housing, write_block
 from whole_service import whole_service
 
-from lineofaction.gearbox.schemas.files import FileContentInput
+from lineofaction.gearbox.schemas.file_content import FileContentInput
 
 ROUTE = "/v1/scenes/housing-surface"
 LOW, HIGH = [-40.0, -40.0, 85.0], [120.0, 40.0, 115.0]

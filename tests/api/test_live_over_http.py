@@ -19,7 +19,7 @@ from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.problems import ServiceError
 from lineofaction.gearbox.schemas import Case
-from lineofaction.gearbox.schemas.live import LiveOutput
+from lineofaction.gearbox.schemas.live_answer import LiveOutput
 from lineofaction.gearbox.schemas.reading import validated
 from service.app import create_app
 from service.live.order import LiveOrder

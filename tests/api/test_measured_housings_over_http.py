@@ -15,7 +15,7 @@ from measured_scenes import mass_lines, measured_scene
 from study_service import KEY, Served, study_service
 
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.schemas.files import FileContentInput
+from lineofaction.gearbox.schemas.file_content import FileContentInput
 from lineofaction.gearbox.subjects import scene_inputs, scene_of
 
 SPEEDS = {"speed_rpm": [900.0, 1500.0], "orders": 4}

@@ -2,25 +2,162 @@
 
 from __future__ import annotations
 
+import base64
+import io
 import json
+import random
+import re
 import subprocess
 import sys
+import tomllib
+import zlib
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
+import numpy as np
 import pytest
 from fastapi.testclient import TestClient
-from mutated_files import Asked, corpus, mutated
+from housing_solid import housing, write_block
+from machine_texts import CHART, machine_text
+from reduced_housings import random_housing
 from service_fakes import REGISTRY
 
 from host import child_environment, processes_in
+from lineofaction.gearbox.schemas.toml import toml_text
 from service.app import create_app
 from service.settings import Settings
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
+_NUMBER = re.compile(rb"-?\d+\.?\d*(?:[eE][-+]?\d+)?")
 FATAL = (11, 23)
 """Seeds of STEP files over which the native reader crashes."""
+ALONE = """
+import importlib, json, sys, tempfile
+from pathlib import Path
+for line in sys.stdin:
+    order = json.loads(line)
+    module, _, name = order["entry"].partition(":")
+    folder = Path(tempfile.mkdtemp(dir="."))
+    print(json.dumps(getattr(importlib.import_module(module), name)(order["inputs"], folder, str)))
+"""
+"""Does the works of orders in one process that is not confined."""
+
+
+class Request(NamedTuple):
+    """A request that has a file read: a path, a body, and the name of the file, "" if the body has none."""
+
+    path: str
+    body: dict[str, Any]
+    name: str = ""
+
+
+Asked = Callable[[bytes], Request]
+"""From the content of a file to the request that has it read."""
+
+
+def mutated(content: bytes, seed: int) -> bytes:
+    """Return bytes with one kind of damage: bits turned, the end lost, a block doubled, numbers swapped."""
+    draw = random.Random(seed)
+    spoiled = bytearray(content)
+    match draw.randrange(4):
+        case 0:
+            for _ in range(draw.choice((1, 3, 10, 30))):
+                spoiled[draw.randrange(len(spoiled))] ^= 1 << draw.randrange(8)
+        case 1:
+            del spoiled[draw.randrange(len(spoiled)) :]
+        case 2:
+            first = draw.randrange(len(spoiled))
+            block = spoiled[first : first + draw.choice((7, 60, 500))]
+            to = draw.randrange(len(spoiled))
+            spoiled[to:to] = block
+        case _:
+            for _ in range(draw.choice((1, 5))):
+                _swap_numbers(spoiled, draw)
+    return bytes(spoiled)
+
+
+def _swap_numbers(content: bytearray, draw: random.Random) -> None:
+    """Swap two numbers of a text, or two words of 8 bytes where none are written as text."""
+    numbers = list(_NUMBER.finditer(bytes(content)))
+    if len(numbers) > 1:
+        first, second = sorted(draw.sample(numbers, 2), key=lambda found: found.start())
+        swapped = (second.group(), content[first.end() : second.start()], first.group())
+        content[first.start() : second.end()] = b"".join(map(bytes, swapped))
+    elif len(content) >= 16:
+        one, other = (draw.randrange(len(content) - 7) for _ in range(2))
+        content[one : one + 8], content[other : other + 8] = (
+            content[other : other + 8],
+            content[one : one + 8],
+        )
+
+
+def corpus(folder: Path) -> Iterator[tuple[str, bytes, Asked]]:
+    """Yield format, content and request of good files; some are made in a folder."""
+    yield "STEP", write_block(folder / "block.step").read_bytes(), _solid("block.step", "step_file")
+    for suffix, content in _meshes(folder).items():
+        yield f"mesh {suffix}", content, _solid(f"cube{suffix}", "mesh_file")
+    for file in (EXAMPLES / "two_stage_gearbox.rexs", EXAMPLES / "two_stage" / "two_stage.rexs"):
+        yield f"REXS {file.stem}", file.read_bytes(), _unit
+    stream = io.BytesIO()
+    np.savez(stream, stiffness=np.diag([1e8] * 3))
+    yield "NPZ", stream.getvalue(), _scene("stiffness_file", "k.npz")
+    random_housing().to_netcdf(folder / "housing.nc")
+    yield "netCDF", (folder / "housing.nc").read_bytes(), _scene("modes_file", "housing.nc")
+    yield "P40", machine_text(CHART).encode(), _sheet
+
+
+def _meshes(folder: Path) -> dict[str, bytes]:
+    """Return a cube of tetrahedra in every format of meshes."""
+    import meshlane  # noqa: PLC0415 (an extra)
+
+    points = [(x, y, z) for z in (0.0, 100.0) for y in (0.0, 100.0) for x in (0.0, 100.0)]
+    cells = [(0, 1, 2, 4), (3, 1, 2, 7), (5, 1, 4, 7), (6, 2, 4, 7), (1, 2, 4, 7)]
+    mesh = meshlane.Mesh(np.array(points), [("tetra", np.array(cells))])
+    formats = {".msh": "gmsh", ".inp": "abaqus", ".bdf": "nastran", ".vtu": "vtu", ".vtk": "vtk"}
+    contents = {}
+    for suffix, title in formats.items():
+        file = folder / f"cube{suffix}"
+        meshlane.write(file, mesh, file_format=title)
+        contents[suffix] = file.read_bytes()
+    return contents
+
+
+def _packed(name: str, content: bytes) -> dict[str, str]:
+    return {"name": name, "content": base64.b64encode(zlib.compress(content)).decode()}
+
+
+def _solid(name: str, field: str) -> Asked:
+    fields: dict[str, Any] = {"step_file": None}
+    if field == "mesh_file":
+        fields |= {"element_size_mm": None, "mesh_unit": "mm"}
+
+    def ask(content: bytes) -> Request:
+        own = housing(**fields | {field: _packed(name, content)})
+        return Request("/v1/scenes/housing-surface", {"housings": [own]}, name)
+
+    return ask
+
+
+def _unit(content: bytes) -> Request:
+    return Request("/v1/units/open", {"rexs_base64": base64.b64encode(content).decode()})
+
+
+def _scene(field: str, name: str) -> Asked:
+    scene = tomllib.loads((EXAMPLES / "palermo_scene.toml").read_text("utf-8"))
+    text = toml_text(scene | {"housings": [{"name": "case", "bushings": ["input left"], field: name}]})
+    return lambda content: Request(
+        "/v1/scenes/from-toml", {"toml": text, "files": [_packed(name, content)]}, name
+    )
+
+
+def _sheet(content: bytes) -> Request:
+    gear = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0}
+    pair = {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": gear, "wheel": gear}
+    case = {"pair": pair, "load": {"torque_n_m": [20.0]}}
+    sheet = {"csv": content.decode("utf-8", "replace"), "gear": "pinion"}
+    return Request("/v1/cases/as-made", {"inputs": {"case": case}, "measured": sheet})
 
 
 @pytest.fixture(scope="module")
@@ -49,18 +186,6 @@ def answered(http: TestClient, content: bytes, ask: Asked) -> Any:
 def left(place: Path) -> list[Any]:
     """Return what readers left: folders, and processes in them."""
     return [*(place / "reading").iterdir(), *processes_in(place / "reading")]
-
-
-ALONE = """
-import importlib, json, sys, tempfile
-from pathlib import Path
-for line in sys.stdin:
-    order = json.loads(line)
-    module, _, name = order["entry"].partition(":")
-    folder = Path(tempfile.mkdtemp(dir="."))
-    print(json.dumps(getattr(importlib.import_module(module), name)(order["inputs"], folder, str)))
-"""
-"""Does the works of orders in one process that is not confined."""
 
 
 @pytest.mark.law

@@ -237,7 +237,7 @@ def test_a_question_is_refused_by_its_field_each_way(
     assert fault["bound"]
     with pytest.raises(BadInput) as caught, warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        STUDIES[study](subject, inputs)
+        STUDIES[study].function(subject, inputs)
     (here, *_) = [each for each in caught.value.faults if field in each.field]
     assert here.bound == fault["bound"]
     known = STUDIES[study].takes.from_file or set(inputs) <= set(STUDIES[study].inputs.model_fields)

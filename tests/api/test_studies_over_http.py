@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import importlib
 import math
+import tomllib
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -110,14 +111,22 @@ def test_a_rung_that_fails_is_named_and_the_others_survive(
     assert progress == sorted(progress) and progress[-1] == pytest.approx(1.0)
 
 
-def test_full_contact_runs_beside_the_ladder_of_a_case(tmp_path: Path) -> None:
-    made, _ = worked(prepared(FRONTIER, case=CASE, rungs=CLOSED, full_contact=1), tmp_path)
+def test_recorded_full_contact_stands_beside_the_ladder_of_its_pair(tmp_path: Path) -> None:
+    case = tomllib.loads((EXAMPLES / "palermo_spur_20_20.toml").read_text("utf-8"))
+    case["load"]["torque_n_m"] = [50.0, 100.0]
+    made, _ = worked(prepared(FRONTIER, case=case, rungs=CLOSED, full_contact=1), tmp_path)
     beside = made["full_contact"]
     assert (beside["positions_run"], beside["positions_solved"]) == (1, 1)
-    assert beside["torques_n_m"] == pytest.approx([20.0, 40.0])
+    assert beside["torques_n_m"] == pytest.approx([50.0, 75.0, 100.0])
     assert beside["own_error_estimate"] < 5e-3
     assert made["rungs"][0]["mean_error"] > 1e-3 and made["reference"] == "thin_slices"
     assert all(rung["cpu_seconds"] > 0.0 for rung in made["rungs"])
+
+
+def test_a_pair_without_recorded_full_contact_says_how_to_get_it(tmp_path: Path) -> None:
+    made, _ = worked(prepared(FRONTIER, case=CASE, rungs=CLOSED, full_contact=1), tmp_path)
+    assert made.get("full_contact") is None
+    assert "python -m benchmarks.full_contact_records CASE" in made["left_out"]["full_contact"]
 
 
 # Scenes.

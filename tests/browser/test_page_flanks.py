@@ -14,7 +14,7 @@ from page_visit import Visit, opened, shown
 from playwright.sync_api import Browser, Page, expect
 from running_service import until
 
-from lineofaction.gearbox.convert.live import outline_json
+from lineofaction.gearbox.convert.outline import outline_json
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.reading import validated
 

@@ -14,7 +14,7 @@ from page_picture import CANVAS, different, has_room, picture, stopped, vertices
 from page_visit import PATIENCE, Visit, opened, opened_scene, shown, tab
 from playwright.sync_api import Browser, Page, expect
 
-from lineofaction.gearbox.convert.live import outline_json
+from lineofaction.gearbox.convert.outline import outline_json
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.reading import validated
 

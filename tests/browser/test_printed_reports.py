@@ -42,7 +42,7 @@ def of_study(name: str) -> Page:
     study, inputs = STUDIES[name], small_inputs(name)
     subject = inputs.pop("scene" if "scene" in inputs else "case")
     with warnings.catch_warnings(action="ignore"):
-        result: Any = study(subject, inputs)
+        result: Any = study.function(subject, inputs)
     return presentation_of(study).page(result)
 
 

@@ -18,7 +18,7 @@ from toml_text import toml_text
 from dynamics.errors import InputError as DynamicsInputError
 from fe_contact.errors import InputError
 from fe_contact.ste import PairFacts
-from lineofaction.gearbox.convert.case import check_case
+from lineofaction.gearbox.convert.checked_case import check_case
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.scene import SceneInput

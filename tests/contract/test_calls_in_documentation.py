@@ -41,7 +41,8 @@ def imported(example: ast.Module) -> dict[str, Any]:
         alias.asname or alias.name: getattr(import_module(node.module), alias.name)
         for node in ast.walk(example)
         if isinstance(node, ast.ImportFrom) and node.module
-        if node.module.partition(".")[0] in ("fe_contact", "dynamics", "lineofaction", "service")
+        if node.module.partition(".")[0]
+        in ("fe_contact", "dynamics", "lineofaction", "service", "verification")
         for alias in node.names
     }
 

@@ -17,8 +17,8 @@ from fe_contact.geometry import BoreSeat, Gear, GearBlank, GearPair, Key, RingGe
 from fe_contact.material import Material
 from fe_contact.microgeometry.variables import ACROSS_FACE, QUANTITIES
 from fe_contact.plausibility import pair_findings
+from lineofaction.gearbox.convert.boundary_names import boundary_name, case_field
 from lineofaction.gearbox.convert.case import gear_pair
-from lineofaction.gearbox.convert.errors import boundary_name, case_field
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.declared import Figure, figures
 from lineofaction.gearbox.schemas.gear import SHARED

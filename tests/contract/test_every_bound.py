@@ -33,7 +33,7 @@ from dynamics.shafts import Shaft as TurningShaft
 from fe_contact.flank.stated_start import StatedStarts
 from fe_contact.geometry import BoreSeat, FlankModification, Gear, GearBlank, GearPair, Key, RingGear, Shaft
 from fe_contact.ste import PairFacts
-from lineofaction.gearbox.convert.case import check_case
+from lineofaction.gearbox.convert.checked_case import check_case
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput, Fault
 from lineofaction.gearbox.schemas import Case, read_model, validated

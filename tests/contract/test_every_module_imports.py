@@ -12,7 +12,9 @@ ROOT = Path(__file__).parents[2]
 BLOCKED = f"""
 import importlib, pkgutil, sys, types
 sys.path.insert(0, {str(ROOT)!r})
-PACKAGES = ("host", "bounds", "model_studies", "fe_contact", "dynamics", "lineofaction", "service")
+PACKAGES = (
+    "host", "bounds", "model_studies", "fe_contact", "dynamics", "lineofaction", "service", "verification",
+)
 RUN_BY_OTHERS = ("__main__",)
 
 def import_all(but=()):

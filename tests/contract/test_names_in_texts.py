@@ -18,7 +18,16 @@ from lineofaction.cli.commands import FAMILIES
 from lineofaction.cli.verbs import Later
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("bounds", "dynamics", "fe_contact", "host", "lineofaction", "model_studies", "service")
+PACKAGES = (
+    "bounds",
+    "dynamics",
+    "fe_contact",
+    "host",
+    "lineofaction",
+    "model_studies",
+    "service",
+    "verification",
+)
 BESIDE = ("Dockerfile", "compose.yaml", "deploy", "pyproject.toml", "scripts")
 NAME = re.compile(
     rf"(?:[\"'`]|-m )((?:{'|'.join(PACKAGES)})(?:\.[A-Za-z_]\w*)+)(?::([A-Za-z_]\w*))?(?=[\"'`]|\s|$)"

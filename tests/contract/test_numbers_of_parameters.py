@@ -34,7 +34,9 @@ def exported(package: Path) -> set[str]:
     return names
 
 
-@pytest.mark.parametrize("package", ["host", "bounds", "model_studies", "fe_contact", "dynamics"])
+@pytest.mark.parametrize(
+    "package", ["host", "bounds", "model_studies", "fe_contact", "dynamics", "verification"]
+)
 def test_no_function_takes_many_parameters(package: str) -> None:
     public = exported(ROOT / package)
     found = {
@@ -51,7 +53,16 @@ def test_self_is_no_parameter_and_a_splat_is_one() -> None:
     assert [parameters(one) for one in ast.parse(text).body if isinstance(one, Function)] == [5, 2]
 
 
-PACKAGES = ("host", "bounds", "model_studies", "fe_contact", "dynamics", "lineofaction", "service")
+PACKAGES = (
+    "host",
+    "bounds",
+    "model_studies",
+    "fe_contact",
+    "dynamics",
+    "lineofaction",
+    "service",
+    "verification",
+)
 
 
 def module_name(path: Path) -> str:

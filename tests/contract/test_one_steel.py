@@ -5,8 +5,8 @@ import pytest
 from dynamics.shafts import BeamSection
 from fe_contact import STEEL
 from fe_contact.shaft import Shaft
-from lineofaction.gearbox.schemas.bodies import SectionInput
 from lineofaction.gearbox.schemas.gear import MaterialInput
+from lineofaction.gearbox.schemas.shafts import SectionInput
 
 
 def in_si(young, poisson, density):

@@ -24,8 +24,8 @@ from dynamics.simulation import simulate
 from fe_contact.analysis.studies import ablation
 from fe_contact.analysis.studies.ablation import Figures
 from fe_contact.ste import SteDatabase
-from lineofaction.gearbox.convert.case import CheckedCase
-from lineofaction.gearbox.convert.effects import scene_table
+from lineofaction.gearbox.convert.checked_case import CheckedCase
+from lineofaction.gearbox.convert.scene_effects import scene_table
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.studied import OverOrders
 from lineofaction.gearbox.studies.ablate import Inputs

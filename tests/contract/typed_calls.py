@@ -14,6 +14,7 @@ from lineofaction.client import AsyncJob, AsyncLineOfActionClient, Job, LineOfAc
 from lineofaction.gearbox.studies.deflect import DeflectFigures
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection
 from lineofaction.gearbox.studies.modes import ModesFigures
+from model_studies.workers import Workers
 
 SCENE = Path("scene.toml")
 GEAR = loa.Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
@@ -22,7 +23,6 @@ PAIR = loa.GearPair(GEAR, GEAR, 80e-3)
 
 def called(client: LineOfActionClient) -> None:
     """By the subject, the options, the file of the inputs."""
-    assert_type(loa.modes(SCENE, speed_rpm=[1.0]), ModalAnalysis)
     assert_type(client.modes(SCENE, speed_rpm=[1.0], orders=3), ModalAnalysis)
     assert_type(client.deflect(SCENE), GearboxDeflection)
     assert_type(client.deflect(scene=SCENE, study={}), GearboxDeflection)
@@ -41,6 +41,16 @@ def analyzed() -> None:
     analyze(PAIR, torques=[100.0], positions="many")  # type: ignore[arg-type]
     loa.analyze(PAIR, torque=[100.0])  # type: ignore[call-overload]
     loa.analyze(SCENE, torques=[100.0])  # type: ignore[call-overload]
+
+
+def studied(workers: Workers) -> None:
+    """A study by its inputs, by a mapping of them, and with what any study takes."""
+    assert_type(loa.modes(SCENE, speed_rpm=[1.0], orders=3), ModalAnalysis)
+    assert_type(loa.modes(SCENE, {"speed_rpm": [1.0]}), ModalAnalysis)
+    assert_type(loa.modes(SCENE, speed_rpm=[1.0], workers=workers, progress=print), ModalAnalysis)
+    assert_type(loa.deflect(SCENE), GearboxDeflection)
+    loa.modes(SCENE, speed=[1.0])  # type: ignore[call-overload]
+    loa.modes(SCENE, orders="all")  # type: ignore[call-overload]
 
 
 def refused(client: LineOfActionClient) -> None:

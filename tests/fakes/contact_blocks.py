@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_contact.full_contact.condensation.placed_mesh import PlacedBody, Strip
 from fe_contact.types import FloatArray, IntArray
+from verification.full_contact.condensation.placed_mesh import PlacedBody, Strip
 
 WIDTH, DEPTH = 3e-3, 2e-3
 

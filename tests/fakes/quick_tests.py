@@ -11,7 +11,7 @@ from types import ModuleType
 import pytest
 
 LONG = (
-    "fe_contact.analysis", "fe_contact.compliance", "fe_contact.full_contact", "fe_contact.mesh",
+    "fe_contact.analysis", "fe_contact.compliance", "verification.full_contact", "fe_contact.mesh",
     "fe_contact.microgeometry", "model_studies.workers", "dynamics.accuracy", "dynamics.engines",
     "dynamics.integrators", "dynamics.periodic", "dynamics.simulation", "service.app",
     "lineofaction.cli", "lineofaction.client", "lineofaction.report.document", "lineofaction.report.drawing",

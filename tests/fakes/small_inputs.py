@@ -10,7 +10,7 @@ from typing import Any
 
 from housing_solid import write_block
 
-from lineofaction.gearbox.schemas.files import FileContentInput
+from lineofaction.gearbox.schemas.file_content import FileContentInput
 from service.schemas.examples import INPUTS
 
 Json = dict[str, Any]

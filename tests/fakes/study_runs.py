@@ -21,9 +21,9 @@ from typer.testing import CliRunner, Result
 from dynamics.results import RunResult
 from lineofaction.cli.commands import app
 from lineofaction.gearbox import workbench
-from lineofaction.gearbox.convert.case import CheckedCase
+from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.registry import STUDIES
-from lineofaction.gearbox.schemas.model import spelling_of
+from lineofaction.gearbox.schemas.spelling import spelling_of
 from lineofaction.gearbox.study import Study
 from lineofaction.report.drawing.page import Page
 from lineofaction.report.presentation import presentation_of

@@ -208,7 +208,10 @@ def _imported(path: Path) -> tuple[frozenset[Path], frozenset[str]]:
 
 @cache
 def _with_those_below(house: str) -> frozenset[str]:
-    """Return a house and all that it may import."""
+    """Return a house and all that it may import; references may import all, and rest on what they do."""
+    if house not in structure.PRODUCT:
+        below = (_with_those_below(other) for one, other in structure.arrows() if one == house)
+        return frozenset({house}.union(*below))
     (level,) = (number for number, floor in enumerate(structure.FLOORS) if house in floor)
     return frozenset({house}.union(*structure.FLOORS[level + 1 :]))
 

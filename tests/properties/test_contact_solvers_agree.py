@@ -15,7 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fe_contact.contact.edge_strip import no_edges
-from fe_contact.contact.local_law import local_law
+from fe_contact.contact.local_law import REFERENCE_LENGTH, local_law
 from fe_contact.contact.newton import CONVERGED, solve_point
 from fe_contact.contact.point_problem import PointProblem
 from fe_contact.contact.strip import Gap, gap_table
@@ -45,6 +45,7 @@ def random_problem(seed: int, n: int, kind: str, gaps: str, twins: bool, arms: b
     rng = np.random.default_rng(seed)
     size = {"none": [0.0], "mixed": [0.0, 1e-8, 1e-6, 1e-5, 1e-4], "wide": [1e-3]}[gaps]
     motion = rng.uniform(0.97, 1.0, n) if arms else np.ones(n)
+    length = rng.uniform(1e-4, 4e-4)
     problem = Problem(
         compliance=compliance(rng, kind, n),
         gap=rng.choice(size, n) * rng.uniform(size=n),
@@ -52,7 +53,8 @@ def random_problem(seed: int, n: int, kind: str, gaps: str, twins: bool, arms: b
         torque_arm=motion * rng.uniform(0.98, 1.02, n) if arms else motion,
         gap_about=random_gaps(rng, n),
         width=np.full(n, 25e-3 / max(1, n // 5)),
-        length=rng.uniform(1e-4, 4e-4),
+        length=length,
+        reference_length=np.full(n, length),
         modulus=MODULUS / rng.choice([1.0, 1.44], n),
     )
     return with_twins(problem) if twins and n > 1 else problem
@@ -80,7 +82,7 @@ def with_twins(problem: Problem) -> Problem:
 
 
 def picked(problem: Problem, index: np.ndarray) -> Problem:
-    names = ("gap", "motion_arm", "torque_arm", "width", "modulus")
+    names = ("gap", "motion_arm", "torque_arm", "width", "modulus", "reference_length")
     arrays = {name: getattr(problem, name)[index] for name in names}
     arrays["gap_about"] = GapAbout(*(part[index] for part in vars(problem.gap_about).values()))
     return replace(problem, compliance=problem.compliance[np.ix_(index, index)], **arrays)
@@ -98,6 +100,7 @@ class Solved:
         gap = Gap(*vars(p.gap_about).values())
         there = np.flatnonzero(np.isfinite(p.gap))
         law = local_law(gap_table(gap)[there], p.width[there], p.modulus[there], p.length)
+        law.strip[:, REFERENCE_LENGTH] = p.reference_length[there]
         point = PointProblem(
             p.compliance,
             *untilted(n),
@@ -137,6 +140,15 @@ def assert_agreement(problem: Problem, load: float, solved: Solved) -> None:
     assert solved.deflection == pytest.approx(answer.deflection, rel=1e-9, abs=0.0)
     assert solved.force == pytest.approx(answer.force, abs=1e-7 * load)
     assert np.all(solved.residual < 1e-9)
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("kind", ["smooth", "body"])
+def test_two_solvers_agree_on_four_contacts_near_free_ends(kind):
+    problem = random_problem(76, 4, kind, "mixed", False, True)
+    near = replace(problem, reference_length=problem.length * np.array([1.0, 1.3, 1.8, 1.0]))
+    assert_agreement(near, NOMINAL, Solved(near, NOMINAL))
+    assert Solved(near, NOMINAL).deflection > Solved(problem, NOMINAL).deflection  # ends yield more
 
 
 @pytest.mark.law

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from fe_contact import AnalysisOptions, FlankModification, Gear, GearPair, OperatingPoint, flank_results
-from fe_contact.full_contact import Resolution, solve_full_contact
+from verification.full_contact import Resolution, solve_full_contact
 
 MESH = Resolution(6.0)
 ELEMENT_MEAN = 0.0017

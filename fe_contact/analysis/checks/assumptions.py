@@ -205,7 +205,7 @@ def _load_patches(run: SolvedRun) -> Assumption:
 
 def _support_loads(run: SolvedTable) -> Assumption:
     """From lift-off to twice the largest load the forces for dynamics are solved."""
-    failed = sum(int(np.count_nonzero(each.solution.status)) for each in run.support)
+    failed = sum(int(np.count_nonzero(place.solution.status)) for place in run.support)
     reason = (
         f"{failed} points have no solution" if failed else "all points beyond the requested loads are solved"
     )

@@ -38,5 +38,5 @@ def check_cycle(contact: CycleContact, ste: FloatArray, error: FloatArray) -> La
         at = pitch + contact.position[position]
         return f"position {at:.6g}, force {contact.load[load]:.6g} N"
 
-    moved = ste - alike.solution.deflection
-    return _LIFTING.between(moved, low[:, None, None] - room, high[:, None, None] + room, place)
+    change = ste - alike.solution.deflection
+    return _LIFTING.between(change, low[:, None, None] - room, high[:, None, None] + room, place)

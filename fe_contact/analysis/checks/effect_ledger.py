@@ -72,13 +72,13 @@ def _costs(checked: Checked, cache: Path | None, plan: Plan | None) -> dict[str,
 
     None if it cannot be toggled, and where it is off without having been called for: nothing was saved.
     """
-    here = _predicted(checked, cache, plan)
+    cost = _predicted(checked, cache, plan)
     acting = [entry for entry in checked.ledger if entry.on or entry.verdict.on]
-    return {entry.name: _cost(checked, entry, here, (cache, plan)) for entry in acting}
+    return {entry.name: _cost(checked, entry, cost, (cache, plan)) for entry in acting}
 
 
 def _cost(
-    checked: Checked, entry: LedgerEntry, here: float, known: tuple[Path | None, Plan | None]
+    checked: Checked, entry: LedgerEntry, cost: float, known: tuple[Path | None, Plan | None]
 ) -> float | None:
     """CPU seconds of one effect, of which the run itself is predicted to take `here`."""
     try:
@@ -86,7 +86,7 @@ def _cost(
     except InputError:
         return None
     there = _predicted(other, *known)
-    return here - there if entry.on else there - here
+    return cost - there if entry.on else there - cost
 
 
 def _predicted(checked: Checked, cache: Path | None, run: Plan | None) -> float:

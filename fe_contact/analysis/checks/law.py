@@ -43,8 +43,8 @@ class LawCheck:
     def words(self) -> str:
         """The law, the place and both numbers."""
         value, bound = (
-            f"{engineering(each, _DIGITS)} {self.unit}".rstrip() if np.isfinite(each) else str(each)
-            for each in (self.value, self.bound)
+            f"{engineering(number, _DIGITS)} {self.unit}".rstrip() if np.isfinite(number) else str(number)
+            for number in (self.value, self.bound)
         )
         return f"{self.law}: {self.quantity} is {value} at {self.place}, bound {bound}"
 

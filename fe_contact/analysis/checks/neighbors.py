@@ -88,8 +88,8 @@ def largest_steps(
         Largest transmission error of each load above the least gap, m.
     """
     pair = point.contact.pair
-    low, high, slope = (np.asarray(each) for each in (deviations.low, deviations.high, deviations.slope))
-    here_and_next = [np.stack([each, np.roll(each, -1)]) for each in (low, high, slope)]
+    low, high, slope = (np.asarray(bound) for bound in (deviations.low, deviations.high, deviations.slope))
+    here_and_next = [np.stack([bound, np.roll(bound, -1)]) for bound in (low, high, slope)]
     span = here_and_next[1].max(axis=0) - here_and_next[0].min(axis=0)
     by_deviations = np.minimum(here_and_next[2].max(axis=0) * way, span)[:, None]
     edges = edge_slope(pair, deflection)

@@ -127,7 +127,7 @@ class _Place:
         Strips that outgrow these follow a straight law, which is reported as an assumption that is wrong.
         """
         solved = np.isfinite(self.table.residuals[:, :, self.m, self.d, 0]).any(axis=1)
-        outgrown = np.any([each.beyond.any(axis=1) for each in self.solutions], axis=0)
+        outgrown = np.any([solution.beyond.any(axis=1) for solution in self.solutions], axis=0)
         return np.asarray(solved & ~outgrown)
 
     @cached_property
@@ -183,7 +183,7 @@ class _Place:
         largest = np.where(np.isfinite(ste), ste, self._no_load[:, None]).max(axis=1)
         bent, exact = STRAIGHT + self._softening(largest)[:, None], self._exact[:, None]
         least = np.where(exact, np.maximum(1.0 - bent, ONE_TO_ONE), ONE_TO_ONE) * tangent
-        most = np.where(exact, 1.0 + bent, np.inf) * tangent
+        upper = np.where(exact, 1.0 + bent, np.inf) * tangent
 
         def at(position: int, load: int) -> str:
             return place_words(t, position, m, d, float(force[load]))
@@ -194,7 +194,7 @@ class _Place:
             good = good[:, 1:] & good[:, :-1]
             yield _STIFFENING.below(
                 np.where(good, chord[:, 1:], 0.0),
-                np.where(good, most[:, :-1], 1.0),
+                np.where(good, upper[:, :-1], 1.0),
                 lambda p, f: at(p, f + 1),
             )
 
@@ -206,7 +206,7 @@ class _Place:
         in m, over the module.
         """
         count, touch = len(self.problem.compliance), self.problem.candidates.touch
-        carries = np.any([each.force[:count].any(axis=1) for each in self.solutions], axis=0)
+        carries = np.any([solution.force[:count].any(axis=1) for solution in self.solutions], axis=0)
         off = np.abs(touch.lever_1[:count] / touch.lever_2[:count] - 1.0)
         levers = LEVERS * np.where(carries, off, 0.0).max(axis=1)
         rolled = (largest - self._no_load) / self.point.contact.pair.pinion.normal_module
@@ -274,9 +274,9 @@ class _Place:
         way = np.diff(t.position, append=t.position[0] + t.period) * self.point.contact.pair.base_pitch
         curves = np.concatenate([self._no_load[:, None], self._ste], axis=1)
         size = np.nanmax(curves, axis=0) - np.min(self._deviations.low)
-        most = largest_steps(self.point, self.problem, way, self._deviations, size) + TOUCH
+        limit = largest_steps(self.point, self.problem, way, self._deviations, size) + TOUCH
         load = np.concatenate([[0.0], t.force])
-        most = most + approach_steps(self.point.contact.pair, self.problem, len(way), load)
+        limit = limit + approach_steps(self.point.contact.pair, self.problem, len(way), load)
         step = np.nan_to_num(np.abs(np.roll(curves, -1, axis=0) - curves))
-        yield _NO_LOAD_NEIGHBORS.below(step[:, 0], most[:, 0], self._at)
-        yield _NEIGHBORS.below(step[:, 1:], most[:, 1:], self._at)
+        yield _NO_LOAD_NEIGHBORS.below(step[:, 0], limit[:, 0], self._at)
+        yield _NEIGHBORS.below(step[:, 1:], limit[:, 1:], self._at)

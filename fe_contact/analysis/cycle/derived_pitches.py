@@ -124,7 +124,7 @@ class DerivedPitches:
         the state that counts there. Elsewhere derivatives begin anew.
         """
         contact = CycleContact(point, position, load, _arm_row)
-        rows, loads = (np.flatnonzero(np.isin(*each)) for each in self._known(position, load))
+        rows, loads = (np.flatnonzero(np.isin(*axis)) for axis in self._known(position, load))
         try:
             if (rows.size, loads.size) == (position.size, load.size):
                 return self._changed(contact, rows, loads)
@@ -139,7 +139,7 @@ class DerivedPitches:
     def _changed(self, contact: CycleContact, rows: IntArray, loads: IntArray) -> FloatArray:
         states = [contact.nominal()[1]]
         states += [contact.solved(part) for part in in_parts(self.pitches)]
-        solved = [np.stack([each.solution.deflection, _arms(each)], axis=-1) for each in states]
+        solved = [np.stack([state.solution.deflection, _arms(state)], axis=-1) for state in states]
         change = contact.by_pitch(np.concatenate(solved)) - self.at_state[:, rows][:, :, loads]
         p, load = np.indices((rows.size, loads.size))
         there = self.state[:, rows][:, :, loads]
@@ -192,11 +192,11 @@ def derived_table(
     begun = solved_in_parts(point, position, sets, first, edges=False)
     unloaded, ste, of_support = levels
     arrays = _arrays(envelope, ste), _support_arrays(beside, of_support)
-    kept = [
-        _kept(own, each, values, unloaded)
-        for own, each, values in zip(begun, (envelope, beside), arrays, strict=True)
+    contacts = [
+        _kept(start, each, values, unloaded)
+        for start, each, values in zip(begun, (envelope, beside), arrays, strict=True)
     ]
-    return DerivedTable(tuple(kept), DerivedPitches.of(envelope, ste), _errors(envelope))
+    return DerivedTable(tuple(contacts), DerivedPitches.of(envelope, ste), _errors(envelope))
 
 
 @dataclass(frozen=True)
@@ -213,12 +213,14 @@ class DerivedCycle:
     def places(self) -> OperatingPoints:
         """Those of the table, their pitches by derivatives."""
         pairs = zip(self.points.places, self.tables, strict=True)
-        return replace(self.points, places=tuple(replace(point, derived=own.derived) for point, own in pairs))
+        return replace(
+            self.points, places=tuple(replace(point, derived=table.derived) for point, table in pairs)
+        )
 
     @property
     def kept(self) -> list[list[KeptContact]]:
         """What is kept of every place, for each set of loads."""
-        return [list(each) for each in zip(*(table.kept for table in self.tables), strict=True)]
+        return [list(contacts) for contacts in zip(*(table.kept for table in self.tables), strict=True)]
 
     def to_json(self) -> Json:
         """Return how many base pitches were solved at every operating point, or why all were."""
@@ -228,8 +230,8 @@ class DerivedCycle:
         errors = [table.errors for table in self.tables]
         return pitches | {
             "solved": [table.derived.pitches.size for table in self.tables],
-            "share_error": max(each.share for each in errors),
-            "pressure_error_relative": max(each.pressure for each in errors),
+            "share_error": max(error.share for error in errors),
+            "pressure_error_relative": max(error.pressure for error in errors),
         }
 
 
@@ -286,10 +288,10 @@ def _shares_and_pressures(envelope: Envelope, least: LeastTangents) -> tuple[Flo
     share = np.maximum(least.sums[..., _SHARES:], 0.0)
     share /= share.sum(axis=3, keepdims=True)
     p, load = np.indices(least.state.shape[1:])
-    kept = "load_share", "pair_pressure", _EDGE_OF_PAIR
-    before, *of_pair = (envelope.kept[name][least.state, p, load] for name in kept)
+    names = "load_share", "pair_pressure", _EDGE_OF_PAIR
+    before, *of_pair = (envelope.kept[name][least.state, p, load] for name in names)
     grown = np.sqrt(np.divide(share, before, out=np.zeros_like(share), where=before > 0.0))
-    flank, edge = (each * np.minimum(grown, MOST_GROWN) for each in of_pair)
+    flank, edge = (pressure * np.minimum(grown, MOST_GROWN) for pressure in of_pair)
     return share, flank, edge
 
 
@@ -298,8 +300,8 @@ def _missed_in_drawn(envelope: Envelope) -> tuple[float, float]:
     share, flank, _ = _shares_and_pressures(envelope, envelope.without)
     drawn = slice(1, 1 + envelope.drawn.size)
     exact, pressure = (envelope.kept[name][drawn] for name in ("load_share", "max_pressure"))
-    missed = np.abs(share - exact).max(axis=3), np.abs(flank.max(axis=3) - pressure) / pressure.max()
-    of_share, of_pressure = (float(np.quantile(each, _MOST_POINTS)) for each in missed)
+    errors = np.abs(share - exact).max(axis=3), np.abs(flank.max(axis=3) - pressure) / pressure.max()
+    of_share, of_pressure = (float(np.quantile(error, _MOST_POINTS)) for error in errors)
     return of_share, of_pressure
 
 

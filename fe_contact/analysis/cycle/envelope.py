@@ -130,9 +130,12 @@ class LeastTangents:
     @classmethod
     def of(cls, tangent: Tangent, gaps: ToothGaps, pitches: IntArray) -> LeastTangents:
         """Begin with one tangent in whole base pitches (t,)."""
-        moved, every = tangent.moved(gaps, pitches), np.ones((pitches.size, *tangent.value.shape), dtype=bool)
-        change, shape = moved.sum(axis=0), every.shape
-        distance = tangent.distance(moved, change, every).reshape(shape)
+        motion, every = (
+            tangent.moved(gaps, pitches),
+            np.ones((pitches.size, *tangent.value.shape), dtype=bool),
+        )
+        change, shape = motion.sum(axis=0), every.shape
+        distance = tangent.distance(motion, change, every).reshape(shape)
         sums = tangent.sums.over(gaps, pitches, every).reshape(*shape, -1)
         return cls(tangent.value + change, distance, np.zeros(shape, dtype=np.int16), sums)
 
@@ -140,12 +143,12 @@ class LeastTangents:
         self, number: int, tangent: Tangent, gaps: ToothGaps, pitches: IntArray, but: BoolArray
     ) -> LeastTangents:
         """Return the least with another tangent, in the same pitches `but` (t,) some."""
-        moved = tangent.moved(gaps, pitches)
-        change = moved.sum(axis=0)
+        motion = tangent.moved(gaps, pitches)
+        change = motion.sum(axis=0)
         ste = tangent.value + change
         less = (ste < self.ste) & ~but[:, None, None]
         distance, state, sums = self.distance.copy(), self.state.copy(), self.sums
-        distance[less], state[less] = tangent.distance(moved, change, less), number
+        distance[less], state[less] = tangent.distance(motion, change, less), number
         if sums.shape[3]:
             sums = sums.copy()
             sums[less] = tangent.sums.over(gaps, pitches, less)
@@ -228,13 +231,13 @@ class Envelope:
             least = least.and_of(number, tangent, gaps, every, nowhere)
             # its own tangent is no test of a pitch
             without = without.and_of(number, tangent, gaps, self.drawn, self.drawn == pitches[k])
-        kept = {name: contact.by_pitch(values) for name, values in self.keep(state).items()}
+        added = {name: contact.by_pitch(values) for name, values in self.keep(state).items()}
         return replace(
             self,
             pitches=np.concatenate([self.pitches, pitches]),
             exact=np.concatenate([self.exact, [each.value for each in tangents]]),
             exact_sums=np.concatenate([self.exact_sums, [each.sums.value for each in tangents]]),
-            kept={name: np.concatenate([own, kept[name]]) for name, own in self.kept.items()},
+            kept={name: np.concatenate([known, added[name]]) for name, known in self.kept.items()},
             least=least,
             without=without,
         )
@@ -273,11 +276,11 @@ class Envelope:
         """Return the same of one quantity that is followed."""
         return self._missed((self.without.sums - self.exact_sums[: self.drawn.size])[..., q])
 
-    def _missed(self, missed: FloatArray) -> DrawnPitches:
+    def _missed(self, errors: FloatArray) -> DrawnPitches:
         order = np.argsort(self.without.furthest, kind="stable")
         left = self.least.furthest[~self.solved].max()
         count = max(int(np.count_nonzero(self.without.furthest <= left)), FEWEST)
-        return DrawnPitches(missed[order[:count]], self.contact.position)
+        return DrawnPitches(errors[order[:count]], self.contact.position)
 
     @property
     def ste(self) -> FloatArray:
@@ -309,9 +312,9 @@ class Envelope:
 
     def sum_errors(self, q: int) -> FloatArray:
         """Return the same of one quantity that is followed; both ends may be missed by the most."""
-        missed = self.missed_sum(q)
-        errors = missed.quantity_errors
-        errors[PEAK_TO_PEAK] = 2.0 * missed.error
+        drawn = self.missed_sum(q)
+        errors = drawn.quantity_errors
+        errors[PEAK_TO_PEAK] = 2.0 * drawn.error
         return errors
 
     @property
@@ -320,9 +323,9 @@ class Envelope:
 
         Above a tangent nothing lies but what drawn pitches show, below it no more than is missed at most.
         """
-        missed, known = self.missed.missed, self.exact
-        above = self.least.ste.max(axis=1) + np.maximum(-missed.min(axis=(0, 1)), 0.0)
-        below = self.least.ste.min(axis=1) - missed.max(axis=(0, 1))
+        errors, known = self.missed.missed, self.exact
+        above = self.least.ste.max(axis=1) + np.maximum(-errors.min(axis=(0, 1)), 0.0)
+        below = self.least.ste.min(axis=1) - errors.max(axis=(0, 1))
         beyond = np.stack([above - known.max(axis=(0, 1)), known.min(axis=(0, 1)) - below])
         return np.where(self.solved[:, None], 0.0, np.maximum(beyond, 0.0))
 

@@ -27,7 +27,7 @@ def rising_deflection(
     unloaded = _unloaded(envelope)
     levels = np.concatenate([unloaded[..., None], envelope.ste, beside.ste], axis=2)[..., order]
     tangents = [
-        each.kept["tangent_compliance"].min() for each in (envelope, beside) if each.contact.load.size
+        part.kept["tangent_compliance"].min() for part in (envelope, beside) if part.contact.load.size
     ]
     step = _LEAST_COMPLIANCE * min(tangents) * np.diff(force[order])
     tables = np.flatnonzero(kind[order] == 1)
@@ -50,15 +50,15 @@ def _unloaded(envelope: Envelope) -> FloatArray:
     Flanks that slope touch a little beside; what that is in the pitches solved is taken off in the mean.
     """
     contact = envelope.contact
-    model, own = contact.point.model, envelope.gaps
+    model, gaps = contact.point.model, envelope.gaps
     plain = contact.nominal()[1].problem.candidates.gap
-    by_pair = np.transpose(plain.reshape(len(plain), own.pair.size, -1), (1, 0, 2))
-    found = np.empty((model.period, len(plain)))
+    by_pair = np.transpose(plain.reshape(len(plain), gaps.pair.size, -1), (1, 0, 2))
+    gap = np.empty((model.period, len(plain)))
     for pitch in range(model.period):
-        found[pitch] = _least_gap(by_pair, own, pitch)
+        gap[pitch] = _least_gap(by_pair, gaps, pitch)
     exact = envelope.kept["no_load"][1:, :, 0]
-    missed = (found[envelope.pitches] - exact).mean(axis=0)
-    return envelope.exact_in(found - missed, exact)
+    error = (gap[envelope.pitches] - exact).mean(axis=0)
+    return envelope.exact_in(gap - error, exact)
 
 
 def _least_gap(plain: FloatArray, gaps: ToothGaps, pitch: int) -> FloatArray:

@@ -51,14 +51,14 @@ class ToothGaps:
 
 def _by_tooth(pair: ParallelAxes, candidates: Candidates, gear: int, model: ContactModel) -> FloatArray:
     """Return the gaps by the teeth of one gear; one tooth stands for all where they are alike."""
-    own = replace(model, tooth_gaps=tuple(term for term in model.tooth_gaps if term.gear == gear))
+    gear_model = replace(model, tooth_gaps=tuple(term for term in model.tooth_gaps if term.gear == gear))
     touch, there = candidates.touch, np.isfinite(candidates.gap)
-    teeth = min((pair.pinion, pair.wheel)[gear].teeth, model.period) if own.tooth_gaps else 1
+    teeth = min((pair.pinion, pair.wheel)[gear].teeth, model.period) if gear_model.tooth_gaps else 1
     rolls = rolls_at(pair, touch.s_1[there], touch.s_2[there])
     face = np.broadcast_to(candidates.face_position, there.shape)[there]
     gaps = np.zeros((teeth, *there.shape))
     for tooth in range(teeth):
-        gaps[tooth][there] = own.gap_of_teeth(MeetingTeeth(pair, np.array(tooth), *rolls, face))
+        gaps[tooth][there] = gear_model.gap_of_teeth(MeetingTeeth(pair, np.array(tooth), *rolls, face))
     pairs = np.unique(candidates.pair).size
     by_pair = gaps.reshape(teeth, len(there), pairs, -1)
     return np.ascontiguousarray(np.transpose(by_pair, (2, 1, 0, 3)))
@@ -83,17 +83,17 @@ class LoadSums:
 
     def about(self, gaps: ToothGaps, pitch: int) -> LoadSums:
         """Return the same about the state of a base pitch."""
-        p, load = (each.ravel() for each in np.indices(self.value.shape[:2]))
-        own = self._added(gaps, np.array([pitch]), np.zeros(p.size, dtype=np.int64), p, load)
-        return replace(self, at_state=own.reshape(self.value.shape))
+        p, load = (index.ravel() for index in np.indices(self.value.shape[:2]))
+        added = self._added(gaps, np.array([pitch]), np.zeros(p.size, dtype=np.int64), p, load)
+        return replace(self, at_state=added.reshape(self.value.shape))
 
     def _added(
         self, gaps: ToothGaps, pitches: IntArray, t: IntArray, p: IntArray, load: IntArray
     ) -> FloatArray:
         added = np.zeros((t.size, self.value.shape[2]))
-        for own, teeth in zip(self.by_tooth, gaps.teeth(pitches), strict=True):
+        for tooth_sums, teeth in zip(self.by_tooth, gaps.teeth(pitches), strict=True):
             for j in range(gaps.pair.size):
-                added += own[j, teeth[t, j], p, load]
+                added += tooth_sums[j, teeth[t, j], p, load]
         return added
 
 
@@ -115,22 +115,22 @@ class Tangent:
 
     def moved(self, gaps: ToothGaps, pitches: IntArray) -> FloatArray:
         """Return what the teeth that meet in whole base pitches (t,) add to the state, (J, t, P, L) in m."""
-        (first, second), (own, other) = gaps.teeth(pitches), self.by_tooth
-        beyond = own - self.at_state[:, None]
-        moved = np.empty((gaps.pair.size, pitches.size, *self.value.shape))
+        (first, second), (driving, other) = gaps.teeth(pitches), self.by_tooth
+        beyond = driving - self.at_state[:, None]
+        motion = np.empty((gaps.pair.size, pitches.size, *self.value.shape))
         for j in range(gaps.pair.size):
-            np.add(beyond[j, first[:, j]], other[j, second[:, j]], out=moved[j])
-        return moved
+            np.add(beyond[j, first[:, j]], other[j, second[:, j]], out=motion[j])
+        return motion
 
-    def distance(self, moved: FloatArray, change: FloatArray, where: BoolArray) -> FloatArray:
+    def distance(self, motion: FloatArray, change: FloatArray, where: BoolArray) -> FloatArray:
         """Return how far the state is from some of t pitches, P positions and L loads (t, P, L), m.
 
-        It is the mean over the pairs, by their parts, of how far each is `moved` against the other gear.
+        It is the mean over the pairs, by their parts, of the `motion` of each against the other gear.
         `change`: their sum.
         """
         whole, distance = change[where], np.zeros(np.count_nonzero(where))
-        for own, part in zip(moved, self.part, strict=True):
-            distance += np.abs(own[where] - np.broadcast_to(part, where.shape)[where] * whole)
+        for pair_motion, part in zip(motion, self.part, strict=True):
+            distance += np.abs(pair_motion[where] - np.broadcast_to(part, where.shape)[where] * whole)
         return distance
 
 
@@ -153,11 +153,11 @@ def pitch_tangents(gaps: ToothGaps, state: SolvedState, pitches: IntArray) -> li
     """Return the tangents about whole base pitches (t,) of which the state is."""
     return [
         replace(
-            each,
-            at_state=each.moved(gaps, pitches[k : k + 1])[:, 0],
-            sums=each.sums.about(gaps, int(pitches[k])),
+            tangent,
+            at_state=tangent.moved(gaps, pitches[k : k + 1])[:, 0],
+            sums=tangent.sums.about(gaps, int(pitches[k])),
         )
-        for k, each in enumerate(_tangents(gaps, state, pitches.size))
+        for k, tangent in enumerate(_tangents(gaps, state, pitches.size))
     ]
 
 
@@ -172,13 +172,13 @@ def _tangents(gaps: ToothGaps, state: SolvedState, states: int) -> list[Tangent]
     shape = len(every), states, -1, loads, pairs, every.shape[3] // pairs
     by_state = np.transpose(every.reshape(shape), (1, 4, 2, 5, 3, 0))  # (states, J, P, M, L, 1 + Q)
     tangents = []
-    for value, mean, own in zip(
+    for value, mean, parts in zip(
         np.split(solution.deflection, states), np.split(sums, states), by_state, strict=True
     ):
-        flat = own.reshape(*own.shape[:3], -1)
+        flat = parts.reshape(*parts.shape[:3], -1)
         first, second = (_each_tooth(gap @ flat, loads) for gap in gaps.gears)
         beside = LoadSums(mean, (first[..., 1:], second[..., 1:]), np.zeros(mean.shape))
-        part = own[..., 0].sum(axis=2)
+        part = parts[..., 0].sum(axis=2)
         by_tooth = np.ascontiguousarray(first[..., 0]), np.ascontiguousarray(second[..., 0])
         tangents.append(Tangent(value, part, by_tooth, np.zeros(part.shape), beside))
     return tangents

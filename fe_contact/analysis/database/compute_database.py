@@ -40,9 +40,9 @@ class _Computed:
     decided: Decided
 
 
-def compute_database(checked: Checked, case: Json, run: Run, decided: Decided | None = None) -> SteDatabase:
+def compute_database(checked: Checked, case: Json, run: Run, choice: Decided | None = None) -> SteDatabase:
     """Compute the table of a checked request; parameters of `compute_pass`."""
-    return compute_pass(checked, case, run, decided).table
+    return compute_pass(checked, case, run, choice).table
 
 
 def compute_pass(
@@ -101,9 +101,9 @@ def compute_pass(
     table = assessed.stated(made.table, metadata)
     tolerance = made.checked.request.options.tolerance
     if tolerance is not None:
-        kept = tolerance_receipt(table, tolerance, made.checked.request)
-        metadata.receipt["tolerance"] = kept
-        metadata.receipt["choice"]["met"] = kept["met"]
+        tolerance_use = tolerance_receipt(table, tolerance, made.checked.request)
+        metadata.receipt["tolerance"] = tolerance_use
+        metadata.receipt["choice"]["met"] = tolerance_use["met"]
     return _Computed(table, made.decided)
 
 
@@ -128,7 +128,7 @@ def _full(made: SolvedTable) -> bool:
 
 def _lawful(made: SolvedTable) -> tuple[LawCheck, ...]:
     """Check the laws of a table; raises `SolveError` where one is broken."""
-    support = [each.solution for each in made.support]
+    support = [place.solution for place in made.support]
     laws = check_laws(made.table, made.places.places, made.solved, support)
     require_laws(laws, made.table)
     return laws
@@ -137,7 +137,7 @@ def _lawful(made: SolvedTable) -> tuple[LawCheck, ...]:
 def _contact(made: SolvedTable, clock: StageClock) -> Json:
     """Return what the receipt of a table says of its contact."""
     with clock.stage("contact"):
-        support = [(each.problem, each.solution) for each in made.support]
+        support = [(place.problem, place.solution) for place in made.support]
         return contact_receipt(made.solved, support, condition=_full(made), known=made.condition)
 
 

@@ -38,19 +38,19 @@ class _Passes:
         """Run what the accuracy is expected to ask for."""
         clock = StageClock(self.run.workers.cost)
         with clock.stage("planning"):
-            decided = decide(checked, self.run.cache, tried=True)
-        done = compute_pass(decided.checked, self.case, self.run, decided, clock)
+            choice = decide(checked, self.run.cache, tried=True)
+        done = compute_pass(choice.checked, self.case, self.run, choice, clock)
         return Pass(done.decided, done.table.metadata.receipt, done.table)
 
     def refined(self, made: Refinement, clock: StageClock) -> Pass:
         """Run a refinement; one that fails or is interrupted says so."""
-        decided = made.decided
+        choice = made.decided
         try:
-            done = compute_pass(decided.checked, self.case, self.run, decided, clock)
+            done = compute_pass(choice.checked, self.case, self.run, choice, clock)
         except KeyboardInterrupt:
-            return Pass(decided, clock.to_json(), None, made, "interrupted")
+            return Pass(choice, clock.to_json(), None, made, "interrupted")
         except (FeContactError, MemoryError) as error:
-            return Pass(decided, clock.to_json(), None, made, str(error) or "out of memory")
+            return Pass(choice, clock.to_json(), None, made, str(error) or "out of memory")
         return Pass(done.decided, done.table.metadata.receipt, done.table, made)
 
 
@@ -133,10 +133,10 @@ def _behind_trial(behind: Decided, trial: Pass) -> Refinement:
 
 def _beyond_between(table: SteDatabase) -> str:
     """Say which intervals alone keep a table from its tolerance: no mesh lowers what they take."""
-    missed = table.metadata.receipt["tolerance"]["between_nodes"]
-    if not missed:
+    intervals = table.metadata.receipt["tolerance"]["between_nodes"]
+    if not intervals:
         return "the table cannot be interpolated between its nodes"
-    return "; ".join(map(_interval_words, missed))
+    return "; ".join(map(_interval_words, intervals))
 
 
 def _interval_words(entry: Json) -> str:

@@ -145,16 +145,16 @@ class _Resolution:
         return replace(self, shares=shares, steps=(*self.steps, step))
 
 
-def next_pass(decided: Decided, shares: FloatArray) -> Refinement | str:
+def next_pass(choice: Decided, shares: FloatArray) -> Refinement | str:
     """Choose what to refine, of the sources that dominate, to keep the tolerance; or say why no pass pays.
 
     A pass goes up one mesh level at most, since the level between costs a third of the finer one.
     `shares` (6 or more, ...) are the errors by source `AT_NODES` in parts of what is allowed, of every
     quantity at every node, without those that no run lowers; more sources are not looked at.
     """
-    plan = decided.plan
+    plan = choice.plan
     begun = _Resolution(
-        decided,
+        choice,
         plan.level,
         plan.discretization.slices,
         plan.nodes,
@@ -165,12 +165,12 @@ def next_pass(decided: Decided, shares: FloatArray) -> Refinement | str:
     finest = _settled(begun)
     barrier = _barrier(begun, finest)
     if barrier is not None:
-        if barrier == _WIDTH and (model := next_model(decided.checked)):
+        if barrier == _WIDTH and (model := next_model(choice.checked)):
             return _of_model(model, begun)
         return _no_way(finest, barrier)
     finer = _settled(replace(begun, level_left=1))
     reason = f"{AT_NODES[source]} takes {engineering(begun.sources[source], 2)} of the tolerance"
-    refined = decided.refined(finer.level, finer.slices, finer.nodes, reason)
+    refined = choice.refined(finer.level, finer.slices, finer.nodes, reason)
     return Refinement(refined, AT_NODES[source], finer.steps, finer.used)
 
 

@@ -54,13 +54,13 @@ class Pass:
         }
 
 
-def of_all_passes(passes: Sequence[Pass], kept: SteDatabase, reason: str) -> SteDatabase:
+def of_all_passes(passes: Sequence[Pass], table: SteDatabase, reason: str) -> SteDatabase:
     """Return the table of one pass with the receipt of all, and the reason why there was no further one."""
-    receipt = kept.metadata.receipt | _summed([done.cost for done in passes])
+    receipt = table.metadata.receipt | _summed([done.cost for done in passes])
     receipt["tolerance"] = receipt["tolerance"] | {"reason": reason}
     receipt["prediction"] = receipt["prediction"] | _predicted(passes)
-    receipt["passes"] = [done.to_json() | {"kept": done.table is kept} for done in passes]
-    return replace(kept, metadata=replace(kept.metadata, receipt=receipt))
+    receipt["passes"] = [done.to_json() | {"kept": done.table is table} for done in passes]
+    return replace(table, metadata=replace(table.metadata, receipt=receipt))
 
 
 def _predicted(passes: Sequence[Pass]) -> Json:
@@ -80,7 +80,8 @@ def _summed(costs: Sequence[Json]) -> Json:
     names = dict.fromkeys(name for cost in costs for name in cost["stages"])
     times = {name: [cost["stages"][name] for cost in costs if name in cost["stages"]] for name in names}
     stages = {
-        name: {kind: sum(time[kind] for time in each) for kind in kinds} for name, each in times.items()
+        name: {kind: sum(time[kind] for time in times_of_stage) for kind in kinds}
+        for name, times_of_stage in times.items()
     }
     total: Json = {kind: sum(cost[kind] for cost in costs) for kind in kinds}
     total |= {"stages": stages, "peak_memory_bytes": max(cost["peak_memory_bytes"] for cost in costs)}

@@ -134,12 +134,12 @@ def assessed_table(made: SolvedTable, coarse: OperatingPoints) -> tuple[Assessed
     discretization, solutions = plan.discretization, [solution for _, solution in made.solved]
     axes = plan.load, table.misalignment, table.center_distance_change
     sample = TableSample.of(nodes.position, fine.period, axes)
-    own = sample.taken(table)
-    plane = sample.solved(fine.in_plane_strain, fine) if discretization.corrected else own
+    nominal = sample.taken(table)
+    plane = sample.solved(fine.in_plane_strain, fine) if discretization.corrected else nominal
     slices = discretization.slices > 1
-    sliced = sample.solved(fine.in_slices(discretization.coarse_slices), fine) if slices else own
+    sliced = sample.solved(fine.in_slices(discretization.coarse_slices), fine) if slices else nominal
     patched = sample.solved(fine.in_plane_strain.in_coarse_patches, fine)
-    nested = Nested(sample, own, plane, patched, sample.solved(coarse, fine), sliced)
+    nested = Nested(sample, nominal, plane, patched, sample.solved(coarse, fine), sliced)
     positions = position_errors(nodes, fine, solutions, plan)
     ste, arms = nested.parts
     measured = fine, made.solved, ste, positions, plan

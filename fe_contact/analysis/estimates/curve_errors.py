@@ -78,9 +78,9 @@ def curve_errors(
     """
     made, sample, pair = plan.discretization, nested.sample, points.nominal.pair
     solutions = [solution for _, solution in solved]
-    own, by_mesh, by_patches, by_slices, free_ends = _measured(points, nested, plan)
+    deflection, by_mesh, by_patches, by_slices, free_ends = _measured(points, nested, plan)
     if points.period > 1:
-        own[BESIDE_MESH] = _beside_by_load(points, solutions, sample)
+        deflection[BESIDE_MESH] = _beside_by_load(points, solutions, sample)
     by_source = {
         "discretisation": np.hypot(by_mesh, by_patches),
         "slices": by_slices,
@@ -89,8 +89,8 @@ def curve_errors(
         "position": np.broadcast_to(
             positions.curves[:, :, None, None], (*positions.curves.shape, *points.shape)
         ),
-        METHOD: model_errors(pair, plan.load, own, over_face=isinstance(made, FaceDiscretization))
-        + points.gathered([of_quantities(rough_flank_errors(*each)) for each in solved]),
+        METHOD: model_errors(pair, plan.load, deflection, over_face=isinstance(made, FaceDiscretization))
+        + points.gathered([of_quantities(rough_flank_errors(*place)) for place in solved]),
     }
     return np.stack([by_source[name] for name in AT_NODES])
 

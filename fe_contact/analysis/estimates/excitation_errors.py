@@ -37,24 +37,27 @@ def excitation_errors(table: SteDatabase, force: float) -> ExcitationErrors:
     """
     at = float(np.clip(force, table.force[0], table.force[-1]))
     of_ste, of_arm, of_shares = (np.zeros(HARMONICS) for _ in range(3))
-    beside = 0.0
+    of_load = 0.0
     mean = mean_of_curves(table.position, table.static_transmission_error, table.period)
     for m, d in product(range(table.misalignment.size), range(table.center_distance_change.size)):
-        stated = _stated(table, at, m, d)
-        errors = all_sources(stated)
-        of_ste, beside = np.maximum(of_ste, errors[FIRST_HARMONIC:]), np.maximum(beside, errors[BESIDE_MESH])
-        of_mesh = all_sources(np.delete(stated, AT_NODES.index(METHOD), axis=0))[MEAN]
+        sources = _stated(table, at, m, d)
+        errors = all_sources(sources)
+        of_ste, of_load = (
+            np.maximum(of_ste, errors[FIRST_HARMONIC:]),
+            np.maximum(of_load, errors[BESIDE_MESH]),
+        )
+        of_mesh = all_sources(np.delete(sources, AT_NODES.index(METHOD), axis=0))[MEAN]
         of_shares = np.maximum(of_shares, of_mesh / np.interp(at, table.force, mean[:, m, d]))
         if table.load_arm_error.size:
             arms = all_sources(table.load_arm_error[:, FIRST_HARMONIC:, :, m, d])
-            of_arm = np.maximum(of_arm, [np.interp(at, table.force, each) for each in arms])
+            of_arm = np.maximum(of_arm, [np.interp(at, table.force, curve) for curve in arms])
     unknown = np.full(HARMONICS, np.nan)
     sliding = sliding_sums(table)[0]
-    missed = errors_by_halves(table.position, sliding.reshape(len(sliding), -1), table.period).curves
-    by_load = missed.reshape(-1, *sliding.shape[1:]).max(axis=(2, 3))
-    missed_here = np.array([np.interp(at, table.force, each) for each in by_load[FIRST_HARMONIC:]])
+    between = errors_by_halves(table.position, sliding.reshape(len(sliding), -1), table.period).curves
+    by_load = between.reshape(-1, *sliding.shape[1:]).max(axis=(2, 3))
+    missed_here = np.array([np.interp(at, table.force, curve) for curve in by_load[FIRST_HARMONIC:]])
     arm = of_arm if table.load_arm_error.size else unknown
-    return ExcitationErrors(of_ste, arm, np.hypot(of_shares, missed_here), float(beside))
+    return ExcitationErrors(of_ste, arm, np.hypot(of_shares, missed_here), float(of_load))
 
 
 def _stated(table: SteDatabase, force: float, m: int, d: int) -> FloatArray:

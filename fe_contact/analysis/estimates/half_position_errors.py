@@ -47,6 +47,6 @@ def errors_by_halves(knots: FloatArray, values: FloatArray, period: int) -> Posi
     change = np.maximum(*changes)
     curves = LEFT_BY_HALF * change
     curves[PEAK_TO_PEAK] = np.maximum(curves[PEAK_TO_PEAK], PASSED_BY * missed_peaks(knots, values, period))
-    missed = NEXT_SPACING * predicted_failure(Axis(knots, float(period)), values)
-    beside = np.maximum(missed, np.maximum(np.roll(missed, 1, axis=0), np.roll(missed, -1, axis=0)))
-    return PositionErrors(beside, curves)
+    predicted = NEXT_SPACING * predicted_failure(Axis(knots, float(period)), values)
+    nearby = np.maximum(predicted, np.maximum(np.roll(predicted, 1, axis=0), np.roll(predicted, -1, axis=0)))
+    return PositionErrors(nearby, curves)

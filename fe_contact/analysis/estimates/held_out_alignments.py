@@ -101,11 +101,11 @@ class HeldOutAlignments:
         nodes = getattr(made.table, self.axis)
         middles = nodes[:-1] + MIDDLE[0] * np.diff(nodes)
         self._solve(made, self._missing(made, truths, MIDDLE), truths)
-        missed = self._beyond(made, truths)
-        if not missed.all():
-            self._solve(made, self._missing(made, truths, QUARTERS, ~missed), truths)
-            missed = self._beyond(made, truths)
-        return np.asarray(middles[missed])
+        beyond = self._beyond(made, truths)
+        if not beyond.all():
+            self._solve(made, self._missing(made, truths, QUARTERS, ~beyond), truths)
+            beyond = self._beyond(made, truths)
+        return np.asarray(middles[beyond])
 
     def _beyond(self, made: SolvedTable, truths: Mapping[float, FloatArray]) -> BoolArray:
         """Return which intervals (I,) of an axis miss the goal; those without a solution do not."""
@@ -186,8 +186,8 @@ class HeldOutAlignments:
         nodes = getattr(table, self.axis)
         inside = [(at > low) & (at < high) for low, high in pairwise(nodes.tolist())]
         return (
-            np.stack([error[own].max(axis=0) for own in inside]),
-            np.stack([change[:, own].max(axis=1) for own in inside], axis=1),
+            np.stack([error[members].max(axis=0) for members in inside]),
+            np.stack([change[:, members].max(axis=1) for members in inside], axis=1),
         )
 
     def _spread(

@@ -112,8 +112,8 @@ class HeldOutLoads:
     def _everywhere(self, load: FloatArray) -> SupportLoads | None:
         """Solve loads at all places and positions; None: one has no solution at some place."""
         points, position = self.places, self.table.position
-        (kept,), _ = solve_operating_points(points, position, (load,), conditioned=False, edges=False)
-        solved = table_support(points, kept)
+        (contacts,), _ = solve_operating_points(points, position, (load,), conditioned=False, edges=False)
+        solved = table_support(points, contacts)
         if solved["support_force"].size < load.size:
             return None
         return SupportLoads(
@@ -132,8 +132,8 @@ class HeldOutLoads:
         """Return the held-out loads of intervals that are not known yet."""
         probes = LOAD_PROBES if self.table.force.size <= WIDE_INTERVALS + 1 else MIDDLE
         wanted = [low ** (1.0 - probes) * high**probes for low, high in pairwise(ends)]
-        beside = np.concatenate([known, ends])
-        return np.array([x for x in np.concatenate(wanted) if not np.isclose(x, beside, rtol=1e-9).any()])
+        loads = np.concatenate([known, ends])
+        return np.array([x for x in np.concatenate(wanted) if not np.isclose(x, loads, rtol=1e-9).any()])
 
     def _missed(self, table: SteDatabase, probes: SupportLoads) -> tuple[FloatArray, FloatArray]:
         """Largest difference (L,) of a table, and changes of the quantities (23, L), m."""
@@ -198,7 +198,7 @@ class HeldOutLoads:
             pairs = carrying_pairs(solution.force, problem.candidates)
             solutions.append((solution.deflection, solution.tangent, pairs))
         deflection, tangent, carrying = (
-            np.stack(own, axis=2)[..., None] for own in zip(*solutions, strict=True)
+            np.stack(arrays, axis=2)[..., None] for arrays in zip(*solutions, strict=True)
         )
         return SupportLoads(load, deflection, tangent, carrying)
 
@@ -210,9 +210,9 @@ class HeldOutLoads:
         return Start(problem.candidates, lower + part[:, None] * (upper - lower))
 
 
-def halvings_reached(most: int) -> str:
+def halvings_reached(limit: int) -> str:
     """Say that an axis was halved as often as it may be."""
-    return f"the limit of {most} halvings is reached"
+    return f"the limit of {limit} halvings is reached"
 
 
 def _ends(table: SteDatabase) -> list[float]:

@@ -122,9 +122,9 @@ def take_compliance(made: SolvedTable, place: OperatingPoint) -> None:
 
 def _problem_of(made: SolvedTable, place: OperatingPoint) -> ContactProblem | None:
     """Return the problem of the table's first operating point with the contact of a place."""
-    for own, kept in zip(made.places.places, made.kept, strict=True):
-        if own.contact is place.contact:
-            return kept.problem
+    for point, contact in zip(made.places.places, made.kept, strict=True):
+        if point.contact is place.contact:
+            return contact.problem
     return None
 
 
@@ -132,7 +132,7 @@ def _marked(
     made: SolvedTable,
     axes: Alignments,
     places: OperatingPoints,
-    kept: tuple[Sequence[KeptContact], Sequence[KeptContact]],
+    contacts: tuple[Sequence[KeptContact], Sequence[KeptContact]],
 ) -> SteDatabase:
     """Assemble the table of all operating points, and mark the nodes that were inserted."""
     request = replace(
@@ -140,7 +140,7 @@ def _marked(
         misalignment=axes[MISALIGNMENT],
         center_distance_change=axes[CENTER_DISTANCE],
     )
-    table = assembled_table(request, places, made.nodes, *kept)
+    table = assembled_table(request, places, made.nodes, *contacts)
     marks: dict[str, Any] = {}
     for axis, name in INSERTED.items():
         inserted = ~np.isin(getattr(table, axis), getattr(made.checked.request, axis))

@@ -68,16 +68,16 @@ def position_errors(
     load, period = plan.load, points.period
     if np.isfinite(nodes.interval_error).any() and period == 1:
         return _told(nodes, _by_middles(nodes, 1), load.size)
-    some = sample_of(load.size, LOADS)
-    measured, left = _measured(nodes.position, points, solutions, plan, some)
+    sample = sample_of(load.size, LOADS)
+    measured, left = _measured(nodes.position, points, solutions, plan, sample)
     bound = _bound(measured, left, period)
     if period > 1:
         bound[BESIDE_MESH] = _bound(measured, _left_of_difference(measured, left, period), period)[
             BESIDE_MESH
         ]
     curves = _by_middles(measured, period) + bound
-    errors = _told(measured, curves, some.size)
-    return PositionErrors(spread(load, some, errors.band, 1), spread(load, some, errors.curves, 1))
+    errors = _told(measured, curves, sample.size)
+    return PositionErrors(spread(load, sample, errors.band, 1), spread(load, sample, errors.curves, 1))
 
 
 def _bound(nodes: PositionNodes, left: FloatArray, period: int) -> FloatArray:
@@ -99,15 +99,15 @@ def _measured(
     points: OperatingPoints,
     solutions: list[ContactSolution],
     plan: Plan,
-    some: IntArray,
+    sample: IntArray,
 ) -> tuple[PositionNodes, FloatArray]:
     """Solve the middles of intervals at some loads, in all base pitches; see `measured_nodes`."""
     assessed, pitches = points.assessed_indices, np.arange(points.period)
-    value = np.concatenate([solutions[k].deflection[:, some] for k in assessed], axis=1)
+    value = np.concatenate([solutions[k].deflection[:, sample] for k in assessed], axis=1)
 
     def solve(middles: FloatArray) -> FloatArray:
         curves = deflected_operating_points(
-            points.assessed, [middles] * len(assessed), plan.load[some], pitches, points.workers
+            points.assessed, [middles] * len(assessed), plan.load[sample], pitches, points.workers
         )
         return np.concatenate([curve[..., 0] for curve in curves], axis=1)
 
@@ -153,8 +153,8 @@ def predicted_failure(axis: Axis, value: FloatArray) -> FloatArray:
     """
     failed = np.zeros_like(value)
     for first in (0, 1):
-        kept, left = np.arange(first, axis.knots.size, 2), np.arange(1 - first, axis.knots.size, 2)
-        predicted = interpolate(Axis(axis.knots[kept], axis.period), value[kept], axis.knots[left])
+        nodes, left = np.arange(first, axis.knots.size, 2), np.arange(1 - first, axis.knots.size, 2)
+        predicted = interpolate(Axis(axis.knots[nodes], axis.period), value[nodes], axis.knots[left])
         failed[left] = np.abs(predicted - value[left])
     return failed
 
@@ -166,9 +166,9 @@ def _by_middles(nodes: PositionNodes, period: int) -> FloatArray:
     everywhere = np.sort(np.concatenate([knots, 0.5 * (axis[1:] + axis[:-1])]))
     both = np.stack([nodes.value, nodes.middle], axis=1).reshape(everywhere.size, -1)
     change = quantity_changes(knots, nodes.value, both, period, everywhere)
-    missed = np.ptp(both, axis=0) - np.ptp(nodes.value, axis=0) + missed_peaks(everywhere, both, period)
+    ripple = np.ptp(both, axis=0) - np.ptp(nodes.value, axis=0) + missed_peaks(everywhere, both, period)
     change *= LEFT_BY_MIDDLES
-    change[PEAK_TO_PEAK] = missed
+    change[PEAK_TO_PEAK] = ripple
     return change
 
 

@@ -30,9 +30,9 @@ def rough_flank_errors(problem: ContactProblem, solution: ContactSolution) -> Fl
     ragged = np.abs(np.log(np.where(edge & (crests > 0.0), crests, 1.0)))
     scaled = 2.0 / (np.pi * problem.modulus) * force / problem.candidates.width[rows][..., None]
     of_gap = BETWEEN_LOADS * touch.missed[rows][..., None] * np.sqrt(scaled * touch.radius[rows][..., None])
-    missed = np.maximum(np.minimum(of_gap, scaled), 0.5 * AT_AN_EDGE * ragged[..., None] * scaled)
+    approach = np.maximum(np.minimum(of_gap, scaled), 0.5 * AT_AN_EDGE * ragged[..., None] * scaled)
     weight = force / np.maximum(force.sum(axis=1), 1e-300)[:, None]
-    error = (weight * missed).sum(axis=1)
+    error = (weight * approach).sum(axis=1)
     return np.asarray(error) if len(error) == shape[0] else np.broadcast_to(error.max(axis=0), shape)
 
 
@@ -41,7 +41,7 @@ def of_quantities(error: FloatArray) -> FloatArray:
 
     Their signs are not known: a harmonic may have twice the mean.
     """
-    mean, found = error.mean(axis=0), np.empty((QUANTITIES, error.shape[1]))
-    found[:] = 2.0 * mean
-    found[MEAN], found[PEAK_TO_PEAK] = mean, error.max(axis=0)
-    return found
+    mean, errors = error.mean(axis=0), np.empty((QUANTITIES, error.shape[1]))
+    errors[:] = 2.0 * mean
+    errors[MEAN], errors[PEAK_TO_PEAK] = mean, error.max(axis=0)
+    return errors

@@ -37,12 +37,12 @@ class TableSample:
     def of(cls, position: FloatArray, period: int, axes: Axes) -> TableSample:
         """Take at least 32 positions, four loads and three alignments of each axis, as far as there are."""
         load, skew, change = axes
-        most = (
+        misaligned = (
             sample_of(load.size, LOADS),
             sample_of(skew.size, ALIGNMENTS),
             sample_of(change.size, ALIGNMENTS),
         )
-        return cls(position, period, axes, some_positions(position.size), most)
+        return cls(position, period, axes, some_positions(position.size), misaligned)
 
     @property
     def places(self) -> list[int]:
@@ -93,7 +93,7 @@ class TableSample:
         where = [self.position[self.rows]] * len(chosen)
         candidates = self._candidates(chosen[0], [known.places[k] for k in self.places])
         curves = deflected_operating_points(chosen, where, load, pitches, points.workers, candidates, starts)
-        return self.shaped([np.moveaxis(each, -1, 0) for each in curves])
+        return self.shaped([np.moveaxis(curve, -1, 0) for curve in curves])
 
     def start(self, problem: ContactProblem, solution: ContactSolution) -> Start | None:
         """Return the forces of one place of the table at the points; None where the pitches differ."""
@@ -111,7 +111,7 @@ class TableSample:
         first, second = ((plan.discretization.slices, plan.patch) for plan in plans)
         if first != second:
             return None
-        return [own.contact.candidates(own.model, self.position).rows(self.rows) for own in known]
+        return [place.contact.candidates(place.model, self.position).rows(self.rows) for place in known]
 
 
 @dataclass(frozen=True)

@@ -101,10 +101,10 @@ def tolerance_receipt(table: SteDatabase, allowed: AllowedError, request: Reques
         return limits | {"used": None, "used_at_nodes": None, "met": None}
     cells, between = _cells(nodes, shares)
     used = float(np.sqrt(cells**2 + np.square(between).sum(axis=0)).max())
-    kept = {"used": used if np.isfinite(used) else None, "met": used <= 1.0}
-    kept["used_at_nodes"] = float(nodes.max()) if np.isfinite(nodes).all() else None
-    kept["lasting"] = allowed.relative * float(np.nanmax(all_sources(lasting)))
-    return limits | kept | {"between_nodes": _missed_intervals(table, cells, between)}
+    use = {"used": used if np.isfinite(used) else None, "met": used <= 1.0}
+    use["used_at_nodes"] = float(nodes.max()) if np.isfinite(nodes).all() else None
+    use["lasting"] = allowed.relative * float(np.nanmax(all_sources(lasting)))
+    return limits | use | {"between_nodes": _missed_intervals(table, cells, between)}
 
 
 def _cells(nodes: FloatArray, shares: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -134,7 +134,7 @@ def _missed_intervals(table: SteDatabase, cells: FloatArray, between: FloatArray
     total = np.sqrt(cells**2 + np.square(between).sum(axis=0))
     held_out = table.metadata.receipt.get("held_out", {})
     axes = zip(BETWEEN_NODES, (table.force, table.misalignment, table.center_distance_change), strict=True)
-    missed = []
+    intervals = []
     for i, (name, nodes) in enumerate(axes):
         share, used, nodes_alone = (np.moveaxis(values, i, 0)[:-1] for values in (between[i], total, cells))
         # where the nodes alone miss it, only an interval that does so by itself is named
@@ -144,5 +144,5 @@ def _missed_intervals(table: SteDatabase, cells: FloatArray, between: FloatArray
             k = int(np.argmax(beyond))
             interval = [float(nodes[k]), float(nodes[k + 1])]
             limit = held_out.get(name, {}).get("limit") or "add a value there"
-            missed.append({"axis": name, "used": float(beyond[k]), "between": interval, "limit": limit})
-    return missed
+            intervals.append({"axis": name, "used": float(beyond[k]), "between": interval, "limit": limit})
+    return intervals

@@ -16,11 +16,10 @@ from fe_contact.errors import DatabaseError
 from fe_contact.ste import Metadata
 from fe_contact.ste.netcdf import FileFormat, digest, json_attribute
 from fe_contact.types import Json
-from model_studies.netcdf import NetcdfContent, Variable
+from model_studies.netcdf_content import NetcdfContent, Variable
 
 if TYPE_CHECKING:
     from fe_contact.analysis.flanks.load_distribution import LoadDistribution
-
 
 FORMAT = "lineofaction flank results"
 SCHEMA_VERSION = 2

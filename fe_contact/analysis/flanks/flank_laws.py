@@ -128,7 +128,9 @@ class _Flanks:
         load = flanks.force.reshape(rows, -1)[loaded] / candidates.width[loaded]
         plain, longest = candidates.radius[loaded], self._longest(loaded, load)
         near = np.abs(about.place) < 2.0 * longest[:, None]
-        bends, kinks = (np.where(near, np.abs(each), 0.0).sum(axis=-1) for each in (about.bend, about.jump))
+        bends, kinks = (
+            np.where(near, np.abs(values), 0.0).sum(axis=-1) for values in (about.bend, about.jump)
+        )
         parabola = (bends == 0.0) & (kinks == 0.0) & (np.abs(about.curvature * plain - 1.0) < STRAIGHT)
         radius = np.where(parabola, plain, plain / flattest_touch(candidates.touch))
         longest = np.where(parabola, half_width(load, plain, modulus), longest)

@@ -49,15 +49,15 @@ def _pass_between(
     Between the places where it is known, the largest of those on one place; held to both ends, 0 beyond.
     """
     for k in range(out.shape[1]):
-        here = np.flatnonzero(part[:, :, k].copy().ravel())
-        if here.size == 0:
+        points = np.flatnonzero(part[:, :, k].copy().ravel())
+        if points.size == 0:
             continue
-        at, known = roll[:, :, k].copy().ravel()[here], pressure[:, :, k].copy().ravel()[here]
-        place = _SAME * (ends[1] - ends[0]) / here.size
+        at, known = roll[:, :, k].copy().ravel()[points], pressure[:, :, k].copy().ravel()[points]
+        place = _SAME * (ends[1] - ends[0]) / points.size
         place = place if place > 0.0 else 1.0
         number = np.rint((at - ends[0]) / place)
         order = np.argsort(number)
-        knots, largest, last = np.empty(here.size), np.empty(here.size), -1
+        knots, largest, last = np.empty(points.size), np.empty(points.size), -1
         for i in order:
             if last < 0 or number[i] != knots[last]:
                 last += 1

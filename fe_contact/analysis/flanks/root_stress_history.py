@@ -151,17 +151,17 @@ def crest_values(s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatAr
     parabola.
     """
     middle = np.clip(np.argmax(values, axis=-1), 1, s.size - 2)
-    low, here, high = (s[middle + step] for step in (-1, 0, 1))
+    low, crest, high = (s[middle + step] for step in (-1, 0, 1))
     y = [np.take_along_axis(values, (middle + step)[..., None], axis=-1)[..., 0] for step in (-1, 0, 1)]
     whole = np.all(np.isfinite(y), axis=0)
     first, second = (
         np.subtract(b, a, out=np.zeros_like(a), where=whole) / way
-        for a, b, way in ((y[0], y[1], here - low), (y[1], y[2], high - here))
+        for a, b, way in ((y[0], y[1], crest - low), (y[1], y[2], high - crest))
     )
     bend = (second - first) / (high - low)
-    slope = first + bend * (here - low)  # at the middle
+    slope = first + bend * (crest - low)  # at the middle
     flat = bend >= 0.0  # no crest inside: a rising end, all alike, or no three values
-    way = np.clip(-slope / np.where(flat, -1.0, 2.0 * bend), low - here, high - here)
+    way = np.clip(-slope / np.where(flat, -1.0, 2.0 * bend), low - crest, high - crest)
     value = np.where(flat, np.max(y, axis=0), y[1] + way * (slope + bend * way))
-    position = np.where(flat, np.choose(np.argmax(y, axis=0), [low, here, high]), here + way)
+    position = np.where(flat, np.choose(np.argmax(y, axis=0), [low, crest, high]), crest + way)
     return value, position

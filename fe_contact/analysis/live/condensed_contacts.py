@@ -32,15 +32,15 @@ class CondensedContacts:
     """Without the correction, under the load patches of the coarse meshes."""
 
     @classmethod
-    def of(cls, own: PairContact, coarse: PairContact | None) -> CondensedContacts:
+    def of(cls, nominal: PairContact, coarse: PairContact | None) -> CondensedContacts:
         """Take the rougher discretizations that need no other bodies from the pair itself."""
-        made = own.plan.discretization
+        made = nominal.plan.discretization
         return cls(
-            replace(own, varied=True),
-            own.in_plane_strain if made.corrected else None,
-            own.in_slices(made.coarse_slices) if made.slices > 1 else None,
+            replace(nominal, varied=True),
+            nominal.in_plane_strain if made.corrected else None,
+            nominal.in_slices(made.coarse_slices) if made.slices > 1 else None,
             coarse,
-            own.in_plane_strain.in_coarse_patches,
+            nominal.in_plane_strain.in_coarse_patches,
         )
 
     def with_flanks(self, pair: ParallelAxes) -> CondensedContacts:
@@ -63,9 +63,11 @@ class CondensedContacts:
 
     def touch(self, model: ContactModel, sample: TableSample) -> None:
         """Find where the flanks touch at all positions of a table: for all bodies in the same slices."""
-        own, here = self.own, sample.position[sample.rows]
-        touch = with_gaps(own.pair, own.candidates(model, sample.position), model).touch
-        own.touches.update({here.tobytes(): touch.rows(sample.rows), sample.position.tobytes(): touch})
+        nominal, positions = self.own, sample.position[sample.rows]
+        touch = with_gaps(nominal.pair, nominal.candidates(model, sample.position), model).touch
+        nominal.touches.update(
+            {positions.tobytes(): touch.rows(sample.rows), sample.position.tobytes(): touch}
+        )
 
     def keep(self, model: ContactModel, position: FloatArray, rows: IntArray) -> None:
         """Keep the compliance of some of the positions that are assembled by itself."""
@@ -75,17 +77,17 @@ class CondensedContacts:
     def apart(self, change: float) -> CondensedContacts:
         """Return the same bodies at a distance larger by `change` in m; nothing is assembled there yet."""
         pair = self.own.pair.at_center_distance(self.own.pair.center_distance + change)
-        own = replace(self.own, pair=pair, _problems={})
+        nominal = replace(self.own, pair=pair, _problems={})
         coarse = None if self.coarse is None else replace(self.coarse, pair=pair, _problems={})
-        return CondensedContacts.of(own, coarse)
+        return CondensedContacts.of(nominal, coarse)
 
     def assemble(self, model: ContactModel, sample: TableSample) -> None:
         """Assemble what is not kept yet: all positions of a table, and those that are solved again."""
         everywhere = self.own.candidates(model, sample.position)
         self.own.assemble(model, everywhere)
-        here = sample.position[sample.rows]
-        if self.plane is not None and self.plane.kept(model, here) is None:
+        positions = sample.position[sample.rows]
+        if self.plane is not None and self.plane.kept(model, positions) is None:
             self.plane.assemble(model, everywhere.rows(sample.rows))
         for other in (self.sliced, self.coarse, self.patched):
             if other is not None:
-                other.assemble(model, other.candidates(model, here))
+                other.assemble(model, other.candidates(model, positions))

@@ -49,11 +49,11 @@ def condensed_errors(
             return otherwise
         return sample.solved(points.on(rougher), points, starts)
 
-    own = sample.taken(table)
-    plane = solved(contacts.plane, own)
-    patched = solved(contacts.patched, own)
+    nominal = sample.taken(table)
+    plane = solved(contacts.plane, nominal)
+    patched = solved(contacts.patched, nominal)
     coarse = solved(contacts.coarse, patched)
-    nested = Nested(sample, own, plane, patched, coarse, solved(contacts.sliced, own))
+    nested = Nested(sample, nominal, plane, patched, coarse, solved(contacts.sliced, nominal))
     positions = errors_by_halves(table.position, solution.deflection, points.period)
     ste, arms = nested.parts
     measured = points, [(run.problem, solution)], ste, positions, plan

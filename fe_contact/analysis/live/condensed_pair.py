@@ -145,13 +145,13 @@ class CondensedPair:
             solved = _solved(checked, plan, points, nodes, self._latest.preview if preview else None)
             if preview:
                 self._latest.preview = solved
-            kept = KeptContact.of(solved.pair, solved.problem, solved.solution)
-            table = assembled_table(checked.request, points, nodes, [kept], [])
-            laws = check_laws(table, points.places, [(kept.problem, kept.solution)])
+            contact = KeptContact.of(solved.pair, solved.problem, solved.solution)
+            table = assembled_table(checked.request, points, nodes, [contact], [])
+            laws = check_laws(table, points.places, [(contact.problem, contact.solution)])
             require_laws(laws, table)
         with clock.stage("error estimate"):
-            stated = unassessed_table(table, points, plan) if preview else None
-            assessed = stated or condensed_errors(table, solved, contacts, sample)
+            unassessed = unassessed_table(table, points, plan) if preview else None
+            assessed = unassessed or condensed_errors(table, solved, contacts, sample)
         checks = (*check_cheaply(solved), *edge_assumptions(solved), *neglected_assumptions(self.neglected))
         receipt = condensed_receipt(solved, assessed, checks, clock)
         origin = "expected" if contacts.coarse is None else "measured"
@@ -216,8 +216,8 @@ class CondensedPair:
 
     def _refuse_beyond_patches(self, pair: ParallelAxes, torques: FloatArray, load: FloatArray) -> None:
         if load[-1] > self.largest_load * (1.0 + 1e-9):
-            most = float(pair.torque(np.array([self.largest_load]))[0])
-            bound = at_most(most, note=f": {LARGEST_SUPPORT:g} times the highest load of the table")
+            limit = float(pair.torque(np.array([self.largest_load]))[0])
+            bound = at_most(limit, note=f": {LARGEST_SUPPORT:g} times the highest load of the table")
             advice = "Analyze the case with a higher load."
             raise InputError(f"torques[{load.size - 1}]", float(torques[-1]), bound, advice)
 
@@ -243,8 +243,8 @@ class CondensedPair:
         )
 
     def _laid_out(self, checked: Checked) -> tuple[PositionNodes, Plan]:
-        most = FACE_POSITIONS if checked.model.across_face else PLANE_POSITIONS
-        count = int(np.clip(MOST_ROWS // checked.model.period, FEWEST_POSITIONS, most))
+        limit = FACE_POSITIONS if checked.model.across_face else PLANE_POSITIONS
+        count = int(np.clip(MOST_ROWS // checked.model.period, FEWEST_POSITIONS, limit))
         load = checked.request.load
         return unmeasured_nodes(count, load.size), replace(self.contact.plan, load=load, positions=count)
 
@@ -255,18 +255,18 @@ class CondensedPair:
         distance = contacts.own.pair.center_distance
         nominal = distance == request.pair.center_distance
         pair = request.pair if nominal else request.pair.at_center_distance(distance)
-        here = contacts.with_flanks(pair)
+        bodies = contacts.with_flanks(pair)
         scene = replace(request.scene, center_distance_change=np.zeros(1))  # the contacts stand there
-        return here, operating_points(scene, request.choices, here.own)
+        return bodies, operating_points(scene, request.choices, bodies.own)
 
     def _at(self, change: float) -> CondensedContacts:
         """Return the contacts at a change of the center distance in m; those requested last are kept."""
         if change == 0.0:
             return self.contacts
         if change not in self._apart:
-            apart = self.contacts.apart(change)
-            _refuse_more_teeth(apart.own, change)
-            self._apart[change] = apart
+            contacts = self.contacts.apart(change)
+            _refuse_more_teeth(contacts.own, change)
+            self._apart[change] = contacts
         self._apart.move_to_end(change)
         while len(self._apart) > KEPT_DISTANCES:
             self._apart.popitem(last=False)
@@ -303,7 +303,7 @@ def _refuse_more_teeth(contact: PairContact, change: float) -> None:
 def _plain(pair: Any) -> list[object]:
     """Return what a pair is but for the modification of its flanks."""
     gears = pair.pinion, pair.wheel
-    sizes = [getattr(pair, each.name) for each in fields(pair) if each.name not in ("pinion", "wheel")]
+    sizes = [getattr(pair, part.name) for part in fields(pair) if part.name not in ("pinion", "wheel")]
     for gear in gears:
-        sizes += [getattr(gear, each.name) for each in fields(gear) if each.name != "modification"]
+        sizes += [getattr(gear, part.name) for part in fields(gear) if part.name != "modification"]
     return [type(pair), *map(type, gears), *sizes]

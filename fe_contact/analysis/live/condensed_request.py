@@ -33,8 +33,8 @@ def condense(pair: ParallelAxes, acting: Checked, cache: Path | None) -> Condens
     cache : Path, optional
         Directory of flank compliances.
     """
-    decided = decide(acting, cache)
-    request, choices = decided.checked.request, decided.checked.decided
+    choice = decide(acting, cache)
+    request, choices = choice.checked.request, choice.checked.decided
     effects = {**acting.request.options.effects, **{name: choices[name] for name in OF_BODIES}}
     bound = replace(
         request,
@@ -44,7 +44,7 @@ def condense(pair: ParallelAxes, acting: Checked, cache: Path | None) -> Condens
         turned_on={},
     )
     changes = request.center_distance_change
-    own, coarse = (pair_contact(pair, decided.plan, cache, rough, changes) for rough in (False, True))
+    nominal, coarse = (pair_contact(pair, choice.plan, cache, rough, changes) for rough in (False, True))
     return CondensedPair(
-        checked_request(bound, whole_table=False, neglect=False), CondensedContacts.of(own, coarse)
+        checked_request(bound, whole_table=False, neglect=False), CondensedContacts.of(nominal, coarse)
     )

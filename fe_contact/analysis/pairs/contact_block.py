@@ -73,12 +73,12 @@ def _points(bodies: Bodies, block: ContactBlock) -> list[OperatingPoint]:
 def solve_block(bodies: Bodies, block: ContactBlock) -> SolvedBlock:
     """Assemble and solve a block: one task."""
     where = block.candidates.position
-    kept = tuple(
+    contacts = tuple(
         solved_in_parts(point, where, block.loads, block.pitches, edges=block.edges)
         for point in _points(bodies, block)
     )
-    condition = condition_numbers(kept[0][0].problem.compliance) if block.conditioned else None
-    return SolvedBlock(kept, condition)
+    condition = condition_numbers(contacts[0][0].problem.compliance) if block.conditioned else None
+    return SolvedBlock(contacts, condition)
 
 
 def deflect_block(bodies: Bodies, block: ContactBlock) -> tuple[FloatArray, ...]:

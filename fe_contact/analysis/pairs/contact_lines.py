@@ -337,9 +337,9 @@ def _sent_lines(
         contact, first = points[numbers[0]].contact, points[numbers[0]].model
         candidates = contact.candidates(first, position[numbers[0]]) if known is None else known[numbers[0]]
         models = tuple(points[k].model for k in numbers)
-        kept = contact.kept(first, position[numbers[0]])
+        problem = contact.kept(first, position[numbers[0]])
         turned = pitches if first.period > 1 else None
-        whole = ContactBlock(contact.pair, contact.plan, candidates, models, turned, loads, assembled=kept)
+        whole = ContactBlock(contact.pair, contact.plan, candidates, models, turned, loads, assembled=problem)
         lines[key] = (_Line(contact, whole), numbers)
     seconds = sum(line.seconds_a_position * line.whole.candidates.position.size for line, _ in lines.values())
     return lines if seconds > TASK_SECONDS else {}

@@ -143,8 +143,10 @@ def operating_points(
     for misalignment in scene.misalignment:
         for contact in contacts:
             axes = np.array([misalignment]), np.zeros(1)
-            here = replace(scene, pair=contact.pair, misalignment=axes[0], center_distance_change=axes[1])
-            points.append(OperatingPoint(contact, contributed(here, on)))
+            local_scene = replace(
+                scene, pair=contact.pair, misalignment=axes[0], center_distance_change=axes[1]
+            )
+            points.append(OperatingPoint(contact, contributed(local_scene, on)))
     return OperatingPoints((scene.misalignment.size, len(contacts)), tuple(points), nominal, workers)
 
 

@@ -111,8 +111,8 @@ class PairContact:
 
     def candidates(self, model: ContactModel, position: FloatArray) -> Candidates:
         """Return where plain involutes can touch at positions (P,) in [0, 1); nothing is assembled."""
-        kept = self.kept(model, position)
-        return self._located(model, position) if kept is None else kept.candidates
+        problem = self.kept(model, position)
+        return self._located(model, position) if problem is None else problem.candidates
 
     def kept(self, model: ContactModel, position: FloatArray) -> ContactProblem | None:
         """Return the problem of plain involutes at positions (P,) if it is kept."""
@@ -253,15 +253,19 @@ def bodies_are_kept(
     made, gears = plan.discretization, plan.bodies(pair)
     if isinstance(made, FaceDiscretization):
         solids = made.coarse_recipes if coarse else made.recipes
-        return all(solid_kept(*each, cache) for each in zip(gears, solids, strict=True))
+        return all(solid_kept(*recipe, cache) for recipe in zip(gears, solids, strict=True))
     teeth, recipes = _teeth(pair, distance_changes), made.coarse_recipes if coarse else made.recipes
-    kept = [section_kept(*each, made.hypothesis, teeth, cache) for each in zip(gears, recipes, strict=True)]
+    in_cache = [
+        section_kept(*recipe, made.hypothesis, teeth, cache) for recipe in zip(gears, recipes, strict=True)
+    ]
     if made.finite_width is not None and not coarse:
-        kept += [free_ends_kept(*each, teeth, cache) for each in zip(gears, made.finite_width, strict=True)]
-    return all(kept)
+        in_cache += [
+            free_ends_kept(*recipe, teeth, cache) for recipe in zip(gears, made.finite_width, strict=True)
+        ]
+    return all(in_cache)
 
 
 def _teeth(pair: ParallelAxes, distance_changes: FloatArray | None) -> int:
     changes = () if distance_changes is None else distance_changes.tolist()
     others = [pair.at_center_distance(pair.center_distance + change) for change in changes if change]
-    return max(condensed_teeth(each) for each in (pair, *others))
+    return max(condensed_teeth(variant) for variant in (pair, *others))

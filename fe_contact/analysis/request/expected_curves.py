@@ -57,5 +57,5 @@ def expected_curves(checked: Checked) -> ExpectedCurves | None:
     return ExpectedCurves(np.tile(load, len(solved)), added, mean, ripple, request.options.allowed)
 
 
-def _some(axis: FloatArray, most: int) -> FloatArray:
-    return axis[sample_of(axis.size, most)]
+def _some(axis: FloatArray, limit: int) -> FloatArray:
+    return axis[sample_of(axis.size, limit)]

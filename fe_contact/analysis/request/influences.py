@@ -32,11 +32,11 @@ def estimated_influences(checked: Checked, names: Iterable[str] | None = None) -
     """
     chosen = [effect.name for effect in checked.request.registry] if names is None else list(names)
     neglected = [name for name in chosen if name in checked.request.neglected]
-    own = [name for name in chosen if name not in neglected]
-    influences = estimate_influences(checked.request.scene.at_nominal_load, checked.decided, own)
+    assessed = [name for name in chosen if name not in neglected]
+    influences = estimate_influences(checked.request.scene.at_nominal_load, checked.decided, assessed)
     for name in neglected:
-        scene, decided = checked.assessing(name)
-        influences[name] = estimate_influence(scene.at_nominal_load, decided, name)
+        scene, choices = checked.assessing(name)
+        influences[name] = estimate_influence(scene.at_nominal_load, choices, name)
     whole = checked.request.whole_scene
     return {
         name: None if influence is None else _influence(influence, whole)

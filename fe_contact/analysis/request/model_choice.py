@@ -127,8 +127,8 @@ def _trial(
     cheap = [
         (model, option)
         for model, options in usual
-        for option, own in zip(_options(model, curves), options, strict=True)
-        if own.effort <= TRIED_WORK * max(works)
+        for option, known in zip(_options(model, curves), options, strict=True)
+        if known.effort <= TRIED_WORK * max(works)
     ]
     return min(cheap, key=lambda trial: trial[1].error.bought, default=None)
 
@@ -192,8 +192,8 @@ def alternative_requests(checked: Checked) -> list[Checked]:
     """Return the request with every model that may stand in for its own; itself where it is bound."""
     request = checked.request
     face, width = request.model_effects
-    decided = set(request.model_effects) & {*request.neglected, *request.turned_on}
-    if not _wishes(checked) or request.model_chosen or decided or checked.model.across_face:
+    overridden = set(request.model_effects) & {*request.neglected, *request.turned_on}
+    if not _wishes(checked) or request.model_chosen or overridden or checked.model.across_face:
         return [checked]
     plain = replace(request, neglected={**request.neglected, width: "left out"})
     solid = replace(request, turned_on={**request.turned_on, face: "taken"})
@@ -210,11 +210,12 @@ def next_model(checked: Checked) -> Decided | None:
     if checked.model.across_face or request.model_chosen:
         return None
     neglected = {name: reason for name, reason in request.neglected.items() if name not in tell}
-    kept = {name: reason for name, reason in request.turned_on.items() if name not in tell}
+    reasons = {name: reason for name, reason in request.turned_on.items() if name not in tell}
     face, width = tell
     effects = (width, face) if width in request.neglected else (face,)
     models = [
-        _again(replace(request, neglected=neglected, turned_on={**kept, name: "taken"})) for name in effects
+        _again(replace(request, neglected=neglected, turned_on={**reasons, name: "taken"}))
+        for name in effects
     ]
     curves = expected_curves(checked)
     meshes = [(model, _mesh(model, curves, None)) for model in models]

@@ -29,8 +29,8 @@ def neglected_effects(
         return {}
     automatic = [entry.name for entry in ledger if entry.on and entry.choice == "auto"]
     able = [name for name in automatic if scene.effect(name).without(scene) is not None]
-    decided = {entry.name: "on" if entry.on else "off" for entry in ledger}
-    estimates = estimate_influences(scene, decided, able, tolerance.least_scale)
+    choices = {entry.name: "on" if entry.on else "off" for entry in ledger}
+    estimates = estimate_influences(scene, choices, able, tolerance.least_scale)
     neglected: dict[str, str] = {}
     total, bounded = 0.0, 0.0
     influences = [(name, influence) for name, influence in estimates.items() if influence is not None]

@@ -109,8 +109,8 @@ class Request:
     @property
     def choices(self) -> dict[str, str]:
         """Choice of each effect, those that are neglected or turned on included."""
-        decided = dict.fromkeys(self.neglected, "off") | dict.fromkeys(self.turned_on, "on")
-        return self.asked_choices | decided
+        overrides = dict.fromkeys(self.neglected, "off") | dict.fromkeys(self.turned_on, "on")
+        return self.asked_choices | overrides
 
     def to_json(self) -> Json:
         """Return plain JSON in SI units: what decides the result."""

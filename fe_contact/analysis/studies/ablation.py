@@ -152,8 +152,8 @@ def ablate(
     ledger = {entry.name: entry for entry in checked.ledger if entry.name in names}
     seconds = checked.predicted(checked.planned(run.cache), run.cache, with_errors=False).cpu_seconds
     by_blocks = pays(run.workers, seconds)
-    each, workers = (run, InProcess()) if by_blocks else (Run(cache=run.cache), run.workers)
-    toggle = partial(_toggled, checked, nominal, estimates, each)
+    single_run, workers = (run, InProcess()) if by_blocks else (Run(cache=run.cache), run.workers)
+    toggle = partial(_toggled, checked, nominal, estimates, single_run)
     seconds *= sum(not entry.verdict.neutral for entry in ledger.values())
     effects, left_out = run_variants("ablation", ledger, toggle, FAILURES, run.progress, workers, seconds)
     request = checked.request
@@ -178,11 +178,13 @@ def predicted_ablation(checked: Checked, only: Sequence[str] | None, cache: Path
         if entry is not None and (entry.name not in names or entry.verdict.neutral):
             continue
         with suppress(*FAILURES):
-            own = checked if entry is None else toggled(checked, entry.name, "off" if entry.on else "on")
-            plan = own.planned(cache)
-            whole = own.predicted(plan, cache, with_errors=False)
+            variant = checked if entry is None else toggled(checked, entry.name, "off" if entry.on else "on")
+            plan = variant.planned(cache)
+            whole = variant.predicted(plan, cache, with_errors=False)
             made = plan.discretization
-            bodies[plan.bodies(own.request.pair), made.recipes, made.corrected] = whole.stages["compliance"]
+            bodies[plan.bodies(variant.request.pair), made.recipes, made.corrected] = whole.stages[
+                "compliance"
+            ]
             contacts.append(whole.stages["contact"])
             memory = max(memory, whole.memory_bytes)
     return PredictedTables(sum(bodies.values()), tuple(contacts), memory)
@@ -205,10 +207,10 @@ def _toggled(
 
 def _on_one_mesh(checked: Checked, cache: Path | None) -> Checked:
     """Return the request with the model and the level that its accuracy asks for: all tables compare."""
-    decided = decide(checked, cache)
-    request = decided.checked.request
+    choice = decide(checked, cache)
+    request = choice.checked.request
     return checked_request(
-        replace(request, options=request.options.at_level(decided.mesh.level)), neglect=False
+        replace(request, options=request.options.at_level(choice.mesh.level)), neglect=False
     )
 
 

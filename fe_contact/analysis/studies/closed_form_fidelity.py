@@ -92,7 +92,7 @@ class _ClosedFormFidelity:
             ]
             for load in (plan.load, plan.support)
         )
-        solutions = [each.solution for each in table]
+        solutions = [contact.solution for contact in table]
         elastic = [solution.deflection - solution.no_load[:, None] for solution in solutions]
         return SteDatabase(
             position=(pitches[:, None] + position).ravel(),

@@ -83,7 +83,7 @@ def fidelity_result(outcome: Outcome[Fidelity, SteDatabase]) -> FidelityResult:
         cpu_seconds=float(receipt["cpu_seconds"]),
         mean=np.array([mean.value for mean, _ in figures]),
         peak_to_peak=np.array([swing.value for _, swing in figures]),
-        stated_error=max(abs(each.error / each.value) for pair in figures for each in pair),
+        stated_error=max(abs(figure.error / figure.value) for pair in figures for figure in pair),
         stages={name: stage["cpu_seconds"] for name, stage in receipt["stages"].items()},
         peak_memory_bytes=int(receipt["peak_memory_bytes"]),
     )

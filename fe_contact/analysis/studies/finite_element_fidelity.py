@@ -52,8 +52,10 @@ class FiniteElementFidelity:
     def as_computed(self, checked: Checked) -> Checked:
         """Return the request with this model and mesh; explicit choices of other effects stay."""
         request = checked.request
-        own = face, width = request.model_effects
-        effects = {name: choice for name, choice in request.options.effects.items() if name not in own}
+        model_effects = face, width = request.model_effects
+        effects = {
+            name: choice for name, choice in request.options.effects.items() if name not in model_effects
+        }
         if self.model == "auto":
             effects |= {face: "off", width: "on"}
         options = request.options.at_level(self.level)
@@ -67,5 +69,5 @@ class FiniteElementFidelity:
 
     def decided(self, computed: Checked) -> Decided:
         """Return the request as it is computed with its plan."""
-        decided = decide(computed)
-        return decided if self.slices is None else decided.in_slices(self.slices)
+        choice = decide(computed)
+        return choice if self.slices is None else choice.in_slices(self.slices)

@@ -24,12 +24,14 @@ from fe_contact.analysis.studies.fidelity_result import (
 )
 from fe_contact.analysis.studies.finite_element_fidelity import FiniteElementFidelity
 from fe_contact.analysis.studies.full_contact_cost import FullContactLevel, known_full_contact
-from fe_contact.analysis.studies.measured_full_contact import (
+from fe_contact.analysis.studies.full_contact_record import (
     NAME,
-    MeasuredFullContact,
-    full_contact_refusal,
-    measure_full_contact,
-    position_seconds,
+    NO_RECORD,
+    FullContactComparison,
+    FullContactRecord,
+    compare_full_contact,
+    full_contact_records,
+    record_of,
 )
 from fe_contact.errors import MeshError, SolveError, chosen, integer
 from fe_contact.geometry import Gear, GearPair, ParallelAxes
@@ -77,8 +79,8 @@ class Frontier(model_studies.Frontier[FidelityResult]):
 
     solves: int
     """Positions x loads x alignments of every table."""
-    full_contact: MeasuredFullContact | None = None
-    """Full finite-element contact of the same case, if it was requested and is possible."""
+    full_contact: FullContactComparison | None = None
+    """Recorded full finite-element contact of the same pair, if it was requested and is recorded."""
     known_full_contact: tuple[FullContactLevel, ...] = ()
     """Known cost of full finite-element contact for this pair; empty for any other."""
 
@@ -95,6 +97,7 @@ def frontier(
     *,
     fidelities: Sequence[str] | None = None,
     full_contact: int | None = None,
+    records: Sequence[FullContactRecord] | None = None,
     progress: Progress = silent,
 ) -> Frontier:
     """Run every fidelity of the accuracy study that is valid for a case, and compare each to the finest.
@@ -112,9 +115,10 @@ def frontier(
     fidelities : sequence of str, optional
         Names of fidelities to run; default all.
     full_contact : int, optional
-        Positions, 1 to 64, at which full finite-element contact is run beside it, under all loads: of
-        solid spur and internal pairs in plane strain, about 2.5 CPU s each; of external spur pairs in three
-        dimensions where `model` is "3d" or flanks vary or are inclined across the face, 70 CPU s each.
+        Positions, 1 to 64, at which recorded full finite-element contact of the pair is compared with the
+        finest fidelity, under the recorded loads between those of the case.
+    records : sequence of FullContactRecord, optional
+        Of one's own; default `full_contact_records()`, of a few pairs.
     """
     checked = Frontier.request(pair, axes, options)
     if full_contact is not None:
@@ -139,27 +143,30 @@ def frontier(
         results, left_out, knee_above(results), chosen_fidelity(checked), solves, known_full_contact=known
     )
     tables = {outcome.fidelity.name: outcome.result for outcome in outcomes}
-    return study if full_contact is None else _beside(study, checked, full_contact, tables, progress)
+    if full_contact is None:
+        return study
+    record = record_of(checked, full_contact_records() if records is None else records)
+    if record is None:
+        return replace(study, left_out=study.left_out | {NAME: NO_RECORD})
+    at_positions, plane_strain = record.at_positions(full_contact), tables.get("plane_strain")
+    compared = compare_full_contact(at_positions, tables[study.reference.name], plane_strain)
+    return replace(study, full_contact=compared)
 
 
-def predicted_frontier(
-    checked: Checked, fidelities: Sequence[str], full_contact: int | None, cache: Path | None
-) -> dict[str, float]:
-    """Predict the CPU seconds of the valid fidelities of finite elements, and of full contact, by name.
+def predicted_frontier(checked: Checked, fidelities: Sequence[str], cache: Path | None) -> dict[str, float]:
+    """Predict the CPU seconds of the valid fidelities of finite elements, by name.
 
-    By the quick model of the work that a mesh is chosen by; closed forms count for nothing.
+    By the quick model of the work that a mesh is chosen by; closed forms and records count for nothing.
     """
     seconds = {}
     for fidelity in FIDELITIES:
         if not isinstance(fidelity, FiniteElementFidelity) or fidelity.name not in fidelities:
             continue
         if fidelity.refusal(checked) is None:
-            own = fidelity.decided(fidelity.as_computed(checked))
-            request, model = own.checked.request, own.checked.model
-            work = effort(request.pair, own.plan, model, request.alignments)
+            choice = fidelity.decided(fidelity.as_computed(checked))
+            request, model = choice.checked.request, choice.checked.model
+            work = effort(request.pair, choice.plan, model, request.alignments)
             seconds[fidelity.name] = host_slowness(cache) * work
-    if full_contact is not None and full_contact_refusal(checked) is None:
-        seconds[NAME] = full_contact * position_seconds(checked)
     return seconds
 
 
@@ -173,27 +180,13 @@ def _whole_table(checked: Checked, fidelity: Fidelity) -> SteDatabase:
     return table
 
 
-def _beside(
-    study: Frontier, checked: Checked, positions: int, tables: dict[str, SteDatabase], progress: Progress
-) -> Frontier:
-    reason = full_contact_refusal(checked)
-    if reason is None:
-        try:
-            measured = measure_full_contact(checked, positions, progress)
-            compared = measured.compared(tables[study.reference.name], tables.get("plane_strain"))
-            return replace(study, full_contact=compared)
-        except SolveError as error:
-            reason = str(error)
-    return replace(study, left_out=study.left_out | {NAME: reason})
-
-
 def chosen_fidelity(checked: Checked) -> str | None:
     """Return the name of the fidelity that a request's own model and mesh are; None if none is.
 
     Plane strain has one fidelity, whose error is the model's: it stands for all its meshes.
     """
-    decided = decide(checked)
-    level, model = decided.mesh.level, decided.checked.model
+    choice = decide(checked)
+    level, model = choice.mesh.level, choice.checked.model
     if model.across_face:
         return f"3d_{level}"
     if model.finite_width:

@@ -92,12 +92,12 @@ def _curves(checked: Checked, corner_contact: str, run: Run) -> tuple[RippleCurv
     whole, none = checked.request, np.zeros(1)
     effects = {**whole.options.effects, named(EFFECTS, "corner_contact"): corner_contact}
     request = replace(whole, options=replace(whole.options, effects=effects), nodes_alone=True)
-    skews, changes = (np.union1d(none, each) for each in (whole.misalignment, whole.center_distance_change))
-    skewed, moved = (
+    skews, changes = (np.union1d(none, axis) for axis in (whole.misalignment, whole.center_distance_change))
+    skewed, shifted = (
         analyze(checked_request(replace(request, misalignment=skew, center_distance_change=change)), run=run)
         for skew, change in ((skews, none), (none, changes))
     )
-    return _ripple(skewed, "misalignment"), _ripple(moved, "center_distance_change")
+    return _ripple(skewed, "misalignment"), _ripple(shifted, "center_distance_change")
 
 
 def _ripple(table: SteDatabase, axis: str) -> RippleCurve:

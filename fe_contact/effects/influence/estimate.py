@@ -118,7 +118,7 @@ def largest_part(extent: Extent, mean: FloatArray, ripple: FloatArray, allowed: 
 
 def estimate_influence(
     scene: ContactScene,
-    decided: Mapping[str, str],
+    choices: Mapping[str, str],
     name: str,
     least: float = 0.0,
 ) -> EstimatedInfluence | None:
@@ -126,7 +126,7 @@ def estimate_influence(
 
     Parameters
     ----------
-    decided : mapping of str to str
+    choices : mapping of str to str
         Every effect "on" or "off"; all but `name` stay so.
     least : float
         Size in m that smaller means and ripples count as where a change is a part of them.
@@ -137,7 +137,7 @@ def estimate_influence(
         None: one of the two states cannot be had, as a plane with what acts across the face, or the springs
         do not know it.
     """
-    return estimate_influences(scene, decided, [name], least)[name]
+    return estimate_influences(scene, choices, [name], least)[name]
 
 
 def estimate_influences(
@@ -187,8 +187,8 @@ def _curves(scene: ContactScene, choices: Mapping[str, str], springs: Springs) -
     curves: dict[str, EstimatedCurve] = {}
     models = []
     for growth in ends:
-        here = replace(scene, misalignment=np.array([growth]))
-        model = compose(here, choices)[0]
+        tilted = replace(scene, misalignment=np.array([growth]))
+        model = compose(tilted, choices)[0]
         models.append(repr(model))
         if models[-1] not in curves:  # without misalignment both ends are one
             curves[models[-1]] = springs.curve(model, load)

@@ -62,8 +62,8 @@ def _plate_bending(gear: Toothing) -> FloatArray:
     rigidity = material.youngs_modulus * gear.face_width**3 / (12.0 * (1.0 - material.poissons_ratio**2))
     ratio, above = gear.held_radius / radius, abs(gear.reference_radius / radius - 1.0)
     orders = range(BENDING_HARMONICS + 1)
-    each = np.array([_bent(n, ratio, above, material.poissons_ratio) for n in orders])
-    return _around(gear, each * radius**2 / (math.pi * rigidity))
+    amplitudes = np.array([_bent(n, ratio, above, material.poissons_ratio) for n in orders])
+    return _around(gear, amplitudes * radius**2 / (math.pi * rigidity))
 
 
 @lru_cache(maxsize=64)
@@ -76,15 +76,15 @@ def _antiplane_shear(gear: Toothing) -> FloatArray:
     ratio = gear.held_radius / gear.root_radius
     inner = min(ratio, 1.0 / ratio) ** (2 * order)
     spread = np.sinc(0.5 * order / gear.teeth) ** 2
-    each = np.concatenate([[abs(math.log(ratio))], (1.0 - inner) / (1.0 + inner) / order * spread])
-    return _around(gear, each / (math.pi * shear_modulus(gear.material)))
+    amplitudes = np.concatenate([[abs(math.log(ratio))], (1.0 - inner) / (1.0 + inner) / order * spread])
+    return _around(gear, amplitudes / (math.pi * shear_modulus(gear.material)))
 
 
-def _around(gear: Toothing, each: FloatArray) -> FloatArray:
+def _around(gear: Toothing, amplitudes: FloatArray) -> FloatArray:
     """Sum the harmonics of a force at tooth 0 at all teeth; the even one counts half."""
-    each = each * np.where(np.arange(each.size) == 0, 0.5, 1.0)
+    amplitudes = amplitudes * np.where(np.arange(amplitudes.size) == 0, 0.5, 1.0)
     angle = 2.0 * math.pi * np.arange(gear.teeth) / gear.teeth
-    return np.asarray(np.cos(angle[:, None] * np.arange(each.size)) @ each)
+    return np.asarray(np.cos(angle[:, None] * np.arange(amplitudes.size)) @ amplitudes)
 
 
 def _bent(n: int, ratio: float, above: float, poisson: float) -> float:
@@ -94,12 +94,14 @@ def _bent(n: int, ratio: float, above: float, poisson: float) -> float:
     outside as a ring gear is. Its shapes are r^n, r^-n, r^(n + 2), r^(2 - n), with ln r where two are one.
     """
     powers = [(n, 0), (-n, 0), (n + 2, 0), (2 - n, int(n == 1))] if n else [(0, 0), (0, 1), (2, 0), (2, 1)]
-    held, edge = (np.array([_derivatives(*power, r) for power in powers]).T for r in (ratio, 1.0))
+    inner_edge, edge = (np.array([_derivatives(*power, r) for power in powers]).T for r in (ratio, 1.0))
     value, slope, second, third = edge
     outwards = math.copysign(1.0, 1.0 - ratio)
     moment = second + poisson * (slope - n**2 * value)
     force = third + second - (1 + n**2) * slope + 2 * n**2 * value - (1.0 - poisson) * n**2 * (slope - value)
-    factors = np.linalg.solve(np.stack([held[0], held[1], moment, -outwards * force]), [0.0, 0.0, above, 1.0])
+    factors = np.linalg.solve(
+        np.stack([inner_edge[0], inner_edge[1], moment, -outwards * force]), [0.0, 0.0, above, 1.0]
+    )
     return float(factors @ (value + outwards * above * slope))
 
 
@@ -245,11 +247,11 @@ def _of_gear(
     bending = _tooth_bending(gear)
     blank = blank_factor(gear.with_parts(model.parts))
     root = np.sqrt(bending.at(bending.tooth, s) + bending.at(bending.foundation, s) / blank)
-    apart = np.abs(slices.pair[:, None] - slices.pair)
+    distance = np.abs(slices.pair[:, None] - slices.pair)
     face = slices.face_position
     decay = TOOTH_DECAY * gear.normal_module
-    own = (apart == 0) * _along_face(face, decay, slices.slice_width)
-    tooth = root[:, :, None] * root[:, None, :] * own
+    on_tooth = (distance == 0) * _along_face(face, decay, slices.slice_width)
+    tooth = root[:, :, None] * root[:, None, :] * on_tooth
     depth = 2.0 * bending.at(bending.depth, s) / patch
     ratio = gear.material.poissons_ratio
     local = np.log(depth) - 0.5 * ratio / (1.0 - ratio) - 0.25
@@ -258,43 +260,43 @@ def _of_gear(
     local *= math.cos(gear.helix_angle) * half_plane(gear) / slices.slice_width
     body = _body(gear, slices, model)
     return _GearCompliance(
-        tooth, local[:, :, None] * np.eye(face.size), body if model.couple_teeth else (apart == 0) * body
+        tooth, local[:, :, None] * np.eye(face.size), body if model.couple_teeth else (distance == 0) * body
     )
 
 
 def _body(gear: Toothing, slices: LoadedSlices, model: ContactModel) -> FloatArray:
     """Displacement (n, n) of teeth by what the body under them does."""
-    apart, face = np.abs(slices.pair[:, None] - slices.pair), slices.face_position
+    distance, face = np.abs(slices.pair[:, None] - slices.pair), slices.face_position
     inner, outer = sorted((gear.held_radius, gear.root_radius))
     depth = outer - inner
     pitch = math.pi * gear.transverse_module
     rigid = gear.base_radius**2 * torsion_compliance(inner, outer, gear.material)
     rigid += shift_compliance(inner, outer, gear.material)
-    near = np.maximum(np.log(2.0 * depth / (np.maximum(apart, 1) * pitch)), 0.0)
-    here = max(math.log(depth / (SUNK_DEPTH * gear.normal_module)), 0.0)
-    sunk = half_plane(gear) * np.where(apart == 0, here, near)
+    near = np.maximum(np.log(2.0 * depth / (np.maximum(distance, 1) * pitch)), 0.0)
+    below_tooth = max(math.log(depth / (SUNK_DEPTH * gear.normal_module)), 0.0)
+    sunk = half_plane(gear) * np.where(distance == 0, below_tooth, near)
     body = gear.with_parts(model.parts)
     whole = WEB_EXCESS * web_compliance(body) + _seat(body)
     transverse, axial = math.cos(gear.base_helix_angle) ** 2, math.sin(gear.base_helix_angle) ** 2
-    elastic = transverse * (rigid + sunk) + axial * _axial_shear(gear, apart)
+    elastic = transverse * (rigid + sunk) + axial * _axial_shear(gear, distance)
     elastic = elastic * _along_face(face, BODY_DECAY * depth, slices.slice_width)
-    return np.asarray(elastic + transverse * whole + axial * _plate_bending(gear)[apart % gear.teeth])
+    return np.asarray(elastic + transverse * whole + axial * _plate_bending(gear)[distance % gear.teeth])
 
 
-def _axial_shear(gear: Toothing, apart: FloatArray) -> FloatArray:
+def _axial_shear(gear: Toothing, distance: FloatArray) -> FloatArray:
     """Axial displacement (n, n) of the body; what is near the tooth is in the half plane it is clamped in."""
     near = math.log(SUNK_DEPTH * gear.normal_module / (0.5 * math.pi * gear.transverse_module))
-    here = _antiplane_shear(gear)[apart % gear.teeth] - (apart == 0) * near / (
+    shear = _antiplane_shear(gear)[distance % gear.teeth] - (distance == 0) * near / (
         math.pi * shear_modulus(gear.material)
     )
-    return np.asarray(np.maximum(here, 0.0))
+    return np.asarray(np.maximum(shear, 0.0))
 
 
 def _seat(gear: Toothing) -> float:
     """Displacement of the line of action as the rigid gear turns and shifts on an elastic seat, m/N."""
     low, high = gear.seat.ends(gear.face_width)
-    held = sum(k for k in gear.seat.stiffness[:2])
-    shift = 1.0 / (math.pi * gear.held_radius * (high - low) * held) if held > 0.0 else 0.0
+    stiffness = sum(k for k in gear.seat.stiffness[:2])
+    shift = 1.0 / (math.pi * gear.held_radius * (high - low) * stiffness) if stiffness > 0.0 else 0.0
     return seat_compliance(gear) + shift
 
 

@@ -16,12 +16,11 @@ from lineofaction.cli.overrides import file_argument, overridable
 from lineofaction.cli.verb_parameters import keyword
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.registry import STUDIES
-from lineofaction.gearbox.schemas.model import item_type, spelling_of
+from lineofaction.gearbox.schemas.spelling import item_type, spelling_of
 from lineofaction.gearbox.study import Study
 
 if TYPE_CHECKING:
     from pydantic.fields import FieldInfo
-
 
 GROUPS = ("start", "pair", "gearbox", "design", "sound", "trust", "results", "service")
 """Groups of verbs in the help."""

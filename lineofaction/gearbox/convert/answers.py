@@ -228,9 +228,6 @@ def source_rows(receipt: Json, load: int) -> list[tuple[str, float, float, float
     return [row for row in rows if max(row[1:]) > _NOTHING]
 
 
-# First figures of a table that is being refined, in one line.
-
-
 def draft_line(table: SteDatabase, refining: str) -> str:
     """Return mean and peak-to-peak with their errors at the highest load, and what is refined."""
     curve = table.curve(force=float(table.force[-1]), allow_failed=True)

@@ -1,15 +1,12 @@
-"""The effect ledger of a table or a run and what was checked, in lines for people."""
+"""The effect ledger of a table or a run, its influences, and what was checked, in lines for people."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sized
-from typing import Any, NamedTuple
+from typing import Any
 
 from bounds import engineering
 from model_studies.ablation import TRIFLE
-
-# The influence of effects as a ledger tells it: which have a line, at which load, in which words.
-
 
 Entry = Mapping[str, Any]
 Json = Mapping[str, Any]
@@ -96,106 +93,3 @@ def run_lines(attributes: Mapping[str, Any]) -> Iterator[str]:
         if check["holds"] is False:
             part = check["part"] or check["effect"]
             yield f"VIOLATED: {check['assumption']} ({part}); {check['reason']}"
-
-
-# The effect ledger of a scene in lines for people.
-
-
-def effect_size(ledger: Json, effect: str) -> str:
-    """Return what a scene loses without an effect in all its parts, in words: the one size that is shown.
-
-    As the ledger of a run or a study estimates it; where it does not, how far flanks move at rest. Empty:
-    nothing.
-    """
-    estimate = ledger.get("influences", {}).get(effect)
-    if estimate is not None:
-        return str(estimate["words"])
-    largest = max(entry["influence_um"] for entry in ledger["entries"] if entry["effect"] == effect)
-    return f"{engineering(largest, 3)} µm along the line of action at rest" if largest >= LEAST else ""
-
-
-class SceneEffect(NamedTuple):
-    """A decision about an effect and the parts that share it; the first has the size in all parts."""
-
-    name: str
-    on: bool
-    size: str
-    freedoms: str
-    parts: str
-    reason: str
-    possible: bool
-
-
-def scene_effects(ledger: Json) -> tuple[list[SceneEffect], list[SceneEffect]]:
-    """Return the decisions on the effects of a scene, and apart those on what changes next to nothing."""
-    estimates, effects = ledger.get("influences", {}), dict[str, list[Json]]()
-    for entry in ledger.get("entries", ()):
-        effects.setdefault(entry["effect"], []).append(entry)
-    shown, trifles = list[SceneEffect](), list[SceneEffect]()
-    for name, entries in effects.items():
-        size, estimate = effect_size(ledger, name), estimates.get(name)
-        freedoms = f"{estimate['freedoms']:+d}" if estimate else ""
-        listed = trifles if _is_trifle(entries, size, estimate) else shown
-        if estimate and estimate.get("level"):
-            size = size.partition(", ")[0]
-        listed += _decisions((name.replace("_", " "), size or "nothing", freedoms), entries)
-    return shown, trifles
-
-
-def scene_table(ledger: Json) -> tuple[list[str], list[list[str]], str]:
-    """Return columns and a row for each effect of a scene, on or off, and what is said of the trifles.
-
-    Where a level is estimated, it alone is the size. Parts of one reason have a line of the row.
-    """
-    shown, trifles = scene_effects(ledger)
-    columns = ["effect", "on", "without it", "freedoms", "where and why"]
-    rows = dict[tuple[str, bool], list[str]]()
-    for one in shown:
-        cells = [one.name, "yes" if one.on else "no", one.size, one.freedoms, ""]
-        row = rows.setdefault((one.name, one.on), cells)
-        row[-1] = f"{row[-1]}\n{one.parts}: {one.reason}".lstrip()
-    names = dict.fromkeys(one.name for one in trifles if one.possible)
-    return columns, [*rows.values()], f"{trifles_title(names)}: {', '.join(names)}" if names else ""
-
-
-def beyond_lines(ledger: Json) -> Iterator[str]:
-    """Yield why runs may change by more than the sizes of effects say, and of which effects."""
-    effects = dict[str, list[str]]()
-    for name, estimate in ledger.get("influences", {}).items():
-        if beyond := estimate.get("beyond"):
-            effects.setdefault(beyond, []).append(name.replace("_", " "))
-    for beyond, names in effects.items():
-        yield f"May change by more: {', '.join(names)}; {beyond}"
-
-
-def assumed_lines(ledger: Json) -> Iterator[str]:
-    """Yield what the phases of the meshes assume, part by part."""
-    for row in ledger.get("assumed", ()):
-        yield f"Assumed of {row['part']}: {row['words']}"
-
-
-def _is_trifle(entries: list[Json], size: str, estimate: Json | None) -> bool:
-    """Whether an effect is off everywhere and changes next to nothing."""
-    if any(entry["on"] for entry in entries):
-        return False
-    if estimate is not None:
-        changes = (*(estimate[name] for name in _RELATIVE), estimate.get("level", {}).get("relative", 0.0))
-        return all(abs(change) < TRIFLE for change in changes)
-    return not size
-
-
-def _decisions(effect: tuple[str, str, str], entries: list[Json]) -> Iterator[SceneEffect]:
-    """Yield each decision with its reason and price, and the parts that share it.
-
-    `effect` are its name, size and freedoms.
-    """
-    shared: dict[tuple[bool, str], list[Json]] = {}
-    for entry in entries:
-        price = f"; price: {entry['price']}" if entry["on"] and entry.get("price") else ""
-        shared.setdefault((entry["on"], f"{entry['reason']}{price}"), []).append(entry)
-    possible = any(entry.get("possible", True) for entry in entries)
-    name, size, freedoms = effect
-    for (on, reason), same in shared.items():
-        parts = ", ".join(entry["part"] for entry in same)
-        yield SceneEffect(name, on, size, freedoms, parts, reason, possible)
-        size = freedoms = ""

@@ -22,7 +22,7 @@ from lineofaction.gearbox.convert.declared import in_si
 from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.bearings import BushingInput, RollingBearingInput
-from lineofaction.gearbox.schemas.files import FileContentInput
+from lineofaction.gearbox.schemas.file_content import FileContentInput
 from lineofaction.gearbox.schemas.housings import HousingInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.signals import UNIVERSAL
@@ -30,7 +30,6 @@ from model_studies.progress import Progress, silent
 
 if TYPE_CHECKING:
     from dynamics.housings import ReducedHousing
-
 
 STEP_BEGINS = b"ISO-10303-21"
 FOLDER = "housings"

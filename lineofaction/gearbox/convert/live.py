@@ -1,4 +1,4 @@
-"""What is answered without a job: the plan of a run, curves of changed flanks, the drawing of a pair."""
+"""Live questions: from a stored table and a change of its flanks to curves, and results on the flanks."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import json
 import math
 from collections import OrderedDict
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -13,29 +14,24 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from bounds.types import Json
-from fe_contact.analysis.flanks.deformed_pair import mesh_angles
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution, load_distribution
 from fe_contact.analysis.flanks.pressure_map import pressure_map
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.stored_bodies import condensed_pair
-from fe_contact.analysis.request.model_choice import Decided, decide
-from fe_contact.analysis.run_plan import RunPlan, plan_run
-from fe_contact.geometry import ParallelAxes, Toothing, tooth_profile
+from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.linearized_design import CurveDerivatives, FlankDerivatives, curve_derivatives
 from fe_contact.microgeometry.tolerances import iso1328_tolerances
-from fe_contact.planning.cost_model import Prediction
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 from host import cpu_seconds
 from lineofaction.gearbox.convert.answers import curve_json
-from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, gear_pair
-from lineofaction.gearbox.convert.errors import boundary_name
+from lineofaction.gearbox.convert.boundary_names import boundary_name
+from lineofaction.gearbox.convert.case import boundary_errors, gear_pair, with_flanks
 from lineofaction.gearbox.problems import BadInput, Fault, NotAnalyzed, NotFound
 from lineofaction.gearbox.schemas import Case
-from lineofaction.gearbox.schemas.gear import with_figures
 from lineofaction.gearbox.schemas.live import LiveInput
-from lineofaction.gearbox.schemas.reading import validated
-from lineofaction.gearbox.units import DEGREE, MM, MPA, UM, factor, in_um
+from lineofaction.gearbox.schemas.model import BoundaryModel
+from lineofaction.gearbox.units import MM, MPA, UM, factor, in_um
 
 if TYPE_CHECKING:
     from fe_contact.microgeometry.drawn_ripple import DrawnRipple
@@ -50,39 +46,6 @@ _OF_BAND = {
 }
 _KEPT_DRAWN = 4
 _FLANK_POINTS, _ROOT_POINTS, _TIP_POINTS = 24, 24, 5
-
-
-def plan_of(case: CheckedCase, time_budget_s: float | None, cache: Path | None) -> RunPlan:
-    """Plan a case; `time_budget_s` stands beside a tolerance of the case.
-
-    Raises `BadInput`: no such pair, or a request that no plan can meet.
-    """
-    checked = case.checked
-    with boundary_errors():
-        return plan_run(checked, time_budget=time_budget_s, cache=cache)
-
-
-def costs_of(case: CheckedCase, cache: Path | None) -> list[Prediction]:
-    """Return the cost of each pass of the table of a case that is expected: no other levels are predicted.
-
-    Raises `BadInput`: no such pair, or a request that no plan can meet.
-    """
-    decided = case.request(_decided, cache)
-    with boundary_errors():
-        return [own.predicted(cache) for own in decided.passes]
-
-
-def _decided(case: CheckedCase, cache: Path | None) -> Decided:
-    return decide(case.checked, cache, tried=True)
-
-
-def plan_json(plan: RunPlan) -> Json:
-    """Return a plan as it is printed and served: errors and influences of effects in um."""
-    plain: Json = in_um(plan.to_json())
-    return plain
-
-
-# Derivatives of curves in boundary units: per um, per mm of a length, per N m.
 
 
 def _derivatives_json(derivatives: CurveDerivatives) -> Iterator[Json]:
@@ -110,9 +73,6 @@ def _flank(flank: FlankDerivatives, k: int) -> Json:
         "mean_um": flank.mean[k].tolist(),
         "peak_to_peak_um": flank.peak_to_peak[k].tolist(),
     }
-
-
-# What happens on the flanks of a live question: pressure over the flank, load over the face, K_Hbeta.
 
 
 def _flanks_json(flanks: LoadDistribution) -> Json:
@@ -181,11 +141,20 @@ def _short(values: FloatArray) -> Any:
     return (np.rint(values * scale) / scale).tolist()
 
 
-# Live questions: from a stored table and a change of its flanks to curves.
+@dataclass(frozen=True)
+class CondensedCase:
+    """A case whose gears have their compliance, and what its questions have in common."""
+
+    case: Case
+    pair: ParallelAxes
+    """As the case states it."""
+    bodies: CondensedPair
+    drawn: OrderedDict[str, DrawnRipple] = field(default_factory=OrderedDict)
+    """Pairs solved within tolerances, by question: every answer adds some."""
 
 
-def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> tuple[Case, CondensedPair]:
-    """Return the case of a stored table, and its gears with the compliance that it was computed with.
+def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> CondensedCase:
+    """Return the case of a stored table, its gears with the compliance that it was computed with.
 
     Raises `NotFound`: the table was removed since it was requested; `NotAnalyzed`: the compliance is not in
     the cache, and is not to be computed.
@@ -195,37 +164,39 @@ def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> tuple[Cas
     database = SteDatabase.from_netcdf(file)
     # strict models take JSON's lists for tuples only from text
     case = Case.model_validate_json(json.dumps(database.metadata.case))
+    pair = gear_pair(case)
     with boundary_errors():
-        bodies = condensed_pair(gear_pair(case), database, dict(case.effects), cache, compute=compute)
+        bodies = condensed_pair(pair, database, dict(case.effects), cache, compute=compute)
     if bodies is None:
         raise NotAnalyzed(
             "The compliance of these gears is not in the cache of this service: they were analyzed "
             "elsewhere, or it was removed. Ask once with condense = true: it is then computed here first, in "
             "seconds in the plane and up to some minutes over the face."
         )
-    return case, bodies
+    return CondensedCase(case, pair, bodies)
 
 
-def live_curves(
-    case: Case, bodies: CondensedPair, change: LiveInput, drawn: OrderedDict[str, DrawnRipple]
-) -> Json:
+def live_curves(condensed: CondensedCase, change: LiveInput) -> Json:
     """Return the curves of the changed flanks; raises `BadInput` by the fields of the question.
 
-    `drawn` keeps the pairs solved within tolerances, by question: every answer adds some.
+    The case was checked when its table was made: only the flanks that change are made anew.
     """
     try:
-        facts = case.model_dump(mode="json")
-        for name in ("pinion", "wheel"):
-            own = getattr(change, name).model_dump(mode="json", exclude_none=True)
-            facts["pair"][name] = with_figures(facts["pair"][name], own)
-        pair = gear_pair(validated(Case, facts))
+        changes = {name: _figures_of(getattr(change, name)) for name in ("pinion", "wheel")}
+        pair = with_flanks(condensed.pair, condensed.case, changes)
         with boundary_errors():
-            answer = _answer(bodies, pair, change)
+            answer = _answer(condensed.bodies, pair, change)
             if change.tolerance_class is not None:
-                _add_band(answer, bodies, pair, change, drawn)
+                _add_band(answer, condensed.bodies, pair, change, condensed.drawn)
         return answer
     except BadInput as error:
         raise BadInput(_by_question(fault) for fault in error.faults) from None
+
+
+def _figures_of(flank: BoundaryModel) -> dict[str, object]:
+    """Return the figures that a change of a flank states."""
+    stated = {name: getattr(flank, name) for name in type(flank).model_fields}
+    return {name: value for name, value in stated.items() if value is not None}
 
 
 def _add_band(
@@ -343,88 +314,3 @@ def _by_question(fault: Fault) -> Fault:
     name = fault.field.removesuffix("[0]") if fault.field.startswith("errors.") else fault.field
     name = next((name.removeprefix(prefix) for prefix in _PLACES if name.startswith(prefix)), name)
     return Fault(name, fault.value, fault.bound, fault.suggestion)
-
-
-# The two gears in mesh as a drawing: transverse outlines in mm, turned so that their flanks touch.
-
-
-def outline_json(case: Case) -> Json:
-    """Return the drawing of the pair of a case, see `pair_outline`, with its main figures.
-
-    Raises `BadInput`: no such pair exists.
-    """
-    pair = gear_pair(case)
-    with boundary_errors():
-        return pair_outline(pair) | {"figures": _figures(pair)}
-
-
-def pair_outline(pair: ParallelAxes) -> Json:
-    """Return what a drawing of the pair at position 0 needs; x to the right, y upwards, seen from +z; mm.
-
-    Each gear has one tooth with half a space on either side, in its tooth frame (center at the origin, tooth
-    on +y), the number of its teeth and the angle by which the whole is turned counter-clockwise. A ring
-    gear's tooth is seen from the other side, so that it stands as in the mesh.
-    """
-    angles = mesh_angles(pair, 0.0)
-    sign = pair.wheel.sign
-    gears = {"pinion": _gear(pair.pinion), "wheel": _gear(pair.wheel)}
-    centers = ((0.0, 0.0), (0.0, sign * pair.center_distance))
-    turns = (-1.0, -1.0 if pair.internal else 1.0)
-    middles = (0.0, pair.axial_offset)
-    # the wheel rolls with every section of the pinion
-    rises = (1.0, -sign * pair.pinion.teeth / pair.wheel.teeth)
-    twist = math.tan(pair.base_helix_angle) / pair.pinion.base_radius * MM / DEGREE
-    for gear, angle, center, turn in zip(gears.values(), angles, centers, turns, strict=True):
-        gear |= {"angle_deg": angle / DEGREE, "centre_mm": [value / MM for value in center], "turn": turn}
-    for gear, body, middle, rise in zip(
-        gears.values(), (pair.pinion, pair.wheel), middles, rises, strict=True
-    ):
-        half = 0.5 * body.face_width
-        gear |= {"face_mm": [(middle - half) / MM, (middle + half) / MM], "twist_deg_per_mm": rise * twist}
-    return gears | {"internal": pair.internal, "path_of_contact": _path(pair)}
-
-
-def _gear(gear: Toothing) -> Json:
-    profile = tooth_profile(gear)
-    root = np.linspace(profile.s_space, profile.s_form, _ROOT_POINTS, endpoint=False)
-    flank = np.linspace(profile.s_form, profile.s_tip, _FLANK_POINTS)
-    right = profile.flank(np.concatenate((root, flank)))
-    tip = profile.tip_land(np.linspace(0.0, 1.0, _TIP_POINTS)[1:-1])
-    tooth = np.concatenate((right, tip, right[::-1] * (-1.0, 1.0)))
-    circles = {"tip": gear.tip_radius, "root": gear.root_radius, "base": gear.base_radius}
-    circles |= {"reference": gear.reference_radius, "held": gear.held_radius, "form": gear.form_radius}
-    return {
-        "teeth": gear.teeth,
-        # from left to right, seen from the mesh's side
-        "tooth_mm": _points(tooth[::-1] if gear.sign > 0 else tooth * (-1.0, 1.0)),
-        "radius_mm": {name: round(radius / MM, 9) for name, radius in circles.items()},
-    }
-
-
-def _path(pair: ParallelAxes) -> Json:
-    """Return the line of action and A to E of the usable flanks on it, in the frame of the drawing."""
-    alpha = pair.working_pressure_angle
-    along = np.array([math.cos(alpha), math.sin(alpha)])
-    foot = pair.pinion.base_radius * np.array([-math.sin(alpha), math.cos(alpha)])
-    points = {
-        name: _points((foot + roll * along)[None, :])[0]
-        for name, roll in zip("ABCDE", pair.active_path.points, strict=True)
-    }
-    return {"points_mm": points, "base_pitch_mm": pair.base_pitch / MM}
-
-
-def _figures(pair: ParallelAxes) -> Json:
-    return {
-        "speed_ratio": pair.speed_ratio,
-        "working_pressure_angle_deg": pair.working_pressure_angle / DEGREE,
-        "transverse_contact_ratio": pair.active_contact_ratio,
-        "overlap_ratio": pair.overlap_ratio,
-        "total_contact_ratio": pair.active_contact_ratio + pair.overlap_ratio,
-        "base_pitch_mm": pair.base_pitch / MM,
-        "common_face_width_mm": pair.face_width / MM,
-        "circumferential_backlash_um": 1e6 * pair.circumferential_backlash,
-    }
-
-
-def _points(points: FloatArray) -> list[list[float]]:
-    return [[round(float(x) / MM, 4), round(float(y) / MM, 4)] for x, y in points]

@@ -11,9 +11,10 @@ from bounds.types import Json
 from dynamics.plausibility import scene_findings
 from dynamics.scene import Scene
 from fe_contact.plausibility import pair_findings
-from lineofaction.gearbox.convert.case import CheckedCase
+from lineofaction.gearbox.convert.boundary_names import case_field, scene_field
+from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.complaint import complaint_of_case
-from lineofaction.gearbox.convert.errors import case_field, named, scene_field
+from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput

@@ -8,17 +8,17 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from dynamics.effects.ledger import mechanism_of
-from dynamics.identity_cache import identity_cached
 from dynamics.joints import Housing
 from dynamics.mechanism import with_planets
 from dynamics.mechanism.base_pitches import PRINTED
 from dynamics.mechanism.kinematics import at_steady_speeds, check_motion
 from dynamics.meshes import GearMesh, MeshTable
 from dynamics.meshes.standard_sliding import StandardTeeth
-from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table, straight_table
+from dynamics.meshes.stiffness_table import straight_table
 from dynamics.scene import Scene
 from fe_contact.ste import PairFacts, SteDatabase
 from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.closed_form_meshes import _closed_forms
 from lineofaction.gearbox.convert.complaint import complaint_of
 from lineofaction.gearbox.convert.declared import in_si
 from lineofaction.gearbox.convert.errors import named
@@ -31,14 +31,11 @@ from lineofaction.gearbox.convert.housings import (
 )
 from lineofaction.gearbox.convert.scene_parts import GearTeeth, meshes_of, parts_of
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.schemas.meshes import MeshInput, PeriodicInput, StiffnessMeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.units import DEGREE, MM, UM
 
 if TYPE_CHECKING:
     from dynamics.housings import ReducedHousing
-
-# The gears that the meshes describe, and their axes.
 
 ANY_TEETH = StandardTeeth((20, 20), 0.04, 0.35, 0.0, 0.02)
 """Teeth of placeholders of tables: these have sliding data."""
@@ -103,80 +100,6 @@ def _has_bent_shafts(database: SteDatabase) -> bool:
     return any(
         isinstance(e, Mapping) and e.get("name") == "shaft_deflection" and e.get("on") for e in entries
     )
-
-
-# Meshes in closed form: the facts of their gears and their tables.
-
-
-@identity_cached
-def _closed_forms(meshes: tuple[MeshInput, ...]) -> dict[str, tuple[PairFacts, MeshTable]]:
-    """Return facts and table of every mesh that states its stiffness, by name."""
-    return {
-        mesh.name: (_facts(f"meshes[{index}].stiffness", mesh.stiffness), _table(index, mesh))
-        for index, mesh in enumerate(meshes)
-        if mesh.stiffness is not None
-    }
-
-
-def _facts(field: str, mesh: StiffnessMeshInput) -> PairFacts:
-    """Return the facts of the pair: base radii in the ratio of the teeth, the center distance from them."""
-    pinion, wheel = mesh.teeth
-    if mesh.internal and wheel <= pinion:
-        raise BadInput.of(
-            f"{field}.teeth", list(mesh.teeth), "more teeth of the ring gear than of its pinion"
-        )
-    radius = mesh.base_radius_mm * MM
-    radii = (radius, radius * wheel / pinion)
-    angle, helix = mesh.working_pressure_angle_deg * DEGREE, mesh.base_helix_angle_deg * DEGREE
-    return PairFacts(
-        teeth=(pinion, wheel),
-        base_radius=radii,
-        base_pitch=2.0 * math.pi * radius / pinion,
-        base_helix_angle=abs(helix),
-        center_distance=(radii[1] + (-radius if mesh.internal else radius)) / math.cos(angle),
-        working_pressure_angle=angle,
-        face_width=mesh.face_width_mm * MM,
-        helix_hand=(helix > 0.0) - (helix < 0.0),
-        internal=mesh.internal,
-    )
-
-
-def _table(index: int, mesh: MeshInput) -> MeshTable:
-    """Return the table of a closed form; with friction, the sliding of standard teeth is in it."""
-    assert mesh.stiffness is not None  # the caller asks for no other mesh
-    stiffness, error = mesh.stiffness.stiffness_n_per_m, mesh.stiffness.transmission_error_um
-    where = f"meshes[{index}].stiffness"
-    with named(f"{where}.stiffness_n_per_m"):
-        of_stiffness = _curve(stiffness, 1.0)
-    with named(f"{where}.transmission_error_um"):
-        of_error = None if error is None else _curve(error, UM)
-    with named(f"{where}.stiffness_n_per_m"):
-        return stiffness_table(of_stiffness, of_error, _standard_teeth(mesh))
-
-
-def _standard_teeth(mesh: MeshInput) -> StandardTeeth | None:
-    form = mesh.stiffness
-    if form is None or in_si(GearMesh, mesh)["friction"] is None:
-        return None
-    return StandardTeeth(
-        teeth=(form.teeth[0], form.teeth[1]),
-        base_radius=form.base_radius_mm * MM,
-        working_pressure_angle=form.working_pressure_angle_deg * DEGREE,
-        base_helix_angle=form.base_helix_angle_deg * DEGREE,
-        face_width=form.face_width_mm * MM,
-        internal=form.internal,
-    )
-
-
-def _curve(law: PeriodicInput, unit: float) -> PeriodicCurve:
-    value = [number * unit for number in law.value]
-    if law.position is not None:
-        return PeriodicCurve.tabulated(law.position, value)
-    if law.amplitude is None:
-        return PeriodicCurve.constant(value[0])
-    phases = law.phase_deg or (0.0,) * len(law.amplitude)
-    sizes = [number * unit for number in law.amplitude]
-    return PeriodicCurve.harmonic(value[0], sizes, [phase * DEGREE for phase in phases])
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from bounds import inside
 from dynamics.bearings import BallBearing, Bushing, CatalogLine, PlanetBearing, RollerBearing, RollingBearing
 from dynamics.bearings.catalog import from_catalog
 from dynamics.forces import SpeedTorque
-from dynamics.forces.laws import STATED
+from dynamics.forces.laws import BEARING_PARTS
 from dynamics.identity_cache import cached_by, identity_cached
 from dynamics.joints import Coupling, FreeRotation, ImposedRotation
 from dynamics.loads import AngleLaw, AppliedForce, BySpeed, LoadTorque, Orders, SpeedCurve, TimeLaw, Unbalance
@@ -28,11 +28,14 @@ from dynamics.temperatures import Temperatures
 from lineofaction.gearbox.convert.declared import in_si, part_of
 from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.schemas.bearings import BearingInput, BushingInput, RollingBearingInput
-from lineofaction.gearbox.schemas.bodies import DiscInput, GearBodyInput, ShaftInput
-from lineofaction.gearbox.schemas.housings import TemperaturesInput
-from lineofaction.gearbox.schemas.loads import DriveInput, ForceInput, LoadTorqueInput, SpeedTorqueInput
-from lineofaction.gearbox.schemas.meshes import CoastFlankInput, MeshInput
+from lineofaction.gearbox.schemas.bodies import DiscInput, GearBodyInput
+from lineofaction.gearbox.schemas.closed_form_meshes import CoastFlankInput
+from lineofaction.gearbox.schemas.forces import ForceInput
+from lineofaction.gearbox.schemas.housing_solid import TemperaturesInput
+from lineofaction.gearbox.schemas.loads import DriveInput, LoadTorqueInput, SpeedTorqueInput
+from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import IntegrationInput, OutputsInput, SceneInput
+from lineofaction.gearbox.schemas.shafts import ShaftInput
 from lineofaction.gearbox.units import DEGREE, MM, RPM, UM
 
 T = TypeVar("T")
@@ -89,15 +92,17 @@ def rolling_bearing_of(table: RollingBearingInput) -> RollingBearing:
 
 @cached_by(lambda scene: (scene.bushings, scene.planet_bearings))
 def _laws(scene: SceneInput) -> dict[str, Any]:
-    """Return what all bearings do that is not linear, by the kinds of `StatedLaws`."""
-    return {kind: tuple(_laws_of(kind, scene)) for kind in STATED}
+    """Return what all bearings do that is not linear, by the kinds of `BearingLawParts`."""
+    return {kind: tuple(_laws_of(kind, scene)) for kind in BEARING_PARTS}
 
 
 def _laws_of(kind: str, scene: SceneInput) -> Iterator[Any]:
     for path, bearing in _bearings(scene):
         for name, table in bearing.laws[kind].items():
             with named(f"{path}.{name}"):
-                yield STATED[kind](bushing=bearing.name, **in_si(STATED[kind], table) | table.renamed)
+                yield BEARING_PARTS[kind](
+                    bushing=bearing.name, **in_si(BEARING_PARTS[kind], table) | table.renamed
+                )
 
 
 def _bearings(scene: SceneInput) -> Iterator[tuple[str, BearingInput]]:

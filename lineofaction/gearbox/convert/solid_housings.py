@@ -41,7 +41,8 @@ from lineofaction.gearbox.convert.housings import solid_file
 from lineofaction.gearbox.convert.placement import Placement
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.schemas.bearings import BushingInput, RollingBearingInput
-from lineofaction.gearbox.schemas.housings import HousingFootInput, HousingInput, HousingSeatInput
+from lineofaction.gearbox.schemas.housing_solid import HousingFootInput, HousingSeatInput
+from lineofaction.gearbox.schemas.housings import HousingInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.units import MM
 from model_studies.progress import Progress, by_cost, silent

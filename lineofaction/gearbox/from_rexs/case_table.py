@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from lineofaction.gearbox.convert.case import check_plain_case
+from lineofaction.gearbox.convert.checked_case import check_plain_case
 from lineofaction.gearbox.from_rexs.gear_body import (
     Table,
     blank_table,

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from lineofaction.gearbox.schemas.case import Case as Case
-    from lineofaction.gearbox.schemas.live import LiveOutput as LiveOutput
-    from lineofaction.gearbox.schemas.plan import OutlineBody as OutlineBody
+    from lineofaction.gearbox.schemas.live_answer import LiveOutput as LiveOutput
+    from lineofaction.gearbox.schemas.outline import OutlineBody as OutlineBody
     from lineofaction.gearbox.schemas.plan import PlanBody as PlanBody
     from lineofaction.gearbox.schemas.query import QueryOutput as QueryOutput
     from lineofaction.gearbox.schemas.reading import read_model as read_model

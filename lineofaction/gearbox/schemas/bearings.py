@@ -12,19 +12,8 @@ from dynamics.bearings import BallBearing, CatalogLine, RollerBearing
 from dynamics.bearings.rolling_bearing import RollingBearing
 from dynamics.bearings.seat import Bushing, PlanetBearing
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
-from lineofaction.gearbox.schemas.model import (
-    BoundaryModel,
-    Listed,
-    Name,
-    Number,
-    SeatRows,
-    both,
-    exactly_one_of,
-    given,
-    left_out,
-    refuse,
-    stated,
-)
+from lineofaction.gearbox.schemas.model import BoundaryModel, Listed, Name, Number, SeatRows, refuse
+from lineofaction.gearbox.schemas.rules import both, exactly_one_of, given, left_out, stated
 from lineofaction.gearbox.units import MRAD, UM
 
 ROWS = ("ball", "roller", "catalog")

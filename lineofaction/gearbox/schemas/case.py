@@ -7,41 +7,16 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from bounds import declarations
-from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.gear_pair import GearPair
-from fe_contact.geometry.ring_gear import RingGear
 from lineofaction.gearbox.schemas.complaint import ComplaintInput
 from lineofaction.gearbox.schemas.declared import as_fields, figures, with_fields
-from lineofaction.gearbox.schemas.gear import SHARED, GearInput, MaterialInput, ToothingInput
+from lineofaction.gearbox.schemas.driven_gear import WheelInput
+from lineofaction.gearbox.schemas.gear import SHARED, GearInput, MaterialInput
 from lineofaction.gearbox.schemas.headlines import in_brief
-from lineofaction.gearbox.schemas.model import (
-    BoundaryModel,
-    Listed,
-    at_most_one_of,
-    both,
-    exactly_one_of,
-    given,
-    left_out,
-    refuse,
-    refuse_unsorted,
-    stated,
-)
+from lineofaction.gearbox.schemas.model import BoundaryModel, Listed, refuse, refuse_unsorted
 from lineofaction.gearbox.schemas.report import ReportInput
+from lineofaction.gearbox.schemas.rules import at_most_one_of, exactly_one_of, stated
 
-# The driven gear of the case file: an external gear, or a ring gear with the pinion inside it.
-
-
-RING = tuple(figure for figure in figures(RingGear) if figure not in figures(Gear))
-"""What is a ring gear's own, or otherwise than an external gear's."""
-_DEFAULTS = {figure.field: figure.own(figure.default) for figure in RING if figure.default is not MISSING}
-_RING_ONLY = tuple(figure for figure in RING if figure.name not in declarations(Gear))
-_GEAR_ONLY = tuple(figure for figure in figures(Gear) if figure.name not in declarations(RingGear))
-
-
-_IS_RING = {"required": ["internal"], "properties": {"internal": {"const": True}}}
-_RING_HAS = both(given("rim_diameter_mm"), left_out("bore_diameter_mm", "blank", "seat"))
-_GEAR_HAS = both(given("bore_diameter_mm"), left_out(*(figure.field for figure in _RING_ONLY)))
 Load = Annotated[float, Field(ge=1e-9, le=1e9)]  # smaller ones underflow where they are squared
 Misalignment = Annotated[float, Field(ge=-10_000.0, le=10_000.0)]
 Clearance = Annotated[float, Field(ge=0.0, le=10_000.0)]
@@ -55,63 +30,6 @@ Switch = Literal["on", "off", "auto"]
 EffectName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
 OF_PAIR = (*SHARED, *(replace(figure, default=MISSING) for figure in figures(GearPair)))
 """Figures that a case has in ``[pair]``."""
-
-
-def _of_either_kind(schema: dict[str, Any]) -> None:
-    """Say in a schema what belongs to which kind, and what a ring gear has where nothing is stated."""
-    schema |= stated({"if": _IS_RING, "then": _RING_HAS, "else": _GEAR_HAS})
-    for name, value in _DEFAULTS.items():
-        schema["properties"][name]["x-usual"] = {"value": value, "with": ["internal"]}
-
-
-@with_fields(as_fields(replace(figure, default=None) for figure in (*_GEAR_ONLY, *_RING_ONLY)))
-class WheelInput(ToothingInput):
-    """The driven gear. What only one kind has is left out by the other."""
-
-    model_config = ConfigDict(json_schema_extra=_of_either_kind)
-
-    internal: bool = Field(
-        default=False, description="Whether the wheel is a ring gear around the pinion", examples=[True]
-    )
-    bore_diameter_mm: float | None
-    rim_diameter_mm: float | None
-
-    @model_validator(mode="before")
-    @classmethod
-    def _ring_defaults(cls, data: Any) -> Any:
-        """Fill in a ring gear's tool, so that the echo says so; its tip rounding makes the root."""
-        if isinstance(data, dict) and data.get("internal") is True:
-            return _DEFAULTS | {name: value for name, value in data.items() if value is not None}
-        return data
-
-    @model_validator(mode="after")
-    def _one_kind(self) -> Self:
-        """Refuse what is missing from one kind, and what belongs to the other."""
-        if self.internal:
-            self._check_ring()
-            return self
-        if self.bore_diameter_mm is None:
-            advice = "Bore diameter in mm. For example 40.0; or internal = true for a ring gear."
-            refuse("bore_diameter_mm", None, "given", advice)
-        for name in (figure.field for figure in _RING_ONLY):
-            if getattr(self, name) is not None:
-                bound = "left out, or given with internal = true"
-                refuse(name, getattr(self, name), bound, "Only a ring gear has it.")
-        return self
-
-    def _check_ring(self) -> None:
-        if self.rim_diameter_mm is None:
-            advice = "Outer diameter in mm of the ring gear's rim. For example 212.0."
-            refuse("rim_diameter_mm", None, "given with internal = true", advice)
-        if self.bore_diameter_mm is not None:
-            bound = "left out with internal = true"
-            refuse(
-                "bore_diameter_mm", self.bore_diameter_mm, bound, "A ring gear is held by rim_diameter_mm."
-            )
-        for name in ("blank", "seat"):
-            if getattr(self, name) is not None:
-                advice = "The rim of a ring gear is solid, and held rigidly all round."
-                refuse(name, "given", "left out with internal = true", advice)
 
 
 @with_fields(as_fields(OF_PAIR))

@@ -6,14 +6,8 @@ from typing import Any, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from lineofaction.gearbox.schemas.model import (
-    BoundaryModel,
-    Point,
-    at_most_one_of,
-    exactly_one_of,
-    refuse,
-    stated,
-)
+from lineofaction.gearbox.schemas.model import BoundaryModel, Point, refuse
+from lineofaction.gearbox.schemas.rules import at_most_one_of, exactly_one_of, stated
 
 WHATS, SPEEDS = ("frequency_hz", "order"), ("road_speed_km_h", "speed_rpm")
 """What is heard, and at which speed: one of each."""

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import operator
-from typing import Annotated, Self
+from collections.abc import Mapping
+from typing import Annotated, Self, TypeVar
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
 from fe_contact.flank.modification import FlankModification
 from fe_contact.flank.stated_start import RELIEFS, StatedStarts, starts_of
@@ -24,15 +25,7 @@ from lineofaction.gearbox.schemas.declared import (
     with_fields,
 )
 from lineofaction.gearbox.schemas.flank_grid import Deviation
-from lineofaction.gearbox.schemas.model import (
-    BoundaryModel,
-    Json,
-    Listed,
-    Spelling,
-    at_most_one_of,
-    refuse,
-    stated,
-)
+from lineofaction.gearbox.schemas.model import BoundaryModel, Json, Listed, refuse
 
 PitchDeviations = Annotated[Listed[Deviation], Field(max_length=4000)]
 SHARED = tuple(figure for figure in figures(Toothing) if figure.name in MATING)
@@ -118,6 +111,9 @@ class ToothingInput(_ToothingFigures):
         return self
 
 
+Stated = TypeVar("Stated", bound=ToothingInput)
+
+
 @with_fields(as_fields(of_gear(Gear)))
 class GearInput(ToothingInput):
     """One external gear."""
@@ -129,47 +125,16 @@ def with_figures(gear: Json, own: Json) -> Json:
     return {name: value for name, value in gear.items() if name not in replaced} | own
 
 
+def with_flank(gear: Stated, own: Mapping[str, object]) -> Stated:
+    """Return a gear with figures of its flanks, which are within the bounds of their fields.
+
+    A length replaces where the relief starts.
+    """
+    replaced = {field for name in own if name in _STARTS for field in _start_fields(_STARTS[name])}
+    left_out = {field: type(gear).model_fields[field].get_default() for field in replaced}
+    return gear.model_copy(update=left_out | dict(own))
+
+
 def has_extent(gear: ToothingInput, relief: str) -> bool:
     """Whether a gear states where a relief starts, or how long it is."""
     return any(getattr(gear, field) for field in (f"{relief}_length_mm", *_start_fields(relief)))
-
-
-# The load and the alignment at which the flanks of a case are looked at.
-
-
-class FlankPoint(BoundaryModel):
-    """One load and one alignment; what is left out is taken from the case."""
-
-    model_config = ConfigDict(json_schema_extra=stated(at_most_one_of("torque_n_m", "normal_force_n")))
-
-    torque_n_m: Annotated[float | None, Spelling("--torque")] = Field(
-        default=None,
-        title="Torque on the pinion, N m",
-        ge=1e-9,
-        le=1e9,
-        description="Torque on the driving gear in N m; left out, with no force: the highest of the case",
-        examples=[100.0],
-    )
-    normal_force_n: Annotated[float | None, Spelling("--force")] = Field(
-        default=None, ge=1e-9, le=1e9, description="Normal tooth force in N, instead of a torque"
-    )
-    misalignment_um: float | None = Field(
-        default=None,
-        title="Misalignment, µm",
-        ge=-10_000.0,
-        le=10_000.0,
-        description="Misalignment in µm; left out: the case's value nearest to 0",
-    )
-    center_distance_change_mm: float | None = Field(
-        default=None,
-        ge=-10.0,
-        le=10.0,
-        description="Change of the center distance in mm; left out: the case's value nearest to 0",
-    )
-
-    @model_validator(mode="after")
-    def _one_load(self) -> Self:
-        if self.torque_n_m is not None and self.normal_force_n is not None:
-            advice = "Give a torque or a normal force."
-            refuse("normal_force_n", self.normal_force_n, "left out when torque_n_m is given", advice)
-        return self

@@ -8,31 +8,23 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 
 from dynamics.joints.housing import Housing
-from dynamics.solid_housing import MATERIALS, Material, ReductionSettings, SeatWall
-from dynamics.temperatures import Temperatures
+from dynamics.solid_housing import ReductionSettings
 from lineofaction.gearbox.schemas.declared import declared_in, figures, with_fields
-from lineofaction.gearbox.schemas.files import FileContentInput
-from lineofaction.gearbox.schemas.model import (
-    BoundaryModel,
-    HousingRows,
-    Listed,
-    Name,
-    Point,
-    exactly_one_of,
-    given,
-    refuse,
-    stated,
+from lineofaction.gearbox.schemas.file_content import FileContentInput
+from lineofaction.gearbox.schemas.housing_solid import (
+    MATERIAL,
+    PERPENDICULAR,
+    Direction,
+    HousingFootInput,
+    HousingMaterialInput,
+    HousingSeatInput,
+    PointNodeInput,
+    SeatNodeInput,
+    material_by_name,
 )
+from lineofaction.gearbox.schemas.model import BoundaryModel, HousingRows, Listed, Name, Point, refuse
+from lineofaction.gearbox.schemas.rules import exactly_one_of, stated
 
-# The solid of a housing of a scene: its material, bearing seats, feet and points.
-
-
-_THREE = Field(min_length=3, max_length=3)
-Direction = Annotated[Listed[Annotated[float, Field(ge=-1.0, le=1.0)]], _THREE]
-Node = Annotated[int, Field(ge=0, le=2**31 - 1)]
-Rates = Annotated[Listed[Annotated[float, Field(ge=0.0, le=1e15)]], _THREE]
-PERPENDICULAR = 1e-6
-"""Cosine of the angle between axes."""
 SOURCES = ("step_file", "mesh_file")
 """Fields that name the file of a solid."""
 RESPONSES = "frf_file"
@@ -50,124 +42,6 @@ _FOREIGN = {
     RESPONSES: {_BY_MATRICES: _MATRICES, _BY_SOLID: _OF_SOLID},
 }
 """By what a housing is given by: the fields that belong to other kinds, by these."""
-
-
-def _material_by_name(value: object) -> object:
-    """Return the figures of a material by name; without those that came after results had been stored."""
-    return _figures_of(value, later=False)
-
-
-def _figures_of(value: object, *, later: bool) -> object:
-    if isinstance(value, str) and value in MATERIALS:
-        own = (figure for figure in figures(Material) if later or not figure.what.later)
-        return {figure.field: figure.own(getattr(MATERIALS[value], figure.name)) for figure in own}
-    return value
-
-
-@with_fields(declared_in(Material))
-class HousingMaterialInput(BoundaryModel):
-    """Linear elastic, isotropic material with its density."""
-
-
-_BY_NAME: Any = Literal[tuple(MATERIALS)] | HousingMaterialInput
-"""What a scene may write for a material."""
-
-
-@with_fields(declared_in(Temperatures))
-class TemperaturesInput(BoundaryModel):
-    """Steady temperature of the housing; shafts, gears and rings of rolling bearings then state theirs."""
-
-    housing_material: Annotated[
-        HousingMaterialInput, BeforeValidator(lambda value: _figures_of(value, later=True), _BY_NAME)
-    ] = Field(
-        description="Its material with thermal_expansion_per_k, or by its name",
-        examples=["cast_aluminum"],
-    )
-
-
-@with_fields(declared_in(SeatWall))
-class HousingSeatInput(BoundaryModel):
-    """A bearing seat: a bore about the axis of its bearing, its middle where the bearing is."""
-
-    bearing: Name = Field(description="The bushing or rolling bearing in it", examples=["input left"])
-    bore_diameter_mm: float
-    bore_length_mm: float
-    ring: str
-
-
-class SeatNodeInput(BoundaryModel):
-    """A reference node of measured responses: where and along what the seat of a bearing was pushed."""
-
-    bearing: Name = Field(description="The bushing or rolling bearing in the seat", examples=["input left"])
-    node: Node = Field(description="Its reference node in the file", examples=[1])
-
-
-class PointNodeInput(BoundaryModel):
-    """A response node of measured responses: where the motion was measured."""
-
-    name: Name = Field(description="Name of the point", examples=["cover"])
-    node: Node = Field(description="Its response node in the file", examples=[11])
-
-
-class HousingFootInput(BoundaryModel):
-    """A face of the housing that stays plane: fixed, or on a mount."""
-
-    model_config = ConfigDict(
-        json_schema_extra=stated(
-            {"anyOf": [given("point_mm", "normal"), given("low_mm", "high_mm"), given("group")]}
-        )
-    )
-
-    name: Name = Field(description="Name of the foot", examples=["base"])
-    point_mm: Point | None = Field(
-        default=None,
-        description="A point of the plane that its face is in, x, y, z in the scene, mm",
-        examples=[[0.0, -120.0, 0.0]],
-    )
-    normal: Direction | None = Field(
-        default=None, description="Outward normal of this plane, x, y, z", examples=[[0.0, -1.0, 0.0]]
-    )
-    low_mm: Point | None = Field(
-        default=None,
-        description="Low corner of a box that the face is in, mm",
-        examples=[[-50.0, -121.0, 0.0]],
-    )
-    high_mm: Point | None = Field(
-        default=None, description="High corner of this box, mm", examples=[[0.0, -119.0, 40.0]]
-    )
-    group: str | None = Field(
-        default=None,
-        min_length=1,
-        max_length=200,
-        description="A physical group or node set of a mesh file instead",
-        examples=["feet"],
-    )
-    mount_stiffness_n_per_m: Rates | None = Field(
-        default=None,
-        description="Stiffness of its mount along x, y, z in N/m; left out: fixed",
-        examples=[[2e7, 5e7, 2e7]],
-    )
-    mount_damping_n_s_per_m: Rates | None = Field(
-        default=None,
-        description="Damping of its mount along x, y, z in N s/m; left out: none",
-        examples=[[2e3, 5e3, 2e3]],
-    )
-
-    @model_validator(mode="after")
-    def _one_face(self) -> Self:
-        """Refuse a face that nothing or too much describes, and damping without a mount."""
-        for first, second in (("point_mm", "normal"), ("low_mm", "high_mm")):
-            if (getattr(self, first) is None) != (getattr(self, second) is None):
-                missing = first if getattr(self, first) is None else second
-                refuse(missing, None, f"given with {second if missing == first else first}")
-        if self.normal is not None and not any(self.normal):
-            refuse("normal", list(self.normal), "a direction: not all zero")
-        if (self.group is None) == (self.point_mm is None and self.low_mm is None):
-            bound = "given, with normal, or low_mm with high_mm, or both; or group instead"
-            refuse("point_mm", self.point_mm, bound, "For example a point of the underside.")
-        if self.mount_damping_n_s_per_m is not None and self.mount_stiffness_n_per_m is None:
-            refuse("mount_stiffness_n_per_m", None, "given with mount_damping_n_s_per_m")
-        return self
 
 
 def _left_out(value: object) -> bool:
@@ -271,7 +145,7 @@ class HousingInput(_MatrixHousing):
     material: (
         Annotated[
             HousingMaterialInput,
-            BeforeValidator(_material_by_name, _BY_NAME),
+            BeforeValidator(material_by_name, MATERIAL),
         ]
         | None
     ) = Field(

@@ -8,20 +8,15 @@ looked at. What is right is validated as before.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import partial
 from itertools import islice, pairwise
-from typing import TYPE_CHECKING, Annotated, Any, Literal, NoReturn, TypeVar, cast, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NoReturn, TypeVar, cast
 
-from pydantic import BaseModel, ConfigDict, Field, GetCoreSchemaHandler, GetJsonSchemaHandler, Strict
+from pydantic import BaseModel, ConfigDict, Field, GetCoreSchemaHandler, Strict
 from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError, core_schema
 
 if TYPE_CHECKING:
-    from pydantic.fields import FieldInfo
-
-
-# The base of all boundary models: strict, closed, finite, frozen.
-
+    pass
 
 HASH = "^[0-9a-f]{64}$"
 """Pattern of the names of results, which are content hashes."""
@@ -146,124 +141,8 @@ def refuse_unsorted(field: str, values: Sequence[float] | None, shown: int | Non
         refuse(field, list(values)[:shown], "strictly increasing", "Sort the list and drop repeats.")
 
 
-# Types that tables of case and scene files, and inputs of studies, share.
-
 if TYPE_CHECKING:
     Row = Sequence
 else:
     Row = Listed
     """A `Listed` of a model that Python users fill in: a checker of types lets them write any sequence."""
-
-
-# Rules over several fields of a table, as JSON Schema states them; validators of the models enforce them.
-
-
-def stated(*rules: Json) -> Json:
-    """Return what a model adds to its schema (``json_schema_extra``): all rules hold."""
-    return {"allOf": list(rules)}
-
-
-def exactly_one_of(*names: str) -> Json:
-    """Return the rule that one of some fields is given."""
-    return {"oneOf": [_with(name, *names) for name in names]}
-
-
-def at_most_one_of(*names: str) -> Json:
-    """Return the rule that none or one of some fields is given."""
-    return {"oneOf": [left_out(*names), *(_with(name, *names) for name in names)]}
-
-
-def at_least_one_of(*names: str) -> Json:
-    """Return the rule that one or more of some fields are given."""
-    return {"anyOf": [given(name) for name in names]}
-
-
-def own_or_factor(*names: str) -> Json:
-    """Return the rule that one or more of some fields are given, or a factor on all of them."""
-    of_factor = both(given("factor"), left_out(*names))
-    return {"oneOf": [of_factor, at_least_one_of(*names) | left_out("factor")]}
-
-
-def given(*names: str) -> Json:
-    """Return the schema of tables that have some fields."""
-    return {"required": list(names), "properties": dict.fromkeys(names, _GIVEN)}
-
-
-def left_out(*names: str) -> Json:
-    """Return the schema of tables without some fields."""
-    return {"properties": dict.fromkeys(names, _LEFT_OUT)}
-
-
-def both(first: Json, second: Json) -> Json:
-    """Return the schema of tables of which both hold."""
-    properties = first["properties"] | second["properties"]
-    return {"required": [*first.get("required", ()), *second.get("required", ())], "properties": properties}
-
-
-def _with(name: str, *names: str) -> Json:
-    return both(given(name), left_out(*(other for other in names if other != name)))
-
-
-# The spelling of a field of a study's inputs on the command line.
-
-
-@dataclass(frozen=True)
-class Spelling:
-    """Beside the type of a field: how the option is spelled that it has."""
-
-    option: str
-    value: str | None = None
-    """What the option stands for if it takes none."""
-    file: bool = False
-    """Whether the option takes the file of a result, which the field names by its content hash."""
-
-
-def spelling_of(field: FieldInfo) -> Spelling | None:
-    """Return the spelling of a field, None if it is spelled as it is called."""
-    return next((part for part in field.metadata if isinstance(part, Spelling)), None)
-
-
-def item_type(field: FieldInfo) -> object:
-    """Return the type of the items of a field's list, of which there may be none; None of what is no list."""
-    for kind in map(_bare, (field.annotation, *get_args(field.annotation))):
-        if get_origin(kind) is tuple:
-            return _bare(get_args(kind)[0])
-    return None
-
-
-def _bare(kind: Any) -> Any:
-    """Return a type without what is written beside it."""
-    return kind.__origin__ if get_origin(kind) is Annotated else kind
-
-
-# Parts of answers that are passed on as they are, and the schemas by which the description knows them.
-
-
-class Named:
-    """Annotation of a JSON object that is passed on as it is: the description has its schema by name.
-
-    Parameters
-    ----------
-    schema : str
-        Of requests, such as ``Case``, or of a model that `service.routes.openapi` adds.
-    """
-
-    def __init__(self, schema: str) -> None:
-        self._schema = schema
-
-    def __get_pydantic_json_schema__(self, _own: CoreSchema, _handler: GetJsonSchemaHandler) -> Json:
-        """Return the name of the schema, for `with_named`."""
-        return {_NAMED: self._schema}
-
-
-def with_named(part: Any) -> Any:
-    """Return a part of the description with references in place of names."""
-    if isinstance(part, list):
-        return [with_named(entry) for entry in part]
-    if not isinstance(part, dict):
-        return part
-    if _NAMED in part:
-        return {"$ref": f"#/components/schemas/{part[_NAMED]}"} | {
-            key: value for key, value in part.items() if key != _NAMED
-        }
-    return {key: with_named(value) for key, value in part.items()}

@@ -1,4 +1,4 @@
-"""What is said of an input before anything is computed: warnings, plan and cost, drawing."""
+"""What is said of an input before anything is computed: warnings, the plan of a run, its cost."""
 
 from __future__ import annotations
 
@@ -39,9 +39,6 @@ def left_out_warnings(texts: Iterable[str], of: str = "scene") -> list[dict[str,
         }
         for index, text in enumerate(texts)
     ]
-
-
-# What a run will be and cost: the answer to a plan, with the effect ledger as answers have it.
 
 
 class PlannedCost(BaseModel):
@@ -158,34 +155,3 @@ class PlanBody(BaseModel):
     plan: PlannedRun = Field(description="Meshes, patches, positions and loads")
     warnings: list[InputWarning]
     effect_ledger: list[LedgerEntry] = Field(description="Decision and reason for each effect")
-
-
-# The drawing of a pair: the answer to an outline.
-
-
-class OutlineBody(BaseModel):
-    """Both gears at position 0, seen from +z, x to the right, and the main figures of the pair."""
-
-    class GearOutline(BaseModel):
-        """One tooth of a gear with half a space on either side, in mm, center at the origin, tooth on +y."""
-
-        teeth: int
-        tooth_mm: list[Point]
-        radius_mm: dict[str, float] = Field(description="tip, root, base, reference, held")
-        angle_deg: float = Field(description="By which the whole is turned counter-clockwise")
-        centre_mm: Point
-        turn: float = Field(description="Sense of rotation, 1 counter-clockwise")
-        face_mm: Point = Field(description="Ends of the face along z, from the pinion's mid-face")
-        twist_deg_per_mm: float = Field(description="Counter-clockwise turn of the section along z, helix")
-
-    class PathOfContact(BaseModel):
-        """The usable path of contact."""
-
-        points_mm: dict[str, Point] = Field(description="A to E")
-        base_pitch_mm: float
-
-    pinion: GearOutline
-    wheel: GearOutline
-    internal: bool
-    path_of_contact: PathOfContact
-    figures: dict[str, float] = Field(description="Contact ratios, working pressure angle ..., by name")

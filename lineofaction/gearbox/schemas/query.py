@@ -8,17 +8,10 @@ from pydantic import Discriminator, Field, Strict, Tag, model_validator
 
 from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
 
-# Fields that take one value for all, or a list with one for each.
-
-
 ONE, MANY = Tag("[one]"), Tag("[many]")
 """Marks of the two types; names in brackets are left out of what a fault is called."""
-
-
 ONE_OR_MANY = Discriminator(lambda value: (MANY if isinstance(value, list | tuple) else ONE).tag)
 """Chooses the type by the value, so that a fault is that of the type that was meant."""
-
-
 MOST_POINTS = 100_000
 LIMITS: dict[str, float] = {
     "position": 1e9,

@@ -1,22 +1,19 @@
-"""Case and scene files from disk: TOML, or JSON of the same shape, with the lines of faults."""
+"""Case and scene files from disk: TOML, or JSON of the same shape."""
 
 from __future__ import annotations
 
 import json
-import re
-from collections import Counter
-from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
 from lineofaction.gearbox.input_file import InputFile
-from lineofaction.gearbox.problems import BadInput, Fault
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.schemas.fault_lines import located
 from lineofaction.gearbox.schemas.faults import faults_of
-from lineofaction.gearbox.schemas.files import READERS, beside, read_text, written_out
+from lineofaction.gearbox.schemas.files import READERS, written_out
+from lineofaction.gearbox.schemas.named_files import beside, read_text
 from lineofaction.gearbox.schemas.toml import toml_table
 
 M = TypeVar("M", bound=BaseModel)
@@ -25,8 +22,6 @@ _SIGNS = {
     "shafts": ("a scene (with [[shafts]])", "loa simulate and its like take it"),
 }
 """The table by which a file is known: what it holds, and who takes it."""
-_HEADER = re.compile(r"^\s*(\[\[?)\s*([^\[\]#]+?)\s*\]\]?")
-_KEY = re.compile(r"""^\s*((?:[\w-]+|"[^"\n]*"|'[^'\n]*')(?:\s*\.\s*(?:[\w-]+|"[^"\n]*"|'[^'\n]*'))*)\s*=""")
 
 
 def validated(model: type[M], data: object) -> M:
@@ -83,78 +78,3 @@ def read_model(model: type[M], source: Path | InputFile) -> M:
     _check_kind(model, table, file.path)
     with located(file):
         return validated(model, written_out(table, beside(file.folder), READERS))
-
-
-# Where in its file a field stands: the line that a fault is about.
-
-
-@contextmanager
-def located(file: InputFile) -> Iterator[None]:
-    """Name file and line in the faults of what is read from it; a value that was set stands in no line."""
-    try:
-        yield
-    except BadInput as error:
-        raise BadInput(_placed(fault, file) for fault in error.faults) from None
-
-
-def line_of_field(text: str, field: str) -> int | None:
-    """Return the line, from 1, at which a field of a TOML text or else the table around it begins.
-
-    None if neither is there. Values of several lines count as one, inline tables too.
-    """
-    lines = dict(_lines(text))
-    while field:
-        if field in lines:
-            return lines[field]
-        field = re.sub(r"(\[\d+\]|\.?[^.\[\]]+)$", "", field)
-    return None
-
-
-def _placed(fault: Fault, file: InputFile) -> Fault:
-    """Return a fault with its place, if it has none and the file is TOML that holds it."""
-    own = fault.field.partition("[")[0]
-    if fault.place or file.path.suffix == ".json" or any(o.path.startswith(own) for o in file.overrides):
-        return fault
-    try:
-        line = line_of_field(file.path.read_text(encoding="utf-8"), fault.field)
-    except (OSError, UnicodeDecodeError):
-        return fault
-    return fault if line is None else replace(fault, place=f"{file.path}:{line}")
-
-
-def _lines(text: str) -> Iterator[tuple[str, int]]:
-    """Yield the fields and tables of a TOML text with their lines."""
-    table, counts, depth, quoted = "", Counter[str](), 0, ""
-    for number, line in enumerate(text.splitlines(), start=1):
-        if not quoted and depth <= 0:
-            if header := _HEADER.match(line):
-                table = _table(header, counts)
-                yield table, number
-            elif key := _KEY.match(line):
-                yield f"{table}.{key[1]}".lstrip("."), number
-        quoted = _open_quote(line, quoted)
-        if not quoted and not _HEADER.match(line):
-            bare = re.sub(r"\"[^\"]*\"|'[^']*'|#.*", "", line)
-            depth += bare.count("[") - bare.count("]")
-
-
-def _table(header: re.Match[str], counts: Counter[str]) -> str:
-    """Return the name of a table with the indices of the lists it is in."""
-    names = [name.strip() for name in header[2].split(".")]
-    path = ""
-    for index, name in enumerate(names):
-        path = f"{path}.{name}".lstrip(".")
-        if header[1] == "[[" and index == len(names) - 1:
-            counts[path] += 1
-        if counts[path]:
-            path += f"[{counts[path] - 1}]"
-    return path
-
-
-def _open_quote(line: str, quoted: str) -> str:
-    """Return the quotes of a text of several lines that is open at the end of a line; empty for none."""
-    marks = [quoted] if quoted else ['"""', "'''"]
-    for mark in marks:
-        if line.count(mark) % 2:
-            return "" if quoted else mark
-    return quoted

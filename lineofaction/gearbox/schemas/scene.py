@@ -10,30 +10,25 @@ from pydantic import BaseModel, ConfigDict, Field, Strict, model_validator
 from dynamics.settings.run import Integration, Outputs
 from dynamics.shafts.shaft import PLACED, on_length
 from lineofaction.gearbox.schemas.bearings import BushingInput, PlanetBearingInput, RollingBearingInput
-from lineofaction.gearbox.schemas.bodies import (
-    CouplingInput,
-    DiscInput,
-    GearBodyInput,
-    PlanetsInput,
-    ShaftInput,
-)
+from lineofaction.gearbox.schemas.bodies import CouplingInput, DiscInput, GearBodyInput, PlanetsInput
 from lineofaction.gearbox.schemas.case import EffectName, Switch
 from lineofaction.gearbox.schemas.complaint import ComplaintInput
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.faults import model_in
+from lineofaction.gearbox.schemas.forces import ForceInput, UnbalanceInput
 from lineofaction.gearbox.schemas.headlines import in_brief
-from lineofaction.gearbox.schemas.housings import HousingInput, TemperaturesInput
+from lineofaction.gearbox.schemas.housing_solid import TemperaturesInput
+from lineofaction.gearbox.schemas.housings import HousingInput
 from lineofaction.gearbox.schemas.loads import (
     DriveInput,
-    ForceInput,
     FreeRotationInput,
     LoadTorqueInput,
     SpeedTorqueInput,
-    UnbalanceInput,
 )
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.model import Acceleration, BoundaryModel, Listed, refuse
 from lineofaction.gearbox.schemas.report import ReportInput
+from lineofaction.gearbox.schemas.shafts import ShaftInput
 
 
 @with_fields(declared_in(Outputs))

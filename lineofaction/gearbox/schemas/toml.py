@@ -52,9 +52,6 @@ def _fault(field: str, text: str, message: str) -> Fault:
     return Fault(field, line or None, bound, f"{words}. {_FORM}")
 
 
-# Cases and scenes as TOML, as their files are written: nothing that is not given.
-
-
 def toml_text(content: Mapping[str, Any]) -> str:
     """Return tables, lists of them, numbers, texts, switches and (nested) lists as TOML; None is left out."""
     return "\n".join(_table(content, ())).strip() + "\n"

@@ -15,10 +15,11 @@ from bounds.types import Json
 from dynamics.results import RunResult
 from dynamics.results.array_file import ArrayFile
 from fe_contact.options import Run
-from lineofaction.gearbox.convert.case import CheckedCase, case_at
+from lineofaction.gearbox.convert.case import case_at
+from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.figures import Figures
-from lineofaction.gearbox.schemas.gear import FlankPoint
+from lineofaction.gearbox.schemas.flank_point import FlankPoint
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.cost import StudyCost

@@ -15,10 +15,8 @@ from pydantic.fields import FieldInfo
 
 from bounds.types import Json
 from lineofaction.gearbox.schemas.figures import REQUIRED, Figures, Part, Source
-from lineofaction.gearbox.units import BY_SUFFIX
+from lineofaction.gearbox.units import ending_of, factor
 
-_DIVISORS = {name: unit.factor for name, unit in BY_SUFFIX.items()} | {"_mpa": 1e6, "_mm_per_s": 1e-3}
-_IN_SI = ("_n_m", "_n", "_hz", "_w", "_m2", "_m", "_s", "_db_a", "_db")
 _MISSING = object()
 
 
@@ -135,13 +133,11 @@ def _member(result: Any, name: str) -> Any:
 @cache
 def _unit(name: str) -> tuple[str, Callable[[Any], Any]]:
     """Return the name of a figure without its unit, and what turns a value in SI into it."""
-    if name.endswith("_deg"):
-        return name.removesuffix("_deg"), np.degrees
-    for suffix, divisor in _DIVISORS.items():
-        if name.endswith(suffix):
-            return name.removesuffix(suffix), lambda value, divisor=divisor: value / divisor
-    suffix = next((suffix for suffix in _IN_SI if name.endswith(suffix)), "")
-    return name.removesuffix(suffix), _same
+    ending = ending_of(name)
+    bare, divisor = name.removesuffix(ending), factor(name)
+    if ending == "_deg":
+        return bare, np.degrees
+    return bare, _same if divisor == 1.0 else lambda value: value / divisor
 
 
 def _same(value: Any) -> Any:

@@ -15,7 +15,7 @@ from dynamics.meshes.technique import PlainTable
 from dynamics.scene import Scene
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import PairFacts
-from lineofaction.gearbox.convert.case import CheckedCases
+from lineofaction.gearbox.convert.checked_case import CheckedCases
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.scene import SceneInput

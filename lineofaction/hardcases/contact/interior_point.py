@@ -41,7 +41,7 @@ class GapAbout:
 
 @dataclass(frozen=True)
 class Problem:
-    """n contacts; SI units; arrays (n,), compliance (n, n), one reference length of the local law."""
+    """n contacts; SI units; arrays (n,), compliance (n, n)."""
 
     compliance: Array
     gap: Array
@@ -50,6 +50,9 @@ class Problem:
     gap_about: GapAbout
     width: Array
     length: float
+    """Reference length of the local law away from free ends: strips are tabulated for a part of it."""
+    reference_length: Array
+    """That of each contact, greater near free ends."""
     modulus: Array
 
 
@@ -155,9 +158,10 @@ class _GuardedLaw:
         last = np.log(np.minimum(0.66 * problem.length, widest))
         self.half = np.exp(first[:, None] + (last - first)[:, None] * np.linspace(0.0, 1.0, 129))
         self.load, mean = _strips(problem, self.half)
-        self.value = mean + self.k[:, None] * self.load * (np.log(problem.length / self.half) - 0.25)
+        reference = problem.reference_length[:, None]
+        self.value = mean + self.k[:, None] * self.load * (np.log(reference / self.half) - 0.25)
         self.slope = np.stack([np.gradient(v, p) for v, p in zip(self.value, self.load, strict=True)])
-        self.beyond = self.k * (np.log(problem.length / self.half[:, -1]) - 0.25)
+        self.beyond = self.k * (np.log(problem.reference_length / self.half[:, -1]) - 0.25)
 
     def rough(self, force: Array) -> tuple[Array, Array]:
         """Approach in m and slope in m/N between the entries of the table."""
@@ -195,7 +199,7 @@ class _GuardedLaw:
             lambda at: np.log(_strips(self.problem, np.exp(at))[0]) - target, low, high, np.full(p.size, 1e-7)
         )
         _, mean = _strips(self.problem, np.exp(x))
-        value = mean + self.k * p * (np.log(self.problem.length / np.exp(x)) - 0.25)
+        value = mean + self.k * p * (np.log(self.problem.reference_length / np.exp(x)) - 0.25)
         return value, self._entry(p, self.slope)
 
 

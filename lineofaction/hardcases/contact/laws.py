@@ -67,5 +67,6 @@ def _plain(problem: ContactProblem, position: int, force: FloatArray) -> Problem
         gap_about=GapAbout(*(part[position, real] for part in c.gap_about)),
         width=c.width[position, real],
         length=c.slices.law_length,
+        reference_length=problem.law_length[row, real],
         modulus=2.0 / (np.pi * sum(k[row, real] for k in problem.half_planes)),
     )

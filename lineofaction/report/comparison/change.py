@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from lineofaction.gearbox.convert.errors import boundary_name
+from lineofaction.gearbox.convert.boundary_names import boundary_name
 from lineofaction.gearbox.studies.change.result import HIGH, LOW, FlankChange
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table

@@ -17,21 +17,20 @@ from fe_contact.types import Estimate
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import results_in
 from lineofaction.gearbox.result_files import stamped
-from lineofaction.gearbox.signals import ENDINGS, Channel, Recording, begins_with_time, read_recording
-from lineofaction.gearbox.signals.units import ACCELERATION, FORCE, LENGTH, measured_unit, required_unit
+from lineofaction.gearbox.signals import ENDINGS, Recording, begins_with_time, read_recording
 from lineofaction.report.binding import bound
 from lineofaction.report.comparison.measured import (
     COLORS,
     Difference,
     MeasuredCurve,
     MeasuredOrders,
-    averaged,
     changed_fields,
     differences_table,
     read_measured,
 )
 from lineofaction.report.comparison.of_tables import compare_tables
 from lineofaction.report.comparison.recorded import Measurement, compare_recording
+from lineofaction.report.comparison.universal_files import read_universal
 from lineofaction.report.document import (
     file_attributes,
     of_the_store,
@@ -59,10 +58,6 @@ _DASHES: tuple[Dash, ...] = ("solid", "dash")
 _ERRORS = {"bearing_force": "bearing_force_orders", "dynamic_transmission_error": "transmission_error_orders"}
 """Series whose orders have stated errors, and their name in the receipt of a run."""
 
-_SCALES = {"µm": (LENGTH, 1e6), "N": (FORCE, 1.0), "m/s²": (ACCELERATION, 1.0)}
-"""Quantity of a unit of the page, and what one SI unit is in it."""
-_FORM = "one function (dataset 58) in {unit} over orders, position (base pitches) or angle (degrees)"
-_AXIS_ADVICE = "Say which by the label of the abscissa: Order, Mesh order, Position or Angle."
 _BOUND = "two results of one kind, two folders, or one result and a measurement"
 _ADVICE = "For example: loa compare before.nc after.nc, or loa compare ste.nc measured.csv"
 NAMES = ("first", "second")
@@ -178,42 +173,6 @@ def _spectra(sides: tuple[_Side, ...], measured: MeasuredOrders | None) -> Figur
         alternative=f"Largest lines, {signal.unit}: {'; '.join(peaks)}.",
         content=(Panel(Axis("mesh order", limits=(0.0, ORDERS + 0.5)), y, tuple(lines)),),
     )
-
-
-# Measured transmission errors and order spectra, read from universal files.
-
-
-def read_universal(path: Path, teeth: int, unit: str) -> MeasuredCurve | MeasuredOrders:
-    """Return the measured curve or orders of a universal file (UFF)."""
-    return _of_universal(read_recording(path, "measured"), teeth, unit)
-
-
-def _of_universal(recording: Recording, teeth: int, unit: str) -> MeasuredCurve | MeasuredOrders:
-    """Return the one function of a file that can be compared; `teeth` are those of the driving gear.
-
-    `unit` is "µm", "N" or "m/s²": of what it is compared with. Complex values count by their amplitude.
-    """
-    quantity, per_si = _SCALES[unit]
-    fitting = [channel for channel in recording.channels if _fits(channel, quantity)]
-    if len(fitting) != 1:
-        names = ", ".join(channel.name for channel in fitting[:8])
-        present = f"{len(fitting)} in {recording.name}" + (f": {names}" if names else "")
-        raise BadInput.of("measured", present, _FORM.format(unit=unit), _AXIS_ADVICE)
-    (channel,) = fitting
-    over, label = channel.abscissa, channel.label.lower()
-    values = per_si * required_unit("measured", channel.unit, quantity).factor * channel.values
-    if not (np.all(np.isfinite(over)) and np.all(np.isfinite(values))):
-        raise BadInput.of("measured", channel.name, "a function of finite numbers", "Export it again.")
-    if channel.over == "order":
-        return MeasuredOrders(over if label.startswith("mesh") else over / teeth, np.abs(values), unit)
-    position = over if label.startswith("position") else over * teeth / 360.0
-    return averaged(Path(recording.name), position, np.real(values))
-
-
-def _fits(channel: Channel, quantity: str) -> bool:
-    unit = measured_unit(channel.unit)
-    over = channel.over == "order" or channel.label.lower().startswith(("position", "angle"))
-    return over and unit is not None and unit.quantity == quantity
 
 
 def compare(

@@ -218,9 +218,6 @@ def _span(side: _Side) -> str:
     return f"{side.name} at {low} to {high} rpm"
 
 
-# The page.
-
-
 def _page(sides: tuple[_Side, _Side], signal: Signal, differences: tuple[LevelDifference, ...]) -> Page:
     unit = signal.quantity.unit
     headlines = tuple(

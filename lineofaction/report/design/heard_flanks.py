@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from bounds import engineering
-from lineofaction.gearbox.convert.errors import boundary_name
+from lineofaction.gearbox.convert.boundary_names import boundary_name
 from lineofaction.gearbox.studies.optimize.result import HeardOptimization
 from lineofaction.gearbox.units import UM, factor
 from lineofaction.report.drawing import palette

@@ -10,7 +10,7 @@ import numpy as np
 from bounds import engineering
 from fe_contact.microgeometry.confirmation import ConfirmedDesign
 from fe_contact.microgeometry.optimization import Optimization
-from lineofaction.gearbox.convert.errors import boundary_name
+from lineofaction.gearbox.convert.boundary_names import boundary_name
 from lineofaction.gearbox.studies.optimize.result import HeardOptimization
 from lineofaction.gearbox.units import UM, factor
 from lineofaction.report.design.heard_flanks import HEARD

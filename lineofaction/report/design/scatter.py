@@ -10,7 +10,7 @@ import numpy as np
 from fe_contact.microgeometry.order_limit import PairsAbove
 from fe_contact.microgeometry.tolerance_study import Quantile, ToleranceStudy
 from fe_contact.types import FloatArray
-from lineofaction.gearbox.convert.errors import boundary_name
+from lineofaction.gearbox.convert.boundary_names import boundary_name
 from lineofaction.gearbox.units import UM
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Reference, Table, number, thousands

@@ -6,16 +6,15 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from lineofaction.gearbox.convert.effects import scene_effects, trifles_title
+from lineofaction.gearbox.convert.effects import trifles_title
+from lineofaction.gearbox.convert.scene_effects import scene_effects
+from lineofaction.gearbox.units import UNITS, ending_of
 from lineofaction.report.drawing.figure import Table, number
 from lineofaction.report.drawing.page import Part, Section
 
-# endings of field names that state a unit, longest first
-_UNITS = {
-    "_n_m": "N m", "_n_per_m": "N/m", "_n_s_per_m": "N s/m", "_kg_m2": "kg m²",
-    "_um": "µm", "_mm": "mm", "_deg": "°", "_rpm": "rpm", "_gpa": "GPa", "_hz": "Hz", "_kg": "kg",
-    "_mib": "MiB", "_mb": "MB", "_n": "N", "_m": "m", "_s": "s",
-}  # fmt: skip
+_SYMBOLS = str.maketrans({"^": "", "2": "²", "3": "³"})
+"""Powers of units as they are printed."""
+_DEGREE = {"deg": "°", "degC": "°C"}
 EffectRow = tuple[str, str, bool, str, str]
 """An effect: its name, what it acts in, whether it is simulated, its influence in words, and why."""
 Json = dict[str, Any]
@@ -58,10 +57,12 @@ def _rows(content: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, s
 
 def _words(name: str) -> str:
     """Turn a field name into words, its unit after a comma."""
-    for ending, unit in _UNITS.items():
-        if name.endswith(ending) and len(name) > len(ending):
-            return f"{name.removesuffix(ending).replace('_', ' ')}, {unit}"
-    return name.replace("_", " ")
+    ending = ending_of(name)
+    bare = name.removesuffix(ending)
+    if not ending or not bare:
+        return name.replace("_", " ")
+    unit = UNITS[ending].name
+    return f"{bare.replace('_', ' ')}, {_DEGREE.get(unit, unit.translate(_SYMBOLS))}"
 
 
 def _cell(value: object) -> str:

@@ -11,14 +11,14 @@ import numpy as np
 from dynamics.accuracy import Frontier as SceneFrontier
 from fe_contact.analysis.studies.frontier import Frontier
 from fe_contact.analysis.studies.full_contact_cost import ORIGIN
-from fe_contact.analysis.studies.measured_full_contact import PLANE, PROGRAM
+from fe_contact.analysis.studies.full_contact_record import PLANE, PROGRAM
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, FloatArray, Line, Note, Panel, Table, number
 from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.drawing.placing import placed
 from lineofaction.report.presentation import Presentation
 
-LIVE = "full contact, run on this case"
+RECORDED = "full contact of this pair, recorded"
 Study = Frontier | SceneFrontier
 
 
@@ -41,7 +41,7 @@ class _Peer:
 
 
 def _peers(study: Frontier) -> list[_Peer]:
-    """Return what is known of this very pair, and full contact as measured on this case."""
+    """Return what is known of this very pair, and full contact as it is recorded."""
     peers, measured = [], study.full_contact
     if levels := study.known_full_contact:
         titles = tuple(f"full contact, {level.unknowns // 1000} k unknowns" for level in levels)
@@ -50,12 +50,12 @@ def _peers(study: Frontier) -> list[_Peer]:
         known = _Peer("full contact, 2-D", titles, time, errors, "known cost", palette.VERMILLION, 1.8)
         peers.append(known)
     if measured is not None:
-        titles = (f"full contact of this case, {measured.unknowns // 1000} k unknowns",)
-        mark = f"{len(measured.solved)} of {len(measured.points)} positions x loads solved"
+        titles = (f"full contact, recorded, {measured.record.unknowns // 1000} k unknowns",)
+        mark = f"{measured.solved} of {measured.solves} positions x loads solved"
         names = ("mean_error", "peak_to_peak_error")
         errors = {name: np.array([getattr(measured, name)]) for name in names}
         time = np.array([measured.seconds(study.solves)])
-        peers.append(_Peer(LIVE, titles, time, errors, mark, palette.PURPLE, 0.0, "full contact"))
+        peers.append(_Peer(RECORDED, titles, time, errors, mark, palette.PURPLE, 0.0, "full contact"))
     return peers
 
 
@@ -66,18 +66,20 @@ def _peer_caption(study: Frontier) -> str:
     measured = study.full_contact
     if measured is None:
         return known.strip()
-    meshes, own = measured.own_error, measured.plane_strain_mean
-    plane = ", and hold what plane strain leaves out" if measured.solved_in == PLANE else ""
+    record, own = measured.record, measured.plane_strain_mean
+    meshes = record.mesh_error
+    plane = ", and hold what plane strain leaves out" if record.solved_in == PLANE else ""
     beside = (
         f" Its own meshes differ by at most {number(100.0 * meshes, 2)} %." if np.isfinite(meshes) else ""
     )
     if np.isfinite(own):
         beside += f" Our plane strain differs from it by {number(100.0 * own, 2)} % of the mean."
     return (
-        f"{known}On this case {PROGRAM} solved {measured.positions} positions under all loads in "
-        f"{measured.solved_in} ({measured.unknowns // 1000} k unknowns, {number(measured.cpu_seconds, 3)} "
-        f"CPU s): its errors are those at these positions, the worst of all loads"
-        f"{plane}; its time is extrapolated, the mean of a position and load times "
+        f"{known}Recorded curves: {PROGRAM} of version {record.version} solved {record.position.size} "
+        f"positions under {record.torque.size} loads in {record.solved_in} "
+        f"({record.unknowns // 1000} k unknowns, "
+        f"{number(measured.cpu_seconds, 3)} CPU s): its errors are those at these positions, the worst of "
+        f"all loads{plane}; its time is extrapolated, the mean of a position and load times "
         f"{study.solves}.{beside}"
     )
 

@@ -11,7 +11,7 @@ from bounds import engineering
 from dynamics.acoustics import sound_pressure_level, wav_file
 from dynamics.types import FloatArray
 from dynamics.vibration import vibration_level
-from lineofaction.gearbox.studies.listen.run import HeardRun, rms
+from lineofaction.gearbox.studies.listen.run import HeardRun
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Sound, Table, Track, number
 from lineofaction.report.drawing.page import Headline, Page, Section
@@ -57,7 +57,7 @@ def _block_levels(heard: HeardRun) -> tuple[FloatArray, FloatArray]:
     time = (np.arange(len(blocks)) + 0.5) * duration / len(blocks)
     parts = [replace(recording, samples=block) for block in blocks]
     if heard.figures is None:
-        return time, vibration_level([rms(part) for part in parts])
+        return time, vibration_level([part.rms for part in parts])
     return time, np.array([sound_pressure_level(part, weighted=True) for part in parts])
 
 
@@ -79,8 +79,8 @@ def _sound(heard: HeardRun, along: FloatArray) -> Sound | None:
 def _headlines(heard: HeardRun) -> tuple[Headline, ...]:
     figures = heard.figures
     if figures is None:
-        level = float(vibration_level(rms(heard.recording)))
-        return (Headline("velocity, rms", f"{engineering(rms(heard.recording), 4)} m/s", f"{level:.1f} dB"),)
+        level = float(vibration_level(heard.recording.rms))
+        return (Headline("velocity, rms", f"{engineering(heard.recording.rms, 4)} m/s", f"{level:.1f} dB"),)
     rows = [
         Headline("sound pressure level", f"{figures.weighted_level:.1f} dB(A)", f"{figures.level:.1f} dB")
     ]

@@ -1,10 +1,8 @@
-"""Natural modes: of a run, and a modal analysis with Campbell diagram, critical speeds, energies."""
+"""A modal analysis: Campbell diagram, critical speeds, energies, housings in their lowest modes."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -12,13 +10,11 @@ from bounds import leftover
 from dynamics.linearize import ModalAnalysis
 from dynamics.linearize.linear_system import freedom_parts
 from dynamics.linearize.modal_analysis import LARGE
-from dynamics.results import RunResult
 from lineofaction.gearbox.studies.modes.run import moved_surface
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
     Axis,
-    Bars,
     Dash,
     Figure,
     FloatArray,
@@ -31,21 +27,8 @@ from lineofaction.report.drawing.figure import (
 from lineofaction.report.drawing.page import Headline
 from lineofaction.report.drawing.surface_view import shape_figure
 from lineofaction.report.presentation import dynamics_presentation
+from lineofaction.report.response.mode_lines import mode_bars, whirl_name
 
-MOST_MODES, LEAST_DISTANCE, _CIRCULAR = 8, 0.01, 0.1
-MOVES, MET = "moves, share of the kinetic energy", "met by mesh order at mesh frequency"
-MODES_CAPTION = {
-    False: "Dashed: natural frequencies about the static equilibrium",
-    True: "Dashed: whirl modes about the static equilibrium, at the speeds of the run",
-}
-_COLOURS = {
-    "natural modes": palette.ORANGE,
-    "forward whirl": palette.SKY,
-    "backward whirl": palette.VERMILLION,
-    "whirl in a plane": palette.ORANGE,
-}
-OTHERS = "others"
-_WIDTH = 0.62
 ALIKE = 1e-3  # of a frequency or a speed: nearer ones share a line of the tables
 SHOWN_PARTS = 2
 SHOWN_MODES, PRINTED_MODES = 10, 20
@@ -57,142 +40,6 @@ WHIRLS: dict[str, tuple[str, Dash]] = {
     "backward whirl": (palette.VERMILLION, "dash"),
     "whirl in a plane": (palette.MUTED, "solid"),
 }
-
-
-@dataclass(frozen=True)
-class ModeLine:
-    """A mode over the blocks of a diagram: its name in the legend, color, frequency (B,), Hz, what moves.
-
-    `shares` are those of the parts in its kinetic energy; empty for runs that do not hold them.
-    """
-
-    name: str
-    color: str
-    frequency: FloatArray
-    moves: str
-    shares: dict[str, float]
-
-
-def whirling(run: RunResult) -> bool:
-    """Whether the run has modes over speed."""
-    return "over_speed" in run.modes
-
-
-def mode_lines(run: RunResult, mesh_frequency: FloatArray, top: float) -> list[ModeLine]:
-    """Return the lowest modes below `top` (Hz) that lie apart, over mesh frequencies (B,), Hz."""
-    frequencies, whirls = _frequencies(run, mesh_frequency)
-    modes = run.modes["over_speed"] if whirling(run) else run.modes
-    kept: list[ModeLine] = []
-    for index in np.argsort(frequencies[:, 0]) if frequencies.size else ():
-        values = frequencies[index]
-        apart = all(np.max(np.abs(line.frequency - values)) > LEAST_DISTANCE * top for line in kept)
-        if 0.0 < values[0] < top and apart:
-            name = _whirl_name(whirls[index]) if whirling(run) else "natural modes"
-            shares = dict(modes["moves"][index]) if "moves" in modes else {}
-            most = str(next(iter(shares)) if "moves" in modes else modes["freedom"][int(index)])
-            kept.append(ModeLine(name, _COLOURS[name], values, most, shares))
-    return kept[:MOST_MODES]
-
-
-def _frequencies(run: RunResult, mesh_frequency: FloatArray) -> tuple[FloatArray, list[float]]:
-    """Frequencies (a, B), and each mode's whirl at the highest speed."""
-    if not whirling(run):
-        rest = np.array(run.modes.get("frequency", ()), dtype=float)
-        return np.repeat(rest[:, None], mesh_frequency.size, axis=1), [0.0] * rest.size
-    over = run.modes["over_speed"]
-    knots = np.array(over["mesh_frequency"][0])
-    lines = [np.interp(mesh_frequency, knots, np.array(row)) for row in over["frequency"]]
-    return np.array(lines).reshape(-1, mesh_frequency.size), [row[-1] for row in over["whirl"]]
-
-
-def _whirl_name(whirl: float) -> str:
-    if abs(whirl) < _CIRCULAR:
-        return "whirl in a plane"
-    return "forward whirl" if whirl > 0.0 else "backward whirl"
-
-
-def mode_table(run: RunResult, top: float, orders: int) -> Table | None:
-    """List the modes below `top` (Hz) and the mesh orders that meet them within the speeds of the run."""
-    if not run.modes:
-        return None
-    low, high = float(run.mesh_frequency[0].min()), float(run.mesh_frequency[0].max())
-    modes, whirls = run.modes["over_speed"] if whirling(run) else run.modes, whirling(run)
-    rows = []
-    for index, (frequency, ratio) in enumerate(zip(modes["frequency"], modes["damping_ratio"], strict=True)):
-        line, damping = np.atleast_1d(frequency), np.atleast_1d(ratio)
-        if not 0.0 < line[0] < top:
-            continue
-        frequencies = [number(end, 4) for end in ((line[0], line[-1]) if whirls else line)]
-        whirl = (_whirl_name(modes["whirl"][index][-1]),) if whirls else ()
-        met = _met(modes["mesh_frequency"][0] if whirls else None, line, orders, (low, high))
-        rows.append((*frequencies, number(100.0 * float(damping[-1]), 2), *whirl, _moves(modes, index), met))
-    if whirls:
-        ends = ("at rest, Hz", "at the highest speed, Hz", "damping ratio there, %", "whirl")
-        return Table("Whirl modes in the range of the diagram", (*ends, MOVES, MET), tuple(rows))
-    head = ("natural frequency, Hz", "damping ratio, %", MOVES, MET)
-    return Table("Natural modes in the range of the diagram", head, tuple(rows))
-
-
-def _moves(modes: dict[str, Any], index: int) -> str:
-    """Write what moves in a mode; of a run that does not hold it, the freedom that moves most."""
-    if "moves" not in modes:
-        return str(modes["freedom"][index])
-    return "; ".join(f"{name} {number(100.0 * share, 2)} %" for name, share in modes["moves"][index].items())
-
-
-def _meeting(mesh: FloatArray, line: FloatArray, order: int) -> float | None:
-    """Mesh frequency at which a mode less an order changes its sign, linear between the speeds."""
-    gap = line - order * mesh
-    crossed = np.flatnonzero((gap[:-1] > 0.0) & (gap[1:] <= 0.0))
-    if not crossed.size:
-        return None
-    i = int(crossed[0])
-    return float(mesh[i] + (mesh[i + 1] - mesh[i]) * gap[i] / (gap[i] - gap[i + 1]))
-
-
-def _met(mesh: list[float] | None, line: FloatArray, orders: int, ends: tuple[float, float]) -> str:
-    """Name the orders up to `orders` that meet a mode, Hz over mesh frequencies, if it changes with them."""
-    met = []
-    for order in range(1, orders + 1):
-        where = float(line[0]) / order if mesh is None else _meeting(np.array(mesh), line, order)
-        if where is not None and ends[0] <= where <= ends[1]:
-            met.append(f"{order} at {number(where, 3)} Hz")
-    return ", ".join(met) or "none"
-
-
-def mode_bars(modes: Sequence[str], shares: Sequence[Mapping[str, float]], energy: str) -> Panel:
-    """Draw a bar for each mode, made up of its parts' shares of an energy.
-
-    Parameters
-    ----------
-    modes : sequence of str, (a,)
-        Names, below the bars.
-    shares : sequence of mapping of str to float, (a,)
-        By part, each at least 0; the rest up to 1 is drawn as others.
-    energy : str
-        Of the label.
-    """
-    place, base = np.arange(float(len(modes))), np.zeros(len(modes))
-    bars = []
-    for index, part in enumerate(_largest_parts(shares)):
-        top = base + [100.0 * of.get(part, 0.0) for of in shares]
-        bars.append(Bars(part, place, top, base, _WIDTH, palette.CATEGORIES[index]))
-        base = top
-    rest = np.where(base > 0.0, 100.0, 0.0)
-    if np.any(rest > base + 0.5):
-        bars.append(Bars(OTHERS, place, rest, base, _WIDTH, palette.GRID))
-    return Panel(
-        Axis.of_names(modes, "mode"), Axis(f"share of the {energy}, %", limits=(0.0, 100.0)), bars=tuple(bars)
-    )
-
-
-def _largest_parts(shares: Sequence[Mapping[str, float]]) -> list[str]:
-    """Return the parts that have most of the energy of all modes together, as many as there are colors."""
-    total: dict[str, float] = {}
-    for of in shares:
-        for part, share in of.items():
-            total[part] = total.get(part, 0.0) + share
-    return sorted(total, key=lambda part: -total[part])[: len(palette.CATEGORIES)]
 
 
 def _modal_figures(modes: ModalAnalysis) -> tuple[Figure, ...]:
@@ -275,7 +122,7 @@ def _modes(modes: ModalAnalysis, speed: FloatArray) -> Iterator[Line]:
     """Every mode by its sense of whirl; points between two speeds take that of the first."""
     for name, (color, dash) in WHIRLS.items():
         for mode in range(modes.frequency.shape[1]):
-            here = np.array([_whirl_name(w) == name for w in modes.whirl[:, mode]])
+            here = np.array([whirl_name(w) == name for w in modes.whirl[:, mode]])
             if not np.any(here):
                 continue
             shown = here | np.append(False, here[:-1])
@@ -371,7 +218,7 @@ def _critical_kind(modes: ModalAnalysis, index: int) -> tuple[str, str]:
     mode = int(modes.critical_mode[index])
     known = np.isfinite(modes.frequency[:, mode])
     row = int(np.argmin(np.where(known, np.abs(modes.speed - modes.critical_speed[index]), np.inf)))
-    whirl = _whirl_name(float(modes.whirl[row, mode])).replace("whirl", "").strip()
+    whirl = whirl_name(float(modes.whirl[row, mode])).replace("whirl", "").strip()
     return modes.kind(modes.strain_energy[row, mode], modes.kinetic_energy[row, mode]), whirl
 
 

@@ -26,7 +26,7 @@ from lineofaction.report.drawing.figure import (
     unit_of,
 )
 from lineofaction.report.drawing.placing import placed
-from lineofaction.report.response.modes import (
+from lineofaction.report.response.mode_lines import (
     MODES_CAPTION,
     ModeLine,
     mode_bars,

@@ -14,9 +14,10 @@ from bounds.types import Json
 from dynamics.acoustics import Recording, common_full_scale, wav_file
 from dynamics.acoustics.recording import PASSED, SAMPLE_RATE
 from dynamics.errors import InputError
+from dynamics.orders import driving_shaft
 from dynamics.results import RunResult
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.studies.listen.run import KIND, SCHEMA, HeardRun, driving_shaft
+from lineofaction.gearbox.studies.listen.run import KIND, SCHEMA, HeardRun
 from lineofaction.report.drawing.figure import Axis, Sound, Track, number, unit_of
 from lineofaction.report.run.view import (
     QUANTITIES,
@@ -115,9 +116,6 @@ def _track(heard: Heard, axis: Axis) -> Track:
         along = np.interp(time, run.time, np.abs(speed)) * 30.0 / np.pi
     mesh_frequency = np.interp(time, run.time, np.abs(run.mesh_frequency[heard.signal.mesh]))
     return Track(heard.name, time - time[0], along, heard.query, mesh_frequency)
-
-
-# The sound of a stored run or recording as a WAV file; work of the live worker.
 
 
 def stored_sound(inputs: Json) -> Json:

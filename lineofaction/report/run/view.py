@@ -11,11 +11,11 @@ from bounds import one_of
 from dynamics.acoustics import Recording, principal_direction, series_recording
 from dynamics.acoustics.recording import SAMPLE_RATE
 from dynamics.errors import InputError
-from dynamics.orders import highest_valid_order, order_frequency
+from dynamics.orders import driving_shaft, highest_valid_order, order_frequency
 from dynamics.orders.spectrum import WINDOWS
 from dynamics.results import RunResult
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.studies.listen.run import DIRECTIONS, PRINCIPAL, driving_shaft
+from lineofaction.gearbox.studies.listen.run import DIRECTIONS, PRINCIPAL
 from lineofaction.report.drawing.figure import Axis, FloatArray, number
 
 MONOTONE = 0.2  # least change of speed over the run, of the highest, for a speed axis

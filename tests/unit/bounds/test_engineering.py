@@ -70,7 +70,15 @@ def test_what_rounding_leaves_has_no_digits(value: float, text: str) -> None:
 def test_no_other_way_of_writing_one_or_two_digits_is_left() -> None:
     """One or two digits by ``%g`` would have an exponent from 10 or 100 on."""
     written = re.compile(r"\{[^{}]+:\+?\.[12]g\}")
-    for package in ("bounds", "fe_contact", "dynamics", "model_studies", "lineofaction", "service"):
+    for package in (
+        "bounds",
+        "fe_contact",
+        "dynamics",
+        "model_studies",
+        "lineofaction",
+        "service",
+        "verification",
+    ):
         for file in (ROOT / package).rglob("*.py"):
             for line in file.read_text(encoding="utf-8").splitlines():
                 assert not written.search(line) or 'float(f"' in line, f"{file}: {line.strip()}"

@@ -32,9 +32,9 @@ from lineofaction.cli import run_study, simulate
 from lineofaction.cli.kept_tables import tabled_scene
 from lineofaction.cli.status import run_status
 from lineofaction.cli.subjects import simulation_cost, study_cost, table_cost
-from lineofaction.gearbox.convert import live
-from lineofaction.gearbox.convert.case import CheckedCase
-from lineofaction.gearbox.convert.live import plan_of
+from lineofaction.gearbox.convert import plan
+from lineofaction.gearbox.convert.checked_case import CheckedCase
+from lineofaction.gearbox.convert.plan import plan_of
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.studies.computation import Means
@@ -445,9 +445,9 @@ def test_a_table_costs_every_pass_that_is_expected(
     case: CheckedCase, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A mesh that is expected to miss the tolerance is tried first: another is expected to follow."""
-    decided, alone = live._decided(case, None), table_cost(case.case)
+    decided, alone = plan._decided(case, None), table_cost(case.case)
     behind = replace(decided, plan=decided.checked.plan("fine"))
-    monkeypatch.setattr(live, "_decided", lambda *_: replace(decided, behind=behind))
+    monkeypatch.setattr(plan, "_decided", lambda *_: replace(decided, behind=behind))
     finer = behind.predicted(cache_home() / "compliance")
     both = table_cost(case.case)
     assert both.seconds == pytest.approx(alone.seconds + finer.cpu_seconds)
@@ -473,7 +473,7 @@ def test_the_status_checks_each_case_of_a_unit_once(tmp_path: Path, monkeypatch:
     loa("open", EXAMPLES / "two_stage" / "two_stage.rexs", "-o", tmp_path / "unit")
     checks: Counter[tuple[str, str]] = Counter()
     decisions: list[str] = []
-    checked, decided = CheckedCase._checked, live._decided
+    checked, decided = CheckedCase._checked, plan._decided
 
     def checked_and_counted(own: CheckedCase, **how: bool) -> Any:
         checks[own.case.model_dump_json(), str(how)] += 1
@@ -485,7 +485,7 @@ def test_the_status_checks_each_case_of_a_unit_once(tmp_path: Path, monkeypatch:
 
     monkeypatch.setattr(CheckedCase, "_checked", checked_and_counted)
     monkeypatch.setattr(CASES, "_kept", OrderedDict())
-    monkeypatch.setattr(live, "_decided", decided_and_counted)
+    monkeypatch.setattr(plan, "_decided", decided_and_counted)
     run_status(tmp_path / "unit", as_json=True)
     assert set(checks.values()) == {1}
     assert len(decisions) == len(set(decisions)) == 2

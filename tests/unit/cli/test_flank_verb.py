@@ -13,7 +13,7 @@ from fe_contact import LoadDistribution
 from lineofaction.client import JobState, LineOfActionClient
 from lineofaction.gearbox.convert.case import case_at
 from lineofaction.gearbox.schemas import Case, validated
-from lineofaction.gearbox.schemas.gear import FlankPoint
+from lineofaction.gearbox.schemas.flank_point import FlankPoint
 
 SMALL = spur_case(torques=[50, 100, 200], model="plane_strain", positions=16)
 

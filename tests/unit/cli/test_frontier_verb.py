@@ -13,10 +13,12 @@ from dynamics.accuracy import Frontier as SceneFrontier
 from fe_contact.analysis.studies.fidelity_result import FidelityResult
 from fe_contact.analysis.studies.frontier import Frontier
 from fe_contact.analysis.studies.full_contact_cost import FULL_CONTACT, MEASURED_GEAR, known_full_contact
-from fe_contact.analysis.studies.measured_full_contact import PLANE, MeasuredFullContact
-from fe_contact.full_contact import FullContactPoint, FullContactTable
+from fe_contact.analysis.studies.full_contact_record import (
+    PLANE,
+    FullContactComparison,
+    FullContactRecord,
+)
 from fe_contact.geometry import FlankModification, GearPair
-from fe_contact.types import Status
 from lineofaction.gearbox.studies.frontier.run import RUN
 from lineofaction.report.drawing.image import png
 from lineofaction.report.drawing.interactive import plotly_figure
@@ -80,21 +82,27 @@ def test_full_contact_is_known_of_the_very_pair_alone() -> None:
 
 
 def test_full_contact_of_the_case_stands_beside_the_known_cost(found: Frontier) -> None:
-    point = FullContactPoint(0.0, 7.8e-6, Status.CONVERGED, "", 9, 1e-8, 1.0, error_estimate=7.8e-9)
-    points = (point, FullContactPoint.failed(Status.NOT_COMPUTED, "no mesh"))
-    one = np.ones(1)
-    table = FullContactTable(
-        0.0 * one, 100.0 * one, ((points[0],), (points[1],)), np.array([90_000]), 60.0 * one
+    lag = np.array([[[7.8e-6], [np.nan]]])
+    record = FullContactRecord(
+        pair={},
+        version="0.1",
+        solved_in=PLANE,
+        misalignment=np.zeros(1),
+        position=np.array([0.0, 0.5]),
+        torque=np.array([100.0]),
+        transmission_error=lag,
+        error_estimate=1e-3 * lag,
+        unknowns=90_000,
+        seconds_per_solve=30.0,
     )
-    table = dataclasses.replace(table, position=np.array([0.0, 0.5]))
-    live = MeasuredFullContact((table,), (0.0,), PLANE, 50.0, mean_error=0.03, plane_strain_mean=0.002)
+    live = FullContactComparison(record, mean_error=0.03, plane_strain_mean=0.002)
     figure = PAGE.figure(dataclasses.replace(found, full_contact=live))
     mean, swing = figure.content
-    drawn = {line.name: line for line in mean.lines}["full contact, run on this case"]
+    drawn = {line.name: line for line in mean.lines}["full contact of this pair, recorded"]
     assert (drawn.x.tolist(), drawn.y.tolist()) == ([pytest.approx(30.0 * 64)], [pytest.approx(3.0)])
     assert mean.notes[-1].text == "full contact"
     assert "full contact" not in [note.text for note in swing.notes]  # one position has no peak-to-peak
-    assert "2 positions under all loads" in figure.caption and "differs from it by 0.20 %" in figure.caption
+    assert "2 positions under 1 loads" in figure.caption and "differs from it by 0.20 %" in figure.caption
     assert "differ by at most 0.10 %" in figure.caption
     assert "what plane strain leaves out" in figure.caption
     assert figure.table is not None

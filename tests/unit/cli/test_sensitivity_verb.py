@@ -14,7 +14,7 @@ from command_line import loa
 
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.studies.sensitivity import RippleCurve, Sensitivity
-from lineofaction.gearbox.convert.case import CheckedCase
+from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.gearbox.studies.computation import Means

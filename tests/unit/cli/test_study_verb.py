@@ -28,7 +28,8 @@ from dynamics.study.run_study import _run_batch
 from fe_contact.ste import PairFacts
 from lineofaction.cli.analyze import analyzed
 from lineofaction.gearbox import workbench
-from lineofaction.gearbox.convert.case import CheckedCase, gear_pair
+from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.scene import check_scene, dynamic_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import read_model

@@ -10,7 +10,7 @@ import pytest
 from command_line import loa, printed
 from spur_case import spur_case
 
-from lineofaction.gearbox.convert.case import CheckedCase
+from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model

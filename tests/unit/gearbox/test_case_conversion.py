@@ -17,10 +17,18 @@ from spur_case import spur_case
 from bounds import Kind
 from fe_contact import AllowedError, FlankModification
 from fe_contact.flank.stated_start import StatedStarts
-from lineofaction.gearbox.convert.case import analysis_options, case_json, check_case, gear_pair, table_axes
+from lineofaction.gearbox.convert.case import (
+    analysis_options,
+    case_json,
+    gear_pair,
+    table_axes,
+    with_flanks,
+)
+from lineofaction.gearbox.convert.checked_case import check_case
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.declared import figures
+from lineofaction.gearbox.schemas.gear import with_figures
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.units import factor
 from service.schemas.examples import CASE
@@ -92,6 +100,44 @@ def test_every_modification_arrives_in_si() -> None:
     assert gear_pair(case(**MODIFIED)).wheel.modification.neutral
     rounded = gear_pair(case(tip_rounding_mm=0.2)).pinion.modification
     assert rounded.tip_rounding == pytest.approx(2e-4, rel=1e-15)
+
+
+STARTED = {"tip_relief_um": 12.0, "tip_relief_start_diameter_mm": 86.0}
+"""A relief by where it starts, which a length replaces."""
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("name", [*MODIFIED, "tip_rounding_mm"])
+@pytest.mark.parametrize("before", [{}, STARTED], ids=["plain", "started"])
+def test_other_flanks_make_the_pair_of_the_case_that_states_them(name: str, before: Any) -> None:
+    """Of either gear, to the last bit; what no pair can have is refused in the same words."""
+    stem = name.removesuffix("_um").removesuffix("_shape")
+    change = {other: value for other, value in MODIFIED.items() if other.startswith(stem)}
+    change |= {} if name in MODIFIED else {name: 0.2}
+    stated = changed_case({f"pair.pinion.{field}": value for field, value in before.items()})
+    pair, whole = gear_pair(stated), stated.model_dump(mode="json")
+    for gear in ("pinion", "wheel"):
+        anew = whole["pair"] | {gear: with_figures(whole["pair"][gear], change)}
+
+        def expected(table: Any = anew) -> Any:
+            return gear_pair(validated(Case, whole | {"pair": table}))
+
+        assert _made(lambda own=gear: with_flanks(pair, stated, {own: change})) == _made(expected)
+
+
+def _made(pair: Any) -> Any:
+    """Return a pair, or the faults for which there is none."""
+    try:
+        return pair()
+    except BadInput as error:
+        return error.faults
+
+
+def test_a_pair_without_other_flanks_stays_the_same() -> None:
+    stated = case(**STARTED)
+    pair = gear_pair(stated)
+    assert with_flanks(pair, stated, {"pinion": {}, "wheel": {}}) is pair
+    assert with_flanks(pair, stated, {"pinion": {"tip_relief_um": 1.0}}).wheel is pair.wheel
 
 
 def test_a_gear_without_modifications_is_the_librarys_own_default() -> None:

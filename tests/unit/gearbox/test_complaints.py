@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 import lineofaction as loa
 from dynamics.mechanism.passing import MESH, SIDEBAND
 from lineofaction.cli.commands import app
-from lineofaction.gearbox.convert.case import CheckedCase
+from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.complaint import (
     Complaint,
     complaint_of,

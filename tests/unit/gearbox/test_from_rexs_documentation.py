@@ -14,7 +14,7 @@ from lineofaction.gearbox.from_rexs.modifications import READERS, UNREAD
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.from_rexs.stage_case import StageCase
 from lineofaction.gearbox.schemas.bearings import BallRowInput, RollerRowInput, RollingBearingInput
-from lineofaction.gearbox.schemas.case import WheelInput
+from lineofaction.gearbox.schemas.driven_gear import WheelInput
 from lineofaction.gearbox.schemas.gear import GearInput
 
 

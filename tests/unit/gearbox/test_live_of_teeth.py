@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections import OrderedDict
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,7 +13,8 @@ from fe_contact import analyze
 from lineofaction.gearbox.convert.case import case_json, gear_pair
 from lineofaction.gearbox.convert.live import condensed_of, interpolated_columns, live_curves
 from lineofaction.gearbox.schemas.case import Case
-from lineofaction.gearbox.schemas.live import LiveCurve, LiveInput
+from lineofaction.gearbox.schemas.live import LiveInput
+from lineofaction.gearbox.schemas.live_answer import LiveCurve
 
 EARLY = 4
 CASE = {
@@ -53,7 +53,7 @@ def test_a_live_answer_names_the_tooth_that_is_early(tmp_path: Path) -> None:
     echoed = json.loads(json.dumps(case_json(case)))
     file = tmp_path / "table.nc"
     replace(table, metadata=replace(table.metadata, case=echoed)).to_netcdf(file)
-    answer = live_curves(*condensed_of(file, tmp_path), LiveInput(torque_n_m=(2.0,)), OrderedDict())
+    answer = live_curves(condensed_of(file, tmp_path), LiveInput(torque_n_m=(2.0,)))
     curve = LiveCurve.model_validate_json(json.dumps(answer["curves"][0]))
     assert curve.period == 17 and curve.order_name is not None and curve.order_name[0] == "pinion 1"
     assert curve.tooth_loads is not None and list(curve.tooth_loads) == ["pinion"]

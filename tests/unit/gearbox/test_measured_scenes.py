@@ -20,8 +20,10 @@ from lineofaction.gearbox.convert.measured_housings import housing_mobility, rea
 from lineofaction.gearbox.convert.scene import check_scene, dynamic_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import SceneInput, validated
-from lineofaction.gearbox.schemas.files import READERS, FileContentInput, beside, side_files, written_out
+from lineofaction.gearbox.schemas.file_content import FileContentInput
+from lineofaction.gearbox.schemas.files import READERS, side_files, written_out
 from lineofaction.gearbox.schemas.housings import HousingInput
+from lineofaction.gearbox.schemas.named_files import beside
 from lineofaction.gearbox.subjects import scene_of
 from service.reading.texts import scene_of_toml
 

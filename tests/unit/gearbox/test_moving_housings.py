@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 from dynamics.assembly.assemble import assemble
 from dynamics.housings import ReducedHousing, receptance
-from dynamics.housings.reduced_housing import rigid_motions
+from dynamics.housings.rigid_body import rigid_motions
 from dynamics.mechanism.bodies import modal_housing
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.studies import unit_bodies

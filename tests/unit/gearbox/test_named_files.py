@@ -13,7 +13,8 @@ from reduced_housings import random_housing
 
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, SceneInput, read_model
-from lineofaction.gearbox.schemas.files import LARGEST, FileContentInput, side_files
+from lineofaction.gearbox.schemas.file_content import LARGEST, FileContentInput
+from lineofaction.gearbox.schemas.files import side_files
 from lineofaction.gearbox.schemas.toml import toml_text
 from service.reading.texts import case_of_toml, scene_of_toml
 

@@ -27,7 +27,8 @@ from lineofaction.gearbox.convert.housings import housings_in
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated
-from lineofaction.gearbox.schemas.studied import RANGES, NoiseRanges
+from lineofaction.gearbox.schemas.noise_ranges import NoiseRanges
+from lineofaction.gearbox.schemas.studied import RANGES
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.noise import SensitivityFigures, SoundBandFigures

@@ -16,11 +16,12 @@ from fe_contact.compliance.flank import LARGEST_ROUNDING, disc_rounding
 from fe_contact.flank.modification import FlankModification
 from fe_contact.geometry import InternalGearPair, RingGear
 from fe_contact.material import Material
-from lineofaction.gearbox.convert.case import THICK, case_json, check_case, check_plain_case, gear_pair
+from lineofaction.gearbox.convert.case import THICK, case_json, gear_pair
+from lineofaction.gearbox.convert.checked_case import check_case, check_plain_case
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.declared import figures
-from lineofaction.gearbox.schemas.gear import FlankPoint
+from lineofaction.gearbox.schemas.flank_point import FlankPoint
 from lineofaction.report.pair import iso_mesh_stiffness, pair_of
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "internal_gear.toml"

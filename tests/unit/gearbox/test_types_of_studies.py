@@ -2,43 +2,30 @@
 
 from __future__ import annotations
 
-import ast
+from importlib import import_module
 from inspect import signature
-from pathlib import Path
 
 import lineofaction as loa
 from lineofaction.client import AsyncLineOfActionClient, AsyncProcess, LineOfActionClient, Process
-from lineofaction.gearbox import registry
+from lineofaction.gearbox import computations, registry
 from lineofaction.gearbox.registry import STUDIES
 
-TREE = ast.parse(Path(registry.__file__).read_text("utf-8"))
 
-
-def test_every_row_has_the_types_of_its_own_work() -> None:
-    """The names of its lambda are those of its package; only a type checker sees what they stand for."""
-    works = {
-        name.asname: node.module
-        for node in ast.walk(TREE)
-        if isinstance(node, ast.ImportFrom)
-        for name in node.names
-        if name.name == "RUN"
-    }
-    (studies,) = (node for node in TREE.body if isinstance(node, ast.ClassDef) and node.name == "Studies")
-    named = {}
-    for row in (node for node in studies.body if isinstance(node, ast.Assign)):
-        (work,) = (node.body for node in ast.walk(row) if isinstance(node, ast.Lambda))
-        named[ast.unparse(row.targets[0])] = works[ast.unparse(work)]
-    assert named == {
-        row.package: f"lineofaction.gearbox.studies.{row.package}.run" for row in STUDIES.values()
-    }
-    assert all(type(row.run).inputs is row.inputs for row in STUDIES.values())
-
-
-def test_every_row_is_the_function_of_its_name() -> None:
-    assert registry.__all__ == sorted(row.package for row in STUDIES.values())
+def test_every_row_has_its_own_computation() -> None:
     for row in STUDIES.values():
-        assert getattr(loa, row.package) is getattr(registry, row.package) is row
-        assert next(iter(signature(row).parameters)) == "subject"
+        computation = import_module(f"lineofaction.gearbox.studies.{row.package}.run").RUN
+        assert row.run is computation
+        assert type(computation).inputs is row.inputs
+
+
+def test_every_row_is_a_function() -> None:
+    assert registry.__all__ == sorted(row.package for row in STUDIES.values())
+    assert computations.__all__ == [name.upper() for name in registry.__all__]
+    for row in STUDIES.values():
+        function = getattr(loa, row.package)
+        assert function is getattr(registry, row.package) is row.function
+        assert next(iter(signature(function).parameters)) == "subject"
+        assert function.__doc__.startswith(row.description)
 
 
 def test_every_row_is_a_process_of_both_clients() -> None:

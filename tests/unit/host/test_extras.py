@@ -38,7 +38,7 @@ def test_a_missing_module_is_named_with_its_extra(monkeypatch: pytest.MonkeyPatc
 HIDDEN = sorted({name for names in MODULES.values() for name in names} | {"llvmlite", "starlette", "uvloop"})
 PACKAGES = (
     "fe_contact.analysis", "fe_contact.contact", "fe_contact.compliance", "fe_contact.mesh",
-    "fe_contact.full_contact", "fe_contact.microgeometry", "dynamics.simulation", "dynamics.linearize",
+    "fe_contact.microgeometry", "dynamics.simulation", "dynamics.linearize",
     "dynamics.forces", "lineofaction.report.document",
 )  # fmt: skip
 NO_ANALYSIS = f"gmsh is not installed. {ANALYSIS_ADVICE}"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray
 
-from model_studies.netcdf import NetcdfContent, Variable
+from model_studies.netcdf_content import NetcdfContent, Variable
 
 SPEED = {"units": "m s-1"}
 

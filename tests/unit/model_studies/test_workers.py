@@ -42,8 +42,8 @@ from model_studies.workers import (
     dask_workers,
     executor,
 )
+from model_studies.workers.content_digest import content_digest
 from model_studies.workers.executor import Packed, _Done
-from model_studies.workers.remembering import content_digest
 
 DRAFT: dict[str, Any] = {"level": "draft", "model": "plane_strain"}
 SCATTER = Scatter(modification={"wheel.profile_slope": 3e-6}, rule=GaussHermite(2))

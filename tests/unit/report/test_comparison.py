@@ -19,7 +19,7 @@ from dynamics.simulation import simulate
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.report.comparison.compare import compare, compare_runs, read_universal
+from lineofaction.report.comparison.compare import compare, compare_runs
 from lineofaction.report.comparison.measured import (
     PER_PITCH,
     Difference,
@@ -30,6 +30,7 @@ from lineofaction.report.comparison.measured import (
     read_measured,
 )
 from lineofaction.report.comparison.of_tables import compare_tables
+from lineofaction.report.comparison.universal_files import read_universal
 from lineofaction.report.document import read_result
 from lineofaction.report.run.view import RunView
 

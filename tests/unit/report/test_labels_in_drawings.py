@@ -19,7 +19,7 @@ from lineofaction.report.drawing.image import panel_sheet, png
 from lineofaction.report.drawing.interactive import plotly_figure
 from lineofaction.report.drawing.placing import line_labels, placed, spread_apart
 from lineofaction.report.pair import pair_drawing
-from lineofaction.report.response.modes import OTHERS, _largest_parts, mode_bars
+from lineofaction.report.response.mode_lines import OTHERS, _largest_parts, mode_bars
 
 ENDS = np.array([0.0, 1.0])
 HEIGHT = 0.11

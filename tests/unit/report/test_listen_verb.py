@@ -16,17 +16,19 @@ from scene_files import scene_file
 from sounding_housings import smooth_motion, with_surface
 from wav_files import read_wav
 
-from dynamics.acoustics import Recording, loudness_over_time
+import lineofaction
+from dynamics.acoustics import Recording, SoundFigures, loudness_over_time, sound_figures
+from dynamics.acoustics.sound_quality import is_steady
 from dynamics.housings import ReducedHousing, scene_housing
 from dynamics.housings.reduced_housing import PointMotion
 from dynamics.joints import Housing
 from dynamics.noise import heard_estimate, pressure_recording, sound_limit, velocity_recording
+from dynamics.orders import driving_speed
 from dynamics.results import RunResult
 from dynamics.types import FloatArray
 from lineofaction.gearbox import workbench
-from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.studies.housings import other_housings
-from lineofaction.gearbox.studies.listen.run import HeardRun, sound_figures
+from lineofaction.gearbox.studies.listen.run import HeardRun
 
 
 @pytest.fixture
@@ -155,7 +157,7 @@ def test_in_python_the_sound_needs_no_table(
 ) -> None:
     monkeypatch.setitem(sys.modules, "mosqito", None)  # its figures take seconds
     monkeypatch.setattr(workbench, "scene_by_tables", None)
-    heard: HeardRun = STUDIES["listen"](scene, run=moved, microphone_mm=(600.0, 800.0, -200.0))
+    heard: HeardRun = lineofaction.listen(scene, run=moved, microphone_mm=(600.0, 800.0, -200.0))
     expected = heard_at(housing, moved)
     assert heard.recording.samples.tolist() == expected.samples.tolist()
 
@@ -313,6 +315,10 @@ def recording(samples: np.ndarray = TONE) -> Recording:
     return Recording(samples, RATE, "sound pressure", "Pa")
 
 
+def figures_of(samples: Recording, run: RunResult) -> SoundFigures:
+    return sound_figures(samples, steady=is_steady(driving_speed(run)))
+
+
 @pytest.fixture
 def steady(run: RunResult) -> RunResult:
     return replace(run, speed=np.broadcast_to([[-40.0], [80.0]], run.speed.shape))
@@ -320,7 +326,7 @@ def steady(run: RunResult) -> RunResult:
 
 def test_a_steady_tone_of_60_db_has_4_sone_and_is_prominent(steady: RunResult) -> None:
     pytest.importorskip("mosqito", reason="loudness needs the extra psychoacoustics")
-    figures = sound_figures(recording(), steady)
+    figures = figures_of(recording(), steady)
     assert figures.steady
     assert figures.weighted_level == pytest.approx(60.0, abs=0.01)
     assert figures.loudness == pytest.approx(4.02, rel=0.05)
@@ -332,7 +338,7 @@ def test_a_steady_tone_of_60_db_has_4_sone_and_is_prominent(steady: RunResult) -
 def test_the_loudness_of_a_run_up_is_exceeded_for_a_twentieth_of_its_time(run: RunResult) -> None:
     pytest.importorskip("mosqito", reason="loudness needs the extra psychoacoustics")
     swelling = recording(TONE * np.linspace(0.0, 1.0, TONE.size) ** 2)
-    figures = sound_figures(swelling, run)
+    figures = figures_of(swelling, run)
     loudness = loudness_over_time(swelling)[1]
     assert not figures.steady and figures.tones == ()
     assert np.mean(loudness > figures.loudness) == pytest.approx(0.05, abs=0.01)
@@ -340,6 +346,6 @@ def test_the_loudness_of_a_run_up_is_exceeded_for_a_twentieth_of_its_time(run: R
 
 def test_without_the_extra_the_levels_are_left(steady: RunResult, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mosqito", None)
-    figures = sound_figures(recording(), steady)
+    figures = figures_of(recording(), steady)
     assert figures.level == pytest.approx(60.0, abs=0.01)
     assert figures.loudness is None and figures.sharpness is None

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from bounds.types import FloatArray, Json
 from fe_contact import Gear, GearPair, InternalGearPair, RingGear
 from fe_contact.geometry import ParallelAxes, Toothing, tooth_profile
-from lineofaction.gearbox.convert.live import pair_outline
+from lineofaction.gearbox.convert.outline import pair_outline
 from lineofaction.gearbox.units import MM
 from lineofaction.report.drawing.image import panel_sheet
 from lineofaction.report.pair import pair_drawing

@@ -1,33 +1,28 @@
-"""The list of licenses has every locked package, and only such as let the image be passed on."""
+"""The page of licenses has every locked package, and only such as let the image be passed on."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
 
+import licenses
+
 ROOT = Path(__file__).parents[3]
 FREE = "MIT|BSD|Apache|PSF|Python Software Foundation|ISC|MPL|Mozilla|LGPL-3.0|GPLv2\\+"
-
-
-def rows() -> list[list[str]]:
-    """Return the rows of the page."""
-    text = (ROOT / "docs" / "licenses.md").read_text("utf-8")
-    lines = [line for line in text.splitlines() if line.startswith("| ") and "version" not in line]
-    return [[cell.strip() for cell in line.strip("|").split(" | ")] for line in lines]
 
 
 def test_every_locked_package_is_listed_at_its_versions() -> None:
     lock = (ROOT / "requirements-dev.lock").read_text("utf-8")
     locked = set(re.findall(r"^([A-Za-z0-9._-]+)==([^ ;\n]+)", lock, flags=re.MULTILINE))
-    listed = {(row[0], version) for row in rows() for version in row[1].split(", ")}
-    assert locked == listed, "write it anew: python scripts/licenses.py"
+    listed = {(row[0], version) for row in licenses.rows() for version in row[1].split(", ")}
+    assert locked == listed
 
 
 def test_every_license_is_stated_and_those_of_the_service_let_it_be_passed_on_under_the_gpl() -> None:
-    assert [row for row in rows() if row[2] in ("", "not stated")] == []
+    assert [row for row in licenses.rows() if row[2] in ("", "not stated")] == []
     in_the_image = ("service", "extra `postgres`", "extra `s3`")
-    bound = [row for row in rows() if row[3] in in_the_image and re.search(FREE, row[2]) is None]
+    bound = [row for row in licenses.rows() if row[3] in in_the_image and re.search(FREE, row[2]) is None]
     assert bound == []
-    service = [row for row in rows() if row[3] == "service"]
+    service = [row for row in licenses.rows() if row[3] == "service"]
     assert len(service) > 40
-    assert not [row for row in rows() if row[0] == "mkl"], "neither locked nor in the image"
+    assert not [row for row in licenses.rows() if row[0] == "mkl"], "neither locked nor in the image"

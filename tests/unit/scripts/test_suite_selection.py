@@ -146,7 +146,9 @@ def test_a_house_has_the_tests_of_itself_and_of_what_stands_on_it(monkeypatch: p
     assert _left([_item("quick")], house="gearbox") == []
     assert _left([_item("quick")], house="service") == ["quick"]
     assert "lineofaction.cli" in houses_from("dynamics") and "fe_contact" not in houses_from("dynamics")
-    with pytest.raises(pytest.UsageError, match="gearboxes: no house; there are cli, hardcases"):
+    with pytest.raises(
+        pytest.UsageError, match="gearboxes: no house; there are verification, cli, hardcases"
+    ):
         houses_from("gearboxes")
 
 
@@ -161,6 +163,11 @@ def test_a_test_rests_on_the_houses_below_those_it_imports() -> None:
     _, houses = rests_on(TESTS / "stability" / "test_hard_scenes.py")
     assert houses >= {"lineofaction.hardcases", "lineofaction.gearbox", "dynamics", "fe_contact", "host"}
     assert "lineofaction.cli" not in houses
+
+
+def test_a_test_of_references_rests_on_what_they_import() -> None:
+    _, houses = rests_on(TESTS / "unit" / "verification" / "full_contact" / "test_line_loads.py")
+    assert houses == {"verification", "fe_contact", "model_studies", "bounds", "host"}
 
 
 def test_a_test_that_starts_processes_rests_on_all_houses() -> None:

@@ -17,7 +17,7 @@ from fastapi.testclient import TestClient
 import lineofaction
 from fe_contact.analysis.request import request_check
 from lineofaction.gearbox.convert import case as conversion
-from lineofaction.gearbox.convert.live import plan_of
+from lineofaction.gearbox.convert.plan import plan_of
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.toml import toml_text

@@ -33,8 +33,9 @@ from lineofaction.gearbox.convert.errors import translated
 from lineofaction.gearbox.input_file import InputFile, Override
 from lineofaction.gearbox.problems import BadInput, Fault, JobFailed
 from lineofaction.gearbox.schemas import Case, read_model
+from lineofaction.gearbox.schemas.fault_lines import line_of_field
 from lineofaction.gearbox.schemas.model import BoundaryModel
-from lineofaction.gearbox.schemas.reading import line_of_field, validated
+from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from service.schemas.examples import CASE, SCENE
 

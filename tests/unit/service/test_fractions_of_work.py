@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lineofaction.gearbox.convert.case import CheckedCase
+from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.stages import PacedFraction, TableFraction
 from service.worker.order import WorkOrder

@@ -14,10 +14,11 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from lineofaction.gearbox.convert.case import case_json, check_case, gear_pair
-from lineofaction.gearbox.convert.live import outline_json
+from lineofaction.gearbox.convert.case import case_json, gear_pair
+from lineofaction.gearbox.convert.checked_case import check_case
+from lineofaction.gearbox.convert.outline import outline_json
 from lineofaction.gearbox.schemas import Case
-from lineofaction.gearbox.schemas.files import FileContentInput
+from lineofaction.gearbox.schemas.file_content import FileContentInput
 from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_text

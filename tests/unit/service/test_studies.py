@@ -14,7 +14,7 @@ from lineofaction.client import LineOfActionClient
 from lineofaction.client.offers import offers
 from lineofaction.gearbox.convert.answers import metadata_json, summary_json
 from lineofaction.gearbox.convert.case import gear_pair
-from lineofaction.gearbox.convert.live import outline_json
+from lineofaction.gearbox.convert.outline import outline_json
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.from_rexs.unit_answer import unit_json
 from lineofaction.gearbox.problems import BadInput
@@ -22,7 +22,8 @@ from lineofaction.gearbox.registry import STUDIES, study_of
 from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.gearbox.schemas.model import BoundaryModel
-from lineofaction.gearbox.schemas.plan import OutlineBody, PlanBody
+from lineofaction.gearbox.schemas.outline import OutlineBody
+from lineofaction.gearbox.schemas.plan import PlanBody
 from lineofaction.gearbox.studies.computation import Computation
 from lineofaction.gearbox.studies.deflect import Inputs
 from lineofaction.gearbox.study import Study

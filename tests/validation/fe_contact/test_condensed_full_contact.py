@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from spur_gears import PAIR
 
-from fe_contact.full_contact import Resolution, solve_full_contact
-from fe_contact.full_contact.condensation import placed_mesh
+from verification.full_contact import Resolution, solve_full_contact
+from verification.full_contact.condensation import placed_mesh
 
 REFERENCE = Path(__file__).parents[2] / "reference" / "spur_20_20_full_contact.csv"
 SOURCE = "CalculiX 2.20 and a mortar code, resolved meshes, plane strain, uncertainty 0.1 % (0.3 % at 10 N m)"

@@ -12,8 +12,8 @@ from benchmarks.full_contact_helical import reference as reference_of_helical
 from benchmarks.full_contact_over_face import POSITIONS as FACE_POSITIONS
 from benchmarks.full_contact_over_face import face_cases, reference
 from fe_contact import analyze
-from fe_contact.full_contact import solve_full_contact_helical
 from fe_contact.geometry import Toothing
+from verification.full_contact import solve_full_contact_helical
 
 SOURCE = "helical full contact, its own convergence forgiven"
 PEER = "full finite-element contact over the face, its own convergence forgiven"

@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks.full_contact_over_face import AssessedFace, assess, face_cases
 from fe_contact import Gear, GearPair
-from fe_contact.full_contact import Resolution, solve_full_contact, solve_full_contact_over_face
+from verification.full_contact import Resolution, solve_full_contact, solve_full_contact_over_face
 
 SOURCE = "full finite-element contact by condensation over the face, its own convergence forgiven"
 RESOLVED = "resolved full contact in 3-D over that in plane strain, 20/20 pair: 1.028 to 1.030"

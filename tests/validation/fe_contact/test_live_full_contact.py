@@ -8,8 +8,8 @@ import pytest
 from calculix import find_calculix, solve_position
 
 from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear
-from fe_contact.full_contact import Resolution, solve_full_contact
 from fe_contact.geometry import ParallelAxes
+from verification.full_contact import Resolution, solve_full_contact
 
 CALCULIX = find_calculix()
 RELIEF = FlankModification(tip_relief=20e-6, tip_relief_length=1.5e-3)
@@ -33,7 +33,7 @@ MESH = Resolution(3.0)
 SOURCE = "CalculiX, surface-to-surface penalty contact, the same mesh"
 
 
-@pytest.mark.nightly  # tests/unit/fe_contact/full_contact/test_full_contact.py holds one pair against it
+@pytest.mark.nightly  # tests/unit/verification/full_contact/test_full_contact.py holds one pair against it
 @pytest.mark.skipif(CALCULIX is None, reason="CalculiX (ccx) is not installed")
 @pytest.mark.parametrize("name", CASES)
 def test_two_contact_solvers_agree_on_one_mesh(name: str, record_figure) -> None:

@@ -10,7 +10,7 @@ import pytest
 from benchmarks.full_contact_cases import full_contact_cases
 from benchmarks.full_contact_coverage import reference
 from fe_contact import Gear, GearPair, analyze
-from fe_contact.full_contact import solve_full_contact
+from verification.full_contact import solve_full_contact
 
 SOURCE = "full finite-element contact by condensation, plane strain, 0.02 % off at most points"
 MODULE, PRESSURE_ANGLE, SHIFTS = 3e-3, math.radians(25.0), (0.51, -0.26)

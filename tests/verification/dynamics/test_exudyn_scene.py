@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, with_bushings, with_gear, with_mesh
 
-from dynamics.engines.exudyn_scene import run_in_exudyn
+from benchmarks.exudyn_scene import run_in_exudyn
 from dynamics.errors import InputError
 from dynamics.loads import TimeLaw
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import simulate
 
-pytest.importorskip("exudyn", reason="Exudyn is not installed: pip install lineofaction[exudyn]")
+pytest.importorskip("exudyn", reason="Exudyn is not installed: pip install exudyn")
 
 OUTPUTS = Outputs(20e3, bearing_forces=False, energy_audit=False, anti_alias=False)
 

@@ -24,7 +24,7 @@ from dynamics.motion.observation import local_state
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
 from fe_contact.ste import PairFacts
-from lineofaction.gearbox.convert.case import check_case
+from lineofaction.gearbox.convert.checked_case import check_case
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.scene import SceneInput

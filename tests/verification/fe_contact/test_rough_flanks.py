@@ -26,7 +26,7 @@ FULL_CONTACT = {
     200.0: [19601.7, 19843.3, 20143.7, 20544.7, 27346.5, 27479.5, 19086.4, 18777.9, 18548.2, 18518.9, 18662.3,
             18832.4, 20060.8, 27394.6],
 }  # fmt: skip
-"""nm, good to 9 nm, `fe_contact.full_contact` on its standard mesh."""
+"""nm, good to 9 nm, `verification.full_contact` on its standard mesh."""
 
 
 def rough_pair() -> GearPair:

@@ -11,7 +11,8 @@ from dynamics.settings.load_case import CaseForce
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.figures import Figures, Part, Source
 from lineofaction.gearbox.schemas.loads import ACTING, Vector
-from lineofaction.gearbox.schemas.model import BoundaryModel, Name, Row, own_or_factor, refuse, stated
+from lineofaction.gearbox.schemas.model import BoundaryModel, Name, Row, refuse
+from lineofaction.gearbox.schemas.rules import own_or_factor, stated
 
 MOST_CASES = 64
 MOST_FORCES = 256

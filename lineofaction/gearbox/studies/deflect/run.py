@@ -11,11 +11,13 @@ import numpy as np
 from bounds import engineering, leftover
 from bounds.types import Json
 from dynamics.deflection import CaseDeflection, MeshAlignment, deflect
+from dynamics.deflection.agreement import Agreement, in_agreement
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.analysis.flanks.pressure_map import pressure_map
 from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.types import FloatArray
-from lineofaction.gearbox.convert.case import PLANE, across_face, boundary_errors
+from lineofaction.gearbox.convert.case import PLANE, boundary_errors
+from lineofaction.gearbox.convert.checked_case import across_face
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.meshes import MeshInput
@@ -24,7 +26,6 @@ from lineofaction.gearbox.studies.bodies import UNIT
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
 from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.deflect import DeflectFigures, Inputs
-from lineofaction.gearbox.studies.deflect.agreement import Agreement, in_agreement
 from lineofaction.gearbox.studies.deflect.cases import check_cases, load_cases
 from lineofaction.gearbox.studies.deflect.figures import figures_by_case, write_spectrum
 from lineofaction.gearbox.studies.deflect.mesh_contact import DividedTables, MeshContact

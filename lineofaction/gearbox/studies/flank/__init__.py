@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import Field
 
 from lineofaction.gearbox.schemas.figures import Figures, Json, Source
-from lineofaction.gearbox.schemas.gear import FlankPoint
+from lineofaction.gearbox.schemas.flank_point import FlankPoint
 from lineofaction.gearbox.units import boundary_ledger
 
 

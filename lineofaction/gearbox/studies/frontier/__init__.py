@@ -33,8 +33,8 @@ class Inputs(BoundaryModel):
         default=None,
         ge=1,
         le=MOST_FULL_CONTACT,
-        description="Positions of a case at which full finite-element contact is computed as well: about 3 "
-        "CPU s each in plane strain, 70 or more over the face",
+        description="Positions at which recorded full finite-element contact is compared as well, of a case "
+        "whose pair has a record",
         examples=[4],
     )
 

@@ -14,7 +14,8 @@ from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.studies.frontier import FIDELITIES, Frontier, frontier, predicted_frontier
 from fe_contact.analysis.studies.full_contact_cost import ORIGIN
 from fe_contact.errors import chosen
-from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors, study_options
+from lineofaction.gearbox.convert.case import boundary_errors, study_options
+from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -57,7 +58,7 @@ class _FrontierStudy(
         if isinstance(subject, SceneInput):
             return runs_cost(subject, lambda scene: runs_of_frontier(scene, names), "minimal")
         with boundary_errors():
-            seconds = predicted_frontier(subject.request(_table, inputs), names, inputs.full_contact, cache)
+            seconds = predicted_frontier(subject.request(_table, inputs), names, cache)
         return StudyCost(tuple(Work(name, own) for name, own in seconds.items()))
 
     def compute(

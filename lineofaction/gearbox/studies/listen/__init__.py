@@ -7,7 +7,8 @@ from typing import Annotated, Literal, Self
 from pydantic import ConfigDict, Field, model_validator
 
 from lineofaction.gearbox.schemas.figures import Figures, Part, Source
-from lineofaction.gearbox.schemas.model import BoundaryModel, Coordinate, Row, at_most_one_of, refuse, stated
+from lineofaction.gearbox.schemas.model import BoundaryModel, Coordinate, Row, refuse
+from lineofaction.gearbox.schemas.rules import at_most_one_of, stated
 from lineofaction.gearbox.schemas.studied import RunHash
 
 Position = Annotated[Row[Coordinate], Field(min_length=3, max_length=3)]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -10,14 +9,14 @@ import numpy as np
 
 from bounds.brief import brief
 from bounds.types import Json
-from dynamics.acoustics import Recording, loudness_over_time, sound_pressure_level, sound_quality
-from dynamics.acoustics.sound_quality import SHORTEST
+from dynamics.acoustics import Recording, SoundFigures, sound_figures
+from dynamics.acoustics.sound_quality import is_steady
 from dynamics.housings import ReducedHousing, scene_housing
-from dynamics.noise import check_microphone, heard_estimate, pressure_recording, velocity_recording
-from dynamics.orders import leading_shaft
+from dynamics.housings.reduced_housing import SurfaceHousing
+from dynamics.noise import scene_pressure, velocity_recording
+from dynamics.orders import driving_speed
 from dynamics.results import RunResult
 from dynamics.types import FloatArray
-from host import MissingExtra
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.housings import FOLDER, HousedScene
 from lineofaction.gearbox.problems import BadInput
@@ -39,53 +38,6 @@ FREE_FIELD = (
 )
 POINTS = 200
 """Of the way along an axis."""
-STEADY = 0.01
-"""Largest change of speed of a steady sound, of the speed."""
-EXCEEDED = 5.0
-"""Percent of the time for which the loudness of a changing sound is exceeded: N5 of ISO 532-1."""
-
-
-@dataclass(frozen=True)
-class SoundFigures:
-    """Figures of a sound pressure."""
-
-    level: float
-    weighted_level: float
-    """`level`, `weighted_level`: Of the rms over the whole run, dB and dB(A) re 20 uPa."""
-    steady: bool
-    """Whether the speed is constant."""
-    loudness: float | None = None
-    """sone, in the free field; of a changing sound that exceeded for 5 % of the time. None: not computed."""
-    sharpness: float | None = None
-    """acum, of the mean spectrum."""
-    tones: tuple[tuple[float, float], ...] = ()
-    """Hz and tone-to-noise ratio in dB of the prominent tones of a steady sound."""
-
-
-def sound_figures(recording: Recording, run: RunResult) -> SoundFigures:
-    """Return the figures of a sound pressure; of a very short one, or without MoSQITo, its levels alone."""
-    level, weighted = (sound_pressure_level(recording, weighted=by_ear) for by_ear in (False, True))
-    speed = np.abs(run.speed[run.shaft.index(driving_shaft(run, 0))])
-    steady = bool(np.ptp(speed) <= STEADY * speed.max())
-    if recording.samples.size < SHORTEST * recording.sample_rate:
-        return SoundFigures(level, weighted, steady)
-    try:
-        quality = sound_quality(recording)
-        loudness = quality.loudness
-        if not steady:
-            loudness = float(np.percentile(loudness_over_time(recording)[1], 100.0 - EXCEEDED))
-    except MissingExtra:
-        return SoundFigures(level, weighted, steady)
-    tones = zip(quality.tone_frequency.tolist(), quality.tone_to_noise.tolist(), strict=True)
-    return SoundFigures(level, weighted, steady, loudness, quality.sharpness, tuple(tones) if steady else ())
-
-
-def driving_shaft(run: RunResult, mesh: int) -> str:
-    """Name of the shaft that carries the driving gear; without gears of the first that is driven."""
-    if not run.mesh:
-        return leading_shaft(run)
-    driver = run.case["meshes"][mesh]["driver"]
-    return str(next(gear["shaft"] for gear in run.case["gears"] if gear["name"] == driver))
 
 
 @dataclass(frozen=True)
@@ -107,21 +59,16 @@ class SceneHousings:
         Raises `BadInput`: the microphone is not in the air, the run has no forces on bearings of a housing,
         or no housing has a surface.
         """
-        position, cache = np.array(microphone_mm) * MM, self.means.home / FOLDER
-        bodies = {name: body for name, body in self.housings.items() if body.surface is not None}
-        heard = []
-        with boundary_errors():
-            for body in bodies.values():
-                check_microphone(body, position)
-            for name, body in bodies.items():
-                estimate = heard_estimate(body, run, cache, self.means.report)
-                heard.append(pressure_recording(body, run, position, self.bearings[name], estimate=estimate))
-        if not heard:
+        surfaces = [
+            SurfaceHousing(name, body, self.bearings[name])
+            for name, body in self.housings.items()
+            if body.surface is not None
+        ]
+        if not surfaces:
             raise no_surface(list(self.bearings))
-        quantity = "; ".join(dict.fromkeys(recording.quantity for recording in heard))
-        return replace(
-            heard[0], samples=np.sum([recording.samples for recording in heard], axis=0), quantity=quantity
-        )
+        position, cache = np.array(microphone_mm) * MM, self.means.home / FOLDER
+        with boundary_errors():
+            return scene_pressure(surfaces, run, position, cache, self.means.report)
 
     def velocity(self, run: RunResult, point: str, direction: str = "") -> Recording:
         """Return the velocity of a named point along one of `DIRECTIONS`, by default the principal one.
@@ -213,12 +160,12 @@ def heard_run(name: str, run: RunResult, housings: SceneHousings, receiver: Rece
     Raises `BadInput` as `SceneHousings.pressure` and `velocity`.
     """
     time = np.linspace(float(run.time[0]), float(run.time[-1]), POINTS)
-    speed = np.interp(time, run.time, np.abs(run.speed[run.shaft.index(driving_shaft(run, 0))]))
+    speed = np.interp(time, run.time, driving_speed(run))
     if receiver.point:
         recording, figures = housings.velocity(run, receiver.point, receiver.direction), None
     else:
         recording = housings.pressure(run, receiver.microphone_mm)
-        figures = sound_figures(recording, run)
+        figures = sound_figures(recording, steady=is_steady(driving_speed(run)))
     own = [scene_housing(body, part) for part, body in housings.housings.items()]
     return HeardRun(name, recording, figures, other_housings(own, run), time - time[0], speed)
 
@@ -228,15 +175,10 @@ def recording_facts(recording: Recording) -> Json:
     return {
         "quantity": recording.quantity,
         "unit": recording.unit,
-        "rms": rms(recording),
+        "rms": recording.rms,
         "duration_s": recording.samples.size / recording.sample_rate,
         "sample_rate_hz": recording.sample_rate,
     }
-
-
-def rms(recording: Recording) -> float:
-    """Return the root mean square of a recording."""
-    return math.sqrt(float((recording.samples**2).mean()))
 
 
 def _receiver(inputs: Inputs) -> Receiver:

@@ -20,7 +20,8 @@ from lineofaction.gearbox.schemas.figures import (
     Source,
 )
 from lineofaction.gearbox.schemas.model import Point
-from lineofaction.gearbox.schemas.studied import NoiseRanges, OverSpeedsOrRun
+from lineofaction.gearbox.schemas.noise_ranges import NoiseRanges
+from lineofaction.gearbox.schemas.studied import OverSpeedsOrRun
 
 
 class Inputs(NoiseRanges, OverSpeedsOrRun):

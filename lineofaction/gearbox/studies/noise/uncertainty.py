@@ -25,8 +25,9 @@ from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.gear import has_extent
 from lineofaction.gearbox.schemas.housings import HousingInput
+from lineofaction.gearbox.schemas.noise_ranges import NoiseRanges
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.schemas.studied import RANGES, NoiseRanges
+from lineofaction.gearbox.schemas.studied import RANGES
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.noise import Inputs
 from lineofaction.gearbox.studies.study.scenes import VariedScene, places_of

@@ -29,8 +29,9 @@ from fe_contact.microgeometry.search import (
     usual_designs,
 )
 from fe_contact.microgeometry.variables import DesignVariable
-from lineofaction.gearbox.convert.case import CheckedCase, boundary_errors
-from lineofaction.gearbox.convert.errors import boundary_name
+from lineofaction.gearbox.convert.boundary_names import boundary_name
+from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case

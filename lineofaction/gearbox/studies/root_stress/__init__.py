@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from lineofaction.gearbox.schemas.figures import Figures, Json, Part, Source
-from lineofaction.gearbox.schemas.gear import FlankPoint
+from lineofaction.gearbox.schemas.flank_point import FlankPoint
 
 
 class Inputs(FlankPoint):

@@ -8,7 +8,8 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from lineofaction.gearbox.schemas.figures import Figures, Json, Part, Source
-from lineofaction.gearbox.schemas.model import BoundaryModel, Row, Spelling
+from lineofaction.gearbox.schemas.model import BoundaryModel, Row
+from lineofaction.gearbox.schemas.spelling import Spelling
 
 Drawn = Annotated[str, Field(min_length=1, max_length=200)]
 

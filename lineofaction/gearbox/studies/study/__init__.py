@@ -7,7 +7,8 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import ConfigDict, Field, model_validator
 
 from lineofaction.gearbox.schemas.figures import Figures, Json, Part
-from lineofaction.gearbox.schemas.model import BoundaryModel, Name, Row, exactly_one_of, refuse, stated
+from lineofaction.gearbox.schemas.model import BoundaryModel, Name, Row, refuse
+from lineofaction.gearbox.schemas.rules import exactly_one_of, stated
 
 Value = Annotated[float, Field(ge=-1e20, le=1e20)]
 Values = Row[Value]

@@ -34,7 +34,7 @@ from lineofaction.gearbox.studies.study.scenes import (
     mesh_of_case,
 )
 from lineofaction.gearbox.units import UM
-from model_studies.workers.remembering import content_digest
+from model_studies.workers.content_digest import content_digest
 
 PROBED = 3
 """Points of a study whose runs are probed before it begins."""

@@ -26,16 +26,12 @@ from fe_contact.microgeometry.sweep import (
 )
 from fe_contact.microgeometry.variables import GEARS, figure
 from fe_contact.types import BoolArray, FloatArray
-from lineofaction.gearbox.convert.case import (
-    CheckedCase,
-    boundary_errors,
-    case_at,
-    operating_point,
-)
+from lineofaction.gearbox.convert.case import boundary_errors, case_at, operating_point
+from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.number_list import number_list
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.declared import Figure, figures
-from lineofaction.gearbox.schemas.gear import FlankPoint
+from lineofaction.gearbox.schemas.flank_point import FlankPoint
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, record_file
 from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.sweep import Inputs, SweepFigures

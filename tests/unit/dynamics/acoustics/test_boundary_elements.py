@@ -11,7 +11,7 @@ from hulls import box, sphere
 from dynamics.acoustics import (
     Air,
     Hull,
-    boundary_elements,
+    layer_operators,
     radiation_efficiency,
     resistance,
     sphere_efficiency,
@@ -114,12 +114,12 @@ def test_resistance_is_reciprocal_and_independent_of_place_and_turn() -> None:
 def test_operators_by_blocks_of_panels_are_the_whole_to_the_last_bit(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whoever assembles them: a pool has a library of its own, which sees a block at a time."""
     monkeypatch.setattr(executor, "START_SECONDS", 0.0)
-    whole = boundary_elements._layer_operators(FINE, 2.0)
-    monkeypatch.setattr(boundary_elements, "BLOCK", 170)
+    whole = layer_operators.layer_operators(FINE, 2.0)
+    monkeypatch.setattr(layer_operators, "BLOCK", 170)
     with local_processes(2) as pool:
         for workers in (InProcess(), pool):
             for one, other in zip(
-                boundary_elements._layer_operators(FINE, 2.0, workers=workers), whole, strict=True
+                layer_operators.layer_operators(FINE, 2.0, workers=workers), whole, strict=True
             ):
                 np.testing.assert_array_equal(one, other)
         assert pool.cost.tasks == 3

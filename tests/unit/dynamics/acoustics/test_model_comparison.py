@@ -14,9 +14,9 @@ from dynamics.acoustics import (
     BoundaryElements,
     ElementalRadiators,
     Hull,
-    boundary_elements,
     compare_models,
     errors_db,
+    layer_operators,
 )
 from dynamics.acoustics.model_comparison import MODELS
 from dynamics.errors import InputError
@@ -85,7 +85,7 @@ def test_the_whole_of_7040_panels_is_what_was_measured() -> None:
 
 def test_boundary_elements_report_their_assembly(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("ngsolve", reason="boundary elements need the extra boundary-elements")
-    monkeypatch.setattr(boundary_elements, "BLOCK", 50)
+    monkeypatch.setattr(layer_operators, "BLOCK", 50)
     told: list[tuple[str, float]] = []
     hull = sphere(2)
     reporting = BoundaryElements(progress=lambda *step: told.append(step))

@@ -11,7 +11,8 @@ from reduced_housings import bare_housing
 
 from dynamics.acoustics import Air, ElementalRadiators, outer_hull, resistance
 from dynamics.housings import TetrahedralMesh
-from dynamics.housings.reduced_housing import SurfaceMotion, rigid_motions
+from dynamics.housings.reduced_housing import SurfaceMotion
+from dynamics.housings.rigid_body import rigid_motions
 from dynamics.noise import radiating_hull
 from dynamics.vibration import surface_weight
 

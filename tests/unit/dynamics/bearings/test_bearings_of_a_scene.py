@@ -24,7 +24,7 @@ from dynamics.bearings import Bushing, RollingBearing
 from dynamics.bearings.loaded_bearing import LoadedBearing, tangent_bushing
 from dynamics.bearings.row_law import row_law
 from dynamics.errors import InputError
-from dynamics.forces.laws import OF_BEARINGS
+from dynamics.forces.laws import BEARING_LAW_KINDS
 from dynamics.integrators import static_equilibrium
 from dynamics.integrators.march import stored_energy
 from dynamics.linearize import natural_modes
@@ -61,7 +61,7 @@ def test_derivatives_are_those_of_the_forces(kind):
     arrays, rows = system.arrays, bearing_rows(system.arrays)
     blocks = [
         slice(arrays.elements.first[e], arrays.elements.first[e + 1])
-        for e in np.flatnonzero(np.isin(arrays.elements.law, OF_BEARINGS))
+        for e in np.flatnonzero(np.isin(arrays.elements.law, BEARING_LAW_KINDS))
     ]
     assert len(blocks) == 2
     rng = np.random.default_rng(1)
@@ -204,7 +204,7 @@ def stiffness_at(system, q):
     """Diagonal of the stiffness of all bearings at `q`, (n,)."""
     local, total = local_state(system.arrays, 0.0, q, 0.0 * q), system.arrays.stiffness.copy()
     elements = system.arrays.elements
-    for e in np.flatnonzero(np.isin(elements.law, OF_BEARINGS)):
+    for e in np.flatnonzero(np.isin(elements.law, BEARING_LAW_KINDS)):
         rows = slice(elements.first[e], elements.first[e + 1])
         gradient = system.arrays.direction[rows]
         total += gradient.T @ local.tangent[rows, : gradient.shape[0]] @ gradient

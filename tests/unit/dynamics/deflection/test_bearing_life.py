@@ -11,7 +11,7 @@ from dynamics.bearings import BallBearing, Bushing, RollerBearing, RollingBearin
 from dynamics.bearings.loaded_bearing import LoadedBearing
 from dynamics.bearings.rating_life import rating_life
 from dynamics.deflection import LoadCase, deflect, life_duration
-from dynamics.deflection.deflect import bearing_life
+from dynamics.deflection.bearing_loads import bearing_life
 from dynamics.errors import InputError
 
 CAPACITY = 23400.0

@@ -15,7 +15,7 @@ from dynamics.bearings import Bushing
 from dynamics.deflection import CAUSES, LoadCase, deflect, equivalent_load, loaded_scene
 from dynamics.deflection.deflect import cycle_times
 from dynamics.deflection.loaded_scene import with_loads
-from dynamics.deflection.mesh_alignment import rest_over
+from dynamics.deflection.rest_positions import rest_over
 from dynamics.errors import InputError
 from dynamics.forces import RollingContact
 from dynamics.integrators import static_equilibrium

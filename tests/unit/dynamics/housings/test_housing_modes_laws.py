@@ -34,14 +34,13 @@ from dynamics.housings import (
 from dynamics.housings import assembled_housing as free_modes_module
 from dynamics.housings.assembled_housing import (
     AssembledHousing,
-    ModeStatus,
     _independent_freedoms,
     assemble,
-    free_modes,
     mass_and_stiffness,
 )
-from dynamics.housings.reduced_housing import rigid_body
+from dynamics.housings.free_modes import ModeStatus, free_modes
 from dynamics.housings.reduction import reduce_housing
+from dynamics.housings.rigid_body import rigid_body
 from dynamics.housings.supports import mean_motion
 
 STEEL = Material(210e9, 0.3, 7850.0)

@@ -34,7 +34,8 @@ from dynamics.housings import (
     reduction_cost,
 )
 from dynamics.housings import reduction as kept_module
-from dynamics.housings.reduction import content_key, reduce_housing
+from dynamics.housings.kept_reduction import content_key
+from dynamics.housings.reduction import reduce_housing
 
 WITHIN = 1.3
 """Factor within which a cost is predicted."""

@@ -33,6 +33,7 @@ def test_other_mounts_are_those_of_a_new_reduction(reduced):
         np.testing.assert_allclose(getattr(back, name), own, atol=1e-8 * np.abs(own).max())
 
 
+@pytest.mark.law
 def test_other_damping_is_that_of_a_new_reduction(reduced):
     other = reduced_housing(replace(meshed(), damping=MaterialDamping(0.05)))
     found = with_damping(reduced, 2.5)

@@ -56,6 +56,7 @@ def test_flanks_move_as_compliance_times_force(gear: Toothing) -> None:
         assert found.residual < 1e-10
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("teeth", [None, 5])
 def test_sections_move_as_compliance_times_force(teeth: int | None) -> None:
     gear = make_gear()

@@ -66,6 +66,7 @@ def test_springs_are_as_soft_as_finite_elements() -> None:
     assert between == pytest.approx(np.ones(between.size), abs=0.25)
 
 
+@pytest.mark.law
 def test_springs_of_helical_teeth_are_as_soft_as_finite_elements(tmp_path: Path) -> None:
     """A force with an axial part bends the discs: without that teeth move their neighbors half as far."""
     narrow = {name: replace(getattr(HELICAL, name), face_width=4 * M) for name in ("pinion", "wheel")}

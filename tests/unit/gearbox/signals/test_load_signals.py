@@ -12,7 +12,8 @@ from recordings import MDF, Signal, h5py, pyuff
 
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import SceneInput, read_model
-from lineofaction.gearbox.schemas.files import READERS, SENT, beside, written_out
+from lineofaction.gearbox.schemas.files import READERS, SENT, written_out
+from lineofaction.gearbox.schemas.named_files import beside
 
 EXAMPLES = Path(__file__).parents[4] / "examples"
 TIME = 3.0 + np.arange(2001) / 1000.0

@@ -1,0 +1,99 @@
+"""Layer operators of the Helmholtz equation on a hull by NGSolve: the one file that loads it."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from dynamics.acoustics.hull import Hull
+from dynamics.types import ComplexArray
+from dynamics.work_cost import Cost
+from host import MissingExtra
+from model_studies.progress import Report, unreported
+from model_studies.workers import InProcess, Workers, divided
+
+BLOCK = 512
+"""Panels, at most, whose rows of the operators are a task."""
+TESTED = "tested"
+"""Name of the panels of a block in the library's mesh."""
+SECONDS, GROWTH = 1.40e-6, 2.24
+"""CPU seconds of one panel, and the power of their number by which they grow.
+
+Fitted to spheres of 500 to 2880 panels, within 1.2; 7040 panels of a box took 615 CPU s, this says 585. That
+is more than the square of assembly: larger operators miss the cache more often.
+"""
+BYTES, LIBRARY = 110.0, 1e8
+"""For the square of the number of panels (5.9 GB measured with 7040), and of NGSolve."""
+
+
+def operators_cost(panels: int) -> Cost:
+    """Predict the cost of the dense operators of a hull."""
+    return Cost(SECONDS * panels**GROWTH, LIBRARY + BYTES * float(panels) ** 2)
+
+
+def layer_operators(
+    hull: Hull,
+    wavenumber: float,
+    done: Report = unreported,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
+) -> tuple[ComplexArray, ComplexArray]:
+    """Return the dense single layer (T, T) and double layer (T, N), tested with the panels, m^3 and m^2.
+
+    Kernel e^{+ikr}/(4 pi r); the single layer acts on constants of the panels, the double layer on hats of
+    the nodes. Singular pairs are integrated by the library's own transformations. `done` is called with the
+    fraction of the panels that are done.
+    """
+    panels = len(hull.triangles)
+    single = np.empty((panels, panels), dtype=complex)
+    double = np.empty((panels, len(hull.nodes)), dtype=complex)
+    ends = np.linspace(0, panels, -(-panels // BLOCK) + 1).astype(int).tolist()
+    blocks = list(pairwise(ends))
+    seconds = operators_cost(panels).seconds
+    rows = divided(workers, _layer_rows, (hull, wavenumber), blocks, seconds)
+    for (first, end), own in zip(blocks, rows, strict=True):
+        single[first:end], double[first:end] = own
+        done(end / panels)
+    return single, double
+
+
+def _layer_rows(shared: tuple[Hull, float], block: tuple[int, int]) -> tuple[ComplexArray, ComplexArray]:
+    """Return the rows of both operators that are tested with the panels of a block: one task."""
+    try:
+        import ngsolve  # noqa: PLC0415 (an extra)
+        from ngsolve.bem import HelmholtzDL, HelmholtzSL  # noqa: PLC0415
+    except ModuleNotFoundError:
+        raise MissingExtra("ngsolve", "boundary-elements") from None
+    (hull, wavenumber), ds = shared, ngsolve.ds
+    mesh = _mesh(hull, block)
+    hats = ngsolve.H1(mesh, order=1, complex=True, definedon=mesh.Boundaries(".*")).TrialFunction()
+    constant = ngsolve.SurfaceL2(mesh, order=0, complex=True).TrialFunction()
+    own = ngsolve.SurfaceL2(mesh, order=0, complex=True, definedon=mesh.Boundaries(TESTED)).TestFunction()
+    single = HelmholtzSL(constant * ds, wavenumber, use_fmm=False) * own * ds(TESTED)
+    double = HelmholtzDL(hats * ds, wavenumber, use_fmm=False) * own * ds(TESTED)
+    return _dense(single.mat, block), _dense(double.mat, block)
+
+
+def _mesh(hull: Hull, block: tuple[int, int]) -> Any:
+    """Return the hull as a mesh of the library, nodes and panels in the same order."""
+    import ngsolve  # noqa: PLC0415 (an extra)
+    from netgen.meshing import Element2D, FaceDescriptor, Mesh, MeshPoint, Pnt  # noqa: PLC0415
+
+    mesh = Mesh(dim=3)
+    for number, name in ((1, TESTED), (2, "other")):
+        mesh.Add(FaceDescriptor(surfnr=number, domin=1, bc=number))
+        mesh.SetBCName(number - 1, name)
+    points = [mesh.Add(MeshPoint(Pnt(*(float(value) for value in node)))) for node in hull.nodes]
+    for panel, triangle in enumerate(hull.triangles):
+        number = 1 if block[0] <= panel < block[1] else 2
+        mesh.Add(Element2D(number, [points[node] for node in triangle]))
+    return ngsolve.Mesh(mesh)
+
+
+def _dense(matrix: Any, block: tuple[int, int]) -> ComplexArray:
+    """Return the rows of a block, which are all that there are."""
+    rows, columns, values = (np.asarray(part) for part in matrix.COO())
+    entries = np.zeros((block[1] - block[0], matrix.width), dtype=complex)
+    entries[rows - block[0], columns] = values
+    return entries

@@ -1,0 +1,53 @@
+"""The force elements of bearings: those that are not linear, and linear ones in housings that move."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from dynamics.assembly.model import Model
+from dynamics.bearings.linear_bearing import LinearBearingLaws
+from dynamics.forces.elements import Element
+from dynamics.forces.laws import LAW_BY_ARRAYS
+from dynamics.kernels.by_address import by_address
+from dynamics.mechanism.bearing_elements import housed_bearing_elements, housed_bearings, supports_by_name
+from dynamics.mechanism.phases import repeating_phases
+from dynamics.mechanism.supports import seat_error, seat_motion
+
+
+def bearing_elements(model: Model) -> tuple[tuple[Element, ...], dict[str, Any]]:
+    """Return the elements of all nonlinear bearing laws, and their laws by the fields of `ElementLaws`.
+
+    Where rolling elements pass one by one, the row reads the turn of its cage. Cages are the last positions.
+    """
+    mechanism, scene = model.mechanism, model.mechanism.scene
+    first_cage = len(scene.meshes) + len(repeating_phases(scene, mechanism.kinematics))
+    passing = [part.name for part in scene.rolling_bearings if part.name in mechanism.passing]
+    cage = {name: first_cage + index for index, name in enumerate(passing)}
+    supports, elements = supports_by_name(mechanism.rotors), []
+    entries: dict[Any, list[Any]] = {arrays: [] for arrays in LAW_BY_ARRAYS}
+    for part, at in zip(scene.laws_with(mechanism.passing), mechanism.bearings, strict=True):
+        rotor, support = supports[at.name]
+        gradient = at.way @ seat_motion(mechanism.rotors, rotor, support)
+        offset = -at.way @ seat_error(mechanism.rotors, rotor, support)
+        law, laid_out = LAW_BY_ARRAYS[part.arrays], entries[part.arrays]
+        position = cage.get(at.name, -1)
+        elements.append(Element(law, len(laid_out), position, gradient, offset, stiffness=at.typical))
+        laid_out.append(part.laid_out(mechanism.bearing_duty[at.name]))
+    packed = {
+        law.name.lower(): arrays.packed(entries[arrays]) if entries[arrays] else _empty_arrays(arrays)
+        for arrays, law in LAW_BY_ARRAYS.items()
+    }
+    return tuple(elements), packed
+
+
+@cache
+def _empty_arrays(arrays: Any) -> Any:
+    """Return the arrays of a law that no bearing has."""
+    return by_address(arrays.packed([]))
+
+
+def housed_elements(model: Model) -> tuple[tuple[Element, ...], LinearBearingLaws]:
+    """Return the elements of linear bearings in housings that move, and their laws."""
+    rotors = model.mechanism.rotors
+    return housed_bearing_elements(rotors, housed_bearings(model.mechanism.scene, rotors))

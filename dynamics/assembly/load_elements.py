@@ -1,0 +1,175 @@
+"""The force elements of loads: applied forces, unbalances, torques that depend on speed.
+
+Axis letters: N columns, the six freedoms of every rotor; p rows of an element.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from dynamics.assembly.model import Model
+from dynamics.errors import InputError
+from dynamics.forces.elements import Element
+from dynamics.forces.laws import Law
+from dynamics.loads.applied_force import AppliedForce
+from dynamics.loads.load_course import BySpeed, Orders
+from dynamics.loads.load_laws import ForceCourseLaws, SpeedTorqueLaws, UnbalanceLaws
+from dynamics.mechanism.bearing_elements import tilt_lever
+from dynamics.mechanism.bodies import Bodies
+from dynamics.mechanism.columns import column_count, section_rows, turn_row
+from dynamics.mechanism.freedoms import ROTATION
+from dynamics.mechanism.kinematics import Kinematics
+from dynamics.mechanism.phases import LoadPhase, angle_phase, frame_phase, repeating_phases, unbalance_phase
+from dynamics.scene.scene import Scene
+from dynamics.types import FloatArray
+
+
+def applied_force_elements(model: Model) -> tuple[tuple[Element, ...], ForceCourseLaws]:
+    """Return one element per applied force, and their laws.
+
+    The rows of an element are its force and moment as one generalized force per newton. A lever makes
+    forces of moments.
+    """
+    mechanism = model.mechanism
+    scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
+    lever, vectors = tilt_lever(scene), mechanism.vectors
+    phases = repeating_phases(scene, kinematics)
+    elements = []
+    size: list[float] = []  # N that the rows are divided by
+    row_count: list[int] = []  # rows that carry force
+    course_phase: list[int] = []
+    frame_turn: list[int] = []
+    senses: list[int] = []
+    for entry, force in enumerate(scene.forces):
+        frame = frame_phase(scene, kinematics, force)
+        rows = _wrench_rows(scene, rotors, force, in_frame=frame is not None)
+        # a force of zero keeps rows of zeros
+        size.append(math.hypot(*force.force, *(moment / lever for moment in force.moment)) or 1.0)
+        row_count.append(len(rows))
+        rows = rows / size[-1]
+        sense = 1
+        if isinstance(force.course, BySpeed):
+            shaft = scene.shaft_index(force.course.shaft)
+            sense = _running_sense(kinematics, shaft, f"forces[{entry}].course.shaft", force.course.shaft)
+            rows = np.concatenate([rows, lever * turn_row(rotors, shaft, 0.0)[None]])  # its speed is read
+        senses.append(sense)
+        course = force.course
+        angle = angle_phase(scene, kinematics, force, course) if isinstance(course, Orders) else None
+        course_phase.append(_position_index(scene, phases, angle))
+        frame_turn.append(_position_index(scene, phases, frame))
+        elements.append(Element(Law.APPLIED_FORCE, entry, -1, rows, np.zeros(len(rows)), rows @ vectors.T))
+    laws = ForceCourseLaws.packed(
+        [force.course for force in scene.forces],
+        size=np.array(size, dtype=float),
+        lever=np.full(len(size), lever),
+        sense=np.array(senses, dtype=float),
+        rows=np.array(row_count, dtype=np.int64),
+        phase=np.array(course_phase, dtype=np.int64),
+        frame=np.array(frame_turn, dtype=np.int64),
+        mean=np.array([_steady_part(scene, kinematics, force) for force in scene.forces]).reshape(-1, 2),
+    )
+    return tuple(elements), laws
+
+
+def unbalance_elements(model: Model) -> tuple[tuple[Element, ...], UnbalanceLaws]:
+    """Return one element per unbalance, and their laws."""
+    mechanism = model.mechanism
+    scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
+    lever, vectors = tilt_lever(scene), mechanism.vectors
+    phases = repeating_phases(scene, kinematics)
+    elements = []
+    phase: list[int] = []
+    for entry, part in enumerate(scene.unbalances):
+        shaft = scene.shaft_index(part.shaft)
+        if rotors[shaft].frame is not None:
+            bound = "a shaft described in the fixed frame"
+            advice = "On a member of a planetary set use a force by speed that turns with it."
+            raise InputError(f"unbalances[{entry}].shaft", part.shaft, bound, advice)
+        moves = section_rows(rotors, shaft, rotors[shaft].shaft.origin[2] + part.position)
+        rows = np.array([moves[0], moves[1], lever * moves[ROTATION]])
+        elements.append(Element(Law.UNBALANCE, entry, -1, rows, np.zeros(3), rows @ vectors.T))
+        phase.append(_position_index(scene, phases, unbalance_phase(scene, kinematics, part)))
+    laws = UnbalanceLaws(
+        amount=np.array([part.amount for part in scene.unbalances], dtype=float),
+        angle=np.array([part.angle for part in scene.unbalances], dtype=float),
+        lever=np.full(len(phase), lever),
+        phase=np.array(phase, dtype=np.int64),
+        gravity=np.array(scene.gravity[:2], dtype=float),
+        steady=np.zeros(1, dtype=np.bool_),
+    )
+    return tuple(elements), laws
+
+
+def _wrench_rows(scene: Scene, rotors: Bodies, force: AppliedForce, in_frame: bool) -> FloatArray:
+    """Return the generalized force of a force and moment, (p, N).
+
+    Where they turn with a frame: of their part across the axis as it is and a quarter turn on, then of the
+    part along the axis, which does not turn.
+    """
+    index = scene.shaft_index(force.shaft)
+    moves = section_rows(rotors, index, rotors[index].shaft.origin[2] + force.position)
+    wrench = np.array([*force.force, *force.moment])
+    if not in_frame:
+        return np.asarray((wrench @ moves)[None])
+    fx, fy, fz, mx, my, mz = wrench
+    rows = [[fx, fy, 0.0, mx, my, 0.0], [-fy, fx, 0.0, -my, mx, 0.0]]
+    if fz or mz:
+        rows.append([0.0, 0.0, fz, 0.0, 0.0, mz])
+    return np.asarray(np.array(rows) @ moves)
+
+
+def _steady_part(scene: Scene, kinematics: Kinematics, force: AppliedForce) -> tuple[float, float]:
+    """Return the means of s cos a and s sin a, with the factor s and the angle a of the frame.
+
+    They are not zero where an order of s is the rotation of the frame itself: part of such a force stands
+    still.
+    """
+    frame, course = frame_phase(scene, kinematics, force), force.course
+    if frame is None or not isinstance(course, Orders):
+        return 0.0, 0.0
+    angle = angle_phase(scene, kinematics, force, course)
+    mean_cos, mean_sin = 0.0, 0.0
+    for order, amplitude, phase in zip(course.multiple, course.amplitude, course.phase, strict=True):
+        for sense in (1, -1):
+            if all(sense * order * a == b for a, b in zip(angle.rate, frame.rate, strict=True)):
+                mean_cos += 0.5 * amplitude * math.cos(phase)
+                mean_sin -= 0.5 * amplitude * sense * math.sin(phase)
+    return mean_cos, mean_sin
+
+
+def _running_sense(kinematics: Kinematics, shaft: int, field: str, name: str) -> int:
+    """Return the sense in which a shaft turns; refuse one that stands."""
+    sense = kinematics.sense[shaft]
+    if sense == 0:
+        raise InputError(field, name, "a shaft that turns", "Give a held shaft's force by time.")
+    return sense
+
+
+def _position_index(scene: Scene, phases: tuple[LoadPhase, ...], phase: LoadPhase | None) -> int:
+    """Return the index of a phase among the positions, which the meshes begin; -1: there is no phase."""
+    return -1 if phase is None else len(scene.meshes) + phases.index(phase)
+
+
+def speed_torque_elements(model: Model) -> tuple[tuple[Element, ...], SpeedTorqueLaws]:
+    """Return one element per speed torque, and their laws.
+
+    The coordinate of an element is the rotation in the shaft's sense times a radius. Its rate in the
+    kinematic motion is the shaft's speed times that radius.
+    """
+    mechanism = model.mechanism
+    scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
+    radius = tilt_lever(scene)
+    elements = []
+    for entry, part in enumerate(scene.speed_torques):
+        shaft = scene.shaft_index(part.shaft)
+        sense = kinematics.sense[shaft]
+        if sense == 0:
+            field = f"speed_torques[{entry}].shaft"
+            raise InputError(field, part.shaft, "a shaft that turns", "A held shaft needs no load.")
+        gradient = np.zeros((1, column_count(rotors)))
+        gradient[0] += sense * radius * turn_row(rotors, shaft, part.position)
+        drift = sense * radius * kinematics.float_ratio[shaft][None, :]
+        elements.append(Element(Law.SPEED_TORQUE, entry, -1, gradient, np.zeros(1), drift))
+    return tuple(elements), SpeedTorqueLaws.packed(scene.speed_torques, radius)

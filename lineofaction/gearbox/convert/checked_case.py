@@ -1,0 +1,160 @@
+"""Cases that can be computed: what a schema cannot check and a request can afford."""
+
+from __future__ import annotations
+
+import json
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from bounds import warn_of
+from bounds.types import Json
+from fe_contact.geometry import ParallelAxes
+from fe_contact.options import AnalysisOptions, TableAxes
+from fe_contact.plausibility import pair_findings
+from lineofaction.gearbox.convert.case import (
+    THICK,
+    analysis_options,
+    boundary_errors,
+    case_json,
+    gear_pair,
+    table_axes,
+)
+from lineofaction.gearbox.schemas.case import Case
+
+if TYPE_CHECKING:
+    from fe_contact.analysis.request.request import Checked
+
+Inputs = TypeVar("Inputs")
+Requested = TypeVar("Requested")
+
+
+@dataclass(frozen=True)
+class CheckedCase:
+    """A case on its way to the contact solver: converted once and checked once, each when first needed.
+
+    A process makes one of the validated model and hands it on. A worker is another process: it reads the
+    stored inputs once, and makes its own.
+    """
+
+    case: Case
+    _requests: dict[Any, tuple[Any, Any]] = field(default_factory=dict, init=False, repr=False, compare=False)
+
+    @cached_property
+    def pair(self) -> ParallelAxes:
+        """As `gear_pair`."""
+        return gear_pair(self.case)
+
+    @cached_property
+    def axes(self) -> TableAxes:
+        """As `table_axes`."""
+        return table_axes(self.case)
+
+    @cached_property
+    def options(self) -> AnalysisOptions:
+        """As `analysis_options`."""
+        return analysis_options(self.case)
+
+    @property
+    def converted(self) -> tuple[ParallelAxes, TableAxes, AnalysisOptions]:
+        """All three, as the library takes them."""
+        return self.pair, self.axes, self.options
+
+    @cached_property
+    def feasible(self) -> Checked:
+        """The request with all its effects: what is refused on submission. Raises `BadInput`."""
+        return self._checked(neglect=False)
+
+    @cached_property
+    def checked(self) -> Checked:
+        """The request as it is solved, without the effects that its tolerance does not need."""
+        from fe_contact.analysis.request.request_check import neglecting  # noqa: PLC0415 (start-up time)
+
+        if "feasible" not in self.__dict__:
+            return self._checked()
+        with boundary_errors():
+            return neglecting(self.feasible)
+
+    @cached_property
+    def at_point(self) -> Checked:
+        """The request of the case's one load and one alignment: its table may be of any size."""
+        return self._checked(whole_table=False, neglect=False)
+
+    def _checked(self, *, whole_table: bool = True, neglect: bool = True) -> Checked:
+        from fe_contact.analysis.request.request_check import check_request  # noqa: PLC0415 (start-up time)
+
+        converted = self.converted
+        with boundary_errors():
+            return check_request(*converted, whole_table=whole_table, neglect=neglect)
+
+    def request(self, make: Callable[[CheckedCase, Inputs], Requested], inputs: Inputs) -> Requested:
+        """Return what a study requests of the library: made once, for its check and for its work.
+
+        Raises `BadInput`.
+        """
+        known = self._requests.get(make)
+        if known is None or known[0] != inputs:
+            with boundary_errors():
+                known = self._requests[make] = inputs, make(self, inputs)
+        made: Requested = known[1]
+        return made
+
+
+def across_face(checked: CheckedCase) -> CheckedCase:
+    """Return a case in three dimensions."""
+    across = checked.case.accuracy.model_copy(update={"model": "3d"})
+    return CheckedCase(checked.case.model_copy(update={"accuracy": across}))
+
+
+class CheckedCases:
+    """The cases of a scene, or the last ones of a process; equal ones are converted and checked once."""
+
+    def __init__(self, most: int = 256) -> None:
+        self._most, self._kept = most, OrderedDict[str, CheckedCase]()
+
+    def of(self, case: Case) -> CheckedCase:
+        """Return a validated case."""
+        return self._of(case_json(case), lambda: case)
+
+    def of_json(self, inputs: Json) -> CheckedCase:
+        """Return a normalized case; one that is not kept is validated."""
+        return self._of(inputs, lambda: Case.model_validate_json(json.dumps(inputs)))
+
+    def _of(self, inputs: Json, case: Callable[[], Case]) -> CheckedCase:
+        name = json.dumps(inputs, sort_keys=True)
+        kept = self._kept.get(name)
+        if kept is None:
+            kept = self._kept[name] = CheckedCase(case())
+            while len(self._kept) > self._most:
+                self._kept.popitem(last=False)
+        return kept
+
+
+def check_case(case: Case) -> ParallelAxes:
+    """Return the pair of a case that can be computed.
+
+    Raises `BadInput`: no such pair, or a request that no plan can meet.
+    """
+    return CheckedCase(case).feasible.request.pair
+
+
+def check_plain_case(case: Case) -> ParallelAxes:
+    """Return the pair of a case of loads alone, as `check_case` does, without what computes.
+
+    A case with default accuracy and effects, one alignment and equal teeth is refused for its loads, or for
+    a disc that is too thin; whether one may be is decided here.
+    """
+    pair = gear_pair(case)
+    if any(
+        gear.face_width * THICK < abs(gear.root_radius - gear.held_radius)
+        for gear in (pair.pinion, pair.wheel)
+    ):
+        return check_case(case)
+    with boundary_errors():
+        axes = table_axes(case)
+        load = axes.load(pair)
+        alignments = axes.misalignment, axes.center_distance_change
+        warn_of(pair_findings(pair, load, *alignments, loads_as=axes.loads_as))
+    return pair

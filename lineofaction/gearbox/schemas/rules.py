@@ -1,0 +1,51 @@
+"""Rules over several fields of a table, as JSON Schema states them; validators of the models enforce them."""
+
+from __future__ import annotations
+
+from lineofaction.gearbox.schemas.model import _GIVEN, _LEFT_OUT, Json
+
+
+def stated(*rules: Json) -> Json:
+    """Return what a model adds to its schema (``json_schema_extra``): all rules hold."""
+    return {"allOf": list(rules)}
+
+
+def exactly_one_of(*names: str) -> Json:
+    """Return the rule that one of some fields is given."""
+    return {"oneOf": [_with(name, *names) for name in names]}
+
+
+def at_most_one_of(*names: str) -> Json:
+    """Return the rule that none or one of some fields is given."""
+    return {"oneOf": [left_out(*names), *(_with(name, *names) for name in names)]}
+
+
+def at_least_one_of(*names: str) -> Json:
+    """Return the rule that one or more of some fields are given."""
+    return {"anyOf": [given(name) for name in names]}
+
+
+def own_or_factor(*names: str) -> Json:
+    """Return the rule that one or more of some fields are given, or a factor on all of them."""
+    of_factor = both(given("factor"), left_out(*names))
+    return {"oneOf": [of_factor, at_least_one_of(*names) | left_out("factor")]}
+
+
+def given(*names: str) -> Json:
+    """Return the schema of tables that have some fields."""
+    return {"required": list(names), "properties": dict.fromkeys(names, _GIVEN)}
+
+
+def left_out(*names: str) -> Json:
+    """Return the schema of tables without some fields."""
+    return {"properties": dict.fromkeys(names, _LEFT_OUT)}
+
+
+def both(first: Json, second: Json) -> Json:
+    """Return the schema of tables of which both hold."""
+    properties = first["properties"] | second["properties"]
+    return {"required": [*first.get("required", ()), *second.get("required", ())], "properties": properties}
+
+
+def _with(name: str, *names: str) -> Json:
+    return both(given(name), left_out(*(other for other in names if other != name)))
